@@ -1,0 +1,129 @@
+# cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
+#
+#   CONFIG=release|debug|sanitize|scalar   CC=gcc|clang   WERROR=1   THREADS for `make -j` as usual
+# One build folder per configuration; the release tool is also linked as ./cscd.
+
+CONFIG  ?= release
+ifeq ($(origin CC),default)
+CC      := gcc
+endif
+WERROR  ?= 0
+BUILD_ROOT ?= build
+BUILD   := $(BUILD_ROOT)/$(CONFIG)
+
+OPTIMISE_release  := -O3 -g -DNDEBUG
+OPTIMISE_debug    := -O0 -g3
+OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
+# The scalar twin: what the vector units compute must not differ from it.
+OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
+ifeq ($(OPTIMISE_$(CONFIG)),)
+$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize or scalar)
+endif
+
+WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-prototypes -Wvla
+ifeq ($(WERROR),1)
+WARNINGS += -Werror
+endif
+# -ffp-contract=off: error bounds are derived for separate multiplications and additions.
+CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
+              -pthread -MMD -MP -Iinclude -I. $(CFLAGS)
+LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
+CORE_LIBS  := -lgsl -lm
+TOOL_LIBS  := -lpng $(CORE_LIBS)
+
+CORE_SOURCES    := $(wildcard src/*.c preprocess/*.c runtime/*.c)
+TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
+CLI_SOURCES     := $(wildcard src/cli/*.c)
+SUPPORT_SOURCES := $(wildcard tests/support/*.c)
+TEST_SOURCES    := $(wildcard tests/test_*.c)
+MODEL_SOURCES   := $(wildcard models/*.c)
+SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(MODEL_SOURCES)
+
+objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
+CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
+TOOL_OBJECTS := $(call objects,$(TOOL_SOURCES))
+LIBRARY := $(BUILD)/libcscd.a
+TOOL    := $(BUILD)/cscd
+TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
+MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
+
+COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
+
+.PHONY: all tool library packages demo test test-run lint format docs examples clean help
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+all: packages
+	@$(MAKE) --no-print-directory tool library
+
+tool: $(TOOL)
+	@if [ "$(BUILD)" = build/release ]; then ln -sfn $(TOOL) cscd; fi
+
+library: $(LIBRARY)
+
+# Everything that the build or the tests need and this machine lacks.
+packages:
+	@.ci/packages
+
+demo: packages
+	@$(MAKE) --no-print-directory tool $(BUILD)/models/capsule_bend
+	@BUILD=$(BUILD) models/demo.sh
+
+test: packages
+	@$(MAKE) --no-print-directory test-run
+
+test-run: tool $(TESTS) $(MODELS)
+	@BUILD=$(BUILD) tests/run.sh $(TESTS)
+
+lint: packages
+	@.ci/lint
+
+format:
+	clang-format -i $$(git ls-files '*.c' '*.h')
+
+examples: packages
+	@CC="$(CC)" .ci/examples
+
+clean:
+	rm -rf build cscd
+
+help:
+	@echo 'make demo      generate a bending capsule, replay it, draw it'
+	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
+	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
+	@echo 'make lint      format, layering, file sizes, exported symbols'
+	@echo 'make examples  compile and run the examples of README and docs'
+	@echo 'make format    clang-format all sources; make clean removes build/'
+
+# The library is one relocatable object in which everything but the public API is local.
+$(LIBRARY): $(CORE_OBJECTS)
+	@mkdir -p $(@D)
+	ld -r -o $(BUILD)/cscd.o $^
+	objcopy --localize-hidden $(BUILD)/cscd.o
+	rm -f $@
+	ar rcs $@ $(BUILD)/cscd.o
+
+# The tool lives on the public API alone, so it links the library and not its objects.
+$(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
+	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+$(BUILD)/models/%: $(BUILD)/models/%.o $(TOOL_OBJECTS) $(LIBRARY)
+	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+# Tests see the inside: they link the objects.
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(call objects,$(SUPPORT_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
+	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lcmocka
+
+$(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -c -o $@ $<
+
+# Only this file depends on the commit, and only when the commit changes.
+$(BUILD)/src/cli/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"'
+$(BUILD)/src/cli/provenance.o: $(BUILD)/commit
+$(BUILD)/commit: FORCE
+	@mkdir -p $(@D)
+	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
+FORCE:
+
+-include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES))

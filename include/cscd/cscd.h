@@ -1,0 +1,247 @@
+/*
+ * cscd - continuous self-collision detection for deforming triangle meshes.
+ *
+ * One mesh, two sets of vertex positions (start and end of an interval), every vertex moving in a
+ * straight line between them: cscd reports every vertex-face and edge-edge pair of the mesh that touches.
+ *
+ * Conventions, true for every function below:
+ *   positions   packed x,y,z doubles, vertex_count * 3 values, in any one unit of length; each value is
+ *               0 or has a magnitude in [2^-300, 2^300]
+ *   time        fraction of the interval, 0 = start, 1 = end
+ *   contact     two features that touch; features that share a vertex are never reported,
+ *               features that touch at the start already are reported at time 0
+ *   timings     milliseconds of wall clock
+ *   errors      functions that can fail return cscd_status and leave *out untouched unless CSCD_OK;
+ *               cscd_context_detail then says in a sentence what is wrong, where, and what to do
+ *   ownership   the library copies what it is given; a _create has one _destroy; destroy in reverse
+ *               order of creation; destroying NULL does nothing
+ *   threads     an object, and what was created from it, is used by one thread at a time; separate
+ *               contexts are independent
+ *   defaults    a NULL options pointer means the matching _defaults(); start from those, never from {0}
+ *   complete    a list is whole or the call failed
+ *   repeatable  one build, the same inputs: the same contacts in the same order, bit for bit,
+ *               for any thread count
+ */
+#ifndef CSCD_H
+#define CSCD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define CSCD_VERSION_MAJOR 0
+#define CSCD_VERSION_MINOR 1
+#define CSCD_VERSION_PATCH 0
+
+#ifndef CSCD_API
+#if defined(__GNUC__)
+#define CSCD_API __attribute__((visibility("default")))
+#else
+#define CSCD_API
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* "0.1.0", static storage. */
+CSCD_API const char *cscd_version_string(void);
+
+/* ---- status -------------------------------------------------------------------------------------- */
+
+typedef enum cscd_status {
+    CSCD_OK = 0,
+    CSCD_OUT_OF_MEMORY,    /* an allocation failed; every object is still valid and unchanged */
+    CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options not made by _defaults() */
+    CSCD_INVALID_MESH, /* empty, too large, an index past vertex_count, a triangle that repeats a vertex */
+    CSCD_SYSTEM_ERROR  /* the system refused a thread */
+} cscd_status;
+
+/* One short English phrase, static storage, never NULL. */
+CSCD_API const char *cscd_status_string(cscd_status status);
+
+/* ---- context: allocator and threads ---------------------------------------------------------------- */
+
+typedef struct cscd_context cscd_context;
+
+/* Set both functions or neither. allocate returns NULL on failure; alignment is a power of two;
+ * release gets the size that was asked for. Calls are serialised by the context. */
+typedef struct cscd_allocator {
+    void *(*allocate)(void *user, size_t size, size_t alignment);
+    void (*release)(void *user, void *block, size_t size);
+    void *user;
+} cscd_allocator;
+
+typedef struct cscd_context_options {
+    uint32_t struct_size;     /* set by cscd_context_defaults */
+    uint32_t thread_count;    /* 0 = one per processor; default 1; at most 256 */
+    cscd_allocator allocator; /* default: aligned_alloc and free */
+} cscd_context_options;
+
+CSCD_API cscd_context_options cscd_context_defaults(void);
+CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
+CSCD_API void cscd_context_destroy(cscd_context *context);
+
+/* The sentence behind the last failure in this context, "" if none. Valid until the next call. */
+CSCD_API const char *cscd_context_detail(const cscd_context *context);
+
+CSCD_API uint32_t cscd_context_thread_count(const cscd_context *context);
+
+/* Bytes now held through this context's allocator. */
+CSCD_API size_t cscd_context_bytes(const cscd_context *context);
+
+/* ---- mesh: connectivity that never changes --------------------------------------------------------- */
+
+typedef struct cscd_mesh cscd_mesh;
+
+typedef struct cscd_mesh_desc {
+    uint32_t vertex_count;     /* 1 or more */
+    uint32_t triangle_count;   /* 1 or more, below 2^31 */
+    const uint32_t *triangles; /* triangle_count * 3 vertex indices, counter-clockwise from outside */
+} cscd_mesh_desc;
+
+/* Vertices without a triangle are allowed and take no part in collisions. Open, non-manifold and
+ * inconsistently oriented meshes are allowed: see cscd_component. INVALID_MESH names the triangle. */
+CSCD_API cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out);
+CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
+
+CSCD_API uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh);
+CSCD_API uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh);
+
+/* The triangle's three vertices as given; triangle < triangle_count. */
+CSCD_API void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]);
+
+/* Edges are numbered by (smaller vertex, larger vertex), each once; edge < edge_count. */
+CSCD_API uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh);
+CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
+
+/* A component: triangles connected through shared vertices. Numbered by their first triangle. */
+typedef struct cscd_component {
+    uint32_t vertex_count, edge_count, triangle_count;
+    uint32_t open_edges;            /* in one triangle only */
+    uint32_t non_manifold_edges;    /* in three triangles or more */
+    uint32_t non_manifold_vertices; /* their triangles do not form one fan (bow-tie) */
+    uint32_t inconsistent_edges;    /* traversed in the same direction by their two triangles */
+    uint32_t first_open_edge;       /* an example of each, UINT32_MAX if there is none */
+    uint32_t first_non_manifold_edge;
+    uint32_t first_non_manifold_vertex;
+    uint32_t first_inconsistent_edge;
+    int64_t euler_characteristic; /* V - E + F; a closed oriented component has genus 1 - euler / 2 */
+    bool closed_manifold;         /* closed, manifold and consistently oriented */
+} cscd_component;
+
+CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
+CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
+CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
+
+/* ---- detector: the runtime ------------------------------------------------------------------------- */
+
+typedef struct cscd_detector cscd_detector;
+
+/* Methods differ in time only: in one mode every method keeps the same guarantee. */
+typedef enum cscd_method {
+    CSCD_METHOD_NONE, /* bounding volumes, no culling */
+    CSCD_METHOD_BRUTE /* every pair of features: the reference, O(n^2) */
+} cscd_method;
+
+/* "none", "brute"; static storage, never NULL. from_name leaves *out untouched when it returns false. */
+CSCD_API const char *cscd_method_name(cscd_method method);
+CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
+
+typedef enum cscd_mode {
+    CSCD_MODE_ALL /* every contact of the interval is reported, whatever the mesh and its start state */
+} cscd_mode;
+
+CSCD_API const char *cscd_mode_name(cscd_mode mode);
+CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
+
+typedef struct cscd_detector_options {
+    uint32_t struct_size; /* set by cscd_detector_defaults */
+    cscd_method method;   /* default NONE */
+    cscd_mode mode;       /* default ALL */
+
+    /* Pairs to leave out: a contact is not reported, and a self-intersection not listed, when this says
+     * true for two triangles a < b of which one contains (or is) the one feature and the other the other.
+     * Called on the calling thread, for pairs that touch only. Default NULL: nothing is left out. */
+    bool (*ignore)(void *user, uint32_t a, uint32_t b);
+    void *ignore_user;
+} cscd_detector_options;
+
+CSCD_API cscd_detector_options cscd_detector_defaults(void);
+CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_detector_options *options,
+                                          cscd_detector **out);
+CSCD_API void cscd_detector_destroy(cscd_detector *detector);
+
+typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact_kind;
+
+/* "vf", "ee"; static storage, never NULL. */
+CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
+
+/* Where two features meet at time toi:
+ *   VF  a = vertex, b = triangle (p0,p1,p2): (1-u-v) p0 + u p1 + v p2
+ *   EE  a < b edges: (1-u) a0 + u a1 and (1-v) b0 + v b1 */
+typedef struct cscd_contact {
+    cscd_contact_kind kind;
+    uint32_t a, b;
+    double toi; /* in [0,1] */
+    double u, v;
+    double point[3];  /* midpoint of the two points named by u and v at toi */
+    double normal[3]; /* unit, against the motion of a relative to b; 0 where the features have none */
+} cscd_contact;
+
+/* Sorted by (toi, kind, a, b). Owned by the detector, valid until its next call. */
+typedef struct cscd_contacts {
+    const cscd_contact *items;
+    size_t count;
+} cscd_contacts;
+
+/* All contacts between start and end, two arrays of positions. The first call builds the trees from
+ * start, so it is slower; later calls allocate only when a buffer has to grow. */
+CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
+                                        cscd_contacts *out);
+
+/* Two triangles a < b, of which an edge or vertex of one meets a face, or an edge an edge, of the other;
+ * features that share a vertex aside. Touching counts; triangles that share vertices are tested too. */
+typedef struct cscd_intersection {
+    uint32_t a, b;
+} cscd_intersection;
+
+/* The state of the mesh at one moment. Sorted by (a, b). Valid until the detector's next call. */
+typedef struct cscd_intersections {
+    const cscd_intersection *items;
+    size_t count;                 /* 0: the mesh is embedded there (pairs left out aside) */
+    uint32_t zero_area_triangles; /* triangles whose corners lie on one line */
+    uint32_t first_zero_area;     /* UINT32_MAX if there is none */
+} cscd_intersections;
+
+/* Static check with exact predicates. Timings and counters of the last step stay as they are, but for
+ * check_ms. */
+CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *positions,
+                                         cscd_intersections *out);
+
+typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
+    double update_ms;         /* BVH update: swept boxes and refit */
+    double traversal_ms;      /* overlapping triangle pairs */
+    double contact_ms;        /* representatives, elementary tests, sorting */
+    double total_ms;          /* the whole step, checks of the input included */
+    double check_ms;          /* the last cscd_detector_check */
+} cscd_timings;
+
+typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
+    uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
+    uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
+    uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */
+    uint64_t tests;            /* elementary tests: those of them whose own swept volumes overlap */
+    uint64_t root_solves;      /* tests that signs could not reject */
+    uint64_t vf, ee;           /* contacts reported */
+} cscd_counters;
+
+CSCD_API cscd_timings cscd_detector_timings(const cscd_detector *detector);
+CSCD_API cscd_counters cscd_detector_counters(const cscd_detector *detector);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

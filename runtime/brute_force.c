@@ -1,0 +1,73 @@
+/* Every pair of features that share no vertex: the reference that the other methods must equal. */
+#include "runtime/brute_force.h"
+
+#include <math.h>
+
+/* Comparisons of doubles are exact, so nothing needs rounding here. */
+typedef struct swept_box {
+    double low[3], high[3];
+} swept_box;
+
+static void add_vertex(const swept_interval *interval, uint32_t vertex, swept_box *box) {
+    for (int k = 0; k < 3; k++) {
+        double start = interval->x0[(size_t)vertex * 3 + (size_t)k];
+        double end = interval->x1[(size_t)vertex * 3 + (size_t)k];
+        double low = start < end ? start : end, high = start < end ? end : start;
+        box->low[k] = low < box->low[k] ? low : box->low[k];
+        box->high[k] = high > box->high[k] ? high : box->high[k];
+    }
+}
+
+static swept_box feature_box(const swept_interval *interval, const uint32_t *vertices, int count) {
+    swept_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < count; i++) add_vertex(interval, vertices[i], &box);
+    return box;
+}
+
+static bool boxes_overlap(const swept_box *a, const swept_box *b) {
+    for (int k = 0; k < 3; k++) {
+        if (a->high[k] < b->low[k] || b->high[k] < a->low[k]) return false;
+    }
+    return true;
+}
+
+/* A vertex without a triangle is no feature of the surface. */
+static bool in_surface(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] > mesh->vertex_star_offsets[vertex];
+}
+
+static void test_face(const swept_interval *interval, uint32_t triangle, contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *corners = mesh->triangles[triangle];
+    swept_box face = feature_box(interval, corners, 3);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (v == corners[0] || v == corners[1] || v == corners[2] || !in_surface(mesh, v)) continue;
+        lane->feature_pairs++;
+        swept_box vertex = feature_box(interval, &v, 1);
+        if (boxes_overlap(&face, &vertex)) narrow_phase_test_vf(interval, v, triangle, lane);
+    }
+}
+
+static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *ends_a = mesh->edges[a];
+    swept_box box_a = feature_box(interval, ends_a, 2);
+    for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
+        const uint32_t *ends_b = mesh->edges[b];
+        if (ends_a[0] == ends_b[0] || ends_a[0] == ends_b[1] || ends_a[1] == ends_b[0] ||
+            ends_a[1] == ends_b[1])
+            continue;
+        lane->feature_pairs++;
+        swept_box box_b = feature_box(interval, ends_b, 2);
+        if (boxes_overlap(&box_a, &box_b)) narrow_phase_test_ee(interval, a, b, lane);
+    }
+}
+
+void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
+                      contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    for (uint32_t t = lane_index; t < mesh->triangle_count && !lane->out_of_memory; t += lane_count)
+        test_face(interval, t, lane);
+    for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count)
+        test_edge(interval, e, lane);
+}

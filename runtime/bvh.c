@@ -1,0 +1,173 @@
+/* A flat binary tree of 14-DOPs over the triangles of a mesh: one subtree per component. */
+#include "runtime/bvh.h"
+
+#include <string.h>
+
+/* Things to be split from one another: components first, the triangles of one component then. */
+typedef struct item_set {
+    uint32_t *order;
+    double (*centres)[3]; /* indexed by what order holds */
+} item_set;
+
+/* A run of items that becomes a subtree, the right child of parent (UINT32_MAX: a left child or the root). */
+typedef struct pending_run {
+    const item_set *items;
+    uint32_t begin, end, parent;
+} pending_run;
+
+typedef struct builder {
+    const cscd_mesh *mesh;
+    item_set components, triangles;
+    uint32_t *component_offsets; /* the triangles of component c: order[offsets[c] .. offsets[c + 1]) */
+    pending_run *stack;
+    bvh_node *nodes;
+    uint32_t node_count;
+} builder;
+
+static double project(const double p[3], int axis) {
+    static const double axes[KDOP_AXIS_COUNT][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+                                                    {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    return axes[axis][0] * p[0] + axes[axis][1] * p[1] + axes[axis][2] * p[2];
+}
+
+/* The axis along which the centres of a run extend farthest, and the middle of that extent. */
+static int longest_axis(const pending_run *run, double *middle) {
+    int longest = 0;
+    double longest_extent = -1.0;
+    for (int axis = 0; axis < KDOP_AXIS_COUNT; axis++) {
+        double low = INFINITY, high = -INFINITY;
+        for (uint32_t i = run->begin; i < run->end; i++) {
+            double value = project(run->items->centres[run->items->order[i]], axis);
+            low = value < low ? value : low;
+            high = value > high ? value : high;
+        }
+        double extent =
+            (high - low) * (axis < 3 ? 1.0 : 0.57735026918962576); /* diagonals have length sqrt 3 */
+        if (extent > longest_extent) {
+            longest_extent = extent;
+            longest = axis;
+            *middle = low + 0.5 * (high - low);
+        }
+    }
+    return longest;
+}
+
+static uint32_t partition_run(const pending_run *run) {
+    double middle = 0.0;
+    int axis = longest_axis(run, &middle);
+    uint32_t *order = run->items->order;
+    uint32_t split = run->begin;
+    for (uint32_t i = run->begin; i < run->end; i++) {
+        if (project(run->items->centres[order[i]], axis) < middle) {
+            uint32_t item = order[i];
+            order[i] = order[split];
+            order[split++] = item;
+        }
+    }
+    /* All centres coincide, or rounding puts them on one side: halve by count. */
+    if (split == run->begin || split == run->end) split = run->begin + (run->end - run->begin) / 2;
+    return split;
+}
+
+static void build_nodes(builder *b) {
+    uint32_t depth = 0;
+    b->stack[depth++] = (pending_run){&b->components, 0, b->mesh->component_count, UINT32_MAX};
+    while (depth > 0) {
+        pending_run run = b->stack[--depth];
+        if (run.items == &b->components && run.end - run.begin == 1) {
+            uint32_t component = b->components.order[run.begin];
+            run.items = &b->triangles;
+            run.begin = b->component_offsets[component];
+            run.end = b->component_offsets[component + 1];
+        }
+        uint32_t node = b->node_count++;
+        if (run.parent != UINT32_MAX) b->nodes[run.parent].right = node;
+        if (run.end - run.begin == 1) {
+            b->nodes[node].triangle = run.items->order[run.begin];
+            continue;
+        }
+        uint32_t split = partition_run(&run);
+        b->stack[depth++] = (pending_run){run.items, split, run.end, node};
+        b->stack[depth++] = (pending_run){run.items, run.begin, split, UINT32_MAX};
+    }
+}
+
+static void find_centres(builder *b, const double *positions) {
+    const cscd_mesh *mesh = b->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        uint32_t component = mesh->triangle_components[t];
+        for (int k = 0; k < 3; k++) {
+            double sum = 0.0;
+            for (int i = 0; i < 3; i++) sum += positions[(size_t)mesh->triangles[t][i] * 3 + (size_t)k];
+            b->triangles.centres[t][k] = sum / 3.0;
+            b->components.centres[component][k] += sum / 3.0 / mesh->components[component].triangle_count;
+        }
+    }
+}
+
+/* Components in order, and the triangles sorted by component. */
+static void fill_orders(builder *b) {
+    const cscd_mesh *mesh = b->mesh;
+    uint32_t sum = 0;
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        b->components.order[c] = c;
+        b->component_offsets[c + 1] = sum; /* the next free place; moves up to the run's end below */
+        sum += mesh->components[c].triangle_count;
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        b->triangles.order[b->component_offsets[mesh->triangle_components[t] + 1]++] = t;
+}
+
+static bool allocate_builder(cscd_context *context, builder *b) {
+    uint32_t triangle_count = b->mesh->triangle_count, component_count = b->mesh->component_count;
+    b->triangles.order = context_allocate(context, triangle_count, sizeof(uint32_t));
+    b->triangles.centres = context_allocate(context, triangle_count, sizeof(double[3]));
+    b->components.order = context_allocate(context, component_count, sizeof(uint32_t));
+    b->components.centres = context_allocate(context, component_count, sizeof(double[3]));
+    b->component_offsets = context_allocate(context, (size_t)component_count + 1, sizeof(uint32_t));
+    /* Every run on the stack holds at least one triangle of its own. */
+    b->stack = context_allocate(context, (size_t)triangle_count + 1, sizeof *b->stack);
+    b->nodes = context_allocate(context, (size_t)triangle_count * 2 - 1, sizeof *b->nodes);
+    return b->triangles.order != NULL && b->triangles.centres != NULL && b->components.order != NULL &&
+           b->components.centres != NULL && b->component_offsets != NULL && b->stack != NULL &&
+           b->nodes != NULL;
+}
+
+static void free_builder(cscd_context *context, builder *b) {
+    void *blocks[] = {b->triangles.order,    b->triangles.centres, b->components.order,
+                      b->components.centres, b->component_offsets, b->stack};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+cscd_status bvh_build(const cscd_mesh *mesh, const double *positions, bvh *out) {
+    builder b = {.mesh = mesh};
+    bool allocated = allocate_builder(mesh->context, &b);
+    if (allocated) {
+        find_centres(&b, positions);
+        fill_orders(&b);
+        build_nodes(&b);
+        *out = (bvh){b.nodes, b.node_count};
+    } else {
+        context_free(mesh->context, b.nodes);
+    }
+    free_builder(mesh->context, &b);
+    return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+void bvh_free(cscd_context *context, bvh *tree) {
+    context_free(context, tree->nodes);
+    *tree = (bvh){NULL, 0};
+}
+
+void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
+    for (uint32_t i = tree->node_count; i-- > 0;) {
+        bvh_node *node = &tree->nodes[i];
+        if (bvh_is_leaf(node)) {
+            const uint32_t *v = mesh->triangles[node->triangle];
+            kdop edge = kdop_union(&vertex_volumes[v[0]], &vertex_volumes[v[1]]);
+            node->volume = kdop_union(&edge, &vertex_volumes[v[2]]);
+        } else {
+            node->volume = kdop_union(&tree->nodes[i + 1].volume, &tree->nodes[node->right].volume);
+        }
+    }
+}

@@ -1,0 +1,113 @@
+/* Closest points of features at rest. */
+#include "runtime/closest.h"
+
+#include "runtime/vector.h"
+
+static double clamp01(double x) {
+    return x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
+}
+
+/* Parameter of the point of segment a b nearest to p; 0 where the segment is a point. */
+static double nearest_on_segment(const double p[3], const double a[3], const double b[3]) {
+    double direction[3], offset[3];
+    vector_subtract(b, a, direction);
+    vector_subtract(p, a, offset);
+    double length = vector_dot(direction, direction);
+    return length > 0.0 ? clamp01(vector_dot(offset, direction) / length) : 0.0;
+}
+
+static double squared_distance_at(const double p[3], const double a[3], const double b[3], const double c[3],
+                                  double u, double v) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double offset = (p[k] - a[k]) - u * (b[k] - a[k]) - v * (c[k] - a[k]);
+        sum += offset * offset;
+    }
+    return sum;
+}
+
+/* The nearest point on the three sides. */
+static double closest_on_sides(const double p[3], const double a[3], const double b[3], const double c[3],
+                               double *u, double *v) {
+    double ab = nearest_on_segment(p, a, b), bc = nearest_on_segment(p, b, c),
+           ca = nearest_on_segment(p, c, a);
+    const double candidates[3][2] = {{ab, 0.0}, {1.0 - bc, bc}, {0.0, 1.0 - ca}};
+    double best = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double distance = squared_distance_at(p, a, b, c, candidates[i][0], candidates[i][1]);
+        if (distance < best) {
+            best = distance;
+            *u = candidates[i][0];
+            *v = candidates[i][1];
+        }
+    }
+    return best;
+}
+
+double closest_point_triangle(const double p[3], const double a[3], const double b[3], const double c[3],
+                              double *u, double *v) {
+    double ab[3], ac[3], ap[3], normal[3], side[3];
+    vector_subtract(b, a, ab);
+    vector_subtract(c, a, ac);
+    vector_subtract(p, a, ap);
+    vector_cross(ab, ac, normal);
+    double area = vector_dot(normal, normal);
+    double best = closest_on_sides(p, a, b, c, u, v);
+    if (!(area > 0.0)) return best;
+
+    vector_cross(ap, ac, side);
+    double inside_u = vector_dot(side, normal) / area;
+    vector_cross(ab, ap, side);
+    double inside_v = vector_dot(side, normal) / area;
+    if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return best;
+    double distance = squared_distance_at(p, a, b, c, inside_u, inside_v);
+    if (distance >= best) return best;
+    *u = inside_u;
+    *v = inside_v;
+    return distance;
+}
+
+static double segment_distance_at(const double a0[3], const double a1[3], const double b0[3],
+                                  const double b1[3], double u, double v) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double offset = (a0[k] - b0[k]) + u * (a1[k] - a0[k]) - v * (b1[k] - b0[k]);
+        sum += offset * offset;
+    }
+    return sum;
+}
+
+double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
+                        double *u, double *v) {
+    /* The nearest points are two inner ones or include an end: the best of the four ends is a bound. */
+    const double candidates[4][2] = {{0.0, nearest_on_segment(a0, b0, b1)},
+                                     {1.0, nearest_on_segment(a1, b0, b1)},
+                                     {nearest_on_segment(b0, a0, a1), 0.0},
+                                     {nearest_on_segment(b1, a0, a1), 1.0}};
+    double best = INFINITY;
+    for (int i = 0; i < 4; i++) {
+        double distance = segment_distance_at(a0, a1, b0, b1, candidates[i][0], candidates[i][1]);
+        if (distance < best) {
+            best = distance;
+            *u = candidates[i][0];
+            *v = candidates[i][1];
+        }
+    }
+    double along_a[3], along_b[3], offset[3], normal[3], side[3];
+    vector_subtract(a1, a0, along_a);
+    vector_subtract(b1, b0, along_b);
+    vector_subtract(b0, a0, offset);
+    vector_cross(along_a, along_b, normal);
+    double area = vector_dot(normal, normal);
+    if (!(area > 0.0)) return best;
+    vector_cross(offset, along_b, side);
+    double inside_u = vector_dot(side, normal) / area;
+    vector_cross(offset, along_a, side);
+    double inside_v = vector_dot(side, normal) / area;
+    if (!(inside_u >= 0.0 && inside_u <= 1.0 && inside_v >= 0.0 && inside_v <= 1.0)) return best;
+    double distance = segment_distance_at(a0, a1, b0, b1, inside_u, inside_v);
+    if (distance >= best) return best;
+    *u = inside_u;
+    *v = inside_v;
+    return distance;
+}

@@ -1,0 +1,66 @@
+/* The interval's contacts from all threads as one sorted list. */
+#include "runtime/contact_list.h"
+
+#include "src/sort.h"
+
+typedef struct triangle_list {
+    const uint32_t *items;
+    uint32_t count;
+} triangle_list;
+
+static triangle_list vertex_star(const cscd_mesh *mesh, uint32_t vertex) {
+    uint32_t begin = mesh->vertex_star_offsets[vertex];
+    return (triangle_list){mesh->vertex_stars + begin, mesh->vertex_star_offsets[vertex + 1] - begin};
+}
+
+static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
+    return (triangle_list){mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge)};
+}
+
+static bool any_pair_ignored(const cscd_detector_options *options, triangle_list a, triangle_list b) {
+    for (uint32_t i = 0; i < a.count; i++) {
+        for (uint32_t j = 0; j < b.count; j++) {
+            uint32_t s = a.items[i], t = b.items[j];
+            if (s != t && options->ignore(options->ignore_user, s < t ? s : t, s < t ? t : s)) return true;
+        }
+    }
+    return false;
+}
+
+static bool ignored(const cscd_detector *d, const cscd_contact *contact) {
+    if (d->options.ignore == NULL) return false;
+    if (contact->kind == CSCD_CONTACT_VF)
+        return any_pair_ignored(&d->options, vertex_star(d->mesh, contact->a),
+                                (triangle_list){&contact->b, 1});
+    return any_pair_ignored(&d->options, edge_star(d->mesh, contact->a), edge_star(d->mesh, contact->b));
+}
+
+static int compare_contacts(const void *left, const void *right) {
+    const cscd_contact *l = left, *r = right;
+    if (l->toi != r->toi) return l->toi < r->toi ? -1 : 1;
+    if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd_contacts *out) {
+    size_t found = 0, kept = 0;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
+    cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
+    if (status != CSCD_OK) return status;
+    cscd_contact *items = d->contacts.items;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        const contact_lane *lane = &d->contact_lanes[i];
+        counters->feature_pairs += lane->feature_pairs;
+        counters->tests += lane->tests;
+        counters->root_solves += lane->root_solves;
+        for (size_t j = 0; j < lane->count; j++) {
+            if (ignored(d, &lane->contacts[j])) continue;
+            *(lane->contacts[j].kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
+            items[kept++] = lane->contacts[j];
+        }
+    }
+    sort_items(items, d->contacts.scratch, kept, sizeof *items, compare_contacts);
+    *out = (cscd_contacts){items, kept};
+    return CSCD_OK;
+}

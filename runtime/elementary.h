@@ -1,0 +1,31 @@
+/* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? */
+#ifndef CSCD_ELEMENTARY_H
+#define CSCD_ELEMENTARY_H
+
+#include <stdbool.h>
+
+/* Two features of four points together, all moving linearly from x0 (t = 0) to x1 (t = 1).
+ * VF: x[0] the vertex, x[1..3] the face. EE: x[0], x[1] the one edge, x[2], x[3] the other. */
+typedef struct elementary_query {
+    double x0[4][3], x1[4][3];
+} elementary_query;
+
+/* The first touch. u, v, point and normal as in cscd_contact. */
+typedef struct elementary_hit {
+    double toi, u, v;
+    double point[3], normal[3];
+} elementary_hit;
+
+typedef enum elementary_verdict {
+    ELEMENTARY_APART,    /* the swept volumes do not overlap */
+    ELEMENTARY_REJECTED, /* certified by the signs of the coplanarity cubic */
+    ELEMENTARY_MISS,     /* decided at the roots */
+    ELEMENTARY_HIT
+} elementary_verdict;
+
+/* Pure functions of the query; *hit is written on ELEMENTARY_HIT only. Features are closed, and so is the
+ * interval: touching counts. */
+elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit);
+elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit);
+
+#endif

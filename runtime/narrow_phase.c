@@ -1,0 +1,134 @@
+/* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
+#include "runtime/narrow_phase.h"
+
+#include "runtime/elementary.h"
+#include "runtime/representatives.h"
+
+#include <string.h>
+
+void contact_lane_reset(contact_lane *lane) {
+    lane->count = 0;
+    lane->feature_pairs = lane->tests = lane->root_solves = 0;
+    lane->out_of_memory = false;
+}
+
+static bool make_room(cscd_context *context, contact_lane *lane) {
+    if (lane->count < lane->capacity) return true;
+    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
+    cscd_contact *grown =
+        context_grow(context, lane->contacts, lane->count, capacity, sizeof *lane->contacts);
+    if (grown == NULL) {
+        lane->out_of_memory = true;
+        return false;
+    }
+    lane->contacts = grown;
+    lane->capacity = capacity;
+    return true;
+}
+
+static void count_test(contact_lane *lane, elementary_verdict verdict) {
+    lane->tests++;
+    lane->root_solves += verdict == ELEMENTARY_MISS || verdict == ELEMENTARY_HIT;
+}
+
+static void add_contact(const swept_interval *interval, contact_lane *lane, cscd_contact_kind kind,
+                        uint32_t a, uint32_t b, const elementary_hit *hit) {
+    if (!make_room(interval->mesh->context, lane)) return;
+    cscd_contact *contact = &lane->contacts[lane->count++];
+    memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
+    contact->kind = kind;
+    contact->a = a;
+    contact->b = b;
+    contact->toi = hit->toi;
+    contact->u = hit->u;
+    contact->v = hit->v;
+    memcpy(contact->point, hit->point, sizeof contact->point);
+    memcpy(contact->normal, hit->normal, sizeof contact->normal);
+}
+
+static void load_point(const swept_interval *interval, uint32_t vertex, elementary_query *query, int i) {
+    memcpy(query->x0[i], interval->x0 + (size_t)vertex * 3, sizeof query->x0[i]);
+    memcpy(query->x1[i], interval->x1 + (size_t)vertex * 3, sizeof query->x1[i]);
+}
+
+void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
+                          contact_lane *lane) {
+    elementary_query query;
+    elementary_hit hit;
+    load_point(interval, vertex, &query, 0);
+    for (int i = 0; i < 3; i++) load_point(interval, interval->mesh->triangles[triangle][i], &query, i + 1);
+    elementary_verdict verdict = elementary_vf(&query, &hit);
+    count_test(lane, verdict);
+    if (verdict == ELEMENTARY_HIT) add_contact(interval, lane, CSCD_CONTACT_VF, vertex, triangle, &hit);
+}
+
+/* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
+ * its result, never depends on the traversal. */
+void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
+    uint32_t edges[2] = {a < b ? a : b, a < b ? b : a};
+    elementary_query query;
+    elementary_hit hit;
+    for (int i = 0; i < 4; i++) load_point(interval, interval->mesh->edges[edges[i / 2]][i % 2], &query, i);
+    elementary_verdict verdict = elementary_ee(&query, &hit);
+    count_test(lane, verdict);
+    if (verdict == ELEMENTARY_HIT) add_contact(interval, lane, CSCD_CONTACT_EE, edges[0], edges[1], &hit);
+}
+
+static bool contains(const uint32_t triangle[3], uint32_t vertex) {
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,
+                          contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    for (int i = 0; i < 3; i++) {
+        uint32_t vertex = mesh->triangles[of][i];
+        if (!represents_vertex(interval->representatives[of], i)) continue;
+        if (contains(mesh->triangles[against], vertex)) continue;
+        lane->feature_pairs++;
+        if (kdop_overlap(&interval->vertex_volumes[vertex], face))
+            narrow_phase_test_vf(interval, vertex, against, lane);
+    }
+}
+
+static bool edges_share_vertex(const uint32_t a[2], const uint32_t b[2]) {
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
+static kdop edge_volume(const swept_interval *interval, uint32_t edge) {
+    const uint32_t *ends = interval->mesh->edges[edge];
+    return kdop_union(&interval->vertex_volumes[ends[0]], &interval->vertex_volumes[ends[1]]);
+}
+
+static void test_edges(const swept_interval *interval, triangle_pair pair, const kdop *face_b,
+                       contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    kdop volumes_b[3];
+    for (int j = 0; j < 3; j++) volumes_b[j] = edge_volume(interval, mesh->triangle_edges[pair.b][j]);
+    for (int i = 0; i < 3; i++) {
+        if (!represents_edge(interval->representatives[pair.a], i)) continue;
+        uint32_t a = mesh->triangle_edges[pair.a][i];
+        kdop volume_a = edge_volume(interval, a);
+        bool near = kdop_overlap(&volume_a, face_b);
+        for (int j = 0; j < 3; j++) {
+            uint32_t b = mesh->triangle_edges[pair.b][j];
+            if (!represents_edge(interval->representatives[pair.b], j)) continue;
+            if (edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
+            lane->feature_pairs++;
+            if (near && kdop_overlap(&volume_a, &volumes_b[j])) narrow_phase_test_ee(interval, a, b, lane);
+        }
+    }
+}
+
+static kdop face_volume(const swept_interval *interval, uint32_t triangle) {
+    const uint32_t *v = interval->mesh->triangles[triangle];
+    kdop edge = kdop_union(&interval->vertex_volumes[v[0]], &interval->vertex_volumes[v[1]]);
+    return kdop_union(&edge, &interval->vertex_volumes[v[2]]);
+}
+
+void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane) {
+    kdop face_a = face_volume(interval, pair.a), face_b = face_volume(interval, pair.b);
+    test_vertices(interval, pair.a, pair.b, &face_b, lane);
+    test_vertices(interval, pair.b, pair.a, &face_a, lane);
+    test_edges(interval, pair, &face_b, lane);
+}

@@ -1,0 +1,35 @@
+/* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
+#ifndef CSCD_NARROW_PHASE_H
+#define CSCD_NARROW_PHASE_H
+
+#include "runtime/kdop.h"
+#include "runtime/traversal.h"
+#include "src/mesh.h"
+
+/* The interval at hand; read by all lanes. */
+typedef struct swept_interval {
+    const cscd_mesh *mesh;
+    const double *x0, *x1;
+    const kdop *vertex_volumes;     /* swept; NULL: pairs are filtered by the caller */
+    const uint8_t *representatives; /* NULL when features are paired by the caller */
+} swept_interval;
+
+/* What one thread finds. */
+typedef struct contact_lane {
+    cscd_contact *contacts;
+    size_t count, capacity;
+    uint64_t feature_pairs, tests, root_solves;
+    bool out_of_memory;
+} contact_lane;
+
+void contact_lane_reset(contact_lane *lane);
+
+/* Tests all pairs of features that the two triangles represent and that share no vertex. */
+void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane);
+
+/* Tests one pair of features without a common vertex, and adds a contact where they touch. */
+void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
+                          contact_lane *lane);
+void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);
+
+#endif

@@ -1,0 +1,125 @@
+/* Is the surface embedded at one moment? All meeting triangle pairs, by exact predicates. */
+#include "runtime/static_check.h"
+
+#include "runtime/detector.h"
+#include "runtime/triangle_intersection.h"
+#include "src/positions.h"
+#include "src/predicates.h"
+#include "src/sort.h"
+#include "src/timer.h"
+
+#include <string.h>
+
+/* One check: what its lanes share. */
+typedef struct moment {
+    cscd_detector *detector;
+    const double *positions;
+} moment;
+
+static void add_intersection(cscd_context *context, intersection_lane *lane, uint32_t a, uint32_t b) {
+    if (lane->count == lane->capacity) {
+        size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
+        cscd_intersection *grown =
+            context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
+        if (grown == NULL) {
+            lane->out_of_memory = true;
+            return;
+        }
+        lane->items = grown;
+        lane->capacity = capacity;
+    }
+    lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
+}
+
+static void test_batch(void *data, uint32_t index) {
+    const moment *now = data;
+    cscd_detector *d = now->detector;
+    const traversal_lane *batch = &d->traversal.lanes[index];
+    for (uint32_t i = 0; i < batch->pair_count; i++) {
+        triangle_pair pair = batch->pairs[i];
+        if (triangles_intersect(d->mesh->triangles[pair.a], d->mesh->triangles[pair.b], now->positions))
+            add_intersection(d->context, &d->intersection_lanes[index], pair.a, pair.b);
+    }
+}
+
+static void count_zero_area(void *data, uint32_t index) {
+    const moment *now = data;
+    const cscd_mesh *mesh = now->detector->mesh;
+    intersection_lane *lane = &now->detector->intersection_lanes[index];
+    *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
+    for (uint32_t t = index; t < mesh->triangle_count; t += now->detector->traversal.lane_count) {
+        const double *corners[3];
+        for (int i = 0; i < 3; i++) corners[i] = now->positions + (size_t)mesh->triangles[t][i] * 3;
+        if (collinear(corners[0], corners[1], corners[2]) && lane->zero_area_triangles++ == 0)
+            lane->first_zero_area = t;
+    }
+}
+
+static int compare_intersections(const void *left, const void *right) {
+    const cscd_intersection *l = left, *r = right;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+static bool ignored(const cscd_detector_options *options, cscd_intersection pair) {
+    return options->ignore != NULL && options->ignore(options->ignore_user, pair.a, pair.b);
+}
+
+/* Joins the lanes' lists, leaves out what is to be ignored, sorts. */
+static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
+    size_t found = 0, kept = 0;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->intersection_lanes[i].count;
+    cscd_status status =
+        result_buffer_reserve(d->context, &d->intersections, found, sizeof(cscd_intersection));
+    if (status != CSCD_OK) return status;
+
+    cscd_intersection *items = d->intersections.items;
+    cscd_intersections result = {items, 0, 0, UINT32_MAX};
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        const intersection_lane *lane = &d->intersection_lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            if (!ignored(&d->options, lane->items[j])) items[kept++] = lane->items[j];
+        }
+        result.zero_area_triangles += lane->zero_area_triangles;
+        if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
+    }
+    sort_items(items, d->intersections.scratch, kept, sizeof *items, compare_intersections);
+    result.count = kept;
+    *out = result;
+    return CSCD_OK;
+}
+
+static cscd_status find_intersections(moment *now) {
+    cscd_detector *d = now->detector;
+    parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
+    traversal_begin(&d->traversal, &d->tree);
+    for (bool more = true; more;) {
+        cscd_status status = traversal_round(&d->traversal, &more);
+        if (status != CSCD_OK) return status;
+        parallel_run(d->context->threads, d->traversal.lane_count, test_batch, now);
+        for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+            if (d->intersection_lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+        }
+    }
+    return CSCD_OK;
+}
+
+cscd_status cscd_detector_check(cscd_detector *detector, const double *positions, cscd_intersections *out) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_check: out is NULL");
+    double since = timer_now_ms(), spent = 0.0;
+    cscd_status status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+
+    moment now = {detector, positions};
+    cscd_intersections result;
+    status = detector_update(detector, positions, positions);
+    if (status == CSCD_OK) status = find_intersections(&now);
+    if (status == CSCD_OK) status = collect(detector, &result);
+    if (status != CSCD_OK) return context_out_of_memory(context);
+    timer_lap(&since, &spent);
+    detector->timings.check_ms = spent;
+    *out = result;
+    return CSCD_OK;
+}

@@ -1,0 +1,15 @@
+/* Is the surface embedded at one moment? All meeting triangle pairs, by exact predicates. */
+#ifndef CSCD_STATIC_CHECK_H
+#define CSCD_STATIC_CHECK_H
+
+#include "src/mesh.h"
+
+/* What one thread finds. */
+typedef struct intersection_lane {
+    cscd_intersection *items;
+    size_t count, capacity;
+    uint32_t zero_area_triangles, first_zero_area;
+    bool out_of_memory;
+} intersection_lane;
+
+#endif

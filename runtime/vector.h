@@ -1,0 +1,30 @@
+/* Vectors of three doubles. */
+#ifndef CSCD_VECTOR_H
+#define CSCD_VECTOR_H
+
+#include <math.h>
+
+static inline void vector_subtract(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
+}
+
+/* a + s b */
+static inline void vector_add_scaled(const double a[3], double s, const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[k] + s * b[k];
+}
+
+static inline double vector_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void vector_cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double vector_largest(const double a[3]) {
+    return fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
+}
+
+#endif

@@ -1,0 +1,76 @@
+/* What the tool's commands share: exit codes, error lines, option values. */
+#include "src/cli/command.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_line(const char *prefix, const char *format, va_list arguments) {
+    fflush(stdout);
+    fputs(prefix, stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
+
+int fail_input(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: ", format, arguments);
+    va_end(arguments);
+    return EXIT_BAD_INPUT;
+}
+
+int fail_usage(const char *command, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: ", format, arguments);
+    va_end(arguments);
+    fprintf(stderr, "Try 'cscd %s%s--help'.\n", command, command[0] != '\0' ? " " : "");
+    return EXIT_USAGE;
+}
+
+void warn(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: warning: ", format, arguments);
+    va_end(arguments);
+}
+
+bool parse_unsigned(const char *text, uint32_t *out) {
+    if (text[0] < '0' || text[0] > '9') return false;
+    char *end = NULL;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (errno != 0 || *end != '\0' || value >= UINT32_MAX) return false;
+    *out = (uint32_t)value;
+    return true;
+}
+
+bool parse_double(const char *text, double *out) {
+    char *end = NULL;
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(value)) return false;
+    *out = value;
+    return true;
+}
+
+bool parse_frame_range(const char *text, frame_range *out) {
+    char first[16] = "";
+    const char *colon = strchr(text, ':');
+    size_t length = colon != NULL ? (size_t)(colon - text) : strlen(text);
+    if (length >= sizeof first) return false;
+    memcpy(first, text, length);
+    frame_range range = {0, UINT32_MAX};
+    if (length > 0 && !parse_unsigned(first, &range.first)) return false;
+    if (colon == NULL)
+        range.last = range.first;
+    else if (colon[1] != '\0' && !parse_unsigned(colon + 1, &range.last))
+        return false;
+    if (length == 0 && (colon == NULL || colon[1] == '\0')) return false;
+    if (range.first > range.last) return false;
+    *out = range;
+    return true;
+}

@@ -1,0 +1,40 @@
+/* What the tool's commands share: exit codes, error lines, option values. */
+#ifndef CSCD_COMMAND_H
+#define CSCD_COMMAND_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum exit_code {
+    EXIT_RAN = 0,
+    EXIT_BAD_INPUT = 1,
+    EXIT_USAGE = 2,
+    EXIT_CONTACT = 3, /* with --fail-on-contact */
+    EXIT_INTERRUPTED = 130
+} exit_code;
+
+/* Each takes the arguments from the command's name on. */
+int command_replay(int argument_count, char **arguments);
+int command_check(int argument_count, char **arguments);
+int command_info(int argument_count, char **arguments);
+int command_render(int argument_count, char **arguments);
+
+/* One line on stderr, "cscd: ..."; return the exit code that fits. */
+int fail_input(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The same with a hint to COMMAND --help. */
+int fail_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* "cscd: warning: ..." on stderr. */
+void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Whole strings only; false leaves *out untouched. */
+bool parse_unsigned(const char *text, uint32_t *out);
+bool parse_double(const char *text, double *out);
+
+/* Frames A:B, both inclusive; A: and :B are open ends, one number is one frame. */
+typedef struct frame_range {
+    uint32_t first, last; /* last UINT32_MAX: to the end */
+} frame_range;
+
+bool parse_frame_range(const char *text, frame_range *out);
+
+#endif

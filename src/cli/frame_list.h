@@ -1,0 +1,26 @@
+/* A growing list of frames, printed as ranges. */
+#ifndef CSCD_FRAME_LIST_H
+#define CSCD_FRAME_LIST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct frame_span {
+    uint32_t first, last;
+} frame_span;
+
+typedef struct frame_list {
+    frame_span *spans; /* ascending */
+    uint32_t count, capacity;
+} frame_list;
+
+/* frame: larger than all before. False when out of memory. */
+bool frame_list_add(frame_list *list, uint32_t frame);
+/* How many frames the list holds. */
+uint32_t frame_list_frames(const frame_list *list);
+
+/* prefix, then "3, 7-12, 20", and a line end; an empty list prints the line end only. */
+void frame_list_print(const frame_list *list, const char *prefix);
+void frame_list_free(frame_list *list);
+
+#endif

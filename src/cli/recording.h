@@ -1,0 +1,53 @@
+/* A model file and its recorded frames, welded when asked, as a mesh and one array of positions per frame. */
+#ifndef CSCD_RECORDING_H
+#define CSCD_RECORDING_H
+
+#include "cscd/cscd.h"
+#include "src/io/animation.h"
+#include "src/io/contact_file.h"
+#include "src/io/mesh_file.h"
+#include "src/io/weld.h"
+
+typedef struct recording_options {
+    const char *model_path;
+    const char *const *frame_paths; /* none: the model is the only frame */
+    size_t frame_path_count;
+    bool weld;
+    double weld_epsilon;
+    uint32_t thread_count;
+} recording_options;
+
+typedef struct recording {
+    cscd_context *context;
+    cscd_mesh *mesh; /* of welded vertices and triangles */
+    mesh_file file;
+    animation *frames; /* NULL: the model is the only frame */
+    uint32_t frame_count;
+    bool welded;
+    weld weld;
+    double *file_positions;            /* of the frame read last */
+    uint32_t (*edge_file_vertices)[2]; /* per edge of mesh; NULL when not welded */
+    uint64_t model_hash, frames_hash;
+} recording;
+
+/* On false *out holds nothing to close. */
+bool recording_open(const recording_options *options, recording *out, io_error *error);
+void recording_close(recording *r);
+
+/* positions: cscd_mesh_vertex_count(mesh) * 3 */
+bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
+
+/* The contact in the vertices of the model file. */
+contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);
+
+/* The model file's own number of a triangle of the mesh. */
+uint32_t recording_file_triangle(const recording *r, uint32_t triangle);
+
+/* The number of the edge between two vertices of the mesh, which must have it. */
+uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
+
+/* Lines on stderr about triangles dropped by welding and about open, non-manifold and inconsistently oriented
+ * components. */
+void recording_warn(recording *r);
+
+#endif

@@ -1,0 +1,224 @@
+/* `cscd replay`: every self-collision of a recorded animation, interval by interval. */
+#include "src/cli/command.h"
+#include "src/cli/frame_list.h"
+#include "src/cli/ignore_pairs.h"
+#include "src/cli/progress.h"
+#include "src/cli/replay_options.h"
+#include "src/cli/summary.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A replay under way. */
+typedef struct replay {
+    const replay_options *options;
+    recording recording;
+    ignore_pairs ignored;
+    cscd_detector *detector;
+    double *x0, *x1;
+    uint32_t first, last; /* frames */
+    frame_state start_state, end_state;
+    contact_file *contacts; /* NULL when not asked for */
+    summary_writer *summary;
+    totals totals;
+    frame_list contact_frames, crossing_frames;
+    progress progress;
+} replay;
+
+static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
+    return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->recording.context));
+}
+
+static bool choose_frames(replay *r, io_error *error) {
+    uint32_t count = r->recording.frame_count;
+    r->first = r->options->frames.first;
+    r->last = r->options->frames.last == UINT32_MAX ? count - 1 : r->options->frames.last;
+    if (r->last >= count)
+        return io_fail(error, "--frames %u:%u: the recording has the frames 0 to %u", r->first, r->last,
+                       count - 1);
+    if (r->first >= r->last)
+        return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
+                       r->first, r->last, count);
+    return true;
+}
+
+static bool prepare_ignored(replay *r, io_error *error) {
+    r->ignored.mesh = r->recording.mesh;
+    if (r->options->ignore_path != NULL &&
+        !ignore_pairs_read(&r->ignored, &r->recording, r->options->ignore_path, error))
+        return false;
+    if (!r->options->ignore_rest) return true;
+    size_t listed = r->ignored.triangle_count;
+    if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
+    if (!r->options->quiet)
+        printf("%zu triangle pairs that meet in frame 0 are left out\n", r->ignored.triangle_count - listed);
+    return true;
+}
+
+static bool prepare_detector(replay *r, io_error *error) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = r->options->method;
+    options.mode = r->options->mode;
+    if (r->options->ignore_path != NULL || r->options->ignore_rest) {
+        options.ignore = ignore_pairs_contain;
+        options.ignore_user = &r->ignored;
+    }
+    if (cscd_detector_create(r->recording.mesh, &options, &r->detector) != CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(r->recording.context));
+    size_t size = (size_t)cscd_mesh_vertex_count(r->recording.mesh) * 3 * sizeof *r->x0;
+    r->x0 = malloc(size);
+    r->x1 = malloc(size);
+    return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
+}
+
+static bool open_outputs(replay *r, io_error *error) {
+    if (r->options->contacts_path != NULL &&
+        !contact_file_open(r->options->contacts_path, &r->contacts, error))
+        return false;
+    return summary_open(r->options->json_path, r->recording.mesh, &r->summary, error);
+}
+
+/* Opens everything that can fail before the work begins. */
+static bool begin(replay *r, io_error *error) {
+    const replay_options *o = r->options;
+    recording_options source = {o->model_path, o->frame_paths,  o->frame_path_count,
+                                o->weld,       o->weld_epsilon, o->thread_count};
+    return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
+           prepare_ignored(r, error) && prepare_detector(r, error) && open_outputs(r, error);
+}
+
+/* Reads a frame and checks it, unless told not to. */
+static bool load_frame(replay *r, uint32_t frame, double *positions, frame_state *state, io_error *error) {
+    if (!recording_read(&r->recording, frame, positions, error)) return false;
+    *state = FRAME_UNCHECKED;
+    if (!r->options->no_check) {
+        cscd_intersections found;
+        if (cscd_detector_check(r->detector, positions, &found) != CSCD_OK)
+            return api_failed(r, frame, error);
+        *state = found.count > 0 ? FRAME_CROSSING : FRAME_EMBEDDED;
+        r->totals.frames_checked++;
+        r->totals.frames_crossing += found.count > 0;
+        if (found.count > 0 && !frame_list_add(&r->crossing_frames, frame))
+            return io_fail(error, "out of memory");
+        if (frame == r->first && found.zero_area_triangles > 0 && !r->options->quiet)
+            warn("frame %u has %u triangles of zero area (the first is %u)", frame, found.zero_area_triangles,
+                 recording_file_triangle(&r->recording, found.first_zero_area));
+    }
+    return summary_add_frame(r->summary, frame, *state, error);
+}
+
+static interval_state state_of(const replay *r, size_t contact_count) {
+    if (r->start_state == FRAME_CROSSING) return INTERVAL_PENETRATING;
+    if (contact_count > 0) return INTERVAL_CONTACT;
+    return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
+}
+
+static bool write_contacts(replay *r, const interval_result *result, io_error *error) {
+    if (r->contacts == NULL) return true;
+    for (size_t i = 0; i < result->contacts.count; i++) {
+        contact_record record = recording_contact(&r->recording, result->frame, &result->contacts.items[i]);
+        if (!contact_file_write(r->contacts, &record, error)) return false;
+    }
+    return contact_file_flush(r->contacts, error);
+}
+
+/* The interval from frame k, whose positions are in x0, to frame k + 1. */
+static bool run_interval(replay *r, uint32_t k, io_error *error) {
+    if (!load_frame(r, k + 1, r->x1, &r->end_state, error)) return false;
+    interval_result result = {.frame = k};
+    if (cscd_detector_step(r->detector, r->x0, r->x1, &result.contacts) != CSCD_OK)
+        return api_failed(r, k, error);
+    result.timings = cscd_detector_timings(r->detector);
+    result.counters = cscd_detector_counters(r->detector);
+    result.state = state_of(r, result.contacts.count);
+    totals_add(&r->totals, &result);
+    if (result.contacts.count > 0 && !frame_list_add(&r->contact_frames, k))
+        return io_fail(error, "out of memory");
+    return write_contacts(r, &result, error) && summary_add_interval(r->summary, &result, error);
+}
+
+static bool run_intervals(replay *r, io_error *error) {
+    if (!load_frame(r, r->first, r->x0, &r->start_state, error)) return false;
+    for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
+        progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
+        if (!run_interval(r, k, error)) return false;
+        double *swap = r->x0;
+        r->x0 = r->x1;
+        r->x1 = swap;
+        r->start_state = r->end_state;
+    }
+    return true;
+}
+
+static void print_results(const replay *r) {
+    const totals *t = &r->totals;
+    printf("%s: %u vertices, %u triangles, %u components; frames %u to %u\n", r->options->model_path,
+           cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
+           cscd_mesh_component_count(r->recording.mesh), r->first, r->first + t->intervals);
+    printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->vf,
+           (unsigned long long)t->ee, t->intervals_with_contact, t->intervals);
+    frame_list_print(&r->contact_frames, "; from frame ");
+    if (t->frames_checked > 0) {
+        printf("crossing: %u of %u frames", t->frames_crossing, t->frames_checked);
+        frame_list_print(&r->crossing_frames, "; ");
+    }
+    printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
+           t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
+    totals_print_table(t, cscd_method_name(r->options->method));
+}
+
+static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
+    bool written = contact_file_close(r->contacts, error);
+    r->contacts = NULL;
+    if (r->summary == NULL) return written;
+    const replay_options *o = r->options;
+    summary_ending ending = {
+        &r->totals,    &r->recording,  cscd_method_name(o->method), cscd_mode_name(o->mode),
+        o->model_path, o->frame_paths, o->frame_path_count,         o->argument_count,
+        o->arguments,  stopped_by};
+    written = summary_close(r->summary, &ending, error) && written;
+    r->summary = NULL;
+    return written;
+}
+
+static void end(replay *r) {
+    cscd_detector_destroy(r->detector);
+    ignore_pairs_free(&r->ignored);
+    if (r->recording.mesh != NULL) recording_close(&r->recording);
+    frame_list_free(&r->contact_frames);
+    frame_list_free(&r->crossing_frames);
+    free(r->x0);
+    free(r->x1);
+}
+
+static int run(const replay_options *options) {
+    replay r = {.options = options};
+    io_error error = {""}, close_error = {""};
+    int code = EXIT_RAN;
+    bool begun = begin(&r, &error), ran = false;
+    if (begun) {
+        if (!options->quiet) recording_warn(&r.recording);
+        interrupt_catch();
+        progress_begin(&r.progress, options->quiet);
+        ran = run_intervals(&r, &error);
+        progress_end(&r.progress);
+        if (!options->quiet && r.totals.intervals > 0) print_results(&r);
+    }
+    const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
+    bool closed = close_outputs(&r, stopped_by, &close_error);
+    if (!ran) code = fail_input("%s", error.text);
+    if (!closed) code = fail_input("%s", close_error.text);
+    if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
+    if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)
+        code = EXIT_CONTACT;
+    end(&r);
+    return code;
+}
+
+int command_replay(int argument_count, char **arguments) {
+    replay_options options;
+    int code;
+    if (!replay_options_parse(argument_count, arguments, &options, &code)) return code;
+    return run(&options);
+}

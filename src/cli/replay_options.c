@@ -1,0 +1,150 @@
+/* The options of `cscd replay`. */
+#include "src/cli/replay_options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: cscd replay MODEL FRAMES... [options]\n"
+    "\n"
+    "Finds every place where the mesh MODEL (OBJ, PLY, OFF) runs into itself between one frame and the "
+    "next.\n"
+    "FRAMES: one .pc2 or .mdd point cache, a pattern like f_%04d.obj, a folder, or a list of mesh files.\n"
+    "\n"
+    "  --contacts OUT.csv|OUT.jsonl  write each contact: frame, kind, time of impact, vertices, point, "
+    "normal\n"
+    "  --json OUT.json               write a summary: every interval, every frame, timings, provenance\n"
+    "  --frames A:B                  only from frame A to frame B, both included (A: and :B are open ends)\n"
+    "  --method none|brute           how pairs are found (default none: volumes; brute: all, slow)\n"
+    "  --mode all                    what is promised (default all: every contact)\n"
+    "  --no-check                    skip the static check of every frame; start states are then unknown\n"
+    "  --weld exact|EPS              join vertices that coincide, or lie within EPS, in the first frame\n"
+    "  --ignore-rest                 leave out triangle pairs that touch or cross in the first frame\n"
+    "  --ignore LIST                 leave out the pairs of a file: lines 'A B' (triangles) or 'components A "
+    "B'\n"
+    "  --threads N                   default 1; 0: one per processor\n"
+    "  --fail-on-contact             exit with 3 when there was a contact\n"
+    "  --quiet                       no progress, no warnings, no table\n";
+
+enum option_id {
+    OPTION_CONTACTS = 1,
+    OPTION_JSON,
+    OPTION_FRAMES,
+    OPTION_METHOD,
+    OPTION_MODE,
+    OPTION_NO_CHECK,
+    OPTION_WELD,
+    OPTION_IGNORE_REST,
+    OPTION_IGNORE,
+    OPTION_THREADS,
+    OPTION_FAIL,
+    OPTION_QUIET,
+    OPTION_HELP
+};
+
+static const struct option long_options[] = {
+    {"contacts", required_argument, NULL, OPTION_CONTACTS},
+    {"json", required_argument, NULL, OPTION_JSON},
+    {"frames", required_argument, NULL, OPTION_FRAMES},
+    {"method", required_argument, NULL, OPTION_METHOD},
+    {"mode", required_argument, NULL, OPTION_MODE},
+    {"no-check", no_argument, NULL, OPTION_NO_CHECK},
+    {"weld", required_argument, NULL, OPTION_WELD},
+    {"ignore-rest", no_argument, NULL, OPTION_IGNORE_REST},
+    {"ignore", required_argument, NULL, OPTION_IGNORE},
+    {"threads", required_argument, NULL, OPTION_THREADS},
+    {"fail-on-contact", no_argument, NULL, OPTION_FAIL},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"help", no_argument, NULL, OPTION_HELP},
+    {NULL, 0, NULL, 0},
+};
+
+bool parse_weld(const char *text, bool *weld, double *epsilon) {
+    *weld = true;
+    *epsilon = 0.0;
+    return strcmp(text, "exact") == 0 || (parse_double(text, epsilon) && *epsilon > 0.0);
+}
+
+/* False when the value does not fit. */
+static bool set_option(int id, const char *value, replay_options *o) {
+    switch (id) {
+    case OPTION_CONTACTS:
+        o->contacts_path = value;
+        return true;
+    case OPTION_JSON:
+        o->json_path = value;
+        return true;
+    case OPTION_FRAMES:
+        return parse_frame_range(value, &o->frames);
+    case OPTION_METHOD:
+        return cscd_method_from_name(value, &o->method);
+    case OPTION_MODE:
+        return cscd_mode_from_name(value, &o->mode);
+    case OPTION_NO_CHECK:
+        return o->no_check = true;
+    case OPTION_WELD:
+        return parse_weld(value, &o->weld, &o->weld_epsilon);
+    case OPTION_IGNORE_REST:
+        return o->ignore_rest = true;
+    case OPTION_IGNORE:
+        o->ignore_path = value;
+        return true;
+    case OPTION_THREADS:
+        return parse_unsigned(value, &o->thread_count) && o->thread_count <= 256;
+    case OPTION_FAIL:
+        return o->fail_on_contact = true;
+    case OPTION_QUIET:
+        return o->quiet = true;
+    default:
+        return false;
+    }
+}
+
+/* Reads the options; MODEL and FRAMES are left in arguments from optind on. */
+static int read_options(int argument_count, char **arguments, replay_options *o, bool *help_wanted) {
+    opterr = 0;
+    optind = 1;
+    int id, index = 0;
+    while ((id = getopt_long(argument_count, arguments, ":", long_options, &index)) != -1) {
+        if (id == OPTION_HELP) {
+            *help_wanted = true;
+            return EXIT_RAN;
+        }
+        if (id == ':') return fail_usage("replay", "%s needs a value", arguments[optind - 1]);
+        if (id == '?') return fail_usage("replay", "unknown option '%s'", arguments[optind - 1]);
+        if (!set_option(id, optarg, o))
+            return fail_usage("replay", "--%s cannot be '%s'", long_options[index].name, optarg);
+    }
+    return EXIT_RAN;
+}
+
+static bool ends_with_known(const char *path) {
+    size_t length = strlen(path);
+    return (length > 4 && strcmp(path + length - 4, ".csv") == 0) ||
+           (length > 6 && strcmp(path + length - 6, ".jsonl") == 0);
+}
+
+bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code) {
+    bool help_wanted = false;
+    replay_options o = {.method = CSCD_METHOD_NONE,
+                        .mode = CSCD_MODE_ALL,
+                        .frames = {0, UINT32_MAX},
+                        .thread_count = 1,
+                        .argument_count = argument_count,
+                        .arguments = arguments};
+    *code = read_options(argument_count, arguments, &o, &help_wanted);
+    if (help_wanted) fputs(help, stdout);
+    if (help_wanted || *code != EXIT_RAN) return false;
+    int rest = argument_count - optind;
+    if (rest < 2) *code = fail_usage("replay", rest < 1 ? "no MODEL given" : "no FRAMES given");
+    if (o.contacts_path != NULL && !ends_with_known(o.contacts_path))
+        *code = fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
+                           o.contacts_path);
+    if (*code != EXIT_RAN) return false;
+    o.model_path = arguments[optind];
+    o.frame_paths = (const char *const *)(arguments + optind + 1);
+    o.frame_path_count = (size_t)rest - 1;
+    *out = o;
+    return true;
+}

@@ -1,0 +1,32 @@
+/* The options of `cscd replay`. */
+#ifndef CSCD_REPLAY_OPTIONS_H
+#define CSCD_REPLAY_OPTIONS_H
+
+#include "cscd/cscd.h"
+#include "src/cli/command.h"
+
+#include <stddef.h>
+
+typedef struct replay_options {
+    const char *model_path;
+    const char *const *frame_paths;
+    size_t frame_path_count;
+    cscd_method method;
+    cscd_mode mode;
+    frame_range frames;
+    uint32_t thread_count;
+    bool weld;
+    double weld_epsilon;
+    bool ignore_rest, no_check, quiet, fail_on_contact;
+    const char *ignore_path, *contacts_path, *json_path;
+    int argument_count; /* the command line, for the provenance */
+    char **arguments;
+} replay_options;
+
+/* False: *code is the exit code to end with (0 after --help). */
+bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code);
+
+/* --weld exact|EPS, for the commands that have it. */
+bool parse_weld(const char *text, bool *weld, double *epsilon);
+
+#endif

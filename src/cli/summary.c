@@ -1,0 +1,203 @@
+/* The JSON summary of a replay, written interval by interval. */
+#include "src/cli/summary.h"
+
+#include "src/cli/provenance.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct summary_writer {
+    FILE *file; /* NULL: nothing is written */
+    char *path;
+    const cscd_mesh *mesh;
+    json out;
+    uint32_t first_frame, frame_count, frame_capacity;
+    unsigned char *frames; /* frame_state, one byte each: the list comes after the intervals */
+};
+
+const char *interval_state_name(interval_state state) {
+    static const char *const names[] = {"clean", "contact", "penetrating", "unknown"};
+    return names[state];
+}
+
+static bool write_failed(const summary_writer *w, io_error *error) {
+    return io_fail(error, "%s: cannot write: %s", w->path, strerror(errno));
+}
+
+static void free_summary(summary_writer *w) {
+    free(w->path);
+    free(w->frames);
+    free(w);
+}
+
+bool summary_open(const char *path, const cscd_mesh *mesh, summary_writer **out, io_error *error) {
+    summary_writer *w = calloc(1, sizeof *w);
+    if (w == NULL) return io_fail(error, "out of memory");
+    w->mesh = mesh;
+    if (path != NULL) {
+        w->path = strdup(path);
+        w->file = w->path != NULL ? fopen(path, "w") : NULL;
+        if (w->file == NULL) {
+            io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+            free_summary(w);
+            return false;
+        }
+        w->out.file = w->file;
+        json_begin_object(&w->out, NULL);
+        json_begin_array(&w->out, "intervals");
+    }
+    *out = w;
+    return true;
+}
+
+static const char *guarantee_reason(const cscd_component *component) {
+    if (component->open_edges > 0) return "open: has boundary edges";
+    if (component->non_manifold_edges > 0 || component->non_manifold_vertices > 0) return "non-manifold";
+    if (component->inconsistent_edges > 0) return "inconsistently oriented";
+    return "every pair of features whose volumes overlap is tested";
+}
+
+static void write_guarantees(summary_writer *w) {
+    json_begin_array(&w->out, "guarantee");
+    for (uint32_t i = 0; i < cscd_mesh_component_count(w->mesh); i++) {
+        cscd_component component = cscd_mesh_component(w->mesh, i);
+        json_begin_object(&w->out, NULL);
+        json_integer(&w->out, "component", i);
+        json_string(&w->out, "mode", cscd_mode_name(CSCD_MODE_ALL));
+        json_string(&w->out, "reason", guarantee_reason(&component));
+        json_end_object(&w->out);
+    }
+    json_end_array(&w->out);
+}
+
+static void write_times(json *out, const cscd_timings *t) {
+    json_begin_object(out, "ms");
+    json_number(out, "update", t->update_ms);
+    json_number(out, "orientation", 0.0);
+    json_number(out, "traversal", t->traversal_ms);
+    json_number(out, "contact", t->contact_ms);
+    json_number(out, "check", t->check_ms);
+    json_number(out, "total", t->total_ms);
+    json_end_object(out);
+}
+
+bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error) {
+    if (w->file == NULL) return true;
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_integer(out, "frame", result->frame);
+    json_integer(out, "vf", result->counters.vf);
+    json_integer(out, "ee", result->counters.ee);
+    if (result->contacts.count > 0)
+        json_number(out, "earliest_toi", result->contacts.items[0].toi);
+    else
+        json_null(out, "earliest_toi");
+    json_integer(out, "pcp", result->counters.pcp);
+    json_integer(out, "tests", result->counters.tests);
+    json_string(out, "state", interval_state_name(result->state));
+    write_guarantees(w);
+    write_times(out, &result->timings);
+    json_end_object(out);
+    return fflush(w->file) == 0 || write_failed(w, error);
+}
+
+bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error) {
+    if (w->frame_count == w->frame_capacity) {
+        uint32_t capacity = w->frame_capacity == 0 ? 1024 : w->frame_capacity * 2;
+        unsigned char *grown = realloc(w->frames, capacity);
+        if (grown == NULL) return io_fail(error, "out of memory");
+        w->frames = grown;
+        w->frame_capacity = capacity;
+    }
+    if (w->frame_count == 0) w->first_frame = frame;
+    w->frames[w->frame_count++] = (unsigned char)state;
+    return true;
+}
+
+static void write_frames(summary_writer *w) {
+    json_begin_array(&w->out, "frames");
+    for (uint32_t i = 0; i < w->frame_count; i++) {
+        json_break_line(&w->out);
+        json_begin_object(&w->out, NULL);
+        json_integer(&w->out, "frame", w->first_frame + i);
+        if (w->frames[i] == FRAME_UNCHECKED)
+            json_null(&w->out, "crossing");
+        else
+            json_boolean(&w->out, "crossing", w->frames[i] == FRAME_CROSSING);
+        json_end_object(&w->out);
+    }
+    json_end_array(&w->out);
+}
+
+static void write_column(json *out, const char *key, const column *c, uint32_t count) {
+    json_begin_object(out, key);
+    json_number(out, "mean", count > 0 ? c->sum / count : 0.0);
+    json_number(out, "max", c->max);
+    json_end_object(out);
+}
+
+static void write_summary(summary_writer *w, const summary_ending *e) {
+    const totals *t = e->totals;
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, "summary");
+    json_boolean(out, "complete", e->stopped_by == NULL);
+    if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
+    json_string(out, "method", e->method);
+    json_string(out, "mode", e->mode);
+    json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
+    json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
+    json_integer(out, "components", cscd_mesh_component_count(w->mesh));
+    json_integer(out, "intervals", t->intervals);
+    json_integer(out, "intervals_with_contact", t->intervals_with_contact);
+    for (int i = 0; i < 4; i++) json_integer(out, interval_state_name((interval_state)i), t->states[i]);
+    json_integer(out, "frames_checked", t->frames_checked);
+    json_integer(out, "frames_crossing", t->frames_crossing);
+    if (t->intervals_with_contact > 0)
+        json_integer(out, "first_contact_frame", t->first_contact_frame);
+    else
+        json_null(out, "first_contact_frame");
+    json_integer(out, "vf", t->vf);
+    json_integer(out, "ee", t->ee);
+    write_column(out, "update_ms", &t->update, t->intervals);
+    write_column(out, "traversal_ms", &t->traversal, t->intervals);
+    write_column(out, "contact_ms", &t->contact, t->intervals);
+    write_column(out, "check_ms", &t->check, t->intervals);
+    write_column(out, "total_ms", &t->total, t->intervals);
+    write_column(out, "pcp", &t->pcp, t->intervals);
+    write_column(out, "tests", &t->tests, t->intervals);
+    json_end_object(out);
+}
+
+static void write_provenance(summary_writer *w, const summary_ending *e) {
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, "provenance");
+    provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(e->recording->context));
+    json_begin_array(out, "inputs");
+    provenance_write_input(out, e->model_path, e->recording->model_hash);
+    for (size_t i = 0; i < e->frame_path_count && i < 1; i++)
+        provenance_write_input(out, e->frame_paths[i], e->recording->frames_hash);
+    json_end_array(out);
+    json_end_object(out);
+}
+
+bool summary_close(summary_writer *w, const summary_ending *ending, io_error *error) {
+    bool written = true;
+    if (w->file != NULL) {
+        json_end_array(&w->out);
+        json_break_line(&w->out);
+        write_frames(w);
+        write_summary(w, ending);
+        write_provenance(w, ending);
+        json_end_object(&w->out);
+        fputc('\n', w->file);
+        written = !ferror(w->file);
+        written = fclose(w->file) == 0 && written;
+        if (!written) write_failed(w, error);
+    }
+    free_summary(w);
+    return written;
+}

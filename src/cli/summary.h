@@ -1,0 +1,65 @@
+/* The JSON summary of a replay, written interval by interval, and the table at its end. */
+#ifndef CSCD_SUMMARY_H
+#define CSCD_SUMMARY_H
+
+#include "src/cli/recording.h"
+
+/* What is known of a frame after its static check. */
+typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
+
+typedef enum interval_state {
+    INTERVAL_CLEAN,
+    INTERVAL_CONTACT,
+    INTERVAL_PENETRATING,
+    INTERVAL_UNKNOWN
+} interval_state;
+
+const char *interval_state_name(interval_state state);
+
+/* One interval's results, as the summary and the table need them. */
+typedef struct interval_result {
+    uint32_t frame;
+    interval_state state;
+    cscd_contacts contacts;
+    cscd_timings timings; /* check_ms: of the frame at the interval's end */
+    cscd_counters counters;
+} interval_result;
+
+typedef struct column {
+    double sum, max;
+} column;
+
+/* Sums over the intervals so far. */
+typedef struct totals {
+    uint32_t intervals, intervals_with_contact, states[4];
+    uint32_t frames_checked, frames_crossing, first_contact_frame;
+    uint64_t vf, ee;
+    column update, traversal, contact, check, total, pcp, tests;
+} totals;
+
+void totals_add(totals *t, const interval_result *result);
+void totals_print_table(const totals *t, const char *method);
+
+typedef struct summary_writer summary_writer;
+
+/* path NULL: a writer that writes nothing. */
+bool summary_open(const char *path, const cscd_mesh *mesh, summary_writer **out, io_error *error);
+/* Each interval reaches the system at once. */
+bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
+bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error);
+
+typedef struct summary_ending {
+    const totals *totals;
+    const recording *recording;
+    const char *method, *mode, *model_path;
+    const char *const *frame_paths;
+    size_t frame_path_count;
+    int argument_count;
+    char **arguments;
+    const char *stopped_by; /* why not every interval is there; NULL when all are */
+} summary_ending;
+
+/* Writes the frames, the summary and the provenance, and closes. */
+bool summary_close(summary_writer *w, const summary_ending *ending, io_error *error);
+
+#endif

@@ -1,0 +1,26 @@
+/* Recorded vertex positions, one frame at a time: PC2 and MDD point caches, sequences of mesh files. */
+#ifndef CSCD_ANIMATION_H
+#define CSCD_ANIMATION_H
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct animation animation;
+
+/* paths: one .pc2 or .mdd file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a
+ * frame. Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once.
+ * vertex_count is what every frame must have. On false *out is untouched. */
+bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
+                    io_error *error);
+void animation_close(animation *animation);
+
+uint32_t animation_frame_count(const animation *animation);
+
+/* Reads frame (0-based) into positions, vertex_count * 3. The memory in use does not grow with the frames
+ * read. On false *error names the frame; positions are then undefined. */
+bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);
+
+#endif

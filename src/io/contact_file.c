@@ -1,0 +1,117 @@
+/* Contacts as rows of a CSV file or lines of a JSON Lines file. */
+#include "src/io/contact_file.h"
+
+#include "src/io/json.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+struct contact_file {
+    FILE *file;
+    char *path;
+    bool csv;
+};
+
+static bool ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), end_length = strlen(end);
+    return length >= end_length && strcasecmp(text + length - end_length, end) == 0;
+}
+
+static bool write_failed(const contact_file *file, io_error *error) {
+    return io_fail(error, "%s: cannot write: %s", file->path, strerror(errno));
+}
+
+static void free_contact_file(contact_file *file) {
+    free(file->path);
+    free(file);
+}
+
+bool contact_file_open(const char *path, contact_file **out, io_error *error) {
+    bool csv = ends_with(path, ".csv");
+    if (!csv && !ends_with(path, ".jsonl"))
+        return io_fail(error, "%s: contacts are written as .csv or .jsonl", path);
+    contact_file *file = calloc(1, sizeof *file);
+    if (file == NULL || (file->path = strdup(path)) == NULL) {
+        free(file);
+        return io_fail(error, "%s: out of memory", path);
+    }
+    file->csv = csv;
+    file->file = fopen(path, "w");
+    if (file->file == NULL) {
+        write_failed(file, error);
+        free_contact_file(file);
+        return false;
+    }
+    if (csv && fputs("frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz\n", file->file) < 0) {
+        write_failed(file, error);
+        fclose(file->file);
+        free_contact_file(file);
+        return false;
+    }
+    *out = file;
+    return true;
+}
+
+static void write_csv(FILE *file, const contact_record *r) {
+    fprintf(file, "%" PRIu32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
+    if (r->kind == CSCD_CONTACT_VF)
+        fprintf(file, "%" PRIu32 ",,%" PRIu32 ",%" PRIu32 ",%" PRIu32, r->a[0], r->b[0], r->b[1], r->b[2]);
+    else
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",%" PRIu32 ",", r->a[0], r->a[1], r->b[0], r->b[1]);
+    fprintf(file, ",%.17g,%.17g", r->u, r->v);
+    for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->point[k]);
+    for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->normal[k]);
+    fputc('\n', file);
+}
+
+static void write_indices(json *out, const char *key, const uint32_t *indices, int count) {
+    json_begin_array(out, key);
+    for (int i = 0; i < count; i++) json_integer(out, NULL, indices[i]);
+    json_end_array(out);
+}
+
+static void write_vector(json *out, const char *key, const double vector[3]) {
+    json_begin_array(out, key);
+    for (int k = 0; k < 3; k++) json_number(out, NULL, vector[k]);
+    json_end_array(out);
+}
+
+static void write_json_line(FILE *file, const contact_record *r) {
+    json out = {.file = file};
+    bool vf = r->kind == CSCD_CONTACT_VF;
+    json_begin_object(&out, NULL);
+    json_integer(&out, "frame", r->frame);
+    json_string(&out, "kind", cscd_contact_kind_name(r->kind));
+    json_number(&out, "toi", r->toi);
+    write_indices(&out, "a", r->a, vf ? 1 : 2);
+    write_indices(&out, "b", r->b, vf ? 3 : 2);
+    json_number(&out, "u", r->u);
+    json_number(&out, "v", r->v);
+    write_vector(&out, "point", r->point);
+    write_vector(&out, "normal", r->normal);
+    json_end_object(&out);
+    fputc('\n', file);
+}
+
+bool contact_file_write(contact_file *file, const contact_record *record, io_error *error) {
+    if (file->csv)
+        write_csv(file->file, record);
+    else
+        write_json_line(file->file, record);
+    return !ferror(file->file) || write_failed(file, error);
+}
+
+bool contact_file_flush(contact_file *file, io_error *error) {
+    return fflush(file->file) == 0 || write_failed(file, error);
+}
+
+bool contact_file_close(contact_file *file, io_error *error) {
+    if (file == NULL) return true;
+    bool written = fclose(file->file) == 0 || write_failed(file, error);
+    free_contact_file(file);
+    return written;
+}

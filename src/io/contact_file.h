@@ -1,0 +1,28 @@
+/* Contacts as rows of a CSV file or lines of a JSON Lines file. */
+#ifndef CSCD_CONTACT_FILE_H
+#define CSCD_CONTACT_FILE_H
+
+#include "cscd/cscd.h"
+#include "src/io/io_error.h"
+
+/* A contact in terms of the mesh file's own vertices. VF: a[0] touches the triangle b. EE: the edge a[0] a[1]
+ * touches the edge b[0] b[1]. */
+typedef struct contact_record {
+    uint32_t frame; /* the interval from this frame to the next */
+    cscd_contact_kind kind;
+    uint32_t a[2], b[3];
+    double toi, u, v;
+    double point[3], normal[3];
+} contact_record;
+
+typedef struct contact_file contact_file;
+
+/* The format follows from the extension: .csv or .jsonl. On false *out is untouched. */
+bool contact_file_open(const char *path, contact_file **out, io_error *error);
+bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);
+/* Everything written so far reaches the system. */
+bool contact_file_flush(contact_file *file, io_error *error);
+/* False when the rest could not be written. NULL does nothing and is fine. */
+bool contact_file_close(contact_file *file, io_error *error);
+
+#endif

@@ -1,0 +1,15 @@
+/* The one clear line that a failing file operation leaves behind. */
+#include "src/io/io_error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+bool io_fail(io_error *error, const char *format, ...) {
+    if (error != NULL) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->text, sizeof error->text, format, arguments);
+        va_end(arguments);
+    }
+    return false;
+}

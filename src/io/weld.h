@@ -1,0 +1,31 @@
+/* Joins vertices that lie on each other, as exporters split them along texture seams. */
+#ifndef CSCD_WELD_H
+#define CSCD_WELD_H
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* From a file's vertices and triangles to welded ones, and back. */
+typedef struct weld {
+    double epsilon; /* 0: exactly equal coordinates */
+    uint32_t file_vertex_count, vertex_count, triangle_count;
+    uint32_t collapsed_triangles;    /* those that repeat a vertex once welded: dropped */
+    uint32_t *vertex_of_file_vertex; /* file_vertex_count */
+    uint32_t *file_vertex;           /* vertex_count: the first file vertex of each welded one */
+    uint32_t *triangles;             /* triangle_count * 3 welded vertices */
+    uint32_t *file_triangle;         /* triangle_count: which triangle of the file it is */
+} weld;
+
+/* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded vertices
+ * are numbered in the order of their first file vertex. On false *out is untouched. */
+bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
+                 uint32_t triangle_count, double epsilon, weld *out, io_error *error);
+void weld_free(weld *w);
+
+/* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two
+ * that were welded lie farther apart than epsilon in this frame (frame: for the message). */
+bool weld_positions(const weld *w, const double *file_positions, uint32_t frame, double *out, io_error *error);
+
+#endif

@@ -1,0 +1,34 @@
+/* The mesh's connectivity: edges, stars and components, built once. */
+#ifndef CSCD_MESH_H
+#define CSCD_MESH_H
+
+#include "src/context.h"
+
+struct cscd_mesh {
+    cscd_context *context;
+    uint32_t vertex_count, triangle_count, edge_count, component_count;
+
+    uint32_t (*triangles)[3];
+    uint32_t (*edges)[2];          /* smaller vertex first, sorted */
+    uint32_t (*triangle_edges)[3]; /* edge i joins the corners i and i + 1 */
+
+    /* Star of x: the triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
+    uint32_t *vertex_star_offsets, *vertex_stars;
+    uint32_t *edge_star_offsets, *edge_stars;
+
+    uint32_t *triangle_components;
+    cscd_component *components;
+};
+
+/* Fills edges, triangle_edges and both stars from triangles. */
+cscd_status mesh_build_topology(cscd_mesh *mesh);
+
+/* Fills triangle_components and components; wants the topology. */
+cscd_status mesh_build_components(cscd_mesh *mesh);
+
+/* The number of triangles that contain an edge. */
+static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {
+    return mesh->edge_star_offsets[edge + 1] - mesh->edge_star_offsets[edge];
+}
+
+#endif

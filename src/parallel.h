@@ -1,0 +1,18 @@
+/* A fixed crew of threads that runs independent tasks; results never depend on who ran which. */
+#ifndef CSCD_PARALLEL_H
+#define CSCD_PARALLEL_H
+
+#include "cscd/cscd.h"
+
+typedef struct parallel parallel;
+typedef void parallel_task(void *data, uint32_t task);
+
+/* thread_count includes the caller; 0 means one per processor. */
+cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parallel **out);
+void parallel_destroy(cscd_context *context, parallel *threads);
+uint32_t parallel_thread_count(const parallel *threads);
+
+/* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. */
+void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data);
+
+#endif

@@ -1,0 +1,75 @@
+/* The names of the enumerations of the public API. */
+#include "cscd/cscd.h"
+
+#include <string.h>
+
+#define STRING(x)        #x
+#define VERSION(a, b, c) STRING(a) "." STRING(b) "." STRING(c)
+
+const char *cscd_version_string(void) {
+    return VERSION(CSCD_VERSION_MAJOR, CSCD_VERSION_MINOR, CSCD_VERSION_PATCH);
+}
+
+const char *cscd_status_string(cscd_status status) {
+    switch (status) {
+    case CSCD_OK:
+        return "ok";
+    case CSCD_OUT_OF_MEMORY:
+        return "out of memory";
+    case CSCD_INVALID_ARGUMENT:
+        return "invalid argument";
+    case CSCD_INVALID_MESH:
+        return "invalid mesh";
+    case CSCD_SYSTEM_ERROR:
+        return "the system refused a resource";
+    }
+    return "unknown status";
+}
+
+const char *cscd_contact_kind_name(cscd_contact_kind kind) {
+    switch (kind) {
+    case CSCD_CONTACT_VF:
+        return "vf";
+    case CSCD_CONTACT_EE:
+        return "ee";
+    }
+    return "unknown kind";
+}
+
+static const char *const method_names[] = {[CSCD_METHOD_NONE] = "none", [CSCD_METHOD_BRUTE] = "brute"};
+static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all"};
+
+static const char *name_at(const char *const *names, size_t count, size_t i) {
+    return i < count ? names[i] : "unknown";
+}
+
+/* count if there is none of that name. */
+static size_t find_name(const char *const *names, size_t count, const char *name) {
+    size_t i = 0;
+    while (name != NULL && i < count && strcmp(names[i], name) != 0) i++;
+    return name != NULL ? i : count;
+}
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+const char *cscd_method_name(cscd_method method) {
+    return name_at(method_names, COUNT(method_names), (size_t)method);
+}
+
+bool cscd_method_from_name(const char *name, cscd_method *out) {
+    size_t i = find_name(method_names, COUNT(method_names), name);
+    if (i == COUNT(method_names)) return false;
+    *out = (cscd_method)i;
+    return true;
+}
+
+const char *cscd_mode_name(cscd_mode mode) {
+    return name_at(mode_names, COUNT(mode_names), (size_t)mode);
+}
+
+bool cscd_mode_from_name(const char *name, cscd_mode *out) {
+    size_t i = find_name(mode_names, COUNT(mode_names), name);
+    if (i == COUNT(mode_names)) return false;
+    *out = (cscd_mode)i;
+    return true;
+}

@@ -1,0 +1,27 @@
+/* Integers of up to 2112 bits, for tests: an exact oracle that shares nothing with the code under test. */
+#ifndef CSCD_TESTS_EXACT_INTEGER_H
+#define CSCD_TESTS_EXACT_INTEGER_H
+
+#include <stdint.h>
+
+#define EXACT_LIMB_COUNT 66
+
+/* The lowest bit of a double of magnitude 2^-300 or more, the unit of exact_from_double. */
+#define EXACT_UNIT_EXPONENT (-352)
+
+/* Sign and magnitude, lowest limb first; the leading limb is not 0, zero has no limb. A result that does not
+ * fit ends the program. */
+struct exact_integer {
+    int sign;
+    int limb_count;
+    uint32_t limb[EXACT_LIMB_COUNT];
+};
+
+/* value / 2^EXACT_UNIT_EXPONENT; value is 0 or has a magnitude in [2^-300, 2^300]. */
+struct exact_integer exact_from_double(double value);
+
+struct exact_integer exact_add(const struct exact_integer *a, const struct exact_integer *b);
+struct exact_integer exact_subtract(const struct exact_integer *a, const struct exact_integer *b);
+struct exact_integer exact_multiply(const struct exact_integer *a, const struct exact_integer *b);
+
+#endif
