@@ -1,0 +1,29 @@
+/* An allocator that counts, and that can be told to fail. */
+#include "tests/support/counting_allocator.h"
+
+#include <stdlib.h>
+
+counting_allocator counting_allocator_start(void) {
+    return (counting_allocator){.fail_at = SIZE_MAX};
+}
+
+static void *allocate(void *user, size_t size, size_t alignment) {
+    counting_allocator *counter = user;
+    if (counter->calls++ == counter->fail_at) return NULL;
+    void *block = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (block == NULL) return NULL;
+    counter->live++;
+    counter->bytes += size;
+    return block;
+}
+
+static void release(void *user, void *block, size_t size) {
+    counting_allocator *counter = user;
+    counter->live--;
+    counter->bytes -= size;
+    free(block);
+}
+
+cscd_allocator counting_allocator_interface(counting_allocator *counter) {
+    return (cscd_allocator){allocate, release, counter};
+}

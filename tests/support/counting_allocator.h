@@ -1,0 +1,16 @@
+/* An allocator that counts, and that can be told to fail. */
+#ifndef CSCD_TEST_COUNTING_ALLOCATOR_H
+#define CSCD_TEST_COUNTING_ALLOCATOR_H
+
+#include "cscd/cscd.h"
+
+typedef struct counting_allocator {
+    size_t calls;       /* of allocate */
+    size_t fail_at;     /* the number of the call that fails; SIZE_MAX: none */
+    size_t live, bytes; /* blocks and bytes not yet released */
+} counting_allocator;
+
+counting_allocator counting_allocator_start(void);
+cscd_allocator counting_allocator_interface(counting_allocator *counter);
+
+#endif

@@ -1,0 +1,32 @@
+/* A context, a mesh and a detector for a scene; anything that fails there fails the test. */
+#include "tests/support/rig.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+rig rig_create(const scene *s, uint32_t thread_count, const cscd_detector_options *options) {
+    rig r = {NULL, NULL, NULL};
+    cscd_context_options context_options = cscd_context_defaults();
+    context_options.thread_count = thread_count;
+    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    assert_int_equal(cscd_context_create(&context_options, &r.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(r.mesh, options, &r.detector), CSCD_OK);
+    return r;
+}
+
+void rig_destroy(rig *r) {
+    cscd_detector_destroy(r->detector);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+}
+
+cscd_contacts rig_step(const rig *r, const scene *s) {
+    cscd_contacts found;
+    assert_int_equal(cscd_detector_step(r->detector, s->x0, s->x1, &found), CSCD_OK);
+    return found;
+}

@@ -1,0 +1,183 @@
+/* The detector: threads, repetition, ignored pairs, statuses. */
+#include "cscd/cscd.h"
+#include "tests/support/rig.h"
+#include "tests/support/scenes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene interval, other; /* large; one test at a time */
+
+static void same_bits_for_any_thread_count(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 4, &interval);
+        rig one = rig_create(&interval, 1, NULL);
+        cscd_contacts expected = rig_step(&one, &interval);
+        cscd_counters counters = cscd_detector_counters(one.detector);
+        for (uint32_t threads = 2; threads <= 16; threads += 1 + threads / 4) {
+            rig many = rig_create(&interval, threads, NULL);
+            for (int repeat = 0; repeat < 2; repeat++) {
+                cscd_contacts found = rig_step(&many, &interval);
+                cscd_counters own = cscd_detector_counters(many.detector);
+                assert_int_equal(found.count, expected.count);
+                if (found.count > 0)
+                    assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+                assert_memory_equal(&own, &counters, sizeof own);
+            }
+            rig_destroy(&many);
+        }
+        rig_destroy(&one);
+    }
+}
+
+static void earlier_steps_leave_no_trace(void **state) {
+    (void)state;
+    scene_make(SCENE_BOW_TIE, 1, &interval);
+    rig r = rig_create(&interval, 1, NULL);
+    cscd_contacts found = rig_step(&r, &interval);
+    size_t count = found.count;
+    cscd_contact *first = malloc((count + 1) * sizeof *first);
+    assert_non_null(first);
+    memcpy(first, found.items, count * sizeof *first);
+    for (uint64_t seed = 2; seed < 6; seed++) {
+        scene_make(SCENE_BOW_TIE, seed, &other);
+        rig_step(&r, &other);
+        cscd_intersections crossing;
+        assert_int_equal(cscd_detector_check(r.detector, other.x1, &crossing), CSCD_OK);
+    }
+    found = rig_step(&r, &interval);
+    assert_int_equal(found.count, count);
+    assert_memory_equal(found.items, first, count * sizeof *first);
+    free(first);
+    rig_destroy(&r);
+}
+
+/* ---- ignored pairs --------------------------------------------------------------------------------- */
+
+static bool ignore_all_of_one(void *user, uint32_t a, uint32_t b) {
+    assert_true(a < b);
+    uint32_t triangle = *(const uint32_t *)user;
+    return a == triangle || b == triangle;
+}
+
+static bool in_triangle(const scene *s, uint32_t triangle, uint32_t vertex) {
+    const uint32_t *t = s->triangles + (size_t)triangle * 3;
+    return t[0] == vertex || t[1] == vertex || t[2] == vertex;
+}
+
+/* Does a feature of the contact belong to the triangle? */
+static bool touches_triangle(const scene *s, const rig *r, const cscd_contact *c, uint32_t triangle) {
+    if (c->kind == CSCD_CONTACT_VF) return c->b == triangle || in_triangle(s, triangle, c->a);
+    uint32_t a[2], b[2];
+    cscd_mesh_edge(r->mesh, c->a, a);
+    cscd_mesh_edge(r->mesh, c->b, b);
+    return (in_triangle(s, triangle, a[0]) && in_triangle(s, triangle, a[1])) ||
+           (in_triangle(s, triangle, b[0]) && in_triangle(s, triangle, b[1]));
+}
+
+static void ignored_pairs_are_left_out(void **state) {
+    (void)state;
+    scene_make(SCENE_FOLDED_SHEET, 0, &interval);
+    for (uint64_t seed = 1; seed < 40; seed++) {
+        scene_make(SCENE_FOLDED_SHEET, seed, &interval);
+        rig plain = rig_create(&interval, 1, NULL);
+        cscd_contacts all = rig_step(&plain, &interval);
+        if (all.count < 10) {
+            rig_destroy(&plain);
+            continue;
+        }
+        uint32_t triangle = all.items[0].kind == CSCD_CONTACT_VF ? all.items[0].b : (uint32_t)seed % 7;
+        cscd_detector_options options = cscd_detector_defaults();
+        options.ignore = ignore_all_of_one;
+        options.ignore_user = &triangle;
+        rig picky = rig_create(&interval, 1, &options);
+        cscd_contacts some = rig_step(&picky, &interval);
+        size_t j = 0;
+        for (size_t i = 0; i < all.count; i++) {
+            if (touches_triangle(&interval, &plain, &all.items[i], triangle)) continue;
+            assert_true(j < some.count);
+            assert_memory_equal(&some.items[j++], &all.items[i], sizeof *all.items);
+        }
+        assert_int_equal(j, some.count);
+        rig_destroy(&picky);
+        rig_destroy(&plain);
+    }
+}
+
+/* ---- statuses -------------------------------------------------------------------------------------- */
+
+static void bad_positions_are_named(void **state) {
+    (void)state;
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, 1e-300, 5e-324};
+    scene_make(SCENE_SPIKE, 1, &interval);
+    rig r = rig_create(&interval, 1, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        other = interval;
+        other.x1[3 * 17 + 1] = bad[i];
+        cscd_contacts untouched = {NULL, 4711};
+        cscd_intersections unchanged = {NULL, 4711, 0, 0};
+        assert_int_equal(cscd_detector_step(r.detector, other.x0, other.x1, &untouched),
+                         CSCD_INVALID_ARGUMENT);
+        assert_int_equal(untouched.count, 4711);
+        assert_non_null(strstr(cscd_context_detail(r.context), "end: vertex 17 has y"));
+        assert_int_equal(cscd_detector_check(r.detector, other.x1, &unchanged), CSCD_INVALID_ARGUMENT);
+        assert_int_equal(unchanged.count, 4711);
+    }
+    rig_step(&r, &interval);
+    rig_destroy(&r);
+}
+
+static void bad_arguments_are_refused(void **state) {
+    (void)state;
+    scene_make(SCENE_SPIKE, 1, &interval);
+    rig r = rig_create(&interval, 1, NULL);
+    cscd_contacts found;
+    cscd_detector *detector = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    assert_int_equal(cscd_detector_step(NULL, interval.x0, interval.x1, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_step(r.detector, NULL, interval.x1, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_step(r.detector, interval.x0, NULL, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(NULL, NULL, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    options.method = (cscd_method)99;
+    assert_int_equal(cscd_detector_create(r.mesh, &options, &detector), CSCD_INVALID_ARGUMENT);
+    options = (cscd_detector_options){0};
+    assert_int_equal(cscd_detector_create(r.mesh, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_non_null(strstr(cscd_context_detail(r.context), "cscd_detector_defaults"));
+    assert_null(detector);
+    rig_destroy(&r);
+}
+
+static void names_and_values_match(void **state) {
+    (void)state;
+    cscd_method method = CSCD_METHOD_NONE;
+    cscd_mode mode = CSCD_MODE_ALL;
+    assert_true(cscd_method_from_name("brute", &method));
+    assert_int_equal(method, CSCD_METHOD_BRUTE);
+    assert_string_equal(cscd_method_name(CSCD_METHOD_NONE), "none");
+    assert_false(cscd_method_from_name("warp", &method));
+    assert_false(cscd_method_from_name(NULL, &method));
+    assert_int_equal(method, CSCD_METHOD_BRUTE);
+    assert_true(cscd_mode_from_name("all", &mode));
+    assert_false(cscd_mode_from_name("some", &mode));
+    assert_string_equal(cscd_method_name((cscd_method)77), "unknown");
+    assert_string_equal(cscd_status_string((cscd_status)77), "unknown status");
+    assert_string_equal(cscd_version_string(), "0.1.0");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bits_for_any_thread_count), cmocka_unit_test(earlier_steps_leave_no_trace),
+        cmocka_unit_test(ignored_pairs_are_left_out),     cmocka_unit_test(bad_positions_are_named),
+        cmocka_unit_test(bad_arguments_are_refused),      cmocka_unit_test(names_and_values_match)};
+    return cmocka_run_group_tests_name("detector", tests, NULL, NULL);
+}

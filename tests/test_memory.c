@@ -1,0 +1,123 @@
+/* Memory: every allocation fails once, nothing leaks, a steady state allocates nothing. */
+#include "cscd/cscd.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene s; /* large; one test at a time */
+
+/* What a run of the whole library gave. */
+typedef struct outcome {
+    cscd_status status;
+    size_t contacts, intersections;
+} outcome;
+
+static cscd_status use_detector(cscd_detector *detector, outcome *out) {
+    cscd_contacts contacts = {NULL, 4711};
+    cscd_intersections crossing = {NULL, 4711, 0, 0};
+    cscd_status status = cscd_detector_step(detector, s.x0, s.x1, &contacts);
+    assert_true(status == CSCD_OK || contacts.count == 4711);
+    if (status != CSCD_OK) return status;
+    out->contacts = contacts.count;
+    status = cscd_detector_check(detector, s.x1, &crossing);
+    assert_true(status == CSCD_OK || crossing.count == 4711);
+    out->intersections = crossing.count;
+    return status;
+}
+
+/* Everything from the context to a step and a check; when that fails for want of memory, once more with the
+ * same objects, which must then succeed. */
+static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
+    outcome out = {CSCD_OK, 0, 0};
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.allocator = counting_allocator_interface(counter);
+    options.thread_count = thread_count;
+    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    out.status = cscd_context_create(&options, &context);
+    if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, &mesh);
+    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, NULL, &detector);
+    if (out.status == CSCD_OK) {
+        out.status = use_detector(detector, &out);
+        if (out.status == CSCD_OUT_OF_MEMORY) {
+            assert_non_null(strstr(cscd_context_detail(context), "out of memory"));
+            assert_int_equal(use_detector(detector, &out), CSCD_OK);
+        }
+    } else {
+        assert_true(out.status == CSCD_OUT_OF_MEMORY);
+    }
+    assert_true(context == NULL || cscd_context_bytes(context) == counter->bytes);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    assert_int_equal(counter->live, 0);
+    assert_int_equal(counter->bytes, 0);
+    return out;
+}
+
+static void fail_each(scene_family family, uint64_t seed, uint32_t thread_count) {
+    scene_make(family, seed, &s);
+    counting_allocator counter = counting_allocator_start();
+    outcome good = run_library(&counter, thread_count);
+    assert_int_equal(good.status, CSCD_OK);
+    size_t calls = counter.calls;
+    assert_true(calls > 20);
+    for (size_t n = 0; n < calls; n++) {
+        counter = counting_allocator_start();
+        counter.fail_at = n;
+        outcome failed = run_library(&counter, thread_count);
+        assert_int_equal(failed.status, CSCD_OUT_OF_MEMORY);
+        if (failed.contacts == 0) continue; /* failed before there was a detector */
+        assert_int_equal(failed.contacts, good.contacts);
+        assert_int_equal(failed.intersections, good.intersections);
+    }
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    fail_each(SCENE_TWO_SPHERES, 3, 1);
+    fail_each(SCENE_FOLDED_SHEET, 7, 1);
+    fail_each(SCENE_SOUP, 11, 1);
+    fail_each(SCENE_BOW_TIE, 3, 3);
+}
+
+static void steady_state_allocates_nothing(void **state) {
+    (void)state;
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.allocator = counting_allocator_interface(&counter);
+    options.thread_count = 2;
+    scene_make(SCENE_NESTED_SPHERES, 2, &s);
+    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    outcome out;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(mesh, NULL, &detector), CSCD_OK);
+    assert_int_equal(use_detector(detector, &out), CSCD_OK);
+    size_t calls = counter.calls;
+    for (int i = 0; i < 20; i++) assert_int_equal(use_detector(detector, &out), CSCD_OK);
+    assert_int_equal(counter.calls, calls);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.live, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_allocation_may_fail),
+                                       cmocka_unit_test(steady_state_allocates_nothing)};
+    return cmocka_run_group_tests_name("memory", tests, NULL, NULL);
+}

@@ -1,0 +1,93 @@
+/* Every method in mode all equals brute force over features, on hundreds of random intervals. */
+#include "cscd/cscd.h"
+#include "tests/support/oracle.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { INTERVALS_PER_FAMILY = 50 };
+
+static scene interval; /* large; one test at a time */
+
+typedef struct tally {
+    uint32_t intervals, with_contact;
+    size_t contacts;
+} tally;
+
+static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_method method,
+                                    cscd_mesh **mesh) {
+    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_detector *detector = NULL;
+    options.method = method;
+    assert_int_equal(cscd_mesh_create(context, &desc, mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(*mesh, &options, &detector), CSCD_OK);
+    return detector;
+}
+
+static void compare(const scene *s, const oracle_list *truth, cscd_method method, scene_family family,
+                    uint64_t seed) {
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_contacts found;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_detector *detector = make_detector(context, s, method, &mesh);
+    assert_int_equal(cscd_detector_step(detector, s->x0, s->x1, &found), CSCD_OK);
+    if (found.count != truth->count)
+        print_error("%s, seed %u, method %s: %zu contacts, brute force has %zu\n", scene_family_name(family),
+                    (unsigned)seed, cscd_method_name(method), found.count, truth->count);
+    assert_int_equal(found.count, truth->count);
+    for (size_t i = 0; i < found.count; i++) {
+        const cscd_contact *c = &found.items[i];
+        const oracle_contact *t = &truth->items[i];
+        assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
+        assert_true(c->toi >= 0.0 && c->toi <= 1.0);
+    }
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+static void run_family(scene_family family, tally *sum) {
+    oracle_list truth = {0};
+    tally own = {0};
+    for (uint64_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
+        scene_make(family, seed, &interval);
+        oracle_find(&interval, &truth);
+        compare(&interval, &truth, CSCD_METHOD_NONE, family, seed);
+        compare(&interval, &truth, CSCD_METHOD_BRUTE, family, seed);
+        own.intervals++;
+        own.with_contact += truth.count > 0;
+        own.contacts += truth.count;
+    }
+    print_message("  %-15s %3u intervals, %3u with contact, %6zu contacts\n", scene_family_name(family),
+                  own.intervals, own.with_contact, own.contacts);
+    assert_true(own.with_contact > 0 && own.with_contact < own.intervals);
+    sum->intervals += own.intervals;
+    sum->with_contact += own.with_contact;
+    sum->contacts += own.contacts;
+    oracle_free(&truth);
+}
+
+static void mode_all_equals_brute_force(void **state) {
+    (void)state;
+    tally sum = {0};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
+    print_message("  %-15s %3u intervals, %3u with contact, %6zu contacts\n", "all", sum.intervals,
+                  sum.with_contact, sum.contacts);
+    assert_true(sum.intervals >= 500);
+    assert_true(sum.with_contact * 3 >= sum.intervals);
+    assert_true((sum.intervals - sum.with_contact) * 3 >= sum.intervals);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(mode_all_equals_brute_force)};
+    return cmocka_run_group_tests_name("oracle", tests, NULL, NULL);
+}
