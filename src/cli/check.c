@@ -2,6 +2,7 @@
 #include "src/cli/command.h"
 #include "src/cli/frame_list.h"
 #include "src/cli/ignore_pairs.h"
+#include "src/cli/output_path.h"
 #include "src/cli/progress.h"
 #include "src/cli/provenance.h"
 #include "src/cli/replay_options.h"
@@ -25,7 +26,7 @@ static const char help[] =
     "  --ignore-rest        leave out the pairs that meet in the first frame\n"
     "  --threads N          default 1; 0: one per processor\n"
     "  --fail-on-contact    exit with 3 when any frame has such a pair\n"
-    "  --quiet              no progress, no warnings, no lines per frame\n";
+    "  --quiet              no progress, no warnings, nothing on the standard output\n";
 
 typedef struct check_options {
     recording_options source;
@@ -138,9 +139,11 @@ static int run(const check_options *options) {
     bool ran = prepare(&c, &error) && check_frames(&c, &error);
     progress_end(&c.progress);
     bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
-    printf("%s: %u of %u frames cross or touch themselves", options->source.model_path,
-           frame_list_frames(&c.crossing), c.frames_checked);
-    frame_list_print(&c.crossing, ": ");
+    if (c.frames_checked > 0 && !options->quiet) {
+        printf("%s: %u of %u frames cross or touch themselves", options->source.model_path,
+               frame_list_frames(&c.crossing), c.frames_checked);
+        frame_list_print(&c.crossing, ": ");
+    }
     int code = !ran                                               ? fail_input("%s", error.text)
                : !closed                                          ? fail_input("%s", close_error.text)
                : interrupted()                                    ? EXIT_INTERRUPTED
@@ -198,14 +201,18 @@ int command_check(int argument_count, char **arguments) {
             fputs(help, stdout);
             return EXIT_RAN;
         }
-        if (id == ':' || id == '?')
-            return fail_usage("check", "unknown or incomplete option '%s'", arguments[optind - 1]);
+        if (id == ':' || id == '?') return fail_option("check", id, arguments);
         if (!set_option(id, optarg, &options))
             return fail_usage("check", "--%s cannot be '%s'", long_options[index].name, optarg);
     }
     if (argument_count - optind < 1) return fail_usage("check", "no MODEL given");
-    options.source.model_path = arguments[optind];
-    options.source.frame_paths = (const char *const *)(arguments + optind + 1);
+    const char *const *inputs = (const char *const *)(arguments + optind);
+    io_error error;
+    if (!output_path_is_safe(options.json_path, inputs, (size_t)(argument_count - optind), &error) ||
+        !output_path_is_safe(options.json_path, (const char *const *)&options.ignore_path, 1, &error))
+        return fail_usage("check", "--json %s", error.text);
+    options.source.model_path = inputs[0];
+    options.source.frame_paths = inputs + 1;
     options.source.frame_path_count = (size_t)(argument_count - optind - 1);
     return run(&options);
 }

@@ -2,6 +2,7 @@
 #include "src/cli/command.h"
 
 #include <errno.h>
+#include <getopt.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -30,6 +31,15 @@ int fail_usage(const char *command, const char *format, ...) {
     va_end(arguments);
     fprintf(stderr, "Try 'cscd %s%s--help'.\n", command, command[0] != '\0' ? " " : "");
     return EXIT_USAGE;
+}
+
+/* optopt is 0 after an unknown long option; a short one may stand in the middle of its argument. */
+int fail_option(const char *command, int id, char **arguments) {
+    const char *last = arguments[optind - 1];
+    if (id == ':') return fail_usage(command, "%s needs a value", last);
+    if (optopt > ' ' && optopt < 127 && strncmp(last, "--", 2) != 0)
+        return fail_usage(command, "unknown option '-%c'", optopt);
+    return fail_usage(command, "unknown option '%s'", last);
 }
 
 void warn(const char *format, ...) {

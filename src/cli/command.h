@@ -23,6 +23,8 @@ int command_render(int argument_count, char **arguments);
 int fail_input(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The same with a hint to COMMAND --help. */
 int fail_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* A usage error about the option that getopt_long has just refused with ':' or '?'. */
+int fail_option(const char *command, int id, char **arguments);
 /* "cscd: warning: ..." on stderr. */
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

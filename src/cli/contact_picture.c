@@ -75,8 +75,8 @@ static bool mark_contacts(contact_picture *p, recording *r, cscd_detector *detec
     if (cscd_detector_step(detector, p->positions, end, &contacts) != CSCD_OK)
         return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->context));
     cscd_counters counters = cscd_detector_counters(detector);
-    snprintf(p->caption, sizeof p->caption, "frame %u: %llu VF and %llu EE contacts before frame %u", frame,
-             (unsigned long long)counters.vf, (unsigned long long)counters.ee, frame + 1);
+    snprintf(p->caption, sizeof p->caption, "frame %u to %u: %llu VF and %llu EE contacts", frame, frame + 1,
+             (unsigned long long)counters.vf, (unsigned long long)counters.ee);
     p->scene.legend = legend;
     p->scene.legend_count = sizeof legend / sizeof *legend;
     return colour_features(p, r->mesh, &contacts, error) && place_markers(p, &contacts, error);

@@ -82,7 +82,7 @@ int command_info(int argument_count, char **arguments) {
             fputs(help, stdout);
             return EXIT_RAN;
         }
-        if (id != 'w') return fail_usage("info", "unknown or incomplete option '%s'", arguments[optind - 1]);
+        if (id != 'w') return fail_option("info", id, arguments);
         if (!parse_weld(optarg, &source.weld, &source.weld_epsilon))
             return fail_usage("info", "--weld cannot be '%s'", optarg);
     }

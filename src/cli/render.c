@@ -1,6 +1,7 @@
 /* `cscd render`: draws a frame to a PNG, plain or with the contacts of its interval. */
 #include "src/cli/command.h"
 #include "src/cli/contact_picture.h"
+#include "src/cli/output_path.h"
 #include "src/cli/replay_options.h"
 
 #include <getopt.h>
@@ -117,20 +118,24 @@ int command_render(int argument_count, char **arguments) {
     render_options options = {.source = {.thread_count = 1}, .picture = picture_options_defaults()};
     opterr = 0;
     optind = 1;
-    for (int id; (id = getopt_long(argument_count, arguments, ":o:", long_options, NULL)) != -1;) {
+    for (int id, index = 0;
+         (id = getopt_long(argument_count, arguments, ":o:", long_options, &index)) != -1;) {
         if (id == 'h') {
             fputs(help, stdout);
             return EXIT_RAN;
         }
-        if (id == ':' || id == '?')
-            return fail_usage("render", "unknown or incomplete option '%s'", arguments[optind - 1]);
+        if (id == ':' || id == '?') return fail_option("render", id, arguments);
         if (!set_option(id, optarg, &options))
-            return fail_usage("render", "%s is not a value that fits '%s'", optarg, arguments[optind - 2]);
+            return fail_usage("render", "--%s cannot be '%s'", long_options[index].name, optarg);
     }
     if (argument_count - optind < 1) return fail_usage("render", "no MODEL given");
     if (options.output_path == NULL) return fail_usage("render", "no -o OUT.png given");
-    options.source.model_path = arguments[optind];
-    options.source.frame_paths = (const char *const *)(arguments + optind + 1);
+    const char *const *inputs = (const char *const *)(arguments + optind);
+    io_error error;
+    if (!output_path_is_safe(options.output_path, inputs, (size_t)(argument_count - optind), &error))
+        return fail_usage("render", "-o %s", error.text);
+    options.source.model_path = inputs[0];
+    options.source.frame_paths = inputs + 1;
     options.source.frame_path_count = (size_t)(argument_count - optind - 1);
     return draw(&options);
 }

@@ -1,6 +1,8 @@
 /* The options of `cscd replay`. */
 #include "src/cli/replay_options.h"
 
+#include "src/cli/output_path.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -111,8 +113,7 @@ static int read_options(int argument_count, char **arguments, replay_options *o,
             *help_wanted = true;
             return EXIT_RAN;
         }
-        if (id == ':') return fail_usage("replay", "%s needs a value", arguments[optind - 1]);
-        if (id == '?') return fail_usage("replay", "unknown option '%s'", arguments[optind - 1]);
+        if (id == ':' || id == '?') return fail_option("replay", id, arguments);
         if (!set_option(id, optarg, o))
             return fail_usage("replay", "--%s cannot be '%s'", long_options[index].name, optarg);
     }
@@ -123,6 +124,23 @@ static bool ends_with_known(const char *path) {
     size_t length = strlen(path);
     return (length > 4 && strcmp(path + length - 4, ".csv") == 0) ||
            (length > 6 && strcmp(path + length - 6, ".jsonl") == 0);
+}
+
+/* Outputs are not inputs, and not each other. */
+static bool outputs_are_safe(const replay_options *o, const char *const *inputs, size_t input_count) {
+    const char *others[] = {o->ignore_path, o->contacts_path};
+    io_error error;
+    if (!output_path_is_safe(o->contacts_path, inputs, input_count, &error) ||
+        !output_path_is_safe(o->contacts_path, others, 1, &error)) {
+        fail_usage("replay", "--contacts %s", error.text);
+        return false;
+    }
+    if (!output_path_is_safe(o->json_path, inputs, input_count, &error) ||
+        !output_path_is_safe(o->json_path, others, 2, &error)) {
+        fail_usage("replay", "--json %s", error.text);
+        return false;
+    }
+    return true;
 }
 
 bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code) {
@@ -141,9 +159,11 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (o.contacts_path != NULL && !ends_with_known(o.contacts_path))
         *code = fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
                            o.contacts_path);
+    const char *const *inputs = (const char *const *)(arguments + optind);
+    if (*code == EXIT_RAN && !outputs_are_safe(&o, inputs, (size_t)rest)) *code = EXIT_USAGE;
     if (*code != EXIT_RAN) return false;
     o.model_path = arguments[optind];
-    o.frame_paths = (const char *const *)(arguments + optind + 1);
+    o.frame_paths = inputs + 1;
     o.frame_path_count = (size_t)rest - 1;
     *out = o;
     return true;

@@ -1,0 +1,15 @@
+/* Keeps a command from writing over what it reads. */
+#ifndef CSCD_OUTPUT_PATH_H
+#define CSCD_OUTPUT_PATH_H
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* False, with the reason, when `path` is one of the files in others (links followed; NULLs among them are
+ * skipped), or is named like a mesh or a point cache: it may then be a frame of a pattern or a folder. path
+ * NULL is fine. */
+bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error);
+
+#endif
