@@ -7,7 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Vertices in the file's own order; faces in file order, polygons as triangle fans around their first corner. */
+/* Vertices in the file's own order; faces in file order, polygons as triangle fans around their first
+ * corner. */
 typedef struct mesh_file {
     uint32_t vertex_count, triangle_count;
     double *positions;   /* vertex_count * 3 */

@@ -18,14 +18,15 @@ typedef struct weld {
     uint32_t *file_triangle;         /* triangle_count: which triangle of the file it is */
 } weld;
 
-/* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded vertices
- * are numbered in the order of their first file vertex. On false *out is untouched. */
+/* Each vertex joins the first one, in file order, that stands for itself and lies within epsilon. Welded
+ * vertices are numbered in the order of their first file vertex. On false *out is untouched. */
 bool weld_create(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
                  uint32_t triangle_count, double epsilon, weld *out, io_error *error);
 void weld_free(weld *w);
 
 /* Welded positions are those of the first file vertex. False, with the vertices and their distance, when two
  * that were welded lie farther apart than epsilon in this frame (frame: for the message). */
-bool weld_positions(const weld *w, const double *file_positions, uint32_t frame, double *out, io_error *error);
+bool weld_positions(const weld *w, const double *file_positions, uint32_t frame, double *out,
+                    io_error *error);
 
 #endif

@@ -1,0 +1,33 @@
+/* A whole file in memory, a position in it, and errors that name the place. */
+#ifndef CSCD_FILE_READER_H
+#define CSCD_FILE_READER_H
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct file_reader {
+    const char *path; /* the caller's, alive as long as the reader */
+    io_error *error;
+    char *bytes; /* size of them and a 0 behind the last */
+    size_t size;
+    size_t at;          /* the next byte to read */
+    size_t line;        /* the line of `at`, from 1 */
+    bool binary;        /* places are byte offsets, not lines */
+    size_t mark;        /* in binary files: the first byte of the value last read */
+    bool comments;      /* text: # starts a comment */
+    bool continuations; /* text: a backslash before a line's end is a blank */
+} file_reader;
+
+/* On false *reader owns nothing. */
+bool file_reader_open(file_reader *reader, const char *path, io_error *error);
+void file_reader_close(file_reader *reader);
+
+/* Leave "path: message", or "path:line N: message" / "path: byte N: message" with the place where the reader
+ * is, in reader->error: always one line, and always false. */
+bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool file_reader_fail_here(file_reader *reader, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+#endif

@@ -1,0 +1,39 @@
+/* Collects the vertices and faces of a mesh file, checking each. */
+#ifndef CSCD_MESH_BUILDER_H
+#define CSCD_MESH_BUILDER_H
+
+#include "src/io/file_reader.h"
+#include "src/io/growable.h"
+#include "src/io/mesh_file.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The most vertices and the most triangles of a mesh. */
+#define MESH_COUNT_LIMIT INT32_MAX
+
+typedef struct mesh_builder {
+    file_reader *reader;
+    uint32_t index_base; /* what the format calls the first vertex, for messages */
+    growable positions;  /* of double[3] */
+    growable triangles;  /* of uint32_t[3] */
+    uint32_t first_corner, last_corner;
+    size_t corner_count; /* of the face in hand */
+} mesh_builder;
+
+mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base);
+void mesh_builder_free(mesh_builder *builder);
+
+/* On false the reader's error is set, as in all below. */
+bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]);
+
+/* A face is begun, given its corners (0-based, in range or checked later) and ended. */
+void mesh_builder_begin_face(mesh_builder *builder);
+bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex);
+bool mesh_builder_end_face(mesh_builder *builder);
+
+/* Moves the mesh to *out; false, and *out untouched, when it has no vertices or no triangles. */
+bool mesh_builder_finish(mesh_builder *builder, mesh_file *out);
+
+#endif

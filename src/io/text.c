@@ -1,0 +1,158 @@
+/* Tokens and numbers of the text formats, line by line. */
+#include "src/io/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+static bool is_line_end(char c) {
+    return c == '\n' || c == '\r';
+}
+
+/* Lines end with LF, CR LF or, on old machines, CR alone. The 0 behind the bytes makes at + 1 safe to read.
+ */
+static size_t line_end_size(const file_reader *reader, size_t at) {
+    if (!is_line_end(reader->bytes[at])) return 0;
+    return reader->bytes[at] == '\r' && reader->bytes[at + 1] == '\n' ? 2 : 1;
+}
+
+static bool is_continuation(const file_reader *reader) {
+    return reader->continuations && reader->bytes[reader->at] == '\\' &&
+           is_line_end(reader->bytes[reader->at + 1]);
+}
+
+static void pass_continuation(file_reader *reader) {
+    reader->at += 1 + line_end_size(reader, reader->at + 1);
+    reader->line++;
+}
+
+static void skip_blanks(file_reader *reader) {
+    for (;;) {
+        if (is_blank(reader->bytes[reader->at])) {
+            reader->at++;
+        } else if (is_continuation(reader)) {
+            pass_continuation(reader);
+        } else {
+            return;
+        }
+    }
+}
+
+static bool ends_token(const file_reader *reader) {
+    char c = reader->bytes[reader->at];
+    if (c > '#' && c != '\\') return false;
+    return reader->at == reader->size || is_blank(c) || is_line_end(c) || (c == '#' && reader->comments) ||
+           is_continuation(reader);
+}
+
+bool text_next_token(file_reader *reader, text_token *token) {
+    skip_blanks(reader);
+    size_t start = reader->at;
+    while (!ends_token(reader)) reader->at++;
+    *token = (text_token){reader->bytes + start, reader->at - start};
+    return token->length > 0;
+}
+
+void text_skip_line(file_reader *reader) {
+    bool in_comment = false;
+    while (reader->at < reader->size) {
+        char c = reader->bytes[reader->at];
+        size_t end_size = line_end_size(reader, reader->at);
+        if (end_size > 0) {
+            reader->at += end_size;
+            reader->line++;
+            return;
+        }
+        if (c == '#') in_comment = reader->comments;
+        /* A comment that ends in a backslash, as a folder's name may, must not swallow the next line. */
+        if (!in_comment && is_continuation(reader)) {
+            pass_continuation(reader);
+        } else {
+            reader->at++;
+        }
+    }
+}
+
+bool text_seek_token(file_reader *reader) {
+    for (;;) {
+        skip_blanks(reader);
+        if (reader->at == reader->size) return false;
+        if (!ends_token(reader)) return true;
+        text_skip_line(reader);
+    }
+}
+
+static bool fail_expected(file_reader *reader, text_token token, const char *expected) {
+    if (token.length > 0) {
+        return file_reader_fail_here(reader, "found '%s', expected %s", text_show(token).text, expected);
+    }
+    const char *what = reader->at == reader->size ? "file" : "line";
+    return file_reader_fail_here(reader, "the %s ends, expected %s", what, expected);
+}
+
+bool text_number(file_reader *reader, const char *expected, double *value) {
+    text_token token;
+    return (text_next_token(reader, &token) && text_parse_number(token, value)) ||
+           fail_expected(reader, token, expected);
+}
+
+bool text_integer(file_reader *reader, const char *expected, int64_t *value) {
+    text_token token;
+    return (text_next_token(reader, &token) && text_parse_integer(token, value)) ||
+           fail_expected(reader, token, expected);
+}
+
+bool text_expect_line_end(file_reader *reader) {
+    text_token token;
+    return !text_next_token(reader, &token) || fail_expected(reader, token, "the end of the line");
+}
+
+/* strtod rounds correctly and reads the point of the C locale, in which the program stays: nothing in it
+ * calls setlocale. It stops at the blank, line end or 0 behind the token. */
+bool text_parse_number(text_token token, double *value) {
+    size_t sign = *token.text == '-' || *token.text == '+' ? 1 : 0;
+    bool is_hexadecimal =
+        token.text[sign] == '0' && (token.text[sign + 1] == 'x' || token.text[sign + 1] == 'X');
+    char *end;
+    double number = strtod(token.text, &end);
+    if (is_hexadecimal || end != token.text + token.length) return false;
+    *value = number;
+    return true;
+}
+
+size_t text_parse_integer_prefix(text_token token, int64_t *value) {
+    enum { MOST_DIGITS = 18 }; /* 10^18 < 2^63 */
+    size_t sign = token.length > 0 && (token.text[0] == '-' || token.text[0] == '+') ? 1 : 0;
+    size_t i = sign;
+    int64_t number = 0;
+    for (; i < token.length && token.text[i] >= '0' && token.text[i] <= '9'; i++) {
+        if (i - sign == MOST_DIGITS) return 0;
+        number = 10 * number + (token.text[i] - '0');
+    }
+    if (i == sign) return 0;
+    *value = token.text[0] == '-' ? -number : number;
+    return i;
+}
+
+bool text_parse_integer(text_token token, int64_t *value) {
+    return token.length > 0 && text_parse_integer_prefix(token, value) == token.length;
+}
+
+bool text_equals(text_token token, const char *word) {
+    return strlen(word) == token.length && memcmp(token.text, word, token.length) == 0;
+}
+
+text_shown text_show(text_token token) {
+    text_shown shown = {0};
+    size_t most = sizeof shown.text - 1;
+    size_t length = token.length < most ? token.length : most;
+    for (size_t i = 0; i < length; i++) {
+        char c = token.text[i];
+        shown.text[i] = c >= ' ' && c <= '~' ? c : '?';
+    }
+    if (token.length > most) memcpy(shown.text + most - 3, "...", 3);
+    return shown;
+}

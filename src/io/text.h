@@ -1,0 +1,48 @@
+/* Tokens and numbers of the text formats, line by line. */
+#ifndef CSCD_TEXT_H
+#define CSCD_TEXT_H
+
+#include "src/io/file_reader.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* A run of characters without blanks, inside the reader's bytes. */
+typedef struct text_token {
+    const char *text;
+    size_t length;
+} text_token;
+
+/* A token fit for a message: printable and not too long. */
+typedef struct text_shown {
+    char text[48];
+} text_shown;
+
+/* The next token of the line; false at the line's end, which is not passed. */
+bool text_next_token(file_reader *reader, text_token *token);
+
+/* To the start of the next line, whatever the rest of this one holds. */
+void text_skip_line(file_reader *reader);
+
+/* To the next token, over blank lines and comments; false when the file ends. */
+bool text_seek_token(file_reader *reader);
+
+/* Take the line's next token as a number. On false the error names the token and what was expected. */
+bool text_number(file_reader *reader, const char *expected, double *value);
+bool text_integer(file_reader *reader, const char *expected, int64_t *value);
+
+/* The line must end here. */
+bool text_expect_line_end(file_reader *reader);
+
+/* The whole token is a number, a double rounded to nearest; infinities and NaN are let through. */
+bool text_parse_number(text_token token, double *value);
+/* The whole token is a decimal integer of at most 18 digits. */
+bool text_parse_integer(text_token token, int64_t *value);
+/* The same, of a beginning: returns its length, 0 when the token does not begin with an integer. */
+size_t text_parse_integer_prefix(text_token token, int64_t *value);
+
+bool text_equals(text_token token, const char *word);
+text_shown text_show(text_token token);
+
+#endif

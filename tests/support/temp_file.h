@@ -1,0 +1,29 @@
+/* A temporary folder for a test, and files of given bytes in it. */
+#ifndef CSCD_TEST_TEMP_FILE_H
+#define CSCD_TEST_TEMP_FILE_H
+
+#include <stddef.h>
+
+typedef struct temp_folder {
+    char path[256];
+} temp_folder;
+
+typedef struct temp_path {
+    char text[512];
+} temp_path;
+
+/* All of these end the program when the file system refuses: a test cannot go on without them. */
+
+/* A new, empty folder. */
+temp_folder temp_folder_make(void);
+
+/* Removes the folder and the files in it. */
+void temp_folder_remove(const temp_folder *folder);
+
+/* The path of the file `name` in the folder; nothing is created. */
+temp_path temp_file_path(const temp_folder *folder, const char *name);
+
+/* Writes the bytes to the file `name` in the folder and returns its path. */
+temp_path temp_file_write(const temp_folder *folder, const char *name, const void *bytes, size_t size);
+
+#endif
