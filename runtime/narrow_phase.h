@@ -16,7 +16,7 @@ typedef struct swept_interval {
 
 /* What one thread finds. */
 typedef struct contact_lane {
-    cscd_contact *contacts;
+    _Alignas(CACHE_LINE_SIZE) cscd_contact *contacts;
     size_t count, capacity;
     uint64_t feature_pairs, tests, root_solves;
     bool out_of_memory;

@@ -6,7 +6,7 @@
 
 /* What one thread finds. */
 typedef struct intersection_lane {
-    cscd_intersection *items;
+    _Alignas(CACHE_LINE_SIZE) cscd_intersection *items;
     size_t count, capacity;
     uint32_t zero_area_triangles, first_zero_area;
     bool out_of_memory;

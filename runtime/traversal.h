@@ -16,7 +16,7 @@ typedef struct node_pair {
 
 /* What one thread works on: its share of the open node pairs and its batch of results. */
 typedef struct traversal_lane {
-    node_pair *stack;
+    _Alignas(CACHE_LINE_SIZE) node_pair *stack;
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
     uint32_t pair_count;

@@ -1,7 +1,7 @@
 /* Random intervals of deforming meshes, by family. */
 #include "tests/support/scenes.h"
 
-#include "tests/support/random.h"
+#include "tests/support/random_stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,16 +29,16 @@ static void deform(scene *s, deformation *d, const double *start, const double *
     }
 }
 
-static void jitter(scene *s, double size, random_state *random) {
+static void jitter(scene *s, double size, random_stream *random) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
-        double offset = size * random_between(random, -1.0, 1.0);
+        double offset = size * stream_between(random, -1.0, 1.0);
         s->x0[i] += offset;
-        s->x1[i] += offset + 0.3 * size * random_between(random, -1.0, 1.0);
+        s->x1[i] += offset + 0.3 * size * stream_between(random, -1.0, 1.0);
     }
 }
 
-static void fill(double *a, int count, random_state *random, double low, double high) {
-    for (int i = 0; i < count; i++) a[i] = random_between(random, low, high);
+static void fill(double *a, int count, random_stream *random, double low, double high) {
+    for (int i = 0; i < count; i++) a[i] = stream_between(random, low, high);
 }
 
 static void wave(const double rest[3], const double *a, double out[3]) {
@@ -47,11 +47,11 @@ static void wave(const double rest[3], const double *a, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = r * rest[k];
 }
 
-static void make_noisy_sphere(scene *s, random_state *random) {
-    double start[7], end[7], strength = random_between(random, 0.0, 0.9);
+static void make_noisy_sphere(scene *s, random_stream *random) {
+    double start[7], end[7], strength = stream_between(random, 0.0, 0.9);
     scene_add_sphere(s, origin, 1.0, 7, 11);
     fill(start, 7, random, -strength, strength);
-    for (int i = 0; i < 7; i++) end[i] = start[i] + 0.5 * strength * random_between(random, -1.0, 1.0);
+    for (int i = 0; i < 7; i++) end[i] = start[i] + 0.5 * strength * stream_between(random, -1.0, 1.0);
     deform(s, wave, start, end);
 }
 
@@ -65,18 +65,18 @@ static void bend(const double rest[3], const double *a, double out[3]) {
     out[2] = reach * sin(angle) + a[3];
 }
 
-static void make_bent_capsule(scene *s, random_state *random) {
-    double start[4] = {random_between(random, 5.2, 6.2), 0, 0, 0}, end[4] = {0};
-    end[0] = start[0] + random_between(random, -0.4, 0.6);
+static void make_bent_capsule(scene *s, random_stream *random) {
+    double start[4] = {stream_between(random, 5.2, 6.2), 0, 0, 0}, end[4] = {0};
+    end[0] = start[0] + stream_between(random, -0.4, 0.6);
     scene_add_capsule(s, 6.0, 0.35, 18, 8);
     deform(s, bend, start, end);
 }
 
-static void make_far_away(scene *s, random_state *random) {
-    double start[4] = {random_between(random, 5.0, 6.2)}, end[4];
+static void make_far_away(scene *s, random_stream *random) {
+    double start[4] = {stream_between(random, 5.0, 6.2)}, end[4];
     fill(start + 1, 3, random, -1e4, 1e4);
-    end[0] = start[0] + random_between(random, -0.3, 0.5);
-    for (int k = 1; k < 4; k++) end[k] = start[k] + random_between(random, -3.0, 3.0);
+    end[0] = start[0] + stream_between(random, -0.3, 0.5);
+    for (int k = 1; k < 4; k++) end[k] = start[k] + stream_between(random, -3.0, 3.0);
     scene_add_capsule(s, 6.0, 0.35, 14, 7);
     deform(s, bend, start, end);
 }
@@ -87,11 +87,11 @@ static void squash(const double rest[3], const double *a, double out[3]) {
     out[2] = rest[2] * (1.0 + a[2] * rest[0]);
 }
 
-static void make_squashed_torus(scene *s, random_state *random) {
-    double start[3] = {random_between(random, 0.2, 0.7)}, end[3];
+static void make_squashed_torus(scene *s, random_stream *random) {
+    double start[3] = {stream_between(random, 0.2, 0.7)}, end[3];
     fill(start + 1, 2, random, -0.5, 0.5);
-    end[0] = start[0] + random_between(random, -0.5, 0.2);
-    for (int k = 1; k < 3; k++) end[k] = start[k] + random_between(random, -0.3, 0.3);
+    end[0] = start[0] + stream_between(random, -0.5, 0.2);
+    for (int k = 1; k < 3; k++) end[k] = start[k] + stream_between(random, -0.3, 0.3);
     scene_add_torus(s, origin, 1.0, 0.35, 16, 7, false);
     deform(s, squash, start, end);
 }
@@ -104,11 +104,11 @@ static void roll(const double rest[3], const double *a, double out[3]) {
     out[2] = 1.0 / a[0] - radius * cos(angle) + a[2] * sin(2.0 * rest[1]);
 }
 
-static void make_folded_sheet(scene *s, random_state *random) {
-    double start[3] = {random_between(random, 0.8, 2.2), random_between(random, -0.01, 0.08), 0.0}, end[3];
-    end[0] = start[0] + random_between(random, -0.2, 0.4);
-    end[1] = start[1] + random_between(random, -0.08, 0.03);
-    end[2] = random_between(random, -0.1, 0.1);
+static void make_folded_sheet(scene *s, random_stream *random) {
+    double start[3] = {stream_between(random, 0.8, 2.2), stream_between(random, -0.01, 0.08), 0.0}, end[3];
+    end[0] = start[0] + stream_between(random, -0.2, 0.4);
+    end[1] = start[1] + stream_between(random, -0.08, 0.03);
+    end[2] = stream_between(random, -0.1, 0.1);
     scene_add_sheet(s, 6.0, 1.5, 24, 5);
     deform(s, roll, start, end);
 }
@@ -124,7 +124,7 @@ static void move_second(scene *s, uint32_t first, const double start[4], const d
     }
 }
 
-static void make_two_spheres(scene *s, random_state *random) {
+static void make_two_spheres(scene *s, random_stream *random) {
     double start[4], end[4];
     fill(start, 3, random, -2.0, 2.0);
     fill(end, 3, random, -2.0, 2.0);
@@ -135,23 +135,23 @@ static void make_two_spheres(scene *s, random_state *random) {
     move_second(s, first, start, end);
 }
 
-static void make_nested_spheres(scene *s, random_state *random) {
+static void make_nested_spheres(scene *s, random_stream *random) {
     double start[4], end[4];
     fill(start, 3, random, -0.2, 0.2);
     fill(end, 3, random, -0.3, 0.3);
-    start[3] = random_between(random, -0.2, 0.3);
-    end[3] = start[3] + random_between(random, -0.3, 0.9);
+    start[3] = stream_between(random, -0.2, 0.3);
+    end[3] = start[3] + stream_between(random, -0.3, 0.9);
     scene_add_sphere(s, origin, 1.0, 6, 9);
     uint32_t first = s->vertex_count;
     scene_add_sphere(s, origin, 0.5, 5, 8);
     move_second(s, first, start, end);
 }
 
-static void make_linked_tori(scene *s, random_state *random) {
+static void make_linked_tori(scene *s, random_stream *random) {
     double start[4] = {1.0}, end[4] = {1.0};
     fill(start + 1, 2, random, -0.1, 0.1);
     fill(end + 1, 2, random, -0.4, 0.4);
-    end[0] = start[0] + random_between(random, -0.3, 1.0);
+    end[0] = start[0] + stream_between(random, -0.3, 1.0);
     start[3] = end[3] = 0.0;
     scene_add_torus(s, origin, 1.0, 0.2, 14, 6, false);
     uint32_t first = s->vertex_count;
@@ -159,10 +159,10 @@ static void make_linked_tori(scene *s, random_state *random) {
     move_second(s, first, start, end);
 }
 
-static void make_spike(scene *s, random_state *random) {
+static void make_spike(scene *s, random_stream *random) {
     scene_add_sphere(s, origin, 1.0, 6, 10);
-    uint32_t v = 1 + random_below(random, s->vertex_count - 2);
-    double far = random_between(random, -1.5, 1.2);
+    uint32_t v = 1 + stream_below(random, s->vertex_count - 2);
+    double far = stream_between(random, -1.5, 1.2);
     for (uint32_t k = 0; k < 3; k++) s->x1[v * 3 + k] = far * s->x0[v * 3 + k];
 }
 
@@ -174,10 +174,10 @@ static void tilt(const double rest[3], const double *a, double out[3]) {
     out[2] = rest[2] * cos(angle) - rest[0] * sin(angle);
 }
 
-static void make_bow_tie(scene *s, random_state *random) {
-    double start[2] = {random_between(random, 0.0, 1.1), 0.0}, end[2];
-    end[0] = start[0] + random_between(random, -0.3, 0.6);
-    end[1] = random_between(random, -0.3, 0.0);
+static void make_bow_tie(scene *s, random_stream *random) {
+    double start[2] = {stream_between(random, 0.0, 1.1), 0.0}, end[2];
+    end[0] = start[0] + stream_between(random, -0.3, 0.6);
+    end[1] = stream_between(random, -0.3, 0.0);
     scene_add_sphere(s, (double[3]){0, 0, 1.0}, 1.0, 5, 8);
     uint32_t first = s->vertex_count, first_triangle = s->triangle_count;
     scene_add_sphere(s, (double[3]){0, 0, -1.0}, 1.0, 5, 8);
@@ -190,43 +190,43 @@ static void make_bow_tie(scene *s, random_state *random) {
     deform(s, tilt, start, end);
 }
 
-static void make_triangles(scene *s, random_state *random, uint32_t vertex_count, uint32_t triangle_count) {
+static void make_triangles(scene *s, random_stream *random, uint32_t vertex_count, uint32_t triangle_count) {
     s->vertex_count = vertex_count;
     while (s->triangle_count < triangle_count) {
         uint32_t t[3];
-        for (int i = 0; i < 3; i++) t[i] = random_below(random, vertex_count);
+        for (int i = 0; i < 3; i++) t[i] = stream_below(random, vertex_count);
         if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
         memcpy(s->triangles + (size_t)s->triangle_count++ * 3, t, sizeof t);
     }
 }
 
-static void make_soup(scene *s, random_state *random) {
-    make_triangles(s, random, 12 + random_below(random, 60),
-                   1 + random_below(random, 2 + random_below(random, 60)));
-    double spread = random_between(random, 2.0, 60.0);
+static void make_soup(scene *s, random_stream *random) {
+    make_triangles(s, random, 12 + stream_below(random, 60),
+                   1 + stream_below(random, 2 + stream_below(random, 60)));
+    double spread = stream_between(random, 2.0, 60.0);
     double centres[SCENE_VERTICES_MAX];
     fill(centres, (int)s->vertex_count, random, -spread, spread);
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
-        s->x0[i] = centres[i / 3] + random_between(random, -1.0, 1.0);
-        s->x1[i] = s->x0[i] + random_between(random, -0.5, 0.5);
+        s->x0[i] = centres[i / 3] + stream_between(random, -1.0, 1.0);
+        s->x1[i] = s->x0[i] + stream_between(random, -0.5, 0.5);
     }
 }
 
-static void make_grid(scene *s, random_state *random) {
-    make_triangles(s, random, 6 + random_below(random, 10), 2 + random_below(random, 8));
-    uint32_t extent = 3 + random_below(random, 12);
+static void make_grid(scene *s, random_stream *random) {
+    make_triangles(s, random, 6 + stream_below(random, 10), 2 + stream_below(random, 8));
+    uint32_t extent = 3 + stream_below(random, 12);
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
-        s->x0[i] = random_below(random, extent);
-        s->x1[i] = random_below(random, 3) == 0 ? random_below(random, extent) : s->x0[i];
+        s->x0[i] = stream_below(random, extent);
+        s->x1[i] = stream_below(random, 3) == 0 ? stream_below(random, extent) : s->x0[i];
     }
 }
 
 void scene_make(scene_family family, uint64_t seed, scene *out) {
-    static void (*const makers[SCENE_FAMILY_COUNT])(scene *, random_state *) = {
+    static void (*const makers[SCENE_FAMILY_COUNT])(scene *, random_stream *) = {
         make_noisy_sphere, make_bent_capsule,   make_squashed_torus, make_folded_sheet,
         make_two_spheres,  make_nested_spheres, make_linked_tori,    make_spike,
         make_bow_tie,      make_soup,           make_grid,           make_far_away};
-    random_state random = random_start(seed * SCENE_FAMILY_COUNT + (uint64_t)family);
+    random_stream random = stream_start(seed * SCENE_FAMILY_COUNT + (uint64_t)family);
     scene_clear(out);
     makers[family](out, &random);
     if (family != SCENE_GRID && family != SCENE_SOUP) jitter(out, 0.004, &random);
