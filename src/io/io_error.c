@@ -10,6 +10,10 @@ bool io_fail(io_error *error, const char *format, ...) {
         va_start(arguments, format);
         vsnprintf(error->text, sizeof error->text, format, arguments);
         va_end(arguments);
+        for (char *c = error->text; *c != '\0'; c++) {
+            if ((unsigned char)*c < ' ' || *c == 0x7f)
+                *c = '?'; /* a path may hold line breaks; the error is one line */
+        }
     }
     return false;
 }

@@ -1,0 +1,153 @@
+/* Chooses the reader that the given paths call for and passes the frames on. */
+#include "src/io/animation.h"
+
+#include "src/io/frame_files.h"
+#include "src/io/growable.h"
+#include "src/io/point_cache.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+typedef struct path_list {
+    const char *const *paths;
+    size_t count;
+} path_list;
+
+/* A way to record frames; source is the handle of its reader. */
+typedef struct recording {
+    bool (*open)(path_list list, uint32_t vertex_count, void **source, io_error *error);
+    uint32_t (*frame_count)(const void *source);
+    bool (*read)(void *source, uint32_t frame, double *positions, io_error *error);
+    void (*close)(void *source);
+} recording;
+
+struct animation {
+    const recording *recording;
+    void *source;
+    char name[]; /* the first path */
+};
+
+/* ---- the readers, as the table wants them ------------------------------------------------------------ */
+
+static bool open_cache(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+    point_cache *cache;
+    if (!point_cache_open(list.paths[0], vertex_count, &cache, error)) return false;
+    *source = cache;
+    return true;
+}
+
+static uint32_t count_cache(const void *source) {
+    return point_cache_frame_count(source);
+}
+
+static bool read_cache(void *source, uint32_t frame, double *positions, io_error *error) {
+    return point_cache_read(source, frame, positions, error);
+}
+
+static void close_cache(void *source) {
+    point_cache_close(source);
+}
+
+static bool open_pattern(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+    frame_files *files;
+    if (!frame_files_open_pattern(list.paths[0], vertex_count, &files, error)) return false;
+    *source = files;
+    return true;
+}
+
+static bool open_folder(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+    frame_files *files;
+    if (!frame_files_open_folder(list.paths[0], vertex_count, &files, error)) return false;
+    *source = files;
+    return true;
+}
+
+static bool open_list(path_list list, uint32_t vertex_count, void **source, io_error *error) {
+    frame_files *files;
+    if (!frame_files_open_list(list.paths, list.count, vertex_count, &files, error)) return false;
+    *source = files;
+    return true;
+}
+
+static uint32_t count_files(const void *source) {
+    return frame_files_frame_count(source);
+}
+
+static bool read_files(void *source, uint32_t frame, double *positions, io_error *error) {
+    return frame_files_read(source, frame, positions, error);
+}
+
+static void close_files(void *source) {
+    frame_files_close(source);
+}
+
+enum { POINT_CACHE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
+
+static const recording recordings[] = {
+    [POINT_CACHE] = {open_cache, count_cache, read_cache, close_cache},
+    [FILE_PATTERN] = {open_pattern, count_files, read_files, close_files},
+    [FILE_FOLDER] = {open_folder, count_files, read_files, close_files},
+    [FILE_LIST] = {open_list, count_files, read_files, close_files},
+};
+
+/* ---- the interface ----------------------------------------------------------------------------------- */
+
+/* NULL after an error. A path that exists is taken as it is, even if it holds a percent sign. */
+static const recording *choose_recording(path_list list, io_error *error) {
+    if (list.count == 0) {
+        io_fail(error, "no animation given: expected a .pc2 or .mdd file, a pattern such as f_%%04d.obj, "
+                       "a folder, or mesh files");
+        return NULL;
+    }
+    if (list.count > 1) return &recordings[FILE_LIST];
+    const char *path = list.paths[0];
+    struct stat status;
+    if (stat(path, &status) != 0) {
+        if (strchr(path, '%') != NULL) return &recordings[FILE_PATTERN];
+        io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+        return NULL;
+    }
+    if (S_ISDIR(status.st_mode)) return &recordings[FILE_FOLDER];
+    return &recordings[S_ISREG(status.st_mode) && point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
+}
+
+bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
+                    io_error *error) {
+    const path_list list = {paths, path_count};
+    const recording *chosen = choose_recording(list, error);
+    if (chosen == NULL) return false;
+    if (vertex_count == 0)
+        return io_fail(error, "%s: the model has no vertices, expected at least 1", paths[0]);
+    const size_t name_size = strlen(paths[0]) + 1;
+    animation *opened = io_realloc(NULL, sizeof *opened + name_size);
+    if (opened == NULL) return io_fail(error, "%s: out of memory", paths[0]);
+    opened->recording = chosen;
+    memcpy(opened->name, paths[0], name_size);
+    if (!chosen->open(list, vertex_count, &opened->source, error)) {
+        free(opened);
+        return false;
+    }
+    *out = opened;
+    return true;
+}
+
+void animation_close(animation *opened) {
+    if (opened == NULL) return;
+    opened->recording->close(opened->source);
+    free(opened);
+}
+
+uint32_t animation_frame_count(const animation *opened) {
+    return opened->recording->frame_count(opened->source);
+}
+
+bool animation_read(animation *opened, uint32_t frame, double *positions, io_error *error) {
+    const uint32_t count = animation_frame_count(opened);
+    if (frame >= count)
+        return io_fail(error, "%s: no frame %" PRIu32 ", expected one from 0 to %" PRIu32, opened->name,
+                       frame, count - 1);
+    return opened->recording->read(opened->source, frame, positions, error);
+}

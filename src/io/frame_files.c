@@ -1,0 +1,166 @@
+/* Plays a sequence of mesh files: keeps their names and reads one file for each frame asked for. */
+#include "src/io/frame_files.h"
+
+#include "src/io/frame_folder.h"
+#include "src/io/frame_names.h"
+#include "src/io/frame_pattern.h"
+#include "src/io/growable.h"
+#include "src/io/mesh_file.h"
+#include "src/io/point_cache.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct frame_files {
+    uint32_t vertex_count;
+    char *folder; /* what precedes each name: a folder with its '/', or "" */
+    frame_names list;
+    char *path; /* room for the folder and the longest name */
+    size_t path_size;
+};
+
+static frame_files *create(const char *source, uint32_t vertex_count, io_error *error) {
+    frame_files *files = io_realloc(NULL, sizeof *files);
+    if (files == NULL)
+        io_fail(error, "%s: out of memory", source);
+    else
+        *files = (frame_files){.vertex_count = vertex_count, .list = frame_names_none()};
+    return files;
+}
+
+/* Whatever comes after the names are known; closes files if it fails. */
+static bool finish(frame_files *files, const char *source, frame_files **out, io_error *error) {
+    size_t longest = 0;
+    for (size_t i = 0; i < frame_names_count(&files->list); i++) {
+        const size_t length = strlen(frame_names_at(&files->list, i));
+        longest = length > longest ? length : longest;
+    }
+    files->path_size = strlen(files->folder) + longest + 1;
+    files->path = io_realloc(NULL, files->path_size);
+    bool finished = files->path != NULL;
+    if (!finished)
+        io_fail(error, "%s: out of memory", source);
+    else if (frame_names_count(&files->list) > UINT32_MAX)
+        finished = io_fail(error, "%s: %zu frames, expected at most %" PRIu32, source,
+                           frame_names_count(&files->list), UINT32_MAX);
+    if (finished)
+        *out = files;
+    else
+        frame_files_close(files);
+    return finished;
+}
+
+bool frame_files_open_pattern(const char *pattern, uint32_t vertex_count, frame_files **out,
+                              io_error *error) {
+    frame_files *files = create(pattern, vertex_count, error);
+    if (files == NULL) return false;
+    if (!frame_pattern_find(pattern, &files->folder, &files->list, error)) {
+        frame_files_close(files);
+        return false;
+    }
+    return finish(files, pattern, out, error);
+}
+
+static char *with_slash(const char *folder) {
+    const size_t length = strlen(folder);
+    char *copy = io_realloc(NULL, length + 2);
+    if (copy != NULL)
+        snprintf(copy, length + 2, "%s%s", folder, length > 0 && folder[length - 1] != '/' ? "/" : "");
+    return copy;
+}
+
+bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_files **out, io_error *error) {
+    frame_files *files = create(folder, vertex_count, error);
+    if (files == NULL) return false;
+    files->folder = with_slash(folder);
+    if (files->folder == NULL) {
+        frame_files_close(files);
+        return io_fail(error, "%s: out of memory", folder);
+    }
+    if (!frame_folder_find(folder, &files->list, error)) {
+        frame_files_close(files);
+        return false;
+    }
+    return finish(files, folder, out, error);
+}
+
+static bool check_listed(const char *path, io_error *error) {
+    struct stat status;
+    if (stat(path, &status) != 0) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+    if (!S_ISREG(status.st_mode))
+        return io_fail(error, "%s: %s, expected a mesh file: a folder must be the only path given", path,
+                       S_ISDIR(status.st_mode) ? "a folder" : "not a regular file");
+    if (point_cache_recognise(path))
+        return io_fail(error, "%s: a point cache among several paths, expected it to be the only one", path);
+    if (!frame_names_is_mesh(path))
+        return io_fail(
+            error, "%s: unknown extension, expected .obj, .ply or .off (one a frame), or one .pc2 or .mdd",
+            path);
+    return true;
+}
+
+static bool add_listed(frame_files *files, const char *const *paths, size_t path_count, io_error *error) {
+    files->folder = frame_names_copy("", 0);
+    if (files->folder == NULL) return io_fail(error, "%s: out of memory", paths[0]);
+    for (size_t i = 0; i < path_count; i++) {
+        if (!check_listed(paths[i], error)) return false;
+        if (!frame_names_add(&files->list, paths[i])) return io_fail(error, "%s: out of memory", paths[i]);
+    }
+    return true;
+}
+
+bool frame_files_open_list(const char *const *paths, size_t path_count, uint32_t vertex_count,
+                           frame_files **out, io_error *error) {
+    frame_files *files = create(paths[0], vertex_count, error);
+    if (files == NULL) return false;
+    if (!add_listed(files, paths, path_count, error)) {
+        frame_files_close(files);
+        return false;
+    }
+    return finish(files, paths[0], out, error);
+}
+
+void frame_files_close(frame_files *files) {
+    if (files == NULL) return;
+    frame_names_free(&files->list);
+    free(files->folder);
+    free(files->path);
+    free(files);
+}
+
+uint32_t frame_files_frame_count(const frame_files *files) {
+    return (uint32_t)frame_names_count(&files->list);
+}
+
+static bool copy_positions(const frame_files *files, uint32_t frame, const mesh_file *mesh, double *positions,
+                           io_error *error) {
+    if (mesh->vertex_count != files->vertex_count)
+        return io_fail(error,
+                       "%s: frame %" PRIu32 " holds %" PRIu32 " vertices, the model has %" PRIu32
+                       " vertices: it was exported from another mesh",
+                       files->path, frame, mesh->vertex_count, files->vertex_count);
+    const size_t count = (size_t)mesh->vertex_count * 3;
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(mesh->positions[i]))
+            return io_fail(error, "%s: frame %" PRIu32 ", vertex %zu, %c is %f, expected a finite number",
+                           files->path, frame, i / 3, "xyz"[i % 3], mesh -> positions[i]);
+        positions[i] = mesh->positions[i];
+    }
+    return true;
+}
+
+bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error) {
+    snprintf(files->path, files->path_size, "%s%s", files->folder, frame_names_at(&files->list, frame));
+    mesh_file mesh = {0};
+    io_error cause;
+    if (!mesh_file_read(files->path, &mesh, &cause))
+        return io_fail(error, "frame %" PRIu32 ": %s", frame, cause.text);
+    const bool copied = copy_positions(files, frame, &mesh, positions, error);
+    mesh_file_free(&mesh);
+    return copied;
+}

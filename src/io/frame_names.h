@@ -1,0 +1,38 @@
+/* The file names of a sequence of frames: a list, how to fill it from a folder, and its natural order. */
+#ifndef CSCD_FRAME_NAMES_H
+#define CSCD_FRAME_NAMES_H
+
+#include "src/io/growable.h"
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct frame_names {
+    growable names; /* of char *, each owned */
+} frame_names;
+
+frame_names frame_names_none(void);
+size_t frame_names_count(const frame_names *list);
+const char *frame_names_at(const frame_names *list, size_t index);
+
+/* The first length characters of text, to be freed; NULL when out of memory. */
+char *frame_names_copy(const char *text, size_t length);
+
+/* Appends a copy; false when out of memory, the list is then as before. */
+bool frame_names_add(frame_names *list, const char *name);
+void frame_names_free(frame_names *list);
+
+/* Appends the names in folder ("" is the current one) that keep says yes to, in no particular order. Folders
+ * in it are passed over. On false the list may have grown. */
+bool frame_names_read_folder(frame_names *list, const char *folder,
+                             bool (*keep)(const char *name, const void *context), const void *context,
+                             io_error *error);
+
+/* Natural order: runs of digits compare as numbers of any length, so f2 comes before f10. */
+void frame_names_sort(frame_names *list);
+
+/* Ends in .obj, .ply or .off, in any case. */
+bool frame_names_is_mesh(const char *name);
+
+#endif

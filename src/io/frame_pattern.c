@@ -1,0 +1,140 @@
+/* Finds the files that a pattern such as f_%04d.obj stands for; the pattern never reaches printf. */
+#include "src/io/frame_pattern.h"
+
+#include "src/io/growable.h"
+
+#include <inttypes.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH_LIMIT = 32 };
+
+/* The pattern without its conversion and with "%%" undone: folder, what comes before the number, what after.
+ */
+typedef struct frame_pattern {
+    char *text;
+    size_t name_start, number_start; /* positions in text; the suffix starts where the number does */
+    size_t width;
+} frame_pattern;
+
+static bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/* The length of the %d or %0Nd at text, 0 if it is neither; *width is the fewest digits it writes. */
+static size_t conversion_length(const char *text, size_t *width) {
+    size_t length = 1, value = 0;
+    if (text[length] == '0') {
+        length++;
+        while (is_digit(text[length]) && value <= WIDTH_LIMIT)
+            value = value * 10 + (size_t)(text[length++] - '0');
+        if (value < 1 || value > WIDTH_LIMIT) return 0;
+    }
+    *width = value == 0 ? 1 : value;
+    return text[length] == 'd' ? length + 1 : 0;
+}
+
+static bool bad_pattern(const char *source, size_t at, const char *found, io_error *error) {
+    return io_fail(error,
+                   "%s: bad pattern: %s at character %zu, expected one %%d or %%0Nd (N from 1 to %d) in the "
+                   "file name, and %%%% for a percent sign",
+                   source, found, at + 1, WIDTH_LIMIT);
+}
+
+/* pattern->text has room for all of source. */
+static bool parse(frame_pattern *pattern, const char *source, io_error *error) {
+    size_t length = 0, conversion_count = 0, conversion_at = 0;
+    for (size_t at = 0; source[at] != '\0';) {
+        if (source[at] != '%') {
+            if (source[at] == '/') pattern->name_start = length + 1;
+            pattern->text[length++] = source[at++];
+        } else if (source[at + 1] == '%') {
+            pattern->text[length++] = '%';
+            at += 2;
+        } else {
+            const size_t conversion = conversion_length(source + at, &pattern->width);
+            if (conversion == 0) return bad_pattern(source, at, "another conversion", error);
+            if (conversion_count++ > 0) return bad_pattern(source, at, "a second number", error);
+            conversion_at = at;
+            pattern->number_start = length;
+            at += conversion;
+        }
+    }
+    pattern->text[length] = '\0';
+    if (conversion_count == 0) return bad_pattern(source, length, "no number until the end", error);
+    if (pattern->number_start < pattern->name_start)
+        return bad_pattern(source, conversion_at, "a number in the folder", error);
+    return true;
+}
+
+/* Whether printf would make name from the pattern with some *number. */
+static bool matches(const frame_pattern *pattern, const char *name, uint32_t *number) {
+    const char *prefix = pattern->text + pattern->name_start, *suffix = pattern->text + pattern->number_start;
+    const size_t length = strlen(name), suffix_length = strlen(suffix);
+    const size_t prefix_length = pattern->number_start - pattern->name_start;
+    if (length < prefix_length + pattern->width + suffix_length ||
+        strncmp(name, prefix, prefix_length) != 0 || strcmp(name + length - suffix_length, suffix) != 0)
+        return false;
+    const char *digits = name + prefix_length;
+    const size_t digit_count = length - prefix_length - suffix_length;
+    if (digit_count > pattern->width && digits[0] == '0') return false;
+    uint64_t value = 0;
+    for (size_t i = 0; i < digit_count; i++) {
+        if (!is_digit(digits[i])) return false;
+        value = value * 10 + (uint64_t)(digits[i] - '0');
+        if (value > INT32_MAX) return false;
+    }
+    *number = (uint32_t)value;
+    return true;
+}
+
+static bool keep_match(const char *name, const void *context) {
+    uint32_t number;
+    return matches(context, name, &number);
+}
+
+/* The names ascend by number: the same text surrounds the number in all of them. */
+static bool check_gaps(const frame_pattern *pattern, const frame_names *list, io_error *error) {
+    uint32_t first, number;
+    matches(pattern, frame_names_at(list, 0), &first);
+    for (size_t i = 1; i < frame_names_count(list); i++) {
+        const uint64_t expected = (uint64_t)first + i;
+        if (matches(pattern, frame_names_at(list, i), &number) && number == expected) continue;
+        return io_fail(error, "%.*s%0*" PRIu64 "%s: missing, expected all frames from %s to %s",
+                       (int)pattern->number_start, pattern->text, (int)pattern->width, expected,
+                       pattern->text + pattern->number_start, frame_names_at(list, 0),
+                       frame_names_at(list, frame_names_count(list) - 1));
+    }
+    return true;
+}
+
+static bool find_files(frame_pattern *pattern, const char *source, char **folder, frame_names *list,
+                       io_error *error) {
+    if (!parse(pattern, source, error)) return false;
+    if (!frame_names_is_mesh(pattern->text + pattern->number_start))
+        return io_fail(error, "%s: unknown extension, a pattern is expected to end in .obj, .ply or .off",
+                       source);
+    char *found = frame_names_copy(pattern->text, pattern->name_start);
+    if (found == NULL) return io_fail(error, "%s: out of memory", source);
+    bool complete = frame_names_read_folder(list, found, keep_match, pattern, error);
+    if (complete && frame_names_count(list) == 0)
+        complete = io_fail(error, "%s: no such file, and no file matches it as a pattern", source);
+    if (complete) {
+        frame_names_sort(list);
+        complete = check_gaps(pattern, list, error);
+    }
+    if (complete)
+        *folder = found;
+    else
+        free(found);
+    return complete;
+}
+
+bool frame_pattern_find(const char *pattern, char **folder, frame_names *list, io_error *error) {
+    frame_pattern parsed = {.text = io_realloc(NULL, strlen(pattern) + 1)};
+    if (parsed.text == NULL) return io_fail(error, "%s: out of memory", pattern);
+    const bool found = find_files(&parsed, pattern, folder, list, error);
+    free(parsed.text);
+    return found;
+}
