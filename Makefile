@@ -37,7 +37,9 @@ CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
 TEST_SOURCES    := $(wildcard tests/test_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
-SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(MODEL_SOURCES)
+BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
+SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(MODEL_SOURCES) \
+           $(BENCHMARK_SOURCES)
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
@@ -49,7 +51,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo test test-run lint format docs examples clean help
+.PHONY: all tool library packages demo test test-run benchmarks lint format examples clean help
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -75,6 +77,9 @@ test: packages
 test-run: tool $(TESTS) $(MODELS)
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
+benchmarks: packages
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries
+
 lint: packages
 	@.ci/lint
 
@@ -91,6 +96,7 @@ help:
 	@echo 'make demo      generate a bending capsule, replay it, draw it'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
+	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
@@ -109,6 +115,9 @@ $(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
 
 $(BUILD)/models/%: $(BUILD)/models/%.o $(TOOL_OBJECTS) $(LIBRARY)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+$(BUILD)/benchmarks/queries: $(call objects,$(BENCHMARK_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
+	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
 
 # Tests see the inside: they link the objects.
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(call objects,$(SUPPORT_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)

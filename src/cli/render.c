@@ -125,6 +125,9 @@ int command_render(int argument_count, char **arguments) {
             return EXIT_RAN;
         }
         if (id == ':' || id == '?') return fail_option("render", id, arguments);
+        if (id == 'c' && (strcmp(optarg, "region") == 0 || strcmp(optarg, "charge") == 0))
+            return fail_usage("render", "--colour %s draws a plan of regions, and this version makes none",
+                              optarg);
         if (!set_option(id, optarg, &options))
             return fail_usage("render", "--%s cannot be '%s'", long_options[index].name, optarg);
     }
