@@ -1,0 +1,30 @@
+/* A perspective camera that frames a set of points. */
+#ifndef CSCD_PICTURE_CAMERA_H
+#define CSCD_PICTURE_CAMERA_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Camera space is right-handed: right, down, forward. */
+typedef struct picture_camera {
+    double right[3], down[3], forward[3], eye[3];
+    double focal;      /* pixels */
+    double centre[2];  /* pixels from the upper left corner */
+    double near_depth; /* what is nearer along `forward` is not drawn */
+} picture_camera;
+
+/* Looks from azimuth and elevation (degrees) so that the points (x, y, z each; the corners of a box, say)
+ * just fit into the picture, with a margin. Azimuth 0 looks along +y (z up: x to the right) or along -z (y
+ * up: x to the right); it grows towards +x. A positive elevation looks down from above. */
+void picture_camera_frame(const double *points, size_t point_count, double azimuth, double elevation,
+                          bool y_up, uint32_t width, uint32_t height, picture_camera *out);
+
+/* Homogeneous pixel coordinates: the point lies at (out[0] / out[2], out[1] / out[2]) in depth out[2], which
+ * is negative behind the eye. */
+void picture_camera_project(const picture_camera *camera, const double point[3], double out[3]);
+
+/* A direction in camera space. */
+void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]);
+
+#endif

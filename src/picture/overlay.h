@@ -1,0 +1,34 @@
+/* What is drawn over the surface: markers, caption and legend. */
+#ifndef CSCD_PICTURE_OVERLAY_H
+#define CSCD_PICTURE_OVERLAY_H
+
+#include "src/picture/camera.h"
+#include "src/picture/image.h"
+#include "src/picture/visibility.h"
+
+#include <stddef.h>
+
+/* A filled disc with an outline around a point; half transparent where the surface hides the point. */
+typedef struct picture_marker {
+    double position[3];
+    float radius_pixels;
+    uint8_t colour[4]; /* red, green, blue, alpha */
+} picture_marker;
+
+/* A coloured dot and what it stands for. */
+typedef struct picture_legend {
+    uint8_t colour[3];
+    const char *text;
+} picture_legend;
+
+/* Draws from far to near. A marker counts as a ball of its radius: it is hidden when all of it lies behind
+ * the surface. False only for want of memory. */
+bool picture_draw_markers(picture_image *image, const picture_visibility *visibility,
+                          const picture_camera *camera, const picture_marker *markers, size_t count,
+                          io_error *error);
+
+/* In the upper left corner; caption may be NULL. Printable ASCII; anything else becomes '?'. */
+void picture_draw_caption(picture_image *image, const char *caption, const picture_legend *legend,
+                          size_t count);
+
+#endif
