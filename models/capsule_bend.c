@@ -102,6 +102,12 @@ static double bend_angle(double frame) {
     return theta_end * sin(0.5 * pi * frame / (frame_count - 1));
 }
 
+/* Through memory: gcc 12 may drop the rounding of neighbouring stores when it vectorises them. */
+static double rounded_to_float(double x) {
+    volatile float rounded = (float)x;
+    return rounded;
+}
+
 /* Positions are rounded to float here, so that the mesh file equals frame 0 exactly. */
 static void place_vertices(const capsule *model, double theta, double *positions) {
     double k = theta / length;
@@ -111,9 +117,9 @@ static void place_vertices(const capsule *model, double theta, double *positions
         double rho = sqrt(fmax(1.0 - cap * cap, 0.0));
         double inward = rho * cos(psi), upward = rho * sin(psi);
         double *p = positions + 3 * (size_t)vertex;
-        p[0] = (float)((k > 0.0 ? sin(k * s) / k : s) - inward * sin(k * s));
-        p[1] = (float)((k > 0.0 ? (cos(k * s) - 1.0) / k : 0.0) - inward * cos(k * s));
-        p[2] = (float)(0.0 - rise * theta / (2.0 * pi) * along / straight - upward);
+        p[0] = rounded_to_float((k > 0.0 ? sin(k * s) / k : s) - inward * sin(k * s));
+        p[1] = rounded_to_float((k > 0.0 ? (cos(k * s) - 1.0) / k : 0.0) - inward * cos(k * s));
+        p[2] = rounded_to_float(0.0 - rise * theta / (2.0 * pi) * along / straight - upward);
     }
 }
 

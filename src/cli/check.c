@@ -107,7 +107,8 @@ static bool check_frames(check *c, io_error *error) {
     uint32_t count = c->recording.frame_count, first = c->options->frames.first;
     uint32_t last = c->options->frames.last == UINT32_MAX ? count - 1 : c->options->frames.last;
     if (first >= count || last >= count)
-        return io_fail(error, "--frames %u:%u: there are the frames 0 to %u", first, last, count - 1);
+        return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
+                       first >= count ? first : last, count - 1);
     for (uint32_t k = first; k <= last && !interrupted(); k++) {
         progress_update(&c->progress, k - first, last - first + 1, "check");
         if (!check_frame(c, k, error)) return false;

@@ -39,11 +39,17 @@ static uint32_t count_open_edges(const cscd_mesh *mesh) {
     return sum;
 }
 
-/* Would welding equal vertices leave no open edge? */
+/* Would welding the vertices that are equal in the first frame leave no open edge? */
 static bool welding_closes(recording *r) {
     weld welded;
-    if (!weld_create(r->file.positions, r->file.vertex_count, r->file.triangles, r->file.triangle_count, 0.0,
-                     &welded, NULL))
+    io_error error;
+    const double *positions = r->file.positions;
+    if (r->frames != NULL) {
+        if (!animation_read(r->frames, 0, r->file_positions, &error)) return false;
+        positions = r->file_positions;
+    }
+    if (!weld_create(positions, r->file.vertex_count, r->file.triangles, r->file.triangle_count, 0.0, &welded,
+                     NULL))
         return false;
     cscd_mesh *mesh = NULL;
     cscd_mesh_desc desc = {welded.vertex_count, welded.triangle_count, welded.triangles};
@@ -55,7 +61,8 @@ static bool welding_closes(recording *r) {
 
 void recording_warn(recording *r) {
     if (r->welded && r->weld.collapsed_triangles > 0)
-        warn("welding collapsed %u triangles; they are left out", r->weld.collapsed_triangles);
+        warn("welding collapsed %u triangle%s, left out from here on", r->weld.collapsed_triangles,
+             r->weld.collapsed_triangles == 1 ? "" : "s");
     uint32_t defective = 0;
     for (uint32_t i = 0; i < cscd_mesh_component_count(r->mesh); i++) {
         cscd_component component = cscd_mesh_component(r->mesh, i);

@@ -34,9 +34,9 @@ static bool choose_frames(replay *r, io_error *error) {
     uint32_t count = r->recording.frame_count;
     r->first = r->options->frames.first;
     r->last = r->options->frames.last == UINT32_MAX ? count - 1 : r->options->frames.last;
-    if (r->last >= count)
-        return io_fail(error, "--frames %u:%u: the recording has the frames 0 to %u", r->first, r->last,
-                       count - 1);
+    if (r->first >= count || r->last >= count)
+        return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
+                       r->first >= count ? r->first : r->last, count - 1);
     if (r->first >= r->last)
         return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
                        r->first, r->last, count);

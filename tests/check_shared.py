@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Compares the tool with the data to develop against: every sequence, and two pairs of simulation frames.
+
+usage: CSCD_TOOL=path/to/cscd check_shared.py DATA
+
+Each sequence has a JSON file by independent programs: `static_pairs` per frame (properly crossing triangle pairs) and
+`ccd_hits` per interval (feature pairs that come within 1e-7 of the diagonal: an upper estimate of the contacts).
+"""
+import glob
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+# Exact truth (rational arithmetic) of one interval each.
+FRAME_PAIRS = [("cloth_ball92.ply", "cloth_ball93.ply", 19032, 94822),
+               ("cloth_funnel227.ply", "cloth_funnel228.ply", 27, 107)]
+TOLERANCE = 0.02
+
+
+def replay(tool, model, frames):
+    """The JSON summary of a replay."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "summary.json")
+        command = [tool, "replay", model, *frames, "--json", path, "--quiet", "--threads", "0"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError(f"{' '.join(command)}: exit {done.returncode}: {done.stderr.strip()}")
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+
+
+def ranges(numbers):
+    """[3, 4, 5, 9] as '3-5 9'."""
+    spans = []
+    for n in numbers:
+        if spans and spans[-1][1] == n - 1:
+            spans[-1][1] = n
+        else:
+            spans.append([n, n])
+    return " ".join(f"{a}-{b}" if b > a else str(a) for a, b in spans) or "none"
+
+
+def compare_sequence(summary, truth):
+    """The violations, and the intervals that come near without touching."""
+    static, hits = truth["static_pairs"], truth["ccd_hits"]
+    crossing = [frame["crossing"] for frame in summary["frames"]]
+    found = [interval["vf"] + interval["ee"] > 0 for interval in summary["intervals"]]
+    if len(crossing) != len(static) or len(found) != len(hits):
+        return [f"{len(crossing)} frames, {len(found)} intervals; expected {len(static)}, {len(hits)}"], []
+    wrong = [k for k in range(len(static)) if crossing[k] != (static[k] > 0)]
+    invented = [k for k in range(len(hits)) if found[k] and hits[k] == 0]
+    missed = [k for k in range(len(hits)) if static[k] == 0 and static[k + 1] > 0 and not found[k]]
+    violations = [f"{what} {ranges(frames)}" for what, frames in
+                  (("static check differs at frames", wrong), ("contact where nothing comes near, intervals", invented),
+                   ("no contact although a crossing begins, intervals", missed)) if frames]
+    return violations, [k for k in range(len(hits)) if hits[k] > 0 and not found[k]]
+
+
+def check_sequence(tool, path):
+    with open(path, encoding="utf-8") as file:
+        truth = json.load(file)
+    base = path[:-len(".json")]
+    summary = replay(tool, base + ".obj", [base + ".pc2"])
+    violations, near = compare_sequence(summary, truth)
+    crossing = sum(frame["crossing"] for frame in summary["frames"])
+    expected = sum(pairs > 0 for pairs in truth["static_pairs"])
+    total = summary["summary"]
+    print(f"{os.path.basename(base):<17} {len(summary['frames']):>6} {crossing:>8} {expected:>8} "
+          f"{total['vf']:>7} {total['ee']:>7} {total['total_ms']['mean']:>8.2f}  {'; '.join(violations) or 'agrees'}")
+    if near:
+        at = ", ".join(f"{k} ({truth['ccd_hits'][k]} near pairs)" for k in near)
+        print(f"    near, within 1e-7 of the diagonal, but exactly no contact: intervals {at}")
+    return not violations
+
+
+def check_pair(tool, folder, first, second, vf, ee):
+    first_path = os.path.join(folder, first)
+    summary = replay(tool, first_path, [first_path, os.path.join(folder, second)])["summary"]
+    good = all(abs(summary[kind] - truth) <= TOLERANCE * truth for kind, truth in (("vf", vf), ("ee", ee)))
+    print(f"{first:<20} VF {summary['vf']:>6} of {vf:>6}   EE {summary['ee']:>6} of {ee:>6}   "
+          f"{'agrees within 2 %' if good else 'DIFFERS by more than 2 %'}")
+    return good
+
+
+def main():
+    data, tool = sys.argv[1], os.environ["CSCD_TOOL"]
+    sequences = sorted(glob.glob(os.path.join(data, "sequences", "*.json")))
+    if not sequences:
+        print(f"{data}: no sequences")
+        return 1
+    print(f"{'sequence':<17} {'frames':>6} {'crossing':>8} {'expected':>8} {'VF':>7} {'EE':>7} {'ms/frame':>8}")
+    good = [check_sequence(tool, path) for path in sequences]
+    good += [check_pair(tool, os.path.join(data, "frames"), *pair) for pair in FRAME_PAIRS]
+    print(f"{sum(good)} of {len(good)} comparisons agree")
+    return 0 if all(good) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
