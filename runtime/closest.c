@@ -44,21 +44,29 @@ static double closest_on_sides(const double p[3], const double a[3], const doubl
     return best;
 }
 
+/* Adds to u and v what the residual of p at them projects to: twice over, the point is good to rounding even
+ * in a thin triangle, where the first answer is not. */
+static void project(const double p[3], const double a[3], const double ab[3], const double ac[3],
+                    const double normal[3], double area, double *u, double *v) {
+    double residual[3], side[3];
+    for (int k = 0; k < 3; k++) residual[k] = (p[k] - a[k]) - *u * ab[k] - *v * ac[k];
+    vector_cross(residual, ac, side);
+    double step_u = vector_dot(side, normal) / area;
+    vector_cross(ab, residual, side);
+    *u += step_u;
+    *v += vector_dot(side, normal) / area;
+}
+
 double closest_point_triangle(const double p[3], const double a[3], const double b[3], const double c[3],
                               double *u, double *v) {
-    double ab[3], ac[3], ap[3], normal[3], side[3];
+    double ab[3], ac[3], normal[3], inside_u = 0.0, inside_v = 0.0;
     vector_subtract(b, a, ab);
     vector_subtract(c, a, ac);
-    vector_subtract(p, a, ap);
     vector_cross(ab, ac, normal);
     double area = vector_dot(normal, normal);
     double best = closest_on_sides(p, a, b, c, u, v);
     if (!(area > 0.0)) return best;
-
-    vector_cross(ap, ac, side);
-    double inside_u = vector_dot(side, normal) / area;
-    vector_cross(ab, ap, side);
-    double inside_v = vector_dot(side, normal) / area;
+    for (int i = 0; i < 3; i++) project(p, a, ab, ac, normal, area, &inside_u, &inside_v);
     if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return best;
     double distance = squared_distance_at(p, a, b, c, inside_u, inside_v);
     if (distance >= best) return best;
@@ -93,6 +101,9 @@ double closest_segments(const double a0[3], const double a1[3], const double b0[
             *v = candidates[i][1];
         }
     }
+    /* The crossing of the lines; between nearly parallel ones it is inexact, which projecting back and forth
+     * mends. */
+    double best_u = *u, best_v = *v;
     double along_a[3], along_b[3], offset[3], normal[3], side[3];
     vector_subtract(a1, a0, along_a);
     vector_subtract(b1, b0, along_b);
@@ -101,13 +112,15 @@ double closest_segments(const double a0[3], const double a1[3], const double b0[
     double area = vector_dot(normal, normal);
     if (!(area > 0.0)) return best;
     vector_cross(offset, along_b, side);
-    double inside_u = vector_dot(side, normal) / area;
-    vector_cross(offset, along_a, side);
-    double inside_v = vector_dot(side, normal) / area;
-    if (!(inside_u >= 0.0 && inside_u <= 1.0 && inside_v >= 0.0 && inside_v <= 1.0)) return best;
-    double distance = segment_distance_at(a0, a1, b0, b1, inside_u, inside_v);
-    if (distance >= best) return best;
-    *u = inside_u;
-    *v = inside_v;
-    return distance;
+    *u = clamp01(vector_dot(side, normal) / area);
+    double point[3];
+    vector_add_scaled(a0, *u, along_a, point);
+    *v = nearest_on_segment(point, b0, b1);
+    vector_add_scaled(b0, *v, along_b, point);
+    *u = nearest_on_segment(point, a0, a1);
+    double distance = segment_distance_at(a0, a1, b0, b1, *u, *v);
+    if (distance < best) return distance;
+    *u = best_u;
+    *v = best_v;
+    return best;
 }

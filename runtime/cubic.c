@@ -1,4 +1,4 @@
-/* Real roots of a cubic in [0,1]. The one file that knows GSL. */
+/* When is a cubic near zero? The one file that knows GSL. */
 #include "runtime/cubic.h"
 
 #include <gsl/gsl_poly.h>
@@ -9,14 +9,13 @@
 
 enum { POLISH_STEPS = 60 };
 
-typedef struct cubic {
-    double c[4]; /* c[0] + c[1] t + c[2] t^2 + c[3] t^3 */
-} cubic;
+/* Two ulp of 1 and more: what a polished root may be off by beside the cubic's own error. */
+static const double root_rounding = 0x1p-50;
 
-static cubic from_bernstein(const double b[4]) {
-    return (cubic){
-        {b[0], 3.0 * (b[1] - b[0]), 3.0 * (b[0] - 2.0 * b[1] + b[2]), (b[3] - b[0]) + 3.0 * (b[1] - b[2])}};
-}
+/* A piece of [0,1] in which the cubic is monotone. */
+typedef struct piece {
+    double begin, end, value_begin, value_end;
+} piece;
 
 /* de Casteljau: stable on [0,1], where the monomial form is not. */
 static double bernstein_value(const double b[4], double t) {
@@ -32,32 +31,41 @@ static double bernstein_slope(const double b[4], double t) {
     return 3.0 * (s * (s * d0 + t * d1) + t * (s * d1 + t * d2));
 }
 
-int quadratic_roots(double a, double b, double c, double roots[2]) {
+/* c[0] + c[1] t + c[2] t^2 + c[3] t^3 */
+static void to_monomials(const double b[4], double c[4]) {
+    c[0] = b[0];
+    c[1] = 3.0 * (b[1] - b[0]);
+    c[2] = 3.0 * (b[0] - 2.0 * b[1] + b[2]);
+    c[3] = (b[3] - b[0]) + 3.0 * (b[1] - b[2]);
+}
+
+/* The derivative's roots inside (0,1), ascending. */
+static int find_extrema(const double c[4], double extrema[2]) {
     double found[2] = {0.0, 0.0};
-    int count = gsl_poly_solve_quadratic(a, b, c, &found[0], &found[1]), kept = 0;
+    int count = gsl_poly_solve_quadratic(3.0 * c[3], 2.0 * c[2], c[1], &found[0], &found[1]), kept = 0;
     for (int i = 0; i < count; i++) {
-        if (found[i] >= 0.0 && found[i] <= 1.0) roots[kept++] = found[i];
+        if (found[i] > 0.0 && found[i] < 1.0) extrema[kept++] = found[i];
     }
     return kept;
 }
 
-/* GSL wants a monic cubic: a leading coefficient that is small beside the others is divided into them, which
- * costs nothing but accuracy, and accuracy comes from the polish. */
-static int approximate_roots(const cubic *f, double roots[3]) {
-    double size = fmax(fmax(fabs(f->c[0]), fabs(f->c[1])), fabs(f->c[2]));
-    if (fabs(f->c[3]) > 0x1p-40 * size)
-        return gsl_poly_solve_cubic(f->c[2] / f->c[3], f->c[1] / f->c[3], f->c[0] / f->c[3], &roots[0],
-                                    &roots[1], &roots[2]);
-    return gsl_poly_solve_quadratic(f->c[2], f->c[1], f->c[0], &roots[0], &roots[1]);
+/* Starts for the polish. GSL wants a monic cubic: dividing by a small leading coefficient costs accuracy
+ * only, and that comes from the polish; so does any root that GSL overlooks. */
+static int approximate_roots(const double c[4], double roots[3]) {
+    double size = fmax(fmax(fabs(c[0]), fabs(c[1])), fabs(c[2]));
+    if (fabs(c[3]) > 0x1p-40 * size)
+        return gsl_poly_solve_cubic(c[2] / c[3], c[1] / c[3], c[0] / c[3], &roots[0], &roots[1], &roots[2]);
+    return gsl_poly_solve_quadratic(c[2], c[1], c[0], &roots[0], &roots[1]);
 }
 
-/* The root in [low, high], where f is monotone and changes sign: Newton from start, bisection when it leaves
- * the bracket. */
-static double polish(const double b[4], double low, double high, double start) {
-    bool rising = bernstein_value(b, high) > 0.0;
-    double t = start;
+/* Where the cubic takes the value level in a piece at whose ends it lies on different sides of it: Newton
+ * from start, bisection when that leaves the bracket. */
+static double polish(const double b[4], const piece *p, double level, double start) {
+    bool rising = p->value_end > p->value_begin;
+    double low = p->begin, high = p->end;
+    double t = start > low && start < high ? start : 0.5 * (low + high);
     for (int i = 0; i < POLISH_STEPS; i++) {
-        double value = bernstein_value(b, t);
+        double value = bernstein_value(b, t) - level;
         if (value == 0.0) return t;
         if ((value > 0.0) == rising)
             high = t;
@@ -71,14 +79,27 @@ static double polish(const double b[4], double low, double high, double start) {
     return t;
 }
 
-static double start_in(double low, double high, const double *guesses, int count) {
+static double guess_in(const piece *p, const double *guesses, int count) {
     for (int i = 0; i < count; i++) {
-        if (guesses[i] > low && guesses[i] < high) return guesses[i];
+        if (guesses[i] > p->begin && guesses[i] < p->end) return guesses[i];
     }
-    return 0.5 * (low + high);
+    return 0.5 * (p->begin + p->end);
 }
 
-/* By a power of two, so that no product of coefficients over- or underflows later. */
+/* The part of a piece in which |value| <= error; false when there is none. */
+static bool near_zero_in(const double b[4], double error, const piece *p, double guess, time_interval *out) {
+    double from = p->value_begin, to = p->value_end;
+    if ((from > error && to > error) || (from < -error && to < -error)) return false;
+    out->begin = p->begin;
+    out->end = p->end;
+    if (fabs(from) > error) out->begin = polish(b, p, copysign(error, from), guess) - root_rounding;
+    if (fabs(to) > error) out->end = polish(b, p, copysign(error, to), guess) + root_rounding;
+    out->begin = fmax(out->begin, 0.0);
+    out->end = fmin(out->end, 1.0);
+    return true;
+}
+
+/* By a power of two, so that no product of coefficients over- or underflows; returns the factor. */
 static double scale_coefficients(const double b[4], double scaled[4]) {
     int exponent = 0;
     frexp(fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(b[2]), fabs(b[3]))), &exponent);
@@ -86,25 +107,21 @@ static double scale_coefficients(const double b[4], double scaled[4]) {
     return ldexp(1.0, -exponent);
 }
 
-int cubic_roots(const double coefficients[4], double error, double roots[8]) {
-    double b[4];
+int cubic_near_zero(const double coefficients[4], double error, time_interval out[CUBIC_INTERVALS_MAX]) {
+    double b[4], c[4], guesses[3] = {0.0, 0.0, 0.0}, knots[4] = {0.0};
     error *= scale_coefficients(coefficients, b);
-    cubic f = from_bernstein(b);
-    double guesses[3] = {0.0, 0.0, 0.0}, knots[4] = {0.0, 1.0, 1.0, 1.0};
-    int guess_count = approximate_roots(&f, guesses);
-    int extremum_count = quadratic_roots(3.0 * f.c[3], 2.0 * f.c[2], f.c[1], &knots[1]);
-    int knot_count = extremum_count + 2, count = 0;
-    knots[knot_count - 1] = 1.0;
-
-    /* Between knots f is monotone: a sign change there is one root, whether GSL saw it or not. */
-    for (int i = 0; i < knot_count; i++) {
-        double value = bernstein_value(b, knots[i]);
-        if (fabs(value) <= error) roots[count++] = knots[i];
-        if (i + 1 == knot_count) break;
-        double next = bernstein_value(b, knots[i + 1]);
-        if ((value > 0.0 && next < 0.0) || (value < 0.0 && next > 0.0))
-            roots[count++] =
-                polish(b, knots[i], knots[i + 1], start_in(knots[i], knots[i + 1], guesses, guess_count));
+    to_monomials(b, c);
+    int guess_count = approximate_roots(c, guesses);
+    int piece_count = find_extrema(c, knots + 1) + 1, count = 0;
+    knots[piece_count] = 1.0;
+    for (int i = 0; i < piece_count; i++) {
+        piece p = {knots[i], knots[i + 1], bernstein_value(b, knots[i]), bernstein_value(b, knots[i + 1])};
+        time_interval found;
+        if (!near_zero_in(b, error, &p, guess_in(&p, guesses, guess_count), &found)) continue;
+        if (count > 0 && found.begin <= out[count - 1].end)
+            out[count - 1].end = found.end; /* one interval about an extremum */
+        else
+            out[count++] = found;
     }
     return count;
 }

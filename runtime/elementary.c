@@ -1,22 +1,20 @@
 /* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? */
 #include "runtime/elementary.h"
 
-#include "runtime/candidate_times.h"
+#include "runtime/approach.h"
 #include "runtime/closest.h"
+#include "runtime/coplanarity.h"
 #include "runtime/kdop.h"
 #include "runtime/vector.h"
 
-/* Features count as touching when, at a candidate time, they are no farther apart than this fraction of the
- * extent of the query, motion included. Roots and closest points are computed to about 2^-48 of it where the
- * features are well shaped; the margin is for those that are not. */
+/* Features count as touching when, at a time at which they may be coplanar, they are no farther apart than
+ * this fraction of the extent of the query, motion included. Nearest points are computed to about 2^-50 of
+ * it. */
 #define TOUCHING 0x1p-40
 
 typedef struct feature_kind {
-    int first_count; /* points of feature a; the rest are b's */
+    approach_features features;
     void (*differences)(const double x[4][3], double a[3], double b[3], double c[3]);
-    void (*candidate_times)(const elementary_query *, const coplanarity *, candidate_times *);
-    double (*closest)(const double x[4][3], double *u, double *v);
-    void (*points)(const double x[4][3], double u, double v, double on_a[3], double on_b[3]);
 } feature_kind;
 
 static void differences_vf(const double x[4][3], double a[3], double b[3], double c[3]) {
@@ -53,8 +51,8 @@ static void points_ee(const double x[4][3], double u, double v, double on_a[3], 
     }
 }
 
-static const feature_kind vf_kind = {1, differences_vf, candidate_times_vf, closest_vf, points_vf};
-static const feature_kind ee_kind = {2, differences_ee, candidate_times_ee, closest_ee, points_ee};
+static const feature_kind vf_kind = {{1, closest_vf, points_vf}, differences_vf};
+static const feature_kind ee_kind = {{2, closest_ee, points_ee}, differences_ee};
 
 /* The certified rejection that the trees use too, on the features' own points. */
 static bool volumes_overlap(const elementary_query *query, int first_count) {
@@ -106,12 +104,6 @@ static double normalise(const elementary_query *query, elementary_query *out) {
     return scale;
 }
 
-static void positions_at(const elementary_query *query, double t, double x[4][3]) {
-    for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < 3; k++) x[i][k] = (1.0 - t) * query->x0[i][k] + t * query->x1[i][k];
-    }
-}
-
 /* Unit normal of the touching features, turned against the motion of a relative to b. */
 static void contact_normal(const elementary_query *query, const feature_kind *kind, const double x[4][3],
                            const elementary_hit *hit, double normal[3]) {
@@ -119,8 +111,8 @@ static void contact_normal(const elementary_query *query, const feature_kind *ki
     kind->differences(x, a, b, c);
     vector_cross(a, b, normal);
     double length = sqrt(vector_dot(normal, normal));
-    kind->points(query->x0, hit->u, hit->v, start[0], start[1]);
-    kind->points(query->x1, hit->u, hit->v, end[0], end[1]);
+    kind->features.points(query->x0, hit->u, hit->v, start[0], start[1]);
+    kind->features.points(query->x1, hit->u, hit->v, end[0], end[1]);
     for (int k = 0; k < 3; k++) motion[k] = (end[0][k] - start[0][k]) - (end[1][k] - start[1][k]);
     double sign = vector_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
@@ -129,27 +121,29 @@ static void contact_normal(const elementary_query *query, const feature_kind *ki
 static void describe_hit(const elementary_query *query, const elementary_query *local, double scale,
                          const feature_kind *kind, const double x[4][3], elementary_hit *hit) {
     double on_a[3], on_b[3];
-    kind->points(x, hit->u, hit->v, on_a, on_b);
+    kind->features.points(x, hit->u, hit->v, on_a, on_b);
     for (int k = 0; k < 3; k++) hit->point[k] = query->x0[0][k] + 0.5 * (on_a[k] + on_b[k]) / scale;
     contact_normal(local, kind, x, hit, hit->normal);
 }
 
 static elementary_verdict decide(const elementary_query *query, const feature_kind *kind,
                                  elementary_hit *hit) {
-    if (!volumes_overlap(query, kind->first_count)) return ELEMENTARY_APART;
+    if (!volumes_overlap(query, kind->features.first_count)) return ELEMENTARY_APART;
     coplanarity f = query_cubic(query, kind);
     if (coplanarity_excluded(&f)) return ELEMENTARY_REJECTED;
 
     elementary_query local;
     double scale = normalise(query, &local);
-    candidate_times times;
-    kind->candidate_times(&local, &f, &times);
-    for (int i = 0; i < times.count; i++) {
+    time_interval stretches[CUBIC_INTERVALS_MAX]; /* outside of which the points are not coplanar */
+    int count = cubic_near_zero(f.b, f.error, stretches);
+    for (int i = 0; i < count; i++) {
+        elementary_hit found;
+        if (!approach_find_touch(&local, &kind->features, stretches[i], TOUCHING, &found.toi, &found.u,
+                                 &found.v))
+            continue;
         double x[4][3];
-        elementary_hit found = {.toi = times.t[i]};
-        positions_at(&local, found.toi, x);
-        if (!(kind->closest(x, &found.u, &found.v) <= TOUCHING * TOUCHING)) continue;
-        describe_hit(query, &local, scale, kind, x, &found);
+        approach_positions(&local, found.toi, x);
+        describe_hit(query, &local, scale, kind, (const double(*)[3])x, &found);
         *hit = found;
         return ELEMENTARY_HIT;
     }

@@ -1,0 +1,25 @@
+/* The first moment in a stretch of time at which two moving convex features touch. */
+#ifndef CSCD_APPROACH_H
+#define CSCD_APPROACH_H
+
+#include "runtime/cubic.h"
+#include "runtime/elementary.h"
+
+/* Features a (the first first_count points) and b (the rest). closest: as in closest.h, squared. */
+typedef struct approach_features {
+    int first_count;
+    double (*closest)(const double x[4][3], double *u, double *v);
+    void (*points)(const double x[4][3], double u, double v, double on_a[3], double on_b[3]);
+} approach_features;
+
+/* Positions at t. */
+void approach_positions(const elementary_query *query, double t, double x[4][3]);
+
+/* Conservative advancement over the stretch: true when the features come within `touching` of each other,
+ * with the moment and the parameters of the nearest points. Each step goes as far as the plane between the
+ * nearest points keeps the features apart, so no touch is stepped over; when it runs out of steps it says
+ * true, which happens only to features that stay within rounding of each other. */
+bool approach_find_touch(const elementary_query *query, const approach_features *features,
+                         time_interval stretch, double touching, double *toi, double *u, double *v);
+
+#endif
