@@ -4,6 +4,8 @@ set -eu
 build=${BUILD:-build/release}
 out=build/demo
 mkdir -p "$out"
+tool=./cscd
+[ "$build" = build/release ] || tool=$build/cscd
 fail() {
     echo "demo: FAILED: $*" >&2
     exit 1
@@ -14,7 +16,7 @@ cat "$out/capsule.txt"
 expected=$(sed -n 's/^first contact expected in interval //p' "$out/capsule.txt")
 
 echo
-./cscd replay "$out/capsule.obj" "$out/capsule.pc2" \
+"$tool" replay "$out/capsule.obj" "$out/capsule.pc2" \
     --contacts "$out/contacts.csv" --json "$out/summary.json" >"$out/table.txt"
 cat "$out/table.txt"
 
@@ -23,7 +25,7 @@ first=$(sed -n '2s/,.*//p' "$out/contacts.csv")
 [ "$first" = "$expected" ] || fail "the first contact is in interval '$first', expected $expected"
 
 # Brute force over all pairs of features gives the same list for that interval.
-./cscd replay "$out/capsule.obj" "$out/capsule.pc2" --frames "$first:$((first + 1))" --method brute --no-check \
+"$tool" replay "$out/capsule.obj" "$out/capsule.pc2" --frames "$first:$((first + 1))" --method brute --no-check \
     --quiet --contacts "$out/brute.csv"
 grep -E "^(frame|$first)," "$out/contacts.csv" | cmp - "$out/brute.csv" ||
     fail "brute force over interval $first gives another list (brute.csv)"
@@ -42,9 +44,9 @@ assert sum(i["vf"] + i["ee"] for i in intervals) == int(sys.argv[2]), "contacts"
 assert next(i["frame"] for i in intervals if i["earliest_toi"] is not None) == int(sys.argv[3]), "first contact"
 PYTHON
 
-./cscd render "$out/capsule.obj" "$out/capsule.pc2" --frame "$first" --colour contacts --view 20,40 \
+"$tool" render "$out/capsule.obj" "$out/capsule.pc2" --frame "$first" --colour contacts --view 20,40 \
     -o "$out/contacts.png"
-./cscd render "$out/capsule.obj" "$out/capsule.pc2" --frame "$first" --colour contacts --view 20,40 --zoom --wire \
+"$tool" render "$out/capsule.obj" "$out/capsule.pc2" --frame "$first" --colour contacts --view 20,40 --zoom --wire \
     -o "$out/close-up.png"
 
 echo

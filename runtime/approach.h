@@ -20,6 +20,6 @@ void approach_positions(const elementary_query *query, double t, double x[4][3])
  * nearest points keeps the features apart, so no touch is stepped over; when it runs out of steps it says
  * true, which happens only to features that stay within rounding of each other. */
 bool approach_find_touch(const elementary_query *query, const approach_features *features,
-                         time_interval stretch, double touching, double *toi, double *u, double *v);
+                         const near_zero *stretch, double touching, double *toi, double *u, double *v);
 
 #endif

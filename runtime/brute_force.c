@@ -41,7 +41,7 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = feature_box(interval, corners, 3);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        if (v == corners[0] || v == corners[1] || v == corners[2] || !in_surface(mesh, v)) continue;
+        if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
         lane->feature_pairs++;
         swept_box vertex = feature_box(interval, &v, 1);
         if (boxes_overlap(&face, &vertex)) narrow_phase_test_vf(interval, v, triangle, lane);
@@ -54,9 +54,7 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     swept_box box_a = feature_box(interval, ends_a, 2);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
-        if (ends_a[0] == ends_b[0] || ends_a[0] == ends_b[1] || ends_a[1] == ends_b[0] ||
-            ends_a[1] == ends_b[1])
-            continue;
+        if (edges_share_vertex(ends_a, ends_b)) continue;
         lane->feature_pairs++;
         swept_box box_b = feature_box(interval, ends_b, 2);
         if (boxes_overlap(&box_a, &box_b)) narrow_phase_test_ee(interval, a, b, lane);

@@ -163,9 +163,7 @@ void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
     for (uint32_t i = tree->node_count; i-- > 0;) {
         bvh_node *node = &tree->nodes[i];
         if (bvh_is_leaf(node)) {
-            const uint32_t *v = mesh->triangles[node->triangle];
-            kdop edge = kdop_union(&vertex_volumes[v[0]], &vertex_volumes[v[1]]);
-            node->volume = kdop_union(&edge, &vertex_volumes[v[2]]);
+            node->volume = kdop_triangle(vertex_volumes, mesh->triangles[node->triangle]);
         } else {
             node->volume = kdop_union(&tree->nodes[i + 1].volume, &tree->nodes[node->right].volume);
         }

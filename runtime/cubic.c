@@ -86,17 +86,28 @@ static double guess_in(const piece *p, const double *guesses, int count) {
     return 0.5 * (p->begin + p->end);
 }
 
+static void add_mark(near_zero *stretch, double t) {
+    stretch->marks[stretch->mark_count++] = t;
+}
+
 /* The part of a piece in which |value| <= error; false when there is none. */
-static bool near_zero_in(const double b[4], double error, const piece *p, double guess, time_interval *out) {
+static bool near_zero_in(const double b[4], double error, const piece *p, double guess, near_zero *out) {
     double from = p->value_begin, to = p->value_end;
     if ((from > error && to > error) || (from < -error && to < -error)) return false;
-    out->begin = p->begin;
-    out->end = p->end;
+    *out = (near_zero){.begin = p->begin, .end = p->end};
+    if (fabs(from) <= error) add_mark(out, p->begin);
+    if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) add_mark(out, polish(b, p, 0.0, guess));
+    if (fabs(to) <= error) add_mark(out, p->end);
     if (fabs(from) > error) out->begin = polish(b, p, copysign(error, from), guess) - root_rounding;
     if (fabs(to) > error) out->end = polish(b, p, copysign(error, to), guess) + root_rounding;
     out->begin = fmax(out->begin, 0.0);
     out->end = fmin(out->end, 1.0);
     return true;
+}
+
+static void append(near_zero *stretch, const near_zero *next) {
+    stretch->end = next->end;
+    for (int i = 0; i < next->mark_count; i++) add_mark(stretch, next->marks[i]);
 }
 
 /* By a power of two, so that no product of coefficients over- or underflows; returns the factor. */
@@ -107,7 +118,7 @@ static double scale_coefficients(const double b[4], double scaled[4]) {
     return ldexp(1.0, -exponent);
 }
 
-int cubic_near_zero(const double coefficients[4], double error, time_interval out[CUBIC_INTERVALS_MAX]) {
+int cubic_near_zero(const double coefficients[4], double error, near_zero out[CUBIC_INTERVALS_MAX]) {
     double b[4], c[4], guesses[3] = {0.0, 0.0, 0.0}, knots[4] = {0.0};
     error *= scale_coefficients(coefficients, b);
     to_monomials(b, c);
@@ -116,10 +127,10 @@ int cubic_near_zero(const double coefficients[4], double error, time_interval ou
     knots[piece_count] = 1.0;
     for (int i = 0; i < piece_count; i++) {
         piece p = {knots[i], knots[i + 1], bernstein_value(b, knots[i]), bernstein_value(b, knots[i + 1])};
-        time_interval found;
+        near_zero found;
         if (!near_zero_in(b, error, &p, guess_in(&p, guesses, guess_count), &found)) continue;
         if (count > 0 && found.begin <= out[count - 1].end)
-            out[count - 1].end = found.end; /* one interval about an extremum */
+            append(&out[count - 1], &found); /* one stretch about an extremum */
         else
             out[count++] = found;
     }

@@ -134,11 +134,11 @@ static elementary_verdict decide(const elementary_query *query, const feature_ki
 
     elementary_query local;
     double scale = normalise(query, &local);
-    time_interval stretches[CUBIC_INTERVALS_MAX]; /* outside of which the points are not coplanar */
+    near_zero stretches[CUBIC_INTERVALS_MAX]; /* outside of which the points are not coplanar */
     int count = cubic_near_zero(f.b, f.error, stretches);
     for (int i = 0; i < count; i++) {
         elementary_hit found;
-        if (!approach_find_touch(&local, &kind->features, stretches[i], TOUCHING, &found.toi, &found.u,
+        if (!approach_find_touch(&local, &kind->features, &stretches[i], TOUCHING, &found.toi, &found.u,
                                  &found.v))
             continue;
         double x[4][3];

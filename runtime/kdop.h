@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { KDOP_AXIS_COUNT = 7, KDOP_BOUND_COUNT = 2 * KDOP_AXIS_COUNT };
 
@@ -66,6 +67,11 @@ static inline kdop kdop_union(const kdop *a, const kdop *b) {
     for (int i = 0; i < KDOP_BOUND_COUNT; i++)
         out.bounds[i] = a->bounds[i] > b->bounds[i] ? a->bounds[i] : b->bounds[i];
     return out;
+}
+
+static inline kdop kdop_triangle(const kdop *vertex_volumes, const uint32_t vertices[3]) {
+    kdop edge = kdop_union(&vertex_volumes[vertices[0]], &vertex_volumes[vertices[1]]);
+    return kdop_union(&edge, &vertex_volumes[vertices[2]]);
 }
 
 /* Closed: volumes that touch overlap. Written without branches, so that it stays in vector registers. */

@@ -74,25 +74,17 @@ void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b
     if (verdict == ELEMENTARY_HIT) add_contact(interval, lane, CSCD_CONTACT_EE, edges[0], edges[1], &hit);
 }
 
-static bool contains(const uint32_t triangle[3], uint32_t vertex) {
-    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
 static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,
                           contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = mesh->triangles[of][i];
         if (!represents_vertex(interval->representatives[of], i)) continue;
-        if (contains(mesh->triangles[against], vertex)) continue;
+        if (triangle_contains(mesh->triangles[against], vertex)) continue;
         lane->feature_pairs++;
         if (kdop_overlap(&interval->vertex_volumes[vertex], face))
             narrow_phase_test_vf(interval, vertex, against, lane);
     }
-}
-
-static bool edges_share_vertex(const uint32_t a[2], const uint32_t b[2]) {
-    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
 }
 
 static kdop edge_volume(const swept_interval *interval, uint32_t edge) {
@@ -122,8 +114,7 @@ static void test_edges(const swept_interval *interval, triangle_pair pair, const
 
 static kdop face_volume(const swept_interval *interval, uint32_t triangle) {
     const uint32_t *v = interval->mesh->triangles[triangle];
-    kdop edge = kdop_union(&interval->vertex_volumes[v[0]], &interval->vertex_volumes[v[1]]);
-    return kdop_union(&edge, &interval->vertex_volumes[v[2]]);
+    return kdop_triangle(interval->vertex_volumes, v);
 }
 
 void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane) {

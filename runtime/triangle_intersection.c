@@ -12,6 +12,7 @@
 
 #include <stddef.h>
 
+#include "src/mesh.h"
 #include "src/predicates.h"
 
 struct triangle {
@@ -19,16 +20,12 @@ struct triangle {
     bool shared[3]; /* the corner is one of the other triangle's */
 };
 
-static bool contains(const uint32_t triangle[3], uint32_t vertex) {
-    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
-}
-
 static struct triangle load(const uint32_t triangle[3], const uint32_t other[3], const double *positions) {
     struct triangle t;
 
     for (int i = 0; i < 3; i++) {
         t.corner[i] = positions + 3 * (size_t)triangle[i];
-        t.shared[i] = contains(other, triangle[i]);
+        t.shared[i] = triangle_contains(other, triangle[i]);
     }
     return t;
 }

@@ -28,6 +28,9 @@ static cscd_status check_desc(cscd_context *context, const cscd_mesh_desc *desc)
     if (desc->triangle_count > TRIANGLE_COUNT_MAX)
         return context_fail(context, CSCD_INVALID_MESH, "%u triangles are too many: the ceiling is %d",
                             desc->triangle_count, TRIANGLE_COUNT_MAX);
+    if (desc->vertex_count == UINT32_MAX)
+        return context_fail(context, CSCD_INVALID_MESH, "%u vertices are too many: the ceiling is one less",
+                            desc->vertex_count);
     if (desc->triangles == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_desc.triangles is NULL");
     for (uint32_t t = 0; t < desc->triangle_count; t++) {

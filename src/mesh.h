@@ -31,4 +31,12 @@ static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {
     return mesh->edge_star_offsets[edge + 1] - mesh->edge_star_offsets[edge];
 }
 
+static inline bool triangle_contains(const uint32_t triangle[3], uint32_t vertex) {
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+static inline bool edges_share_vertex(const uint32_t a[2], const uint32_t b[2]) {
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
 #endif

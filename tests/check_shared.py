@@ -52,9 +52,11 @@ def compare_sequence(summary, truth):
     wrong = [k for k in range(len(static)) if crossing[k] != (static[k] > 0)]
     invented = [k for k in range(len(hits)) if found[k] and hits[k] == 0]
     missed = [k for k in range(len(hits)) if static[k] == 0 and static[k + 1] > 0 and not found[k]]
+    clean = [k for k, interval in enumerate(summary["intervals"]) if interval["state"] == "clean" and crossing[k + 1]]
     violations = [f"{what} {ranges(frames)}" for what, frames in
                   (("static check differs at frames", wrong), ("contact where nothing comes near, intervals", invented),
-                   ("no contact although a crossing begins, intervals", missed)) if frames]
+                   ("no contact although a crossing begins, intervals", missed),
+                   ("called clean although they end crossing, intervals", clean)) if frames]
     return violations, [k for k in range(len(hits)) if hits[k] > 0 and not found[k]]
 
 

@@ -11,33 +11,14 @@
 
 #include "src/predicates.h"
 #include "tests/support/exact_integer.h"
+#include "tests/support/random.h"
 
 #define ROUND_COUNT 100000
 
-static uint64_t random_state;
-
 static int seed(void **state) {
     (void)state;
-    random_state = 20240229;
+    random_seed(20240229);
     return 0;
-}
-
-/* splitmix64 */
-static uint64_t random_bits(void) {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static int random_integer(int lowest, int highest) {
-    return lowest + (int)(random_bits() % (uint64_t)(highest - lowest + 1));
-}
-
-/* In [-1, 1). */
-static double random_unit(void) {
-    return ldexp((double)(int64_t)random_bits(), -63);
 }
 
 /* The domain of the predicates: smaller values become 0. */

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "runtime/triangle_intersection.h"
+#include "tests/support/random.h"
 
 #define ROUND_COUNT 100000
 
@@ -20,25 +21,10 @@ typedef struct {
     int64_t x, y, z;
 } vector;
 
-static uint64_t random_state;
-
 static int seed(void **state) {
     (void)state;
-    random_state = 19690720;
+    random_seed(19690720);
     return 0;
-}
-
-/* splitmix64 */
-static uint64_t random_bits(void) {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static int random_integer(int lowest, int highest) {
-    return lowest + (int)(random_bits() % (uint64_t)(highest - lowest + 1));
 }
 
 static vector cross(vector a, vector b) {

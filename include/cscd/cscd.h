@@ -12,7 +12,8 @@
  *               features that touch at the start already are reported at time 0
  *   timings     milliseconds of wall clock
  *   errors      functions that can fail return cscd_status and leave *out untouched unless CSCD_OK;
- *               cscd_context_detail then says in a sentence what is wrong, where, and what to do
+ *               cscd_context_detail then says in a sentence what is wrong, where, and what to do (a NULL
+ *               context, mesh or detector has no place for a sentence)
  *   ownership   the library copies what it is given; a _create has one _destroy; destroy in reverse
  *               order of creation; destroying NULL does nothing
  *   threads     an object, and what was created from it, is used by one thread at a time; separate
@@ -96,8 +97,8 @@ CSCD_API size_t cscd_context_bytes(const cscd_context *context);
 typedef struct cscd_mesh cscd_mesh;
 
 typedef struct cscd_mesh_desc {
-    uint32_t vertex_count;     /* 1 or more */
-    uint32_t triangle_count;   /* 1 or more, below 2^31 */
+    uint32_t vertex_count;     /* 1 or more, below 2^32 - 1 */
+    uint32_t triangle_count;   /* 1 or more, at most (2^32 - 1) / 3 */
     const uint32_t *triangles; /* triangle_count * 3 vertex indices, counter-clockwise from outside */
 } cscd_mesh_desc;
 

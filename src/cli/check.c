@@ -43,7 +43,7 @@ typedef struct check {
     double *positions;
     json out; /* file NULL when not asked for */
     progress progress;
-    uint32_t frames_checked;
+    uint32_t first, last, frames_checked;
     frame_list crossing;
 } check;
 
@@ -82,8 +82,18 @@ static bool check_frame(check *c, uint32_t frame, io_error *error) {
     return true;
 }
 
+static bool choose_frames(check *c, io_error *error) {
+    uint32_t count = c->recording.frame_count;
+    c->first = c->options->frames.first;
+    c->last = c->options->frames.last == UINT32_MAX ? count - 1 : c->options->frames.last;
+    if (c->first < count && c->last < count) return true;
+    return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
+                   c->first >= count ? c->first : c->last, count - 1);
+}
+
 static bool prepare(check *c, io_error *error) {
     const check_options *o = c->options;
+    if (!choose_frames(c, error)) return false;
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = o->ignore_path != NULL || o->ignore_rest ? ignore_pairs_contain : NULL;
     options.ignore_user = &c->ignored;
@@ -104,13 +114,8 @@ static bool prepare(check *c, io_error *error) {
 }
 
 static bool check_frames(check *c, io_error *error) {
-    uint32_t count = c->recording.frame_count, first = c->options->frames.first;
-    uint32_t last = c->options->frames.last == UINT32_MAX ? count - 1 : c->options->frames.last;
-    if (first >= count || last >= count)
-        return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
-                       first >= count ? first : last, count - 1);
-    for (uint32_t k = first; k <= last && !interrupted(); k++) {
-        progress_update(&c->progress, k - first, last - first + 1, "check");
+    for (uint32_t k = c->first; k <= c->last && !interrupted(); k++) {
+        progress_update(&c->progress, k - c->first, c->last - c->first + 1, "check");
         if (!check_frame(c, k, error)) return false;
     }
     return true;

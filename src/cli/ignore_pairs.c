@@ -64,7 +64,7 @@ static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const
     line[strcspn(line, "#")] = '\0';
     char *text = line + strspn(line, " \t\r\n");
     if (*text == '\0') return true;
-    bool components = strncmp(text, "components", 10) == 0;
+    bool components = strncmp(text, "components", 10) == 0 && (text[10] == ' ' || text[10] == '\t');
     uint32_t limit = components ? cscd_mesh_component_count(r->mesh) : r->file.triangle_count, pair[2];
     if (!parse_pair(components ? text + 10 : text, limit, pair))
         return io_fail(error, "%s:%d: expected '%sA B' with A and B below %u", path, number,

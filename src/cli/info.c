@@ -59,16 +59,18 @@ static bool print_zero_area(recording *r, io_error *error) {
     cscd_detector *detector = NULL;
     cscd_intersections found;
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
-    bool checked = positions != NULL && recording_read(r, 0, positions, error) &&
-                   cscd_detector_create(r->mesh, NULL, &detector) == CSCD_OK &&
-                   cscd_detector_check(detector, positions, &found) == CSCD_OK;
+    bool checked = positions != NULL || io_fail(error, "out of memory");
+    checked = checked && recording_read(r, 0, positions, error);
+    if (checked && (cscd_detector_create(r->mesh, NULL, &detector) != CSCD_OK ||
+                    cscd_detector_check(detector, positions, &found) != CSCD_OK))
+        checked = io_fail(error, "%s", cscd_context_detail(r->context));
     if (checked) {
         printf("zero area   %u triangles\nmeeting     %zu triangle pairs (see cscd check)\n",
                found.zero_area_triangles, found.count);
     }
     cscd_detector_destroy(detector);
     free(positions);
-    return checked || io_fail(error, "%s", cscd_context_detail(r->context));
+    return checked;
 }
 
 int command_info(int argument_count, char **arguments) {

@@ -3,6 +3,8 @@
 #include "src/cli/command.h"
 #include "src/cli/provenance.h"
 
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -25,10 +27,10 @@ static void print_help(void) {
            "usage: cscd COMMAND ...\n\n");
     for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-8s %s\n", commands[i].name, commands[i].summary);
     printf("\ncscd COMMAND --help says more; cscd --version.\n"
-           "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact)\n");
+           "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
 }
 
-int main(int argument_count, char **arguments) {
+static int run(int argument_count, char **arguments) {
     if (argument_count < 2) return fail_usage("", "no command given");
     const char *name = arguments[1];
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
@@ -43,4 +45,12 @@ int main(int argument_count, char **arguments) {
         if (strcmp(name, commands[i].name) == 0) return commands[i].run(argument_count - 1, arguments + 1);
     }
     return fail_usage("", "unknown command '%s'", name);
+}
+
+int main(int argument_count, char **arguments) {
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a write error like any other: files still get finished */
+    int code = run(argument_count, arguments);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT)
+        code = fail_input("standard output: %s", strerror(errno));
+    return code;
 }

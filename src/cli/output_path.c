@@ -1,25 +1,56 @@
 /* Keeps a command from writing over what it reads. */
 #include "src/cli/output_path.h"
 
+#include "src/io/path_name.h"
+
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+/* Two names of a file that does not exist yet: the same name in the same folder. */
+static bool same_place(const char *a, const char *b) {
+    const char *names[2] = {a, b};
+    char *folders[2] = {NULL, NULL};
+    for (int i = 0; i < 2; i++) {
+        const char *slash = strrchr(names[i], '/');
+        char *folder = slash != NULL ? strndup(names[i], (size_t)(slash - names[i]) + 1) : strdup(".");
+        folders[i] = folder != NULL ? realpath(folder, NULL) : NULL;
+        free(folder);
+        names[i] = slash != NULL ? slash + 1 : names[i];
+    }
+    bool same = folders[0] != NULL && folders[1] != NULL && strcmp(folders[0], folders[1]) == 0 &&
+                strcmp(names[0], names[1]) == 0;
+    free(folders[0]);
+    free(folders[1]);
+    return same;
+}
 
 static bool same_file(const char *a, const char *b) {
     struct stat first, second;
-    if (strcmp(a, b) == 0) return true;
+    if (strcmp(a, b) == 0 || same_place(a, b)) return true;
     return stat(a, &first) == 0 && stat(b, &second) == 0 && S_ISREG(first.st_mode) &&
            first.st_dev == second.st_dev && first.st_ino == second.st_ino;
 }
 
 static bool named_like_input(const char *path) {
     static const char *const endings[] = {".obj", ".ply", ".off", ".pc2", ".mdd"};
-    size_t length = strlen(path);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
-        if (length >= 4 && strcasecmp(path + length - 4, endings[i]) == 0) return true;
+        if (path_has_extension(path, endings[i])) return true;
     }
     return false;
+}
+
+bool output_path_opens(const char *path, io_error *error) {
+    if (path == NULL) return true;
+    bool existed = access(path, F_OK) == 0;
+    FILE *file = fopen(path, "ab");
+    if (file == NULL) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    fclose(file);
+    if (!existed) unlink(path);
+    return true;
 }
 
 bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error) {

@@ -12,4 +12,8 @@
  * NULL is fine. */
 bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error);
 
+/* Can path be opened for writing? What it holds stays as it is. Asked of all outputs before any is truncated.
+ * NULL is fine. */
+bool output_path_opens(const char *path, io_error *error);
+
 #endif

@@ -3,6 +3,7 @@
 
 #include "src/cli/provenance.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,6 +31,9 @@ static bool create_mesh(const recording_options *options, recording *r, io_error
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = options->thread_count;
     cscd_status status = cscd_context_create(&context_options, &r->context);
+    if (status == CSCD_SYSTEM_ERROR)
+        return io_fail(error, "the system refused to start %u threads; give --threads a smaller number",
+                       options->thread_count);
     if (status != CSCD_OK) return io_fail(error, "%s", cscd_status_string(status));
     cscd_mesh_desc desc = {r->file.vertex_count, r->file.triangle_count, r->file.triangles};
     if (r->welded) desc = (cscd_mesh_desc){r->weld.vertex_count, r->weld.triangle_count, r->weld.triangles};
@@ -111,10 +115,26 @@ void recording_close(recording *r) {
     *r = (recording){0};
 }
 
-bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
-    if (!read_file_positions(r, frame, error)) return false;
-    size_t size = (size_t)r->file.vertex_count * 3 * sizeof *positions;
+/* What the library accepts, told in the file's own terms. */
+static bool check_range(const recording *r, uint32_t frame, io_error *error) {
+    for (size_t i = 0; i < (size_t)r->file.vertex_count * 3; i++) {
+        double x = r->file_positions[i], magnitude = fabs(x);
+        if (x == 0.0 || (magnitude >= 0x1p-300 && magnitude <= 0x1p300)) continue;
+        return io_fail(error,
+                       "frame %u: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
+                       frame, i / 3, "xyz"[i % 3], x);
+    }
+    return true;
+}
+
+void recording_hash_frame(recording *r) {
+    size_t size = (size_t)r->file.vertex_count * 3 * sizeof *r->file_positions;
     r->frames_hash = provenance_hash(r->frames_hash, r->file_positions, size);
+}
+
+bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error) {
+    if (!read_file_positions(r, frame, error) || !check_range(r, frame, error)) return false;
+    size_t size = (size_t)r->file.vertex_count * 3 * sizeof *positions;
     if (r->welded) return weld_positions(&r->weld, r->file_positions, frame, positions, error);
     memcpy(positions, r->file_positions, size);
     return true;

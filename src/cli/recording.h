@@ -34,8 +34,12 @@ typedef struct recording {
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 
-/* positions: cscd_mesh_vertex_count(mesh) * 3 */
+/* positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as the file counts
+ * them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
+
+/* Adds the file's positions of the frame read last to frames_hash. */
+void recording_hash_frame(recording *r);
 
 /* The contact in the vertices of the model file. */
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);

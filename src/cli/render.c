@@ -65,7 +65,7 @@ static bool parse_colour(const char *text, render_options *o) {
 
 static bool parse_size(const char *text, picture_options *picture) {
     char end = '\0';
-    return sscanf(text, "%ux%u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
+    return sscanf(text, "%5ux%5u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
            picture->height >= 16 && picture->width <= 8192 && picture->height <= 8192;
 }
 

@@ -2,6 +2,7 @@
 #include "src/cli/command.h"
 #include "src/cli/frame_list.h"
 #include "src/cli/ignore_pairs.h"
+#include "src/cli/output_path.h"
 #include "src/cli/progress.h"
 #include "src/cli/replay_options.h"
 #include "src/cli/summary.h"
@@ -73,6 +74,9 @@ static bool prepare_detector(replay *r, io_error *error) {
 }
 
 static bool open_outputs(replay *r, io_error *error) {
+    if (!output_path_opens(r->options->contacts_path, error) ||
+        !output_path_opens(r->options->json_path, error))
+        return false;
     if (r->options->contacts_path != NULL &&
         !contact_file_open(r->options->contacts_path, &r->contacts, error))
         return false;
@@ -91,6 +95,7 @@ static bool begin(replay *r, io_error *error) {
 /* Reads a frame and checks it, unless told not to. */
 static bool load_frame(replay *r, uint32_t frame, double *positions, frame_state *state, io_error *error) {
     if (!recording_read(&r->recording, frame, positions, error)) return false;
+    recording_hash_frame(&r->recording);
     *state = FRAME_UNCHECKED;
     if (!r->options->no_check) {
         cscd_intersections found;
@@ -114,6 +119,18 @@ static interval_state state_of(const replay *r, size_t contact_count) {
     return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
 }
 
+/* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
+ */
+static void alarm_contradiction(replay *r, const interval_result *result) {
+    bool complete = r->options->ignore_path == NULL && !r->options->ignore_rest;
+    if (!complete || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
+    r->totals.contradictions++;
+    warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
+         "lost, "
+         "please report this recording",
+         result->frame);
+}
+
 static bool write_contacts(replay *r, const interval_result *result, io_error *error) {
     if (r->contacts == NULL) return true;
     for (size_t i = 0; i < result->contacts.count; i++) {
@@ -133,6 +150,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
     result.counters = cscd_detector_counters(r->detector);
     result.state = state_of(r, result.contacts.count);
     totals_add(&r->totals, &result);
+    alarm_contradiction(r, &result);
     if (result.contacts.count > 0 && !frame_list_add(&r->contact_frames, k))
         return io_fail(error, "out of memory");
     return write_contacts(r, &result, error) && summary_add_interval(r->summary, &result, error);
@@ -203,10 +221,10 @@ static int run(const replay_options *options) {
         progress_begin(&r.progress, options->quiet);
         ran = run_intervals(&r, &error);
         progress_end(&r.progress);
-        if (!options->quiet && r.totals.intervals > 0) print_results(&r);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = close_outputs(&r, stopped_by, &close_error);
+    if (!options->quiet && r.totals.intervals > 0) print_results(&r);
     if (!ran) code = fail_input("%s", error.text);
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;

@@ -2,6 +2,7 @@
 #include "src/cli/replay_options.h"
 
 #include "src/cli/output_path.h"
+#include "src/io/contact_file.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -120,12 +121,6 @@ static int read_options(int argument_count, char **arguments, replay_options *o,
     return EXIT_RAN;
 }
 
-static bool ends_with_known(const char *path) {
-    size_t length = strlen(path);
-    return (length > 4 && strcmp(path + length - 4, ".csv") == 0) ||
-           (length > 6 && strcmp(path + length - 6, ".jsonl") == 0);
-}
-
 /* Outputs are not inputs, and not each other. */
 static bool outputs_are_safe(const replay_options *o, const char *const *inputs, size_t input_count) {
     const char *others[] = {o->ignore_path, o->contacts_path};
@@ -156,7 +151,7 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (help_wanted || *code != EXIT_RAN) return false;
     int rest = argument_count - optind;
     if (rest < 2) *code = fail_usage("replay", rest < 1 ? "no MODEL given" : "no FRAMES given");
-    if (o.contacts_path != NULL && !ends_with_known(o.contacts_path))
+    if (o.contacts_path != NULL && !contact_file_names_format(o.contacts_path))
         *code = fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
                            o.contacts_path);
     const char *const *inputs = (const char *const *)(arguments + optind);

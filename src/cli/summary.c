@@ -159,6 +159,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
         json_integer(out, "first_contact_frame", t->first_contact_frame);
     else
         json_null(out, "first_contact_frame");
+    json_integer(out, "contradictions", t->contradictions);
     json_integer(out, "vf", t->vf);
     json_integer(out, "ee", t->ee);
     write_column(out, "update_ms", &t->update, t->intervals);
@@ -178,8 +179,10 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
     provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(e->recording->context));
     json_begin_array(out, "inputs");
     provenance_write_input(out, e->model_path, e->recording->model_hash);
-    for (size_t i = 0; i < e->frame_path_count && i < 1; i++)
-        provenance_write_input(out, e->frame_paths[i], e->recording->frames_hash);
+    provenance_write_input(out, e->frame_paths[0], e->recording->frames_hash);
+    json_end_array(out);
+    json_begin_array(out, "frame_paths");
+    for (size_t i = 0; i < e->frame_path_count; i++) json_string(out, NULL, e->frame_paths[i]);
     json_end_array(out);
     json_end_object(out);
 }

@@ -33,6 +33,7 @@ typedef struct column {
 typedef struct totals {
     uint32_t intervals, intervals_with_contact, states[4];
     uint32_t frames_checked, frames_crossing, first_contact_frame;
+    uint32_t contradictions; /* clean intervals that end crossing: contacts that were lost */
     uint64_t vf, ee;
     column update, traversal, contact, check, total, pcp, tests;
 } totals;

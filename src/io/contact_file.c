@@ -2,6 +2,7 @@
 #include "src/io/contact_file.h"
 
 #include "src/io/json.h"
+#include "src/io/path_name.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -16,11 +17,6 @@ struct contact_file {
     bool csv;
 };
 
-static bool ends_with(const char *text, const char *end) {
-    size_t length = strlen(text), end_length = strlen(end);
-    return length >= end_length && strcasecmp(text + length - end_length, end) == 0;
-}
-
 static bool write_failed(const contact_file *file, io_error *error) {
     return io_fail(error, "%s: cannot write: %s", file->path, strerror(errno));
 }
@@ -30,9 +26,13 @@ static void free_contact_file(contact_file *file) {
     free(file);
 }
 
+bool contact_file_names_format(const char *path) {
+    return path_has_extension(path, ".csv") || path_has_extension(path, ".jsonl");
+}
+
 bool contact_file_open(const char *path, contact_file **out, io_error *error) {
-    bool csv = ends_with(path, ".csv");
-    if (!csv && !ends_with(path, ".jsonl"))
+    bool csv = path_has_extension(path, ".csv");
+    if (!contact_file_names_format(path))
         return io_fail(error, "%s: contacts are written as .csv or .jsonl", path);
     contact_file *file = calloc(1, sizeof *file);
     if (file == NULL || (file->path = strdup(path)) == NULL) {

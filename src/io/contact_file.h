@@ -17,6 +17,9 @@ typedef struct contact_record {
 
 typedef struct contact_file contact_file;
 
+/* Does the extension say a format that contact_file_open knows? */
+bool contact_file_names_format(const char *path);
+
 /* The format follows from the extension: .csv or .jsonl. On false *out is untouched. */
 bool contact_file_open(const char *path, contact_file **out, io_error *error);
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);

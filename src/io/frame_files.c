@@ -22,6 +22,9 @@ struct frame_files {
     frame_names list;
     char *path; /* room for the folder and the longest name */
     size_t path_size;
+    bool faces_seen; /* of the first frame read: */
+    uint64_t faces_hash;
+    uint32_t faces_frame;
 };
 
 static frame_files *create(const char *source, uint32_t vertex_count, io_error *error) {
@@ -146,11 +149,29 @@ static bool copy_positions(const frame_files *files, uint32_t frame, const mesh_
                        files->path, frame, mesh->vertex_count, files->vertex_count);
     const size_t count = (size_t)mesh->vertex_count * 3;
     for (size_t i = 0; i < count; i++) {
-        if (!isfinite(mesh->positions[i]))
+        const double value = mesh->positions[i];
+        if (!isfinite(value))
             return io_fail(error, "%s: frame %" PRIu32 ", vertex %zu, %c is %f, expected a finite number",
-                           files->path, frame, i / 3, "xyz"[i % 3], mesh -> positions[i]);
-        positions[i] = mesh->positions[i];
+                           files->path, frame, i / 3, "xyz"[i % 3], value);
+        positions[i] = value;
     }
+    return true;
+}
+
+/* Other faces than in the frames before mean, most likely, another order of the vertices. */
+static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh, io_error *error) {
+    const unsigned char *bytes = (const unsigned char *)mesh->triangles;
+    const size_t size = (size_t)mesh->triangle_count * 3 * sizeof *mesh->triangles;
+    uint64_t hash = 0xcbf29ce484222325u; /* FNV-1a */
+    for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    if (files->faces_seen && hash != files->faces_hash)
+        return io_fail(error,
+                       "%s: frame %" PRIu32 " has other faces than frame %" PRIu32
+                       ": expected frames of one mesh, vertices in one order",
+                       files->path, frame, files->faces_frame);
+    if (!files->faces_seen) files->faces_frame = frame;
+    files->faces_seen = true;
+    files->faces_hash = hash;
     return true;
 }
 
@@ -160,7 +181,8 @@ bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_
     io_error cause;
     if (!mesh_file_read(files->path, &mesh, &cause))
         return io_fail(error, "frame %" PRIu32 ": %s", frame, cause.text);
-    const bool copied = copy_positions(files, frame, &mesh, positions, error);
+    const bool copied =
+        copy_positions(files, frame, &mesh, positions, error) && same_faces(files, frame, &mesh, error);
     mesh_file_free(&mesh);
     return copied;
 }

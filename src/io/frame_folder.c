@@ -1,5 +1,6 @@
 /* Finds the frames in a folder and makes sure that they are one series. */
 #include "src/io/frame_folder.h"
+#include "src/io/path_name.h"
 
 #include <string.h>
 
@@ -9,10 +10,6 @@ typedef struct name_difference {
     size_t number_count;
     size_t last_number; /* how many numbers precede the last one that differs */
 } name_difference;
-
-static bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
 
 static bool keep_mesh(const char *name, const void *context) {
     (void)context;
@@ -33,7 +30,7 @@ static bool skip_equal_numbers(const char **a, const char **b) {
 static name_difference compare(const char *a, const char *b) {
     name_difference difference = {0};
     for (size_t number = 0; *a != '\0' || *b != '\0';) {
-        if (is_digit(*a) && is_digit(*b)) {
+        if (path_is_digit(*a) && path_is_digit(*b)) {
             if (!skip_equal_numbers(&a, &b)) {
                 difference.number_count++;
                 difference.last_number = number;

@@ -1,5 +1,6 @@
 /* A growing list of file names, filled from a folder and sorted in natural order. */
 #include "src/io/frame_names.h"
+#include "src/io/path_name.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -73,21 +74,17 @@ bool frame_names_read_folder(frame_names *list, const char *folder,
     return true;
 }
 
-static bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
 /* Moves *text past its run of digits; returns where the run's value begins, past leading zeros. */
 static const char *take_number(const char **text) {
     while (**text == '0') (*text)++;
     const char *start = *text;
-    while (is_digit(**text)) (*text)++;
+    while (path_is_digit(**text)) (*text)++;
     return start;
 }
 
 static int compare_naturally(const char *a, const char *b) {
     while (*a != '\0' && *b != '\0') {
-        if (is_digit(*a) && is_digit(*b)) {
+        if (path_is_digit(*a) && path_is_digit(*b)) {
             const char *a_start = take_number(&a), *b_start = take_number(&b);
             const size_t a_length = (size_t)(a - a_start), b_length = (size_t)(b - b_start);
             if (a_length != b_length) return a_length < b_length ? -1 : 1;

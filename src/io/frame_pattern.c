@@ -2,6 +2,7 @@
 #include "src/io/frame_pattern.h"
 
 #include "src/io/growable.h"
+#include "src/io/path_name.h"
 
 #include <inttypes.h>
 #include <stdint.h>
@@ -18,16 +19,12 @@ typedef struct frame_pattern {
     size_t width;
 } frame_pattern;
 
-static bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
 /* The length of the %d or %0Nd at text, 0 if it is neither; *width is the fewest digits it writes. */
 static size_t conversion_length(const char *text, size_t *width) {
     size_t length = 1, value = 0;
     if (text[length] == '0') {
         length++;
-        while (is_digit(text[length]) && value <= WIDTH_LIMIT)
+        while (path_is_digit(text[length]) && value <= WIDTH_LIMIT)
             value = value * 10 + (size_t)(text[length++] - '0');
         if (value < 1 || value > WIDTH_LIMIT) return 0;
     }
@@ -81,7 +78,7 @@ static bool matches(const frame_pattern *pattern, const char *name, uint32_t *nu
     if (digit_count > pattern->width && digits[0] == '0') return false;
     uint64_t value = 0;
     for (size_t i = 0; i < digit_count; i++) {
-        if (!is_digit(digits[i])) return false;
+        if (!path_is_digit(digits[i])) return false;
         value = value * 10 + (uint64_t)(digits[i] - '0');
         if (value > INT32_MAX) return false;
     }

@@ -4,6 +4,7 @@
 #include "src/io/file_reader.h"
 #include "src/io/obj.h"
 #include "src/io/off.h"
+#include "src/io/path_name.h"
 #include "src/io/ply.h"
 
 #include <errno.h>
@@ -13,11 +14,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-
-static bool has_extension(const char *path, const char *extension) {
-    size_t length = strlen(path), extension_length = strlen(extension);
-    return length > extension_length && strcasecmp(path + length - extension_length, extension) == 0;
-}
 
 /* Some editors put a UTF-8 byte order mark in front of a text. */
 static void skip_byte_order_mark(file_reader *reader) {
@@ -30,9 +26,9 @@ static bool read_any(file_reader *reader, mesh_file *out) {
     skip_byte_order_mark(reader);
     if (ply_recognise(reader)) return ply_read(reader, out);
     if (off_recognise(reader)) return off_read(reader, out);
-    if (has_extension(reader->path, ".obj")) return obj_read(reader, out);
-    if (has_extension(reader->path, ".ply")) return ply_read(reader, out);
-    if (has_extension(reader->path, ".off")) return off_read(reader, out);
+    if (path_has_extension(reader->path, ".obj")) return obj_read(reader, out);
+    if (path_has_extension(reader->path, ".ply")) return ply_read(reader, out);
+    if (path_has_extension(reader->path, ".off")) return off_read(reader, out);
     return file_reader_fail(reader,
                             "unknown format, expected a file that begins with ply or OFF or is named .obj");
 }

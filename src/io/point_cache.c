@@ -4,6 +4,7 @@
 #include "src/io/point_cache.h"
 
 #include "src/io/growable.h"
+#include "src/io/path_name.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -27,11 +28,6 @@ struct point_cache {
     unsigned char chunk[CHUNK_VERTICES * POINT_CACHE_VERTEX_SIZE];
     char path[];
 };
-
-static bool has_extension(const char *path, const char *extension) {
-    const char *dot = strrchr(path, '.');
-    return dot != NULL && strcasecmp(dot, extension) == 0;
-}
 
 static uint32_t load_uint32(const unsigned char *bytes, bool big_endian) {
     const uint32_t b0 = bytes[0], b1 = bytes[1], b2 = bytes[2], b3 = bytes[3];
@@ -66,7 +62,7 @@ static int64_t read_at(int file, unsigned char *bytes, size_t size, int64_t offs
 }
 
 bool point_cache_recognise(const char *path) {
-    if (has_extension(path, ".pc2") || has_extension(path, ".mdd")) return true;
+    if (path_has_extension(path, ".pc2") || path_has_extension(path, ".mdd")) return true;
     const int file = open(path, O_RDONLY | O_CLOEXEC);
     if (file < 0) return false;
     unsigned char start[POINT_CACHE_PC2_MAGIC_SIZE];
@@ -160,7 +156,7 @@ static bool read_header(point_cache *cache, io_error *error) {
     if (size < 0) return io_fail(error, "%s: cannot read the header: %s", cache->path, strerror(errno));
     const bool magic = size >= POINT_CACHE_PC2_MAGIC_SIZE &&
                        memcmp(header, POINT_CACHE_PC2_MAGIC, POINT_CACHE_PC2_MAGIC_SIZE) == 0;
-    const bool parsed = magic || !has_extension(cache->path, ".mdd")
+    const bool parsed = magic || !path_has_extension(cache->path, ".mdd")
                             ? parse_pc2_header(cache, header, (size_t)size, error)
                             : parse_mdd_header(cache, header, (size_t)size, error);
     return parsed && check_size(cache, error);

@@ -1,0 +1,15 @@
+/* What the name of a file says. */
+#ifndef CSCD_PATH_NAME_H
+#define CSCD_PATH_NAME_H
+
+#include <stdbool.h>
+
+/* extension: with its dot; upper and lower case are the same. A name that is nothing but it does not count.
+ */
+bool path_has_extension(const char *path, const char *extension);
+
+static inline bool path_is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+#endif
