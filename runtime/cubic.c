@@ -90,18 +90,35 @@ static void add_mark(near_zero *stretch, double t) {
     stretch->marks[stretch->mark_count++] = t;
 }
 
+/* A time at or, in the given direction, just past the one at which the cubic takes the value level, which
+ * lies between those at the piece's ends. */
+static double polish_to(const double b[4], const piece *p, double level, double start, double direction) {
+    return polish(b, p, level, start) + direction * root_rounding;
+}
+
+/* The same by a step from the root along the slope, when the value there confirms it: mostly it does. */
+static double step_to(const double b[4], const piece *p, double level, double root, double direction) {
+    double slope = fabs(bernstein_slope(b, root));
+    double t = root + direction * (2.0 * fabs(level) / slope + root_rounding);
+    bool inside = t >= p->begin && t <= p->end;
+    if (inside && fabs(bernstein_value(b, t)) >= fabs(level)) return t;
+    return polish_to(b, p, level, root, direction);
+}
+
 /* The part of a piece in which |value| <= error; false when there is none. */
 static bool near_zero_in(const double b[4], double error, const piece *p, double guess, near_zero *out) {
-    double from = p->value_begin, to = p->value_end;
+    double from = p->value_begin, to = p->value_end, root = guess;
     if ((from > error && to > error) || (from < -error && to < -error)) return false;
     *out = (near_zero){.begin = p->begin, .end = p->end};
+    bool changes_sign = (from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0);
+    if (changes_sign) root = polish(b, p, 0.0, guess);
     if (fabs(from) <= error) add_mark(out, p->begin);
-    if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) add_mark(out, polish(b, p, 0.0, guess));
+    if (changes_sign) add_mark(out, root);
     if (fabs(to) <= error) add_mark(out, p->end);
-    if (fabs(from) > error) out->begin = polish(b, p, copysign(error, from), guess) - root_rounding;
-    if (fabs(to) > error) out->end = polish(b, p, copysign(error, to), guess) + root_rounding;
-    out->begin = fmax(out->begin, 0.0);
-    out->end = fmin(out->end, 1.0);
+    double (*find)(const double[4], const piece *, double, double, double) =
+        changes_sign ? step_to : polish_to;
+    if (fabs(from) > error) out->begin = fmax(find(b, p, copysign(error, from), root, -1.0), 0.0);
+    if (fabs(to) > error) out->end = fmin(find(b, p, copysign(error, to), root, 1.0), 1.0);
     return true;
 }
 
