@@ -99,9 +99,11 @@ static double polish_to(const double b[4], const piece *p, double level, double 
 /* The same by a step from the root along the slope, when the value there confirms it: mostly it does. */
 static double step_to(const double b[4], const piece *p, double level, double root, double direction) {
     double slope = fabs(bernstein_slope(b, root));
-    double t = root + direction * (2.0 * fabs(level) / slope + root_rounding);
-    bool inside = t >= p->begin && t <= p->end;
-    if (inside && fabs(bernstein_value(b, t)) >= fabs(level)) return t;
+    double t = root + direction * (fabs(level) / slope + root_rounding);
+    if (t >= p->begin && t <= p->end) {
+        double past = fabs(bernstein_value(b, t)) - fabs(level);
+        if (past >= 0.0 && past <= 2.0 * root_rounding * slope) return t;
+    }
     return polish_to(b, p, level, root, direction);
 }
 

@@ -84,18 +84,6 @@ static void exact_contacts(void **state) {
     }
 }
 
-/* The four points are coplanar at t = 0 only: the volume keeps its sign, by its Bernstein coefficients. */
-static bool leaves_the_plane(pair_kind kind, const elementary_query *query) {
-    elementary_query later;
-    for (int i = 0; i < 12; i++) {
-        double x0 = query->x0[i / 3][i % 3], x1 = query->x1[i / 3][i % 3];
-        later.x0[i / 3][i % 3] = x0 + 0x1p-10 * (x1 - x0);
-        later.x1[i / 3][i % 3] = x1;
-    }
-    elementary_hit hit;
-    return pair_test(kind, &later, &hit) == ELEMENTARY_REJECTED;
-}
-
 static void ends_of_the_interval(void **state) {
     int counts[2] = {0, 0};
     (void)state;
@@ -104,7 +92,7 @@ static void ends_of_the_interval(void **state) {
         place where = (place)(round / 2 % PLACE_COUNT);
         elementary_query query = grid_contact(kind, where, 1000, 0, 1);
         check_first(kind, &query, 0.0, 0.0);
-        if (!leaves_the_plane(kind, &query)) continue;
+        if (!leaves_at_start(&query, kind)) continue;
         elementary_query reversed = query_reversed(&query);
         check_first(kind, &reversed, 1.0, 1e-9);
         counts[round % 2]++;

@@ -15,6 +15,9 @@
 #define SIDE_MISS  1e-6
 #define SHORT_MISS 1e-6
 
+/* Rounding, where the volume has a double root or nearly so. */
+#define TOI_LATE 1e-11
+
 typedef struct exact_positions {
     long double x[4][3];
 } exact_positions;
@@ -125,20 +128,35 @@ static long double volume_at(const elementary_query *query, pair_kind kind, long
     return dot(n, c);
 }
 
-bool crosses_once(const elementary_query *query, pair_kind kind) {
-    long double f[4], b[4], largest = 0;
+/* Of the volume, by its values at four times; returns the largest. */
+static long double bernstein_coefficients(const elementary_query *query, pair_kind kind, long double b[4]) {
+    long double f[4], largest = 0;
     for (int i = 0; i < 4; i++) f[i] = volume_at(query, kind, i / 3.0L);
     b[0] = f[0];
     b[1] = (-5 * f[0] + 18 * f[1] - 9 * f[2] + 2 * f[3]) / 6;
     b[2] = (2 * f[0] - 9 * f[1] + 18 * f[2] - 5 * f[3]) / 6;
     b[3] = f[3];
     for (int i = 0; i < 4; i++) largest = fmaxl(largest, fabsl(b[i]));
+    return largest;
+}
+
+/* The changes of sign from coefficient first on; -1 when one of them is near zero. */
+static int sign_changes(const elementary_query *query, pair_kind kind, int first) {
+    long double b[4], largest = bernstein_coefficients(query, kind, b);
     int changes = 0;
-    for (int i = 0; i < 4; i++) {
-        if (fabsl(b[i]) < 1e-5L * largest) return false;
-        changes += i > 0 && (b[i] > 0) != (b[i - 1] > 0);
+    for (int i = first; i < 4; i++) {
+        if (!(fabsl(b[i]) > 1e-5L * largest)) return -1;
+        changes += i > first && (b[i] > 0) != (b[i - 1] > 0);
     }
-    return changes == 1;
+    return changes;
+}
+
+bool crosses_once(const elementary_query *query, pair_kind kind) {
+    return sign_changes(query, kind, 0) == 1;
+}
+
+bool leaves_at_start(const elementary_query *query, pair_kind kind) {
+    return sign_changes(query, kind, 1) == 0;
 }
 
 /* ---- random queries ---- */
@@ -320,7 +338,7 @@ void check_hit(pair_kind kind, const elementary_query *query, double size, const
 elementary_hit check_touches(pair_kind kind, const elementary_query *query, double toi) {
     elementary_hit hit = {.toi = 2.0};
     elementary_verdict verdict = pair_test(kind, query, &hit);
-    if (verdict != ELEMENTARY_HIT || hit.toi > toi + 1e-14) fail_query(kind, query, verdict, hit.toi, toi);
+    if (verdict != ELEMENTARY_HIT || hit.toi > toi + TOI_LATE) fail_query(kind, query, verdict, hit.toi, toi);
     check_hit(kind, query, extent(query), &hit);
     return hit;
 }

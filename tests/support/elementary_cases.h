@@ -4,6 +4,8 @@
 
 #include "runtime/elementary.h"
 
+#include <stdbool.h>
+
 typedef enum pair_kind { PAIR_VF, PAIR_EE } pair_kind;
 
 /* A query with a contact known to be in it, or known to be missed. */
@@ -23,6 +25,9 @@ contact_case random_contact(pair_kind kind);
 /* The four points are coplanar once in the interval and change sides there: by the signs of the Bernstein
  * coefficients, all of them far from zero. */
 bool crosses_once(const elementary_query *query, pair_kind kind);
+
+/* Where they are coplanar at the start: they never are again, by the same signs. */
+bool leaves_at_start(const elementary_query *query, pair_kind kind);
 
 /* The only time at which the points are coplanar is toi; then the point of contact lies a millionth of the
  * feature's length outside a border. No contact. */
@@ -49,8 +54,9 @@ void check_hit(pair_kind kind, const elementary_query *query, double size, const
 /* These print the query where they fail. A contact at toi or before it: */
 elementary_hit check_touches(pair_kind kind, const elementary_query *query, double toi);
 
-/* The first contact, at toi. Found times are never late, and early by what the features take for the last
- * 2^-40 of the query's extent: 1e-9 where they close at a fair speed, but 1e-5 where they only graze. */
+/* The first contact, at toi. Found times are late by rounding only, and early by what the features take for
+ * the last 2^-40 of the query's extent: 1e-9 where they close at a fair speed, but 1e-5 where they only
+ * graze. */
 elementary_hit check_first(pair_kind kind, const elementary_query *query, double toi, double early);
 
 /* No contact. */
