@@ -16,9 +16,10 @@ typedef struct approach_features {
 void approach_positions(const elementary_query *query, double t, double x[4][3]);
 
 /* Conservative advancement over the stretch: true when the features come within `touching` of each other,
- * with the moment and the parameters of the nearest points. Each step goes as far as the plane between the
- * nearest points keeps the features apart, so no touch is stepped over; when it runs out of steps it says
- * true, which happens only to features that stay within rounding of each other. */
+ * with the moment and the parameters of the nearest points. Each step goes as far as a plane between the
+ * features, or their speed, keeps them apart, so no touch is stepped over. Features that come near with the
+ * square of the time left can use up the steps; then a search for the least distance ahead decides, which is
+ * not certified: it takes the distance to fall and then rise. */
 bool approach_find_touch(const elementary_query *query, const approach_features *features,
                          const near_zero *stretch, double touching, double *toi, double *u, double *v);
 
