@@ -15,26 +15,12 @@
 
 enum { VERTICES = 5, FRAMES = 4 };
 
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
-
 static frame_fixture_bytes cache_bytes(bool mdd) {
     return mdd ? frame_fixture_mdd(VERTICES, FRAMES) : frame_fixture_pc2(VERTICES, FRAMES);
 }
 
 static temp_path write_cache(bool mdd, const frame_fixture_bytes *bytes) {
-    return frame_fixture_write(&folder, mdd ? "cache.mdd" : "cache.pc2", bytes);
+    return frame_fixture_write(&frame_fixture_folder, mdd ? "cache.mdd" : "cache.pc2", bytes);
 }
 
 /* Writes the bytes as a cache that must not open. */
@@ -68,8 +54,8 @@ static void decodes_bytes_exactly(void **state) {
                                         0,   0,   192, 63,  0,   0,   0,   192, 1,   0,   0,   0};
     static const unsigned char mdd[] = {0,  0,   0, 1, 0,   0, 0, 1, 0, 0, 0, 0, /* header, time */
                                         63, 192, 0, 0, 192, 0, 0, 0, 0, 0, 0, 1};
-    const temp_path paths[] = {temp_file_write(&folder, "hand.pc2", pc2, sizeof pc2),
-                               temp_file_write(&folder, "hand.mdd", mdd, sizeof mdd)};
+    const temp_path paths[] = {temp_file_write(&frame_fixture_folder, "hand.pc2", pc2, sizeof pc2),
+                               temp_file_write(&frame_fixture_folder, "hand.mdd", mdd, sizeof mdd)};
     for (size_t i = 0; i < 2; i++) {
         animation *opened = frame_fixture_open(paths[i].text, 1);
         double position[3];
@@ -83,10 +69,10 @@ static void decodes_bytes_exactly(void **state) {
 static void recognises_pc2_by_its_content(void **state) {
     (void)state;
     const frame_fixture_bytes pc2 = cache_bytes(false), mdd = cache_bytes(true);
-    check_all_frames(frame_fixture_write(&folder, "without_extension", &pc2).text);
-    check_all_frames(frame_fixture_write(&folder, "misnamed.mdd", &pc2).text);
-    check_all_frames(frame_fixture_write(&folder, "misnamed.obj", &pc2).text);
-    check_all_frames(frame_fixture_write(&folder, "percent_%d.MDD", &mdd).text);
+    check_all_frames(frame_fixture_write(&frame_fixture_folder, "without_extension", &pc2).text);
+    check_all_frames(frame_fixture_write(&frame_fixture_folder, "misnamed.mdd", &pc2).text);
+    check_all_frames(frame_fixture_write(&frame_fixture_folder, "misnamed.obj", &pc2).text);
+    check_all_frames(frame_fixture_write(&frame_fixture_folder, "percent_%d.MDD", &mdd).text);
 }
 
 static void reads_in_any_order(void **state) {
@@ -263,7 +249,7 @@ static void notices_that_the_file_shrinks(void **state) {
 static void reads_frames_of_many_vertices(void **state) {
     (void)state;
     enum { MANY = 9001, LAST_VALUE = 32 + 2 * MANY * 12 - 4 };
-    const temp_path path = temp_file_path(&folder, "many.pc2");
+    const temp_path path = temp_file_path(&frame_fixture_folder, "many.pc2");
     double *positions = malloc((size_t)MANY * 3 * sizeof *positions);
     assert_non_null(positions);
     point_cache_writer *writer;
@@ -296,15 +282,15 @@ static void refuses_what_is_no_animation(void **state) {
     assert_false(animation_open(NULL, 0, VERTICES, &opened, &error));
     frame_fixture_check_error(&error, "no animation given", "f_%04d.obj", NULL);
 
-    const temp_path missing = temp_file_path(&folder, "missing.pc2");
+    const temp_path missing = temp_file_path(&frame_fixture_folder, "missing.pc2");
     frame_fixture_open_fails(missing.text, VERTICES, &error);
     frame_fixture_check_error(&error, missing.text, "cannot open: No such file", NULL);
 
-    const temp_path text = temp_file_write(&folder, "notes.txt", "v 0 0 0", 7);
+    const temp_path text = temp_file_write(&frame_fixture_folder, "notes.txt", "v 0 0 0", 7);
     frame_fixture_open_fails(text.text, VERTICES, &error);
     frame_fixture_check_error(&error, text.text, "unknown extension", ".pc2", ".mdd", ".obj", NULL);
 
-    const temp_path pipe_path = temp_file_path(&folder, "pipe.pc2");
+    const temp_path pipe_path = temp_file_path(&frame_fixture_folder, "pipe.pc2");
     assert_int_equal(mkfifo(pipe_path.text, 0600), 0);
     frame_fixture_open_fails(pipe_path.text, VERTICES, &error);
     frame_fixture_check_error(&error, pipe_path.text, "not a regular file", NULL);
@@ -318,7 +304,8 @@ static void refuses_what_is_no_animation(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name)                                                                                           \
+    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
         TEST(reads_both_formats),
         TEST(decodes_bytes_exactly),
         TEST(recognises_pc2_by_its_content),

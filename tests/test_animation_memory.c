@@ -16,7 +16,6 @@
 
 enum { VERTICES = 4, FRAMES = 70 /* more names than the list first has room for */ };
 
-static temp_folder folder;
 static long allocations_left = -1; /* the one after these fails; negative: none */
 
 void *io_realloc(void *memory, size_t size) {
@@ -25,24 +24,16 @@ void *io_realloc(void *memory, size_t size) {
     return realloc(memory, size);
 }
 
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
 static int remove_folder(void **state) {
-    (void)state;
     allocations_left = -1;
-    temp_folder_remove(&folder);
-    return 0;
+    return frame_fixture_remove_folder(state);
 }
 
 static void write_frames(void) {
     char name[32];
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         snprintf(name, sizeof name, "f%u.obj", frame);
-        frame_fixture_write_mesh(&folder, name, VERTICES, frame);
+        frame_fixture_write_mesh(&frame_fixture_folder, name, VERTICES, frame);
     }
 }
 
@@ -57,7 +48,7 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, l
         allocations_left = -1;
         if (done) break;
         assert_null(opened);
-        frame_fixture_check_error(&error, folder.path, "out of memory", NULL);
+        frame_fixture_check_error(&error, frame_fixture_folder.path, "out of memory", NULL);
     }
     assert_true(successes >= least);
     frame_fixture_check(opened, VERTICES, animation_frame_count(opened) - 1,
@@ -68,7 +59,7 @@ static void fail_every_allocation(const char *const *paths, size_t path_count, l
 static void point_cache_survives_failed_allocations(void **state) {
     (void)state;
     const frame_fixture_bytes bytes = frame_fixture_pc2(VERTICES, 3);
-    const temp_path path = frame_fixture_write(&folder, "cache.pc2", &bytes);
+    const temp_path path = frame_fixture_write(&frame_fixture_folder, "cache.pc2", &bytes);
     const char *const paths[] = {path.text};
     fail_every_allocation(paths, 1, 2);
 }
@@ -76,9 +67,10 @@ static void point_cache_survives_failed_allocations(void **state) {
 static void sequences_survive_failed_allocations(void **state) {
     (void)state;
     write_frames();
-    const temp_path pattern = temp_file_path(&folder, "f%d.obj"), first = temp_file_path(&folder, "f0.obj");
-    const temp_path second = temp_file_path(&folder, "f1.obj");
-    const char *const pattern_paths[] = {pattern.text}, *const folder_paths[] = {folder.path};
+    const temp_path pattern = temp_file_path(&frame_fixture_folder, "f%d.obj"),
+                    first = temp_file_path(&frame_fixture_folder, "f0.obj");
+    const temp_path second = temp_file_path(&frame_fixture_folder, "f1.obj");
+    const char *const pattern_paths[] = {pattern.text}, *const folder_paths[] = {frame_fixture_folder.path};
     const char *const list_paths[] = {first.text, second.text};
     fail_every_allocation(pattern_paths, 1, FRAMES + 4);
     fail_every_allocation(folder_paths, 1, FRAMES + 4);
@@ -87,7 +79,7 @@ static void sequences_survive_failed_allocations(void **state) {
 
 static void reading_survives_failed_allocations(void **state) {
     (void)state;
-    const temp_path path = frame_fixture_write_mesh(&folder, "f0.obj", VERTICES, 0);
+    const temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f0.obj", VERTICES, 0);
     animation *opened = frame_fixture_open(path.text, VERTICES);
     double positions[VERTICES * 3];
     io_error error;
@@ -106,7 +98,7 @@ static void reading_survives_failed_allocations(void **state) {
 
 static void writer_survives_a_failed_allocation(void **state) {
     (void)state;
-    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    const temp_path path = temp_file_path(&frame_fixture_folder, "cache.pc2");
     point_cache_writer *writer = NULL;
     io_error error;
     allocations_left = 0;
@@ -123,7 +115,7 @@ enum { LARGE = 2000 };
 static double large_frame[LARGE * 3];
 
 static temp_path write_large(const char *name, uint32_t frame_count) {
-    const temp_path path = temp_file_path(&folder, name);
+    const temp_path path = temp_file_path(&frame_fixture_folder, name);
     point_cache_writer *writer;
     io_error error;
     assert_true(point_cache_writer_open(path.text, LARGE, frame_count, &writer, &error));
@@ -166,7 +158,7 @@ static void peak_does_not_grow_with_the_frames(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, remove_folder)
         TEST(point_cache_survives_failed_allocations), TEST(sequences_survive_failed_allocations),
         TEST(reading_survives_failed_allocations),     TEST(writer_survives_a_failed_allocation),
         TEST(peak_does_not_grow_with_the_frames),

@@ -14,22 +14,8 @@
 
 enum { VERTICES = 4 };
 
-static temp_folder folder;
-
-static int make_folder(void **state) {
-    (void)state;
-    folder = temp_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state) {
-    (void)state;
-    temp_folder_remove(&folder);
-    return 0;
-}
-
 static temp_path write_frame(const char *name, uint32_t frame) {
-    return frame_fixture_write_mesh(&folder, name, VERTICES, frame);
+    return frame_fixture_write_mesh(&frame_fixture_folder, name, VERTICES, frame);
 }
 
 /* The animation at path has the frames expected[0..count-1]. */
@@ -42,15 +28,15 @@ static void check_frames(const char *path, const uint32_t *expected, uint32_t co
 
 static void check_folder_fails(const char *part, const char *name, const char *other) {
     io_error error;
-    frame_fixture_open_fails(folder.path, VERTICES, &error);
-    frame_fixture_check_error(&error, folder.path, part, name, other, NULL);
+    frame_fixture_open_fails(frame_fixture_folder.path, VERTICES, &error);
+    frame_fixture_check_error(&error, frame_fixture_folder.path, part, name, other, NULL);
 }
 
 static void check_pattern_fails(const char *pattern, const char *part, const char *other) {
-    const temp_path path = temp_file_path(&folder, pattern);
+    const temp_path path = temp_file_path(&frame_fixture_folder, pattern);
     io_error error;
     frame_fixture_open_fails(path.text, VERTICES, &error);
-    frame_fixture_check_error(&error, folder.path, part, other, NULL);
+    frame_fixture_check_error(&error, frame_fixture_folder.path, part, other, NULL);
 }
 
 /* ---- patterns ---------------------------------------------------------------------------------------- */
@@ -68,7 +54,7 @@ static void pattern_takes_the_numbers_in_order(void **state) {
     write_frame("f_12.ply", 94);
     write_frame("f_12_.obj", 95);
     static const uint32_t expected[] = {8, 9, 10, 11};
-    check_frames(temp_file_path(&folder, "f_%d.obj").text, expected, 4);
+    check_frames(temp_file_path(&frame_fixture_folder, "f_%d.obj").text, expected, 4);
 }
 
 static void pattern_pads_with_zeros(void **state) {
@@ -79,7 +65,7 @@ static void pattern_pads_with_zeros(void **state) {
     write_frame("f_98.ply", 1);
     write_frame("f_0098.ply", 2);
     static const uint32_t expected[] = {98, 99, 100};
-    check_frames(temp_file_path(&folder, "f_%03d.ply").text, expected, 3);
+    check_frames(temp_file_path(&frame_fixture_folder, "f_%03d.ply").text, expected, 3);
 }
 
 static void pattern_outgrows_its_width(void **state) {
@@ -87,7 +73,7 @@ static void pattern_outgrows_its_width(void **state) {
     write_frame("f9.off", 9);
     write_frame("f10.off", 10);
     static const uint32_t expected[] = {9, 10};
-    check_frames(temp_file_path(&folder, "f%01d.off").text, expected, 2);
+    check_frames(temp_file_path(&frame_fixture_folder, "f%01d.off").text, expected, 2);
 }
 
 static void pattern_has_digits_and_percent_signs_around(void **state) {
@@ -98,8 +84,8 @@ static void pattern_has_digits_and_percent_signs_around(void **state) {
     write_frame("10%s8_3.obj", 8);
     static const uint32_t expected[] = {8, 9, 10};
     check_pattern_fails("10%%s%d_3.obj", "10%s3_3.obj: missing", "from 10%s2_3.obj to 10%s10_3.obj");
-    assert_int_equal(unlink(temp_file_path(&folder, "10%s2_3.obj").text), 0);
-    check_frames(temp_file_path(&folder, "10%%s%d_3.obj").text, expected, 3);
+    assert_int_equal(unlink(temp_file_path(&frame_fixture_folder, "10%s2_3.obj").text), 0);
+    check_frames(temp_file_path(&frame_fixture_folder, "10%%s%d_3.obj").text, expected, 3);
 }
 
 static void pattern_works_in_the_current_folder(void **state) {
@@ -108,7 +94,7 @@ static void pattern_works_in_the_current_folder(void **state) {
     write_frame("f1.obj", 1);
     char before[4096];
     assert_non_null(getcwd(before, sizeof before));
-    assert_int_equal(chdir(folder.path), 0);
+    assert_int_equal(chdir(frame_fixture_folder.path), 0);
     static const uint32_t expected[] = {0, 1};
     check_frames("f%d.obj", expected, 2);
     check_frames(".", expected, 2);
@@ -157,7 +143,7 @@ static void folder_is_in_natural_order(void **state) {
     write_frame("f0100.obj", 100);
     write_frame("f99999999999999999999999.obj", 3);
     static const uint32_t expected[] = {1, 2, 10, 100, 3};
-    check_frames(folder.path, expected, 5);
+    check_frames(frame_fixture_folder.path, expected, 5);
 }
 
 static void folder_ignores_other_files(void **state) {
@@ -165,14 +151,14 @@ static void folder_ignores_other_files(void **state) {
     write_frame("take2_f2_v3.OFF", 2);
     write_frame("take2_f10_v3.OFF", 10);
     write_frame("._take2_f11_v3.OFF", 11);
-    temp_file_write(&folder, "readme.txt", "x", 1);
-    temp_file_write(&folder, "f1.mtl", "x", 1);
-    temp_file_write(&folder, "obj", "x", 1);
-    assert_int_equal(mkdir(temp_file_path(&folder, "take2_f12_v3.OFF").text, 0700), 0);
+    temp_file_write(&frame_fixture_folder, "readme.txt", "x", 1);
+    temp_file_write(&frame_fixture_folder, "f1.mtl", "x", 1);
+    temp_file_write(&frame_fixture_folder, "obj", "x", 1);
+    assert_int_equal(mkdir(temp_file_path(&frame_fixture_folder, "take2_f12_v3.OFF").text, 0700), 0);
     static const uint32_t expected[] = {2, 10};
-    check_frames(folder.path, expected, 2);
+    check_frames(frame_fixture_folder.path, expected, 2);
     char slashed[300];
-    snprintf(slashed, sizeof slashed, "%s/", folder.path);
+    snprintf(slashed, sizeof slashed, "%s/", frame_fixture_folder.path);
     check_frames(slashed, expected, 2);
 }
 
@@ -180,13 +166,13 @@ static void folder_with_one_file_is_one_frame(void **state) {
     (void)state;
     write_frame("pose.ply", 6);
     static const uint32_t expected[] = {6};
-    check_frames(folder.path, expected, 1);
+    check_frames(frame_fixture_folder.path, expected, 1);
 }
 
 static void folder_without_frames_is_refused(void **state) {
     (void)state;
     check_folder_fails("no frames in this folder", ".obj, .ply or .off", "");
-    temp_file_write(&folder, "readme.txt", "x", 1);
+    temp_file_write(&frame_fixture_folder, "readme.txt", "x", 1);
     check_folder_fails("no frames in this folder", "", "");
 }
 
@@ -197,7 +183,7 @@ static void folder_must_hold_one_series(void **state) {
         {"f01.obj", "f1.obj"}, {"f1.obj", "f2.ply"},  {"f1.obj", "f2.OBJ"}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const temp_path first = write_frame(names[i][0], 1);
-        const temp_path second = temp_file_write(&folder, names[i][1], "x", 1);
+        const temp_path second = temp_file_write(&frame_fixture_folder, names[i][1], "x", 1);
         check_folder_fails("holds both", names[i][0], names[i][1]);
         assert_int_equal(unlink(first.text), 0);
         assert_int_equal(unlink(second.text), 0);
@@ -247,13 +233,16 @@ static void check_list_fails(const char *second, const char *part) {
 static void list_with_a_stranger_is_refused(void **state) {
     (void)state;
     const frame_fixture_bytes pc2 = frame_fixture_pc2(VERTICES, 1);
-    check_list_fails(frame_fixture_write(&folder, "cache.pc2", &pc2).text, "a point cache among several");
-    check_list_fails(frame_fixture_write(&folder, "hidden.obj", &pc2).text, "a point cache among several");
-    check_list_fails(frame_fixture_write(&folder, "cache.mdd", &pc2).text, "a point cache among several");
-    check_list_fails(temp_file_path(&folder, "missing.obj").text, "cannot open: No such file");
-    check_list_fails(temp_file_path(&folder, "f_%d.obj").text, "cannot open: No such file");
-    check_list_fails(temp_file_write(&folder, "a.stl", "x", 1).text, "unknown extension");
-    check_list_fails(folder.path, "a folder must be the only path");
+    check_list_fails(frame_fixture_write(&frame_fixture_folder, "cache.pc2", &pc2).text,
+                     "a point cache among several");
+    check_list_fails(frame_fixture_write(&frame_fixture_folder, "hidden.obj", &pc2).text,
+                     "a point cache among several");
+    check_list_fails(frame_fixture_write(&frame_fixture_folder, "cache.mdd", &pc2).text,
+                     "a point cache among several");
+    check_list_fails(temp_file_path(&frame_fixture_folder, "missing.obj").text, "cannot open: No such file");
+    check_list_fails(temp_file_path(&frame_fixture_folder, "f_%d.obj").text, "cannot open: No such file");
+    check_list_fails(temp_file_write(&frame_fixture_folder, "a.stl", "x", 1).text, "unknown extension");
+    check_list_fails(frame_fixture_folder.path, "a folder must be the only path");
 }
 
 /* ---- frames ------------------------------------------------------------------------------------------ */
@@ -265,8 +254,8 @@ static void keeps_doubles(void **state) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
         "property double z\nelement face 1\nproperty list uchar int vertex_indices\n"
         "end_header\n0.1 1e-300 -3.0000000000000004\n0 0 0\n1 0 0\n3 0 1 2\n";
-    const temp_path paths[] = {temp_file_write(&folder, "a.obj", obj, strlen(obj)),
-                               temp_file_write(&folder, "a.ply", ply, strlen(ply))};
+    const temp_path paths[] = {temp_file_write(&frame_fixture_folder, "a.obj", obj, strlen(obj)),
+                               temp_file_write(&frame_fixture_folder, "a.ply", ply, strlen(ply))};
     for (size_t i = 0; i < 2; i++) {
         animation *opened = frame_fixture_open(paths[i].text, 3);
         double positions[9];
@@ -280,11 +269,11 @@ static void keeps_doubles(void **state) {
 static void bad_frames_are_named(void **state) {
     (void)state;
     write_frame("f0.obj", 0);
-    const temp_path other = frame_fixture_write_mesh(&folder, "f1.obj", VERTICES + 1, 1);
-    const temp_path garbage = temp_file_write(&folder, "f2.obj", "v 0 0\n", 6);
+    const temp_path other = frame_fixture_write_mesh(&frame_fixture_folder, "f1.obj", VERTICES + 1, 1);
+    const temp_path garbage = temp_file_write(&frame_fixture_folder, "f2.obj", "v 0 0\n", 6);
     const temp_path gone = write_frame("f3.obj", 3);
     write_frame("f4.obj", 4);
-    animation *opened = frame_fixture_open(folder.path, VERTICES);
+    animation *opened = frame_fixture_open(frame_fixture_folder.path, VERTICES);
     assert_int_equal(unlink(gone.text), 0);
     io_error error;
     frame_fixture_read_fails(opened, VERTICES, 1, &error);
@@ -295,7 +284,7 @@ static void bad_frames_are_named(void **state) {
     frame_fixture_read_fails(opened, VERTICES, 3, &error);
     frame_fixture_check_error(&error, "frame 3: ", gone.text, "No such file", NULL);
     frame_fixture_read_fails(opened, VERTICES, 5, &error);
-    frame_fixture_check_error(&error, folder.path, "no frame 5", NULL);
+    frame_fixture_check_error(&error, frame_fixture_folder.path, "no frame 5", NULL);
     frame_fixture_check(opened, VERTICES, 4, 4);
     frame_fixture_check(opened, VERTICES, 0, 0);
     animation_close(opened);
@@ -307,7 +296,7 @@ static void values_that_are_not_finite_are_refused(void **state) {
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
         char obj[128];
         const int size = snprintf(obj, sizeof obj, "v 0 0 0\nv 1 %s 0\nv 0 1 0\nf 1 2 3\n", values[i]);
-        const temp_path path = temp_file_write(&folder, "f7.obj", obj, (size_t)size);
+        const temp_path path = temp_file_write(&frame_fixture_folder, "f7.obj", obj, (size_t)size);
         animation *opened = frame_fixture_open(path.text, 3);
         io_error error;
         frame_fixture_read_fails(opened, 3, 0, &error);
@@ -318,7 +307,8 @@ static void values_that_are_not_finite_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name)                                                                                           \
+    cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, frame_fixture_remove_folder)
         TEST(pattern_takes_the_numbers_in_order),
         TEST(pattern_pads_with_zeros),
         TEST(pattern_outgrows_its_width),

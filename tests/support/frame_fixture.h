@@ -10,6 +10,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Where a test's files live; the two functions are its cmocka set-up and tear-down. */
+extern temp_folder frame_fixture_folder;
+int frame_fixture_make_folder(void **state);
+int frame_fixture_remove_folder(void **state);
+
 /* A small file in memory. */
 typedef struct frame_fixture_bytes {
     unsigned char data[4096];
