@@ -14,12 +14,12 @@ static const char help[] = "usage: queries [--kind vf|ee] [--json] FILES...\n"
                            "denominator, then the truth). The kind follows from 'vertex-face' or 'edge-edge' "
                            "in the path, or from --kind.\n";
 
-enum { LEVEL_COUNT = 3, REPEATS = 3, CALLS_PER_REPEAT = 16 };
+enum { REPEATS = 3, CALLS_PER_REPEAT = 16 };
 
 typedef struct result {
     size_t queries, false_positives, false_negatives;
-    size_t levels[LEVEL_COUNT]; /* how many queries each level decided */
-    double *microseconds;       /* per query, sorted */
+    size_t levels[ELEMENTARY_LEVEL_COUNT]; /* how many queries each level decided */
+    double *microseconds;                  /* per query, sorted */
     double mean;
 } result;
 
@@ -42,10 +42,6 @@ static double time_query(const elementary_query *query, query_kind kind) {
     return least;
 }
 
-static int level_of(elementary_verdict verdict) {
-    return verdict == ELEMENTARY_APART || verdict == ELEMENTARY_REJECTED ? 0 : 1;
-}
-
 static int compare_times(const void *left, const void *right) {
     double l = *(const double *)left, r = *(const double *)right;
     return l < r ? -1 : l > r;
@@ -66,10 +62,9 @@ static double quantile(const result *r, double fraction) {
 static void run_set(const query_set *set, query_kind kind, result *out) {
     for (size_t i = 0; i < set->count; i++) {
         elementary_verdict verdict = decide(&set->queries[i], kind);
-        bool hit = verdict == ELEMENTARY_HIT;
-        out->false_positives += hit && !set->truths[i];
-        out->false_negatives += !hit && set->truths[i];
-        out->levels[level_of(verdict)]++;
+        out->false_positives += verdict.touching && !set->truths[i];
+        out->false_negatives += !verdict.touching && set->truths[i];
+        out->levels[verdict.level]++;
         out->microseconds[out->queries++] = time_query(&set->queries[i], kind);
     }
 }
@@ -79,7 +74,7 @@ static void write_json(json *out, const result *r) {
     json_integer(out, "fp", r->false_positives);
     json_integer(out, "fn", r->false_negatives);
     json_begin_array(out, "levels");
-    for (int i = 0; i < LEVEL_COUNT; i++) json_integer(out, NULL, r->levels[i]);
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) json_integer(out, NULL, r->levels[i]);
     json_end_array(out);
     json_number(out, "us_mean", r->mean);
     json_number(out, "us_p99", quantile(r, 0.99));
@@ -102,7 +97,7 @@ static bool add_result(result *total, const result *part) {
     total->queries += part->queries;
     total->false_positives += part->false_positives;
     total->false_negatives += part->false_negatives;
-    for (int i = 0; i < LEVEL_COUNT; i++) total->levels[i] += part->levels[i];
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) total->levels[i] += part->levels[i];
     return true;
 }
 

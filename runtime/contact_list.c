@@ -52,14 +52,16 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
         const contact_lane *lane = &d->contact_lanes[i];
         counters->feature_pairs += lane->feature_pairs;
-        counters->tests += lane->tests;
-        counters->root_solves += lane->root_solves;
+        counters->by_signs += lane->decided[ELEMENTARY_SIGNS];
+        counters->by_roots += lane->decided[ELEMENTARY_ROOTS];
+        counters->by_exact += lane->decided[ELEMENTARY_EXACT];
         for (size_t j = 0; j < lane->count; j++) {
             if (ignored(d, &lane->contacts[j])) continue;
             *(lane->contacts[j].kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
             items[kept++] = lane->contacts[j];
         }
     }
+    counters->tests = counters->by_signs + counters->by_roots + counters->by_exact;
     sort_items(items, d->contacts.scratch, kept, sizeof *items, compare_contacts);
     *out = (cscd_contacts){items, kept};
     return CSCD_OK;

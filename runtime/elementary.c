@@ -128,9 +128,10 @@ static void describe_hit(const elementary_query *query, const elementary_query *
 
 static elementary_verdict decide(const elementary_query *query, const feature_kind *kind,
                                  elementary_hit *hit) {
-    if (!volumes_overlap(query, kind->features.first_count)) return ELEMENTARY_APART;
+    if (!volumes_overlap(query, kind->features.first_count))
+        return (elementary_verdict){false, ELEMENTARY_SIGNS};
     coplanarity f = query_cubic(query, kind);
-    if (coplanarity_excluded(&f)) return ELEMENTARY_REJECTED;
+    if (coplanarity_excluded(&f)) return (elementary_verdict){false, ELEMENTARY_SIGNS};
 
     elementary_query local;
     double scale = normalise(query, &local);
@@ -145,9 +146,9 @@ static elementary_verdict decide(const elementary_query *query, const feature_ki
         approach_positions(&local, found.toi, x);
         describe_hit(query, &local, scale, kind, (const double(*)[3])x, &found);
         *hit = found;
-        return ELEMENTARY_HIT;
+        return (elementary_verdict){true, ELEMENTARY_ROOTS};
     }
-    return ELEMENTARY_MISS;
+    return (elementary_verdict){false, ELEMENTARY_ROOTS};
 }
 
 elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit) {

@@ -16,15 +16,22 @@ typedef struct elementary_hit {
     double point[3], normal[3];
 } elementary_hit;
 
-typedef enum elementary_verdict {
-    ELEMENTARY_APART,    /* the swept volumes do not overlap */
-    ELEMENTARY_REJECTED, /* certified by the signs of the coplanarity cubic */
-    ELEMENTARY_MISS,     /* decided at the roots */
-    ELEMENTARY_HIT
+/* What decided; each level is certified, and the next one sees only what it left open. */
+typedef enum elementary_level {
+    ELEMENTARY_SIGNS, /* separating directions, signs of the coplanarity cubic */
+    ELEMENTARY_ROOTS, /* intervals about its roots */
+    ELEMENTARY_EXACT  /* exact arithmetic */
+} elementary_level;
+
+enum { ELEMENTARY_LEVEL_COUNT = 3 };
+
+typedef struct elementary_verdict {
+    bool touching;
+    elementary_level level;
 } elementary_verdict;
 
-/* Pure functions of the query; *hit is written on ELEMENTARY_HIT only. Features are closed, and so is the
- * interval: touching counts. */
+/* Pure functions of the query; *hit is written when they touch only. Features are closed, and so is the
+ * interval. */
 elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit);
 elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit);
 

@@ -1,14 +1,14 @@
 /* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
 #include "runtime/narrow_phase.h"
 
-#include "runtime/elementary.h"
 #include "runtime/representatives.h"
 
 #include <string.h>
 
 void contact_lane_reset(contact_lane *lane) {
     lane->count = 0;
-    lane->feature_pairs = lane->tests = lane->root_solves = 0;
+    lane->feature_pairs = 0;
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
     lane->out_of_memory = false;
 }
 
@@ -24,11 +24,6 @@ static bool make_room(cscd_context *context, contact_lane *lane) {
     lane->contacts = grown;
     lane->capacity = capacity;
     return true;
-}
-
-static void count_test(contact_lane *lane, elementary_verdict verdict) {
-    lane->tests++;
-    lane->root_solves += verdict == ELEMENTARY_MISS || verdict == ELEMENTARY_HIT;
 }
 
 static void add_contact(const swept_interval *interval, contact_lane *lane, cscd_contact_kind kind,
@@ -58,8 +53,8 @@ void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint3
     load_point(interval, vertex, &query, 0);
     for (int i = 0; i < 3; i++) load_point(interval, interval->mesh->triangles[triangle][i], &query, i + 1);
     elementary_verdict verdict = elementary_vf(&query, &hit);
-    count_test(lane, verdict);
-    if (verdict == ELEMENTARY_HIT) add_contact(interval, lane, CSCD_CONTACT_VF, vertex, triangle, &hit);
+    lane->decided[verdict.level]++;
+    if (verdict.touching) add_contact(interval, lane, CSCD_CONTACT_VF, vertex, triangle, &hit);
 }
 
 /* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
@@ -70,8 +65,8 @@ void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b
     elementary_hit hit;
     for (int i = 0; i < 4; i++) load_point(interval, interval->mesh->edges[edges[i / 2]][i % 2], &query, i);
     elementary_verdict verdict = elementary_ee(&query, &hit);
-    count_test(lane, verdict);
-    if (verdict == ELEMENTARY_HIT) add_contact(interval, lane, CSCD_CONTACT_EE, edges[0], edges[1], &hit);
+    lane->decided[verdict.level]++;
+    if (verdict.touching) add_contact(interval, lane, CSCD_CONTACT_EE, edges[0], edges[1], &hit);
 }
 
 static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,

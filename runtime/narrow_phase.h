@@ -2,6 +2,7 @@
 #ifndef CSCD_NARROW_PHASE_H
 #define CSCD_NARROW_PHASE_H
 
+#include "runtime/elementary.h"
 #include "runtime/kdop.h"
 #include "runtime/traversal.h"
 #include "src/mesh.h"
@@ -18,7 +19,8 @@ typedef struct swept_interval {
 typedef struct contact_lane {
     _Alignas(CACHE_LINE_SIZE) cscd_contact *contacts;
     size_t count, capacity;
-    uint64_t feature_pairs, tests, root_solves;
+    uint64_t feature_pairs;
+    uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by what decided them */
     bool out_of_memory;
 } contact_lane;
 

@@ -234,7 +234,9 @@ typedef struct cscd_counters { /* of the last step; exact, and the same for any 
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
     uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */
     uint64_t tests;            /* elementary tests: those of them whose own swept volumes overlap */
-    uint64_t root_solves;      /* tests that signs could not reject */
+    uint64_t by_signs;         /* tests that signs rejected, */
+    uint64_t by_roots;         /* those that intervals about the roots decided, */
+    uint64_t by_exact;         /* and those that took exact arithmetic: together all tests */
     uint64_t vf, ee;           /* contacts reported */
 } cscd_counters;
 

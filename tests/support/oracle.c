@@ -56,7 +56,7 @@ static void find_vf(const scene *s, oracle_list *out) {
             if (c[0] == v || c[1] == v || c[2] == v) continue;
             elementary_query query = load(s, (uint32_t[4]){v, c[0], c[1], c[2]});
             elementary_hit hit;
-            if (elementary_vf(&query, &hit) == ELEMENTARY_HIT) add(out, CSCD_CONTACT_VF, v, t, hit.toi);
+            if (elementary_vf(&query, &hit).touching) add(out, CSCD_CONTACT_VF, v, t, hit.toi);
         }
     }
 }
@@ -70,7 +70,7 @@ static void find_ee(const scene *s, oracle_list *out) {
             if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
             elementary_query query = load(s, (uint32_t[4]){a[0], a[1], b[0], b[1]});
             elementary_hit hit;
-            if (elementary_ee(&query, &hit) == ELEMENTARY_HIT) add(out, CSCD_CONTACT_EE, i, j, hit.toi);
+            if (elementary_ee(&query, &hit).touching) add(out, CSCD_CONTACT_EE, i, j, hit.toi);
         }
     }
 }
