@@ -3,35 +3,49 @@
 
 #include "runtime/vector.h"
 
-static double determinant(const double a[3], const double b[3], const double c[3]) {
-    double normal[3];
-    vector_cross(a, b, normal);
-    return vector_dot(normal, c);
+static void subtract_at_ends(const elementary_query *query, int to, int from, double out[2][3],
+                             double size[3]) {
+    vector_subtract(query->x0[to], query->x0[from], out[0]);
+    vector_subtract(query->x1[to], query->x1[from], out[1]);
+    for (int k = 0; k < 3; k++) size[k] = larger(fabs(out[0][k]), fabs(out[1][k]));
 }
 
-/* The polar form of the cubic (A x B) . C: b1 = (f(1,0,0) + f(0,1,0) + f(0,0,1)) / 3, and b2 likewise.
+void point_vectors_from(const elementary_query *query, int first_count, point_vectors *out) {
+    bool vf = first_count == 1;
+    subtract_at_ends(query, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
+    subtract_at_ends(query, 3, vf ? 1 : 2, out->b, out->size_b);
+    subtract_at_ends(query, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);
+}
+
+/* With (a + t a')(b + t b') and so on: b0 = f(0), b3 = f(1), b1 and b2 a third each of the sums of the three
+ * determinants with one vector, or two, taken from t = 1.
  *
- * Error: let u = 2^-53, and a, b, c here be the largest components over both ends. A component of A has the
- * relative error u from its subtraction. A determinant is a sum of 6 products of three such components; each
- * product passes 3 subtractions, 2 multiplications, 1 subtraction in the cross product and at most 2
- * additions in the dot product: 8 roundings, so |error| <= 6 a b c ((1+u)^8 - 1) <= 48.1 u a b c. The sum of
- * three determinants, each at most 6 a b c (1 + 8u), adds 2 roundings of at most 18.1 a b c and, divided by 3
- * (1 rounding), an error of at most (48.1 + 12.1 + 6.1) u a b c <= 67 u a b c. Evaluation by de Casteljau
- * adds 3 multiplications, 3 additions and the rounding of 1 - t in each of 3 steps to numbers below 6.1 a b
- * c: at most 9.1 * 6.1 < 56 u a b c. The sum is below 123 u a b c; 128 leaves room for computing it.
- * Underflow: each of some 40 operations may lose 2^-1075, covered by 2^-1060. */
-coplanarity coplanarity_cubic(const double a[2][3], const double b[2][3], const double c[2][3]) {
+ * Error: let u = 2^-53 and P the permanent of the components' largest magnitudes, which bounds the sum of the
+ * magnitudes of the products in any of these coefficients. Each product passes 3 subtractions, 2
+ * multiplications, 1 subtraction in the cross product, 1 addition of cross products, 2 additions in the dot
+ * product, 1 addition of dot products and 1 division: 11 roundings, so a coefficient is off by at most
+ * P ((1+u)^11 - 1) < 11.1 u P. Evaluation by blending at three parameters adds 3 multiplications, 3 additions
+ * and 3 roundings of 1 - t to numbers below (1 + 11.1 u) P: at most 9.1 u P. The sum is below 20.2 u P; 24
+ * leaves room for computing P. Underflow: each of some 100 operations may lose 2^-1075, covered by 2^-1060.
+ */
+coplanarity coplanarity_cubic(const point_vectors *v) {
     coplanarity f;
-    f.b[0] = determinant(a[0], b[0], c[0]);
-    f.b[1] =
-        (determinant(a[1], b[0], c[0]) + determinant(a[0], b[1], c[0]) + determinant(a[0], b[0], c[1])) / 3.0;
-    f.b[2] =
-        (determinant(a[0], b[1], c[1]) + determinant(a[1], b[0], c[1]) + determinant(a[1], b[1], c[0])) / 3.0;
-    f.b[3] = determinant(a[1], b[1], c[1]);
-    double largest = fmax(vector_largest(a[0]), vector_largest(a[1])) *
-                     fmax(vector_largest(b[0]), vector_largest(b[1])) *
-                     fmax(vector_largest(c[0]), vector_largest(c[1]));
-    f.error = 128.0 * 0x1p-53 * largest + 0x1p-1060;
+    double start[3], end[3], one[3], other[3], mixed[3];
+    vector_cross(v->a[0], v->b[0], start);
+    vector_cross(v->a[1], v->b[1], end);
+    vector_cross(v->a[1], v->b[0], one);
+    vector_cross(v->a[0], v->b[1], other);
+    for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
+    f.b[0] = vector_dot(start, v->c[0]);
+    f.b[1] = (vector_dot(mixed, v->c[0]) + vector_dot(start, v->c[1])) / 3.0;
+    f.b[2] = (vector_dot(mixed, v->c[1]) + vector_dot(end, v->c[0])) / 3.0;
+    f.b[3] = vector_dot(end, v->c[1]);
+    double permanent = 0.0;
+    for (int k = 0; k < 3; k++) {
+        int y = (k + 1) % 3, z = (k + 2) % 3;
+        permanent += v->size_c[k] * (v->size_a[y] * v->size_b[z] + v->size_a[z] * v->size_b[y]);
+    }
+    f.error = 24.0 * 0x1p-53 * permanent + 0x1p-1060;
     return f;
 }
 

@@ -1,20 +1,22 @@
-/* When is a cubic near zero? The one file behind it knows GSL. */
+/* Intervals of time that hold the roots of the coplanarity cubic, certified. */
 #ifndef CSCD_CUBIC_H
 #define CSCD_CUBIC_H
 
-/* A stretch of time in which a cubic is near zero, and the moments in it that may be touches: roots, extrema,
- * and the ends 0 and 1, ascending. */
-typedef struct near_zero {
+#include "runtime/coplanarity.h"
+
+typedef struct root_interval {
     double begin, end;
-    double marks[9];
-    int mark_count;
-} near_zero;
+    bool certain; /* the exact cubic has a root in it */
+} root_interval;
 
-enum { CUBIC_INTERVALS_MAX = 3 };
+enum { ROOTS_MAX = 3, ROOTS_UNCERTAIN = -1 };
 
-/* All t in [0,1] at which the cubic with Bernstein coefficients b (value sum b_i B_i^3(t)) lies within error
- * of zero, error > 0, as ascending disjoint intervals; a root of any multiplicity of a cubic that is nowhere
- * farther than error from this one lies in one of them. Returns how many were written. */
-int cubic_near_zero(const double b[4], double error, near_zero out[CUBIC_INTERVALS_MAX]);
+/* Ascending disjoint intervals outside of which the exact cubic has no root in [0,1]; as narrow as the
+ * cubic's error allows, and below 1/64. Returns how many, or ROOTS_UNCERTAIN when that cannot be certified.
+ */
+int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]);
+
+/* Of the computed cubic, at t in [0,1]. */
+double cubic_slope(const coplanarity *f, double t);
 
 #endif

@@ -23,8 +23,17 @@ static inline void vector_cross(const double a[3], const double b[3], double out
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* Without the care for NaN that makes fmax a function call. */
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
 static inline double vector_largest(const double a[3]) {
-    return fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
+    return larger(fabs(a[0]), larger(fabs(a[1]), fabs(a[2])));
 }
 
 #endif

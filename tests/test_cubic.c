@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -22,7 +23,7 @@ static int seed(void **state) {
     return 0;
 }
 
-/* ---- near zero ---- */
+/* ---- isolation of roots ---- */
 
 /* leading (t - root) ((t - centre)^2 + shift): a pair of real roots, a double one, or a pair of complex
  * ones. */
@@ -47,48 +48,46 @@ static double largest_coefficient(const double b[4]) {
     return fmax(fmax(fabs(b[0]), fabs(b[1])), fmax(fabs(b[2]), fabs(b[3])));
 }
 
-typedef struct near_zero_list {
-    near_zero items[CUBIC_INTERVALS_MAX];
+typedef struct root_list {
+    root_interval items[ROOTS_MAX];
     int count;
     double error, slack; /* slack: rounding of coefficients, evaluation and ends */
-} near_zero_list;
+} root_list;
 
-static void check_contains(const near_zero_list *list, long double t) {
+/* Outside of the intervals no cubic within error of this one has a root. */
+static void check_where_small(const root_list *list, const polynomial *f, long double t) {
+    if (t < 0 || t > 1 || fabsl(value_at(f, t)) > list->error - list->slack) return;
     bool found = false;
     for (int i = 0; i < list->count; i++) found |= t >= list->items[i].begin && t <= list->items[i].end;
     assert_true(found);
 }
 
-static void check_where_small(const near_zero_list *list, const polynomial *f, long double t) {
-    if (t >= 0 && t <= 1 && fabsl(value_at(f, t)) <= list->error - list->slack) check_contains(list, t);
-}
-
-/* The cubic is within error of zero at both ends of each interval and, as it has two extrema at most, where
- * it is not monotone in between, too. */
-static void check_intervals(const near_zero_list *list, const polynomial *f) {
+/* Ascending, disjoint, narrow; where certain, every cubic within error changes its sign between the ends. */
+static void check_intervals(const root_list *list, const polynomial *f) {
     for (int i = 0; i < list->count; i++) {
         double begin = list->items[i].begin, end = list->items[i].end;
-        assert_true(begin >= 0.0 && begin <= end && end <= 1.0);
+        assert_true(begin >= 0.0 && begin <= end && end <= 1.0 && end - begin < 1.0 / 64.0);
         if (i > 0) assert_true(list->items[i - 1].end < begin);
-        for (int j = 0; j <= 16; j++) {
-            long double t = begin + (end - begin) * (j / 16.0L);
-            assert_true(fabsl(value_at(f, t)) <= list->error + list->slack);
-        }
+        if (!list->items[i].certain) continue;
+        long double start = value_at(f, begin), stop = value_at(f, end), least = list->error - list->slack;
+        assert_true((start >= least && stop <= -least) || (start <= -least && stop >= least));
     }
 }
 
-static near_zero_list find(const polynomial *f, double relative_error) {
-    double b[4];
-    to_bernstein(f, b);
-    near_zero_list list = {.error = relative_error * largest_coefficient(b)};
-    list.slack = 0x1p-46 * largest_coefficient(b);
-    list.count = cubic_near_zero(b, list.error, list.items);
-    assert_true(list.count >= 0 && list.count <= CUBIC_INTERVALS_MAX);
+static root_list find(const polynomial *f, double relative_error) {
+    coplanarity cubic;
+    to_bernstein(f, cubic.b);
+    cubic.error = relative_error * largest_coefficient(cubic.b);
+    root_list list = {.error = cubic.error, .slack = 0x1p-46 * largest_coefficient(cubic.b)};
+    list.count = cubic_isolate(&cubic, list.items);
+    assert_true(list.count >= ROOTS_UNCERTAIN && list.count <= ROOTS_MAX);
     return list;
 }
 
-static void check_polynomial(const polynomial *f) {
-    near_zero_list list = find(f, random_integer(0, 1) ? 0x1p-44 : ldexp(1.0, -random_integer(20, 43)));
+/* Returns whether the roots could be isolated. */
+static bool check_polynomial(const polynomial *f) {
+    root_list list = find(f, random_integer(0, 1) ? 0x1p-44 : ldexp(1.0, -random_integer(20, 43)));
+    if (list.count == ROOTS_UNCERTAIN) return false;
     check_intervals(&list, f);
     long double spread = f->shift < 0 ? sqrtl(-f->shift) : 0;
     const long double places[4] = {f->root, f->centre - spread, f->centre + spread, f->centre};
@@ -100,6 +99,7 @@ static void check_polynomial(const polynomial *f) {
         }
     }
     for (int i = 0; i <= 100; i++) check_where_small(&list, f, i / 100.0L);
+    return true;
 }
 
 static long double random_root(void) {
@@ -123,6 +123,7 @@ static long double tiny(void) {
 
 /* Single, double and triple roots, roots near each other, roots at the ends, complex pairs near the axis. */
 static void known_roots(void **state) {
+    int isolated = 0;
     (void)state;
     for (int round = 0; round < 5 * ROUND_COUNT; round++) {
         polynomial f = {.root = random_root(), .centre = random_root()};
@@ -130,8 +131,10 @@ static void known_roots(void **state) {
         f.shift = random_integer(-1, 1) * tiny();
         if (random_integer(0, 3) == 0) f.shift = random_unit();
         f.leading = ldexp(random_integer(0, 1) ? 1.0 : -1.0, random_integer(-300, 300));
-        check_polynomial(&f);
+        isolated += check_polynomial(&f);
     }
+    printf("isolated: %d of %d\n", isolated, 5 * ROUND_COUNT);
+    assert_true(isolated > ROUND_COUNT);
 }
 
 /* One root far outside: the cubic's leading coefficient is tiny beside the others. */
@@ -152,25 +155,33 @@ static void separate_roots(void **state) {
         double spread = random_between(0.05, 0.25), between = random_between(0.3, 0.7);
         polynomial f = {1, between + (random_integer(0, 1) ? spread / 2 : -spread / 2), between,
                         -(long double)spread * spread};
-        near_zero_list list = find(&f, 0x1p-44);
+        root_list list = find(&f, 0x1p-44);
         assert_int_equal(list.count, 3);
-        for (int i = 0; i < 3; i++) assert_true(list.items[i].end - list.items[i].begin < 1e-9);
+        check_intervals(&list, &f);
+        for (int i = 0; i < 3; i++)
+            assert_true(list.items[i].certain && list.items[i].end - list.items[i].begin < 1e-9);
     }
 }
 
-static void constants(void **state) {
-    near_zero found[CUBIC_INTERVALS_MAX];
+static int isolate(double b0, double b1, double b2, double b3, double error, root_interval found[ROOTS_MAX]) {
+    const coplanarity f = {{b0, b1, b2, b3}, error};
+    return cubic_isolate(&f, found);
+}
+
+static void special_cases(void **state) {
+    root_interval found[ROOTS_MAX];
     (void)state;
-    assert_int_equal(cubic_near_zero((double[]){1, 1, 1, 1}, 0.5, found), 0);
-    assert_int_equal(cubic_near_zero((double[]){-1, -1, -1, -1}, 0.5, found), 0);
-    assert_int_equal(cubic_near_zero((double[]){0, 0, 0, 0}, 0x1p-1060, found), 1);
-    assert_true(found[0].begin == 0.0 && found[0].end == 1.0);
-    assert_int_equal(cubic_near_zero((double[]){1, 1, 1, 1}, 1.0, found), 1);
-    assert_true(found[0].begin == 0.0 && found[0].end == 1.0);
-    assert_int_equal(cubic_near_zero((double[]){0, 1, 1, 1}, 0x1p-44, found), 1);
-    assert_true(found[0].begin == 0.0 && found[0].end < 1e-12);
-    assert_int_equal(cubic_near_zero((double[]){1, 1, 1, 0}, 0x1p-44, found), 1);
-    assert_true(found[0].begin > 1.0 - 1e-12 && found[0].end == 1.0);
+    assert_int_equal(isolate(1, 1, 1, 1, 0.5, found), 0);
+    assert_int_equal(isolate(-1, -1, -1, -1, 0.5, found), 0);
+    assert_int_equal(isolate(1, -0.25, 0.25, 1, 0x1p-44, found), 0); /* by subdivision */
+    assert_int_equal(isolate(0, 0, 0, 0, 0x1p-1060, found), ROOTS_UNCERTAIN);
+    assert_int_equal(isolate(1, 1, 1, 1, 1.0, found), ROOTS_UNCERTAIN);
+    assert_int_equal(isolate(0, 1, 1, 1, 0x1p-44, found), 1);
+    assert_true(found[0].begin == 0.0 && found[0].end < 1e-12 && !found[0].certain);
+    assert_int_equal(isolate(1, 1, 1, 0, 0x1p-44, found), 1);
+    assert_true(found[0].begin > 1.0 - 1e-12 && found[0].end == 1.0 && !found[0].certain);
+    assert_int_equal(isolate(1, 0, 0, -1, 0x1p-44, found), 1);
+    assert_true(found[0].begin < 0.5 && found[0].end > 0.5 && found[0].certain);
 }
 
 /* ---- the error bound ---- */
@@ -253,14 +264,16 @@ static exact tripled(double value) {
     return times(three, times(exact_from_double(value), times(one, one)));
 }
 
+/* As a vertex, the last point, and the face of the others. */
 static coplanarity computed_cubic(const tetrahedra *s) {
-    double vectors[3][2][3];
-    for (int i = 0; i < 18; i++) {
-        int d = i / 6, end = i / 3 % 2, k = i % 3;
-        vectors[d][end][k] = s->x[end][d + 1][k] - s->x[end][0][k];
+    elementary_query query;
+    point_vectors vectors;
+    for (int i = 0; i < 4; i++) {
+        memcpy(query.x0[(i + 1) % 4], s->x[0][i], sizeof query.x0[0]);
+        memcpy(query.x1[(i + 1) % 4], s->x[1][i], sizeof query.x1[0]);
     }
-    return coplanarity_cubic((const double(*)[3])vectors[0], (const double(*)[3])vectors[1],
-                             (const double(*)[3])vectors[2]);
+    point_vectors_from(&query, 1, &vectors);
+    return coplanarity_cubic(&vectors);
 }
 
 static void error_bound(void **state) {
@@ -309,7 +322,7 @@ static void excluded_by_signs(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(known_roots, seed),    cmocka_unit_test_setup(tiny_leading_coefficient, seed),
-        cmocka_unit_test_setup(separate_roots, seed), cmocka_unit_test(constants),
+        cmocka_unit_test_setup(separate_roots, seed), cmocka_unit_test(special_cases),
         cmocka_unit_test_setup(error_bound, seed),    cmocka_unit_test(excluded_by_signs),
     };
     return cmocka_run_group_tests_name("cubic", tests, NULL, NULL);

@@ -157,7 +157,7 @@ static void double_roots(void **state) {
         pair_kind kind = round % 2 == 0 ? PAIR_VF : PAIR_EE;
         turning m = random_turning();
         elementary_query query = turning_query(kind, &m, 0.0);
-        elementary_hit hit = check_first(kind, &query, 0.5, 1e-5);
+        elementary_hit hit = check_first(kind, &query, 0.5, 1e-9);
         if (kind == PAIR_VF) assert_true(fabs(hit.u - m.c0) < 1e-4 && fabs(hit.v - m.d0) < 1e-4);
         query = turning_query(kind, &m, bend(&m) > 0.0 ? 0x1p-30 : -0x1p-30);
         check_apart(kind, &query);
@@ -175,7 +175,7 @@ static void scissors(void **state) {
     }
     const elementary_query closed = {{{-2, 2, 0}, {2, -2, 0}, {1, 0, 0}, {6, 0, 0}},
                                      {{-2, 0, 0}, {2, 0, 0}, {0, 0, 0}, {5, 0, 0}}};
-    check_first(PAIR_EE, &closed, 1.0, 1e-5);
+    check_first(PAIR_EE, &closed, 1.0, 1e-9);
 }
 
 /* ---- mirrored at the plane x = 0 ---- */

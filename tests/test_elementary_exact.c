@@ -31,7 +31,7 @@ static void pass_through(elementary_query *query, int i, const double place[3], 
 
 static void assert_touches(elementary_verdict verdict, const elementary_hit *hit) {
     assert_true(verdict.touching);
-    assert_true(hit->toi <= 1.0 / 3.0 + 1e-9);
+    assert_true(hit->toi <= 1.0 / 3.0);
 }
 
 /* Edges that cross at inner points; the angle between them is about 1 / ratio. */

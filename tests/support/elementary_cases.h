@@ -46,17 +46,16 @@ elementary_query query_scaled(const elementary_query *query, int exponent);
 elementary_query query_through(const double at[4][3], const double velocity[4][3], double before,
                                double after);
 
-/* Asserts what holds for every contact: the points named by u and v are within 1e-11 of size of each other,
- * the interval and the features contain them, point is their midpoint; the normal is unit, perpendicular to
- * the features, and against the motion, or 0 where the features have none. */
+/* Asserts what holds for every contact: the points named by u and v are within 1e-8 of the largest
+ * displacement and 64 units in the last place of each other, the interval and the features contain them,
+ * point is their midpoint; the normal is unit, perpendicular to the features, and against the motion, or 0
+ * where the features have none. */
 void check_hit(pair_kind kind, const elementary_query *query, double size, const elementary_hit *hit);
 
 /* These print the query where they fail. A contact at toi or before it: */
 elementary_hit check_touches(pair_kind kind, const elementary_query *query, double toi);
 
-/* The first contact, at toi. Found times are late by rounding only, and early by what the features take for
- * the last 2^-40 of the query's extent: 1e-9 where they close at a fair speed, but 1e-5 where they only
- * graze. */
+/* The first contact, at toi: what is found is not later, and at most `early` earlier. */
 elementary_hit check_first(pair_kind kind, const elementary_query *query, double toi, double early);
 
 /* No contact. */

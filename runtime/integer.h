@@ -1,0 +1,53 @@
+/* Integers of any sign and up to thousands of bits, in a pool on the caller's stack: no allocation. */
+#ifndef CSCD_INTEGER_H
+#define CSCD_INTEGER_H
+
+#include <stdint.h>
+
+/* Limbs of 64 bits that the exact level of one elementary test ever holds at once. Its greatest demand, with
+ * coordinates from 2^-300 to 2^300 in one query, is measured by tests/test_algebraic.c. */
+enum { INTEGER_POOL_LIMBS = 6144 };
+
+/* |size| limbs, least significant first, the last one not 0; a negative size means a negative number. */
+typedef struct integer {
+    int32_t size;
+    const uint64_t *limbs;
+} integer;
+
+/* Numbers are taken from it one after the other and given back by setting `used` to an earlier value. */
+typedef struct integer_pool {
+    uint32_t used, peak;
+    uint64_t limbs[INTEGER_POOL_LIMBS];
+} integer_pool;
+
+void integer_pool_start(integer_pool *pool);
+
+/* Keeps count numbers and gives back all others taken since pool->used was mark. */
+void integer_pool_keep(integer_pool *pool, uint32_t mark, integer *numbers, int count);
+
+/* The exponent of the lowest bit set in x, finite and not 0: x is an odd multiple of 2 to it. */
+int integer_lowest_bit(double x);
+
+/* x / 2^exponent, which must be an integer. */
+integer integer_from_double(integer_pool *pool, double x, int exponent);
+integer integer_from_int(integer_pool *pool, int64_t x);
+
+integer integer_add(integer_pool *pool, integer a, integer b);
+integer integer_subtract(integer_pool *pool, integer a, integer b);
+integer integer_multiply(integer_pool *pool, integer a, integer b);
+
+/* a * factor, |factor| below 2^31. */
+integer integer_scale(integer_pool *pool, integer a, int factor);
+
+static inline integer integer_negate(integer a) {
+    return (integer){-a.size, a.limbs};
+}
+
+static inline int integer_sign(integer a) {
+    return (a.size > 0) - (a.size < 0);
+}
+
+/* a = result * 2^*exponent to a relative error of 2^-52, result in (-1, 1); no over- or underflow. */
+double integer_to_double(integer a, int *exponent);
+
+#endif
