@@ -1,6 +1,7 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|scalar   CC=gcc|clang   WERROR=1   THREADS for `make -j` as usual
+#   CONFIG=release|debug|sanitize|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
+# GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results up to rounding.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
@@ -8,8 +9,9 @@ ifeq ($(origin CC),default)
 CC      := gcc
 endif
 WERROR  ?= 0
+GSL     ?= 1
 BUILD_ROOT ?= build
-BUILD   := $(BUILD_ROOT)/$(CONFIG)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)
 
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
@@ -28,18 +30,21 @@ endif
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
               -pthread -MMD -MP -Iinclude -I. $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
-CORE_LIBS  := -lgsl -lm
+CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -lm
 TOOL_LIBS  := -lpng $(CORE_LIBS)
+TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 
-CORE_SOURCES    := $(wildcard src/*.c preprocess/*.c runtime/*.c)
+CORE_SOURCES    := $(filter-out runtime/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c, \
+                     $(wildcard src/*.c preprocess/*.c runtime/*.c))
 TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
 CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
-TEST_SOURCES    := $(wildcard tests/test_*.c)
+TEST_SOURCES    := $(filter-out $(if $(filter 0,$(GSL)),tests/test_gsl.c),$(wildcard tests/test_*.c))
+FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
-SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(MODEL_SOURCES) \
-           $(BENCHMARK_SOURCES)
+SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+           $(MODEL_SOURCES) $(BENCHMARK_SOURCES)
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
@@ -51,7 +56,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo test test-run benchmarks lint format examples clean help
+.PHONY: all tool library packages demo test test-run benchmarks lint format examples clean help fuzz-elementary
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -65,7 +70,7 @@ library: $(LIBRARY)
 
 # Everything that the build or the tests need and this machine lacks.
 packages:
-	@.ci/packages
+	@GSL=$(GSL) .ci/packages
 
 demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/capsule_bend
@@ -76,6 +81,15 @@ test: packages
 
 test-run: tool $(TESTS) $(MODELS)
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
+
+# Random queries against the exact oracle; 0 is no limit.
+SECONDS ?= 60
+QUERIES ?= 0
+SEED    ?= 1
+KIND    ?= both
+fuzz-elementary: packages
+	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz_elementary
+	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries
@@ -97,6 +111,7 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
 	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'
+	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
@@ -121,7 +136,7 @@ $(BUILD)/benchmarks/queries: $(call objects,$(BENCHMARK_SOURCES)) $(CORE_OBJECTS
 
 # Tests see the inside: they link the objects.
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(call objects,$(SUPPORT_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lcmocka
+	$(CC) $(LINK_ALL) -o $@ $^ $(TEST_LIBS)
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)

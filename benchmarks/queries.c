@@ -21,6 +21,8 @@ typedef struct result {
     size_t levels[ELEMENTARY_LEVEL_COUNT]; /* how many queries each level decided */
     double *microseconds;                  /* per query, sorted */
     double mean;
+    double sum[2]; /* of the times, of queries that miss and of those that hit */
+    size_t hits;
 } result;
 
 static elementary_verdict decide(const elementary_query *query, query_kind kind) {
@@ -65,7 +67,10 @@ static void run_set(const query_set *set, query_kind kind, result *out) {
         out->false_positives += verdict.touching && !set->truths[i];
         out->false_negatives += !verdict.touching && set->truths[i];
         out->levels[verdict.level]++;
-        out->microseconds[out->queries++] = time_query(&set->queries[i], kind);
+        double microseconds = time_query(&set->queries[i], kind);
+        out->microseconds[out->queries++] = microseconds;
+        out->sum[verdict.touching] += microseconds;
+        out->hits += verdict.touching;
     }
 }
 
@@ -82,10 +87,20 @@ static void write_json(json *out, const result *r) {
     json_end_object(out);
 }
 
+static void print_mean(double sum, size_t count) {
+    if (count > 0)
+        printf(" %8.3f", sum / (double)count);
+    else
+        printf(" %8s", "-");
+}
+
 static void print_row(const char *name, const result *r) {
-    printf("%-52s %8zu %6zu %6zu %8zu %8zu %6zu %9.3f %9.3f %9.3f\n", name, r->queries, r->false_positives,
+    printf("%-44s %8zu %4zu %4zu %7zu %7zu %7zu %8.3f %8.3f %8.3f", name, r->queries, r->false_positives,
            r->false_negatives, r->levels[0], r->levels[1], r->levels[2], r->mean, quantile(r, 0.99),
            quantile(r, 1.0));
+    print_mean(r->sum[1], r->hits);
+    print_mean(r->sum[0], r->queries - r->hits);
+    putchar('\n');
 }
 
 /* Adds counts and times of part to total. */
@@ -97,6 +112,8 @@ static bool add_result(result *total, const result *part) {
     total->queries += part->queries;
     total->false_positives += part->false_positives;
     total->false_negatives += part->false_negatives;
+    total->hits += part->hits;
+    for (int i = 0; i < 2; i++) total->sum[i] += part->sum[i];
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) total->levels[i] += part->levels[i];
     return true;
 }
@@ -175,8 +192,8 @@ int main(int argument_count, char **arguments) {
         json_begin_object(&out, NULL);
         json_begin_array(&out, "files");
     } else {
-        printf("%-52s %8s %6s %6s %8s %8s %6s %9s %9s %9s\n", "set", "queries", "fp", "fn", "level 1",
-               "level 2", "3", "us mean", "us p99", "us max");
+        printf("%-44s %8s %4s %4s %7s %7s %7s %8s %8s %8s %8s %8s\n", "set", "queries", "fp", "fn", "signs",
+               "roots", "exact", "us mean", "us p99", "us max", "us hit", "us miss");
     }
     bool ran = run_files(&o, argument_count, arguments, &out, &total, &error);
     finish(&total);

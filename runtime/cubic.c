@@ -8,8 +8,9 @@
 
 enum { POLISH_STEPS = 8, SUBDIVISIONS = 3 };
 
-/* What rounding of t itself moves a root by, and more than a few steps of Newton's method leave. */
-static const double root_rounding = 0x1p-50, converged = 0x1p-48;
+/* What rounding of t itself moves a root by, and more. A step of Newton's method this short squares the error
+ * to less than that, mostly; where it does not, the proof fails. */
+static const double root_rounding = 0x1p-50, converged = 0x1p-26;
 
 static const double widest_radius = 0x1p-7;
 
@@ -33,8 +34,15 @@ double cubic_slope(const coplanarity *f, double t) {
     return 3.0 * (p.high - p.low);
 }
 
-/* c[0] + c[1] t + c[2] t^2 + c[3] t^3 */
-static void to_monomials(const double b[4], double c[4]) {
+/* c[0] + c[1] t + c[2] t^2 + c[3] t^3, times a power of two at which no product of two over- or underflows.
+ */
+static void to_monomials(const double coefficients[4], double c[4]) {
+    int exponent = 0;
+    double b[4];
+    frexp(larger(larger(fabs(coefficients[0]), fabs(coefficients[1])),
+                 larger(fabs(coefficients[2]), fabs(coefficients[3]))),
+          &exponent);
+    for (int i = 0; i < 4; i++) b[i] = ldexp(coefficients[i], -exponent);
     c[0] = b[0];
     c[1] = 3.0 * (b[1] - b[0]);
     c[2] = 3.0 * (b[0] - 2.0 * b[1] + b[2]);

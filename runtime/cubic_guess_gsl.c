@@ -1,6 +1,4 @@
 /* Where a cubic's roots may be, by GSL, whose solvers used here call no error handler and cannot fail. */
-#ifndef CSCD_NO_GSL
-
 #include "runtime/cubic_guess.h"
 
 #include <gsl/gsl_poly.h>
@@ -15,5 +13,3 @@ int cubic_guess_roots(const double c[4], double roots[3]) {
         return gsl_poly_solve_cubic(c[2] / c[3], c[1] / c[3], c[0] / c[3], &roots[0], &roots[1], &roots[2]);
     return gsl_poly_solve_quadratic(c[2], c[1], c[0], &roots[0], &roots[1]);
 }
-
-#endif

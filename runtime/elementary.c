@@ -14,9 +14,12 @@ static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
 /* A root interval must be as narrow for its begin to be the TOI. */
 static const double narrow = 0x1p-31;
 
-static elementary_verdict decide_exactly(const elementary_query *query, int first_count, const coplanarity *f,
-                                         elementary_hit *hit) {
+/* Between the second level and the third: directions that cost more than they save before the second. */
+static elementary_verdict decide_what_is_left(const elementary_query *query, int first_count,
+                                              const coplanarity *f, elementary_hit *hit) {
     double toi;
+    if (separated_by_diagonals(query, first_count) || separated_in_plane(query, first_count))
+        return apart_by_signs;
     bool touching = exact_touch(query, first_count, &toi);
     if (touching) contact_frame_describe(query, first_count, f, toi, hit);
     return (elementary_verdict){touching, ELEMENTARY_EXACT};
@@ -26,12 +29,12 @@ static elementary_verdict decide_at_roots(const elementary_query *query, const p
                                           int first_count, const coplanarity *f, elementary_hit *hit) {
     root_interval roots[ROOTS_MAX];
     int count = cubic_isolate(f, roots);
-    if (count == ROOTS_UNCERTAIN) return decide_exactly(query, first_count, f, hit);
+    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, first_count, f, hit);
     for (int i = 0; i < count; i++) {
         inside_verdict inside = inside_test(vectors, first_count, &roots[i]);
         if (inside == INSIDE_NO) continue;
         if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)
-            return decide_exactly(query, first_count, f, hit);
+            return decide_what_is_left(query, first_count, f, hit);
         contact_frame_describe(query, first_count, f, roots[i].begin, hit);
         return (elementary_verdict){true, ELEMENTARY_ROOTS};
     }
@@ -43,7 +46,7 @@ static elementary_verdict decide(const elementary_query *query, int first_count,
     point_vectors vectors;
     point_vectors_from(query, first_count, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
-    if (coplanarity_excluded(&f) || separated_in_plane(query, first_count)) return apart_by_signs;
+    if (coplanarity_excluded(&f)) return apart_by_signs;
     return decide_at_roots(query, &vectors, first_count, &f, hit);
 }
 

@@ -191,12 +191,11 @@ static void try_coplanar(search *s) {
     }
 }
 
-bool exact_touch(const elementary_query *query, int first_count, double *toi) {
-    integer_pool pool;
+bool exact_touch_in(integer_pool *pool, const elementary_query *query, int first_count, double *toi) {
     configuration c;
-    integer_pool_start(&pool);
-    configure(&pool, query, first_count, &c);
-    search s = {&pool, &c, 2.0};
+    integer_pool_start(pool);
+    configure(pool, query, first_count, &c);
+    search s = {pool, &c, 2.0};
     if (c.volume.degree >= 0)
         try_roots(&s, &c.volume);
     else
@@ -204,4 +203,9 @@ bool exact_touch(const elementary_query *query, int first_count, double *toi) {
     if (s.toi > 1.0) return false;
     *toi = s.toi;
     return true;
+}
+
+bool exact_touch(const elementary_query *query, int first_count, double *toi) {
+    integer_pool pool;
+    return exact_touch_in(&pool, query, first_count, toi);
 }

@@ -57,6 +57,10 @@ bool separated_by_axes(const elementary_query *query, int first_count) {
         int side = side_along_axis(query->x0, first_count, k);
         if (side != 0 && side == side_along_axis(query->x1, first_count, k)) return true;
     }
+    return false;
+}
+
+bool separated_by_diagonals(const elementary_query *query, int first_count) {
     int start[DIAGONAL_COUNT], end[DIAGONAL_COUNT];
     sides_along_diagonals(query->x0, first_count, start);
     sides_along_diagonals(query->x1, first_count, end);

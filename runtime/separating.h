@@ -5,12 +5,13 @@
 
 #include "runtime/elementary.h"
 
-/* True: certainly apart; the points of the features are compared at one time, so this rejects whatever the
- * features' swept 14-DOPs would. first_count: 1 for VF, 2 for EE. */
+/* All of these: true means certainly apart; first_count: 1 for VF, 2 for EE. The points of the features are
+ * compared at one time, so the axes and the diagonals together reject whatever swept 14-DOPs of the features
+ * would, and more. */
 bool separated_by_axes(const elementary_query *query, int first_count);
+bool separated_by_diagonals(const elementary_query *query, int first_count);
 
-/* The same by directions in the features' common plane at mid-interval, for points that are nearly coplanar.
- */
+/* By directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
 bool separated_in_plane(const elementary_query *query, int first_count);
 
 #endif
