@@ -255,6 +255,81 @@ static const known_case at_rest[] = {
     {"two points, apart", PAIR_EE, 2, {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {0, 0, 1}}, {{0}}},
 };
 
+/* Degenerate at the only time at which the points are coplanar; touches at the ends of the interval; times
+ * that are no fractions. */
+static const known_case momentary[] = {
+    {"a face shrinks to a segment when the vertex passes beyond it",
+     PAIR_VF,
+     2,
+     {{5, 0, 2}, {0, 0, 0}, {4, 0, 0}, {2, 4, 0}},
+     {{5, 0, -2}, {0, 0, 0}, {4, 0, 0}, {2, -4, 0}}},
+    {"the same at its end",
+     PAIR_VF,
+     0.5,
+     {{4, 0, 2}, {0, 0, 0}, {4, 0, 0}, {2, 4, 0}},
+     {{4, 0, -2}, {0, 0, 0}, {4, 0, 0}, {2, -4, 0}}},
+    {"a face shrinks to a point when the vertex passes beside it",
+     PAIR_VF,
+     2,
+     {{1, 0, 2}, {-4, 0, 0}, {4, 0, 0}, {0, 4, 0}},
+     {{1, 0, -2}, {4, 0, 0}, {-4, 0, 0}, {0, -4, 0}}},
+    {"edges on one line for a moment, apart",
+     PAIR_EE,
+     2,
+     {{2, -1, 1}, {4, 1, 1}, {0, 0, 0}, {1, 0, 0}},
+     {{2, 1, -1}, {4, -1, -1}, {0, 0, 0}, {1, 0, 0}}},
+    {"edges on one line for a moment, end to end",
+     PAIR_EE,
+     0.5,
+     {{1, -1, 1}, {3, 1, 1}, {0, 0, 0}, {1, 0, 0}},
+     {{1, 1, -1}, {3, -1, -1}, {0, 0, 0}, {1, 0, 0}}},
+    {"edges parallel for a moment, side by side",
+     PAIR_EE,
+     2,
+     {{0, 0, 1}, {2, 2, 1}, {0, 1, 0}, {2, 1, 0}},
+     {{0, 0, -1}, {2, -2, -1}, {0, 1, 0}, {2, 1, 0}}},
+    {"an edge shrinks to a point on the other",
+     PAIR_EE,
+     0.5,
+     {{-1, 0, 1}, {1, 0, 1}, {0, -1, 0}, {0, 1, 0}},
+     {{1, 0, -1}, {-1, 0, -1}, {0, -1, 0}, {0, 1, 0}}},
+    {"an edge shrinks to a point beyond the other",
+     PAIR_EE,
+     2,
+     {{-1, 2, 1}, {1, 2, 1}, {0, -1, 0}, {0, 1, 0}},
+     {{1, 2, -1}, {-1, 2, -1}, {0, -1, 0}, {0, 1, 0}}},
+    {"a vertex leaves a face at the start",
+     PAIR_VF,
+     0,
+     {{1, 1, 0}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}},
+     {{1, 1, 5}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}},
+    {"a vertex arrives at a corner at the end",
+     PAIR_VF,
+     1,
+     {{1, 1, 5}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}},
+     {{0, 4, 0}, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}}},
+    {"edges arrive end on end at the end",
+     PAIR_EE,
+     1,
+     {{0, 0, 7}, {3, 0, 2}, {0, 0, 0}, {0, 5, 0}},
+     {{0, 0, 0}, {3, 0, 2}, {0, 0, 0}, {0, 5, 0}}},
+    {"an edge turns in the plane onto an end that moves: t (1 + t) = 1",
+     PAIR_EE,
+     0.6180339887498949,
+     {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {1, 4, 0}},
+     {{0, 0, 0}, {4, 4, 0}, {2, 1, 0}, {2, 4, 0}}},
+    {"a face opens in the plane onto a vertex that moves: t (1 + t) = 1",
+     PAIR_VF,
+     0.6180339887498949,
+     {{1, 1, 0}, {0, 0, 0}, {4, 0, 0}, {4, -4, 0}},
+     {{2, 1, 0}, {0, 0, 0}, {4, 4, 0}, {4, -4, 0}}},
+    {"a vertex through a turning plane: t (1 + t) = 1",
+     PAIR_VF,
+     0.6180339887498949,
+     {{1, 0, 1}, {0, -9, 0}, {9, 0, 0}, {0, 9, 0}},
+     {{2, 0, 1}, {0, -9, 0}, {9, 0, 9}, {0, 9, 0}}},
+};
+
 static void check_known(const known_case *c, bool resting) {
     elementary_query query;
     memcpy(query.x0, c->x0, sizeof query.x0);
@@ -294,12 +369,16 @@ static void static_pairs(void **state) {
     CHECK_KNOWN(at_rest, true);
 }
 
+static void for_a_moment(void **state) {
+    (void)state;
+    CHECK_KNOWN(momentary, false);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(sliding_in_a_plane, seed),
-        cmocka_unit_test_setup(moving_on_a_line, seed),
-        cmocka_unit_test_setup(zero_sizes, seed),
-        cmocka_unit_test_setup(static_pairs, seed),
+        cmocka_unit_test_setup(sliding_in_a_plane, seed), cmocka_unit_test_setup(moving_on_a_line, seed),
+        cmocka_unit_test_setup(zero_sizes, seed),         cmocka_unit_test_setup(static_pairs, seed),
+        cmocka_unit_test_setup(for_a_moment, seed),
     };
     return cmocka_run_group_tests_name("elementary_known", tests, NULL, NULL);
 }
