@@ -232,7 +232,7 @@ static void search_from_guess(integer_pool *pool, const algebraic *root, bracket
         at += direction * width;
         if (at <= known->low || at >= known->high) return;
         if (compare_at(pool, root, at, known) != direction) return;
-        width *= width_growth;
+        width = width < grid / width_growth ? width * width_growth : grid;
     }
 }
 

@@ -37,7 +37,7 @@ static void random_mpz(mpz_t out) {
         mpz_add_ui(out, out,
                    kind == 0   ? 0
                    : kind == 1 ? 0xffffffff
-                               : (unsigned long)random_integer(0, 0x7fffffff));
+                               : (unsigned long)random_integer(0, 0x7ffffffe));
     }
     if (random_integer(0, 1)) mpz_neg(out, out);
 }
