@@ -79,7 +79,7 @@ demo: packages
 test: packages
 	@$(MAKE) --no-print-directory test-run
 
-test-run: tool $(TESTS) $(MODELS)
+test-run: tool $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
@@ -134,9 +134,13 @@ $(BUILD)/models/%: $(BUILD)/models/%.o $(TOOL_OBJECTS) $(LIBRARY)
 $(BUILD)/benchmarks/queries: $(call objects,$(BENCHMARK_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
 
-# Tests see the inside: they link the objects.
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(call objects,$(SUPPORT_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TEST_LIBS)
+# Tests see the inside: they link the objects, and what they need of their own support.
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(CORE_OBJECTS) $(TOOL_OBJECTS) $(BUILD)/tests/support.a
+	$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
+
+$(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
+	rm -f $@
+	ar rcs $@ $^
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)

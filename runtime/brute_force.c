@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-/* Comparisons of doubles are exact, so nothing needs rounding here. */
 typedef struct swept_box {
     double low[3], high[3];
 } swept_box;
@@ -24,9 +23,11 @@ static swept_box feature_box(const swept_interval *interval, const uint32_t *ver
     return box;
 }
 
-static bool boxes_overlap(const swept_box *a, const swept_box *b) {
+/* Rounding is monotone, so a gap of no more than the distance is never found to be more: nothing needs to be
+ * rounded outward here. */
+static bool boxes_within(const swept_box *a, const swept_box *b, double distance) {
     for (int k = 0; k < 3; k++) {
-        if (a->high[k] < b->low[k] || b->high[k] < a->low[k]) return false;
+        if (b->low[k] - a->high[k] > distance || a->low[k] - b->high[k] > distance) return false;
     }
     return true;
 }
@@ -44,7 +45,8 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
         if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
         lane->feature_pairs++;
         swept_box vertex = feature_box(interval, &v, 1);
-        if (boxes_overlap(&face, &vertex)) narrow_phase_test_vf(interval, v, triangle, lane);
+        if (boxes_within(&face, &vertex, interval->limit.distance))
+            narrow_phase_test_vf(interval, v, triangle, lane);
     }
 }
 
@@ -57,7 +59,8 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
         if (edges_share_vertex(ends_a, ends_b)) continue;
         lane->feature_pairs++;
         swept_box box_b = feature_box(interval, ends_b, 2);
-        if (boxes_overlap(&box_a, &box_b)) narrow_phase_test_ee(interval, a, b, lane);
+        if (boxes_within(&box_a, &box_b, interval->limit.distance))
+            narrow_phase_test_ee(interval, a, b, lane);
     }
 }
 

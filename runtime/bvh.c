@@ -1,9 +1,9 @@
-/* A flat binary tree of 14-DOPs over the triangles of a mesh: one subtree per component. */
+/* A flat binary tree of 14-DOPs over the triangles of a mesh: one subtree per region. */
 #include "runtime/bvh.h"
 
 #include <string.h>
 
-/* Things to be split from one another: components first, the triangles of one component then. */
+/* Things to be split from one another: regions first, the triangles of one region then. */
 typedef struct item_set {
     uint32_t *order;
     double (*centres)[3]; /* indexed by what order holds */
@@ -17,10 +17,12 @@ typedef struct pending_run {
 
 typedef struct builder {
     const cscd_mesh *mesh;
-    item_set components, triangles;
-    uint32_t *component_offsets; /* the triangles of component c: order[offsets[c] .. offsets[c + 1]) */
+    bvh_regions given;
+    item_set regions, triangles;
+    uint32_t *region_offsets; /* the triangles of region r: order[offsets[r] .. offsets[r + 1]) */
     pending_run *stack;
     bvh_node *nodes;
+    uint32_t *marks;
     uint32_t node_count;
 } builder;
 
@@ -71,14 +73,14 @@ static uint32_t partition_run(const pending_run *run) {
 
 static void build_nodes(builder *b) {
     uint32_t depth = 0;
-    b->stack[depth++] = (pending_run){&b->components, 0, b->mesh->component_count, UINT32_MAX};
+    b->stack[depth++] = (pending_run){&b->regions, 0, b->given.count, UINT32_MAX};
     while (depth > 0) {
         pending_run run = b->stack[--depth];
-        if (run.items == &b->components && run.end - run.begin == 1) {
-            uint32_t component = b->components.order[run.begin];
+        if (run.items == &b->regions && run.end - run.begin == 1) {
+            uint32_t region = b->regions.order[run.begin];
             run.items = &b->triangles;
-            run.begin = b->component_offsets[component];
-            run.end = b->component_offsets[component + 1];
+            run.begin = b->region_offsets[region];
+            run.end = b->region_offsets[region + 1];
         }
         uint32_t node = b->node_count++;
         if (run.parent != UINT32_MAX) b->nodes[run.parent].right = node;
@@ -92,63 +94,69 @@ static void build_nodes(builder *b) {
     }
 }
 
+/* Of triangles, and of regions the mean of these. Wants region_offsets. */
 static void find_centres(builder *b, const double *positions) {
     const cscd_mesh *mesh = b->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        uint32_t component = mesh->triangle_components[t];
+        uint32_t region = b->given.of_triangle[t];
+        uint32_t size = b->region_offsets[region + 1] - b->region_offsets[region];
         for (int k = 0; k < 3; k++) {
             double sum = 0.0;
             for (int i = 0; i < 3; i++) sum += positions[(size_t)mesh->triangles[t][i] * 3 + (size_t)k];
             b->triangles.centres[t][k] = sum / 3.0;
-            b->components.centres[component][k] += sum / 3.0 / mesh->components[component].triangle_count;
+            b->regions.centres[region][k] += sum / 3.0 / size;
         }
     }
 }
 
-/* Components in order, and the triangles sorted by component. */
+/* Regions in order, and the triangles sorted by region. */
 static void fill_orders(builder *b) {
-    const cscd_mesh *mesh = b->mesh;
-    uint32_t sum = 0;
-    for (uint32_t c = 0; c < mesh->component_count; c++) {
-        b->components.order[c] = c;
-        b->component_offsets[c + 1] = sum; /* the next free place; moves up to the run's end below */
-        sum += mesh->components[c].triangle_count;
+    uint32_t triangle_count = b->mesh->triangle_count, sum = 0;
+    uint32_t *next =
+        b->region_offsets + 1; /* counts, then the next free places: these move to the runs' ends */
+    for (uint32_t t = 0; t < triangle_count; t++) next[b->given.of_triangle[t]]++;
+    for (uint32_t r = 0; r < b->given.count; r++) {
+        uint32_t size = next[r];
+        b->regions.order[r] = r;
+        next[r] = sum;
+        sum += size;
     }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        b->triangles.order[b->component_offsets[mesh->triangle_components[t] + 1]++] = t;
+    for (uint32_t t = 0; t < triangle_count; t++) b->triangles.order[next[b->given.of_triangle[t]]++] = t;
 }
 
 static bool allocate_builder(cscd_context *context, builder *b) {
-    uint32_t triangle_count = b->mesh->triangle_count, component_count = b->mesh->component_count;
+    uint32_t triangle_count = b->mesh->triangle_count, region_count = b->given.count;
     b->triangles.order = context_allocate(context, triangle_count, sizeof(uint32_t));
     b->triangles.centres = context_allocate(context, triangle_count, sizeof(double[3]));
-    b->components.order = context_allocate(context, component_count, sizeof(uint32_t));
-    b->components.centres = context_allocate(context, component_count, sizeof(double[3]));
-    b->component_offsets = context_allocate(context, (size_t)component_count + 1, sizeof(uint32_t));
+    b->regions.order = context_allocate(context, region_count, sizeof(uint32_t));
+    b->regions.centres = context_allocate(context, region_count, sizeof(double[3]));
+    b->region_offsets = context_allocate(context, (size_t)region_count + 1, sizeof(uint32_t));
     /* Every run on the stack holds at least one triangle of its own. */
     b->stack = context_allocate(context, (size_t)triangle_count + 1, sizeof *b->stack);
     b->nodes = context_allocate(context, (size_t)triangle_count * 2 - 1, sizeof *b->nodes);
-    return b->triangles.order != NULL && b->triangles.centres != NULL && b->components.order != NULL &&
-           b->components.centres != NULL && b->component_offsets != NULL && b->stack != NULL &&
-           b->nodes != NULL;
+    b->marks = context_allocate(context, (size_t)triangle_count * 2 - 1, sizeof *b->marks);
+    return b->triangles.order != NULL && b->triangles.centres != NULL && b->regions.order != NULL &&
+           b->regions.centres != NULL && b->region_offsets != NULL && b->stack != NULL && b->nodes != NULL &&
+           b->marks != NULL;
 }
 
 static void free_builder(cscd_context *context, builder *b) {
-    void *blocks[] = {b->triangles.order,    b->triangles.centres, b->components.order,
-                      b->components.centres, b->component_offsets, b->stack};
+    void *blocks[] = {b->triangles.order, b->triangles.centres, b->regions.order,
+                      b->regions.centres, b->region_offsets,    b->stack};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
 }
 
-cscd_status bvh_build(const cscd_mesh *mesh, const double *positions, bvh *out) {
-    builder b = {.mesh = mesh};
+cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, bvh *out) {
+    builder b = {.mesh = mesh, .given = regions};
     bool allocated = allocate_builder(mesh->context, &b);
     if (allocated) {
-        find_centres(&b, positions);
         fill_orders(&b);
+        find_centres(&b, positions);
         build_nodes(&b);
-        *out = (bvh){b.nodes, b.node_count};
+        *out = (bvh){b.nodes, b.marks, b.node_count};
     } else {
         context_free(mesh->context, b.nodes);
+        context_free(mesh->context, b.marks);
     }
     free_builder(mesh->context, &b);
     return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -156,7 +164,8 @@ cscd_status bvh_build(const cscd_mesh *mesh, const double *positions, bvh *out) 
 
 void bvh_free(cscd_context *context, bvh *tree) {
     context_free(context, tree->nodes);
-    *tree = (bvh){NULL, 0};
+    context_free(context, tree->marks);
+    *tree = (bvh){0};
 }
 
 void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
@@ -166,6 +175,20 @@ void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
             node->volume = kdop_triangle(vertex_volumes, mesh->triangles[node->triangle]);
         } else {
             node->volume = kdop_union(&tree->nodes[i + 1].volume, &tree->nodes[node->right].volume);
+        }
+    }
+}
+
+void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations) {
+    uint32_t several = regions.count << BVH_FLAG_BITS | ORIENTATION_ZERO;
+    for (uint32_t i = tree->node_count; i-- > 0;) {
+        const bvh_node *node = &tree->nodes[i];
+        if (bvh_is_leaf(node)) {
+            tree->marks[i] =
+                regions.of_triangle[node->triangle] << BVH_FLAG_BITS | orientations[node->triangle];
+        } else {
+            uint32_t left = tree->marks[i + 1], right = tree->marks[node->right];
+            tree->marks[i] = (left ^ right) >> BVH_FLAG_BITS == 0 ? left | right : several;
         }
     }
 }

@@ -1,8 +1,9 @@
-/* A flat binary tree of 14-DOPs over the triangles of a mesh: one subtree per component. */
+/* A flat binary tree of 14-DOPs over the triangles of a mesh: one subtree per region. */
 #ifndef CSCD_BVH_H
 #define CSCD_BVH_H
 
 #include "runtime/kdop.h"
+#include "runtime/orientation.h"
 #include "src/mesh.h"
 
 /* Nodes stand in depth-first order: the left child follows its parent, so children come after parents. */
@@ -14,13 +15,20 @@ typedef struct bvh_node {
 
 typedef struct bvh {
     bvh_node *nodes; /* 2 * triangle_count - 1, the root first; NULL before the build */
+    uint32_t *marks; /* one per node: see bvh_mark */
     uint32_t node_count;
 } bvh;
 
-/* Builds the tree's shape from positions; volumes are left to bvh_refit. Top-down: components are split from
- * one another first, then each is split at the middle of the longest of the 7 axes of its centroids' 14-DOP
+/* Triangles in regions 0 to count - 1, none of them empty. */
+typedef struct bvh_regions {
+    const uint32_t *of_triangle;
+    uint32_t count;
+} bvh_regions;
+
+/* Builds the tree's shape from positions; volumes are left to bvh_refit. Top-down: regions are split from one
+ * another first, then each is split at the middle of the longest of the 7 axes of its centroids' 14-DOP
  * (thesis, chapter 4.2). *out is untouched unless CSCD_OK. */
-cscd_status bvh_build(const cscd_mesh *mesh, const double *positions, bvh *out);
+cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, bvh *out);
 void bvh_free(cscd_context *context, bvh *tree);
 
 static inline bool bvh_is_leaf(const bvh_node *node) {
@@ -29,5 +37,16 @@ static inline bool bvh_is_leaf(const bvh_node *node) {
 
 /* vertex_volumes: swept 14-DOP of every vertex. Refits bottom-up. */
 void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes);
+
+/* Two subtrees cannot be the first to touch when they lie in one region and all their triangles have one
+ * orientation. A mark holds a node's region and, in the two lowest bits, the flags of its triangles or'ed;
+ * nodes of several regions have a region of their own and all flags. */
+void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations);
+
+enum { BVH_FLAG_BITS = 2, BVH_REGIONS_MAX = (1 << 30) - 2 };
+
+static inline bool bvh_marks_cull(uint32_t a, uint32_t b) {
+    return (a ^ b) >> BVH_FLAG_BITS == 0 && !orientations_may_touch((uint8_t)(a & 3), (uint8_t)(b & 3));
+}
 
 #endif

@@ -55,13 +55,15 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
         counters->by_signs += lane->decided[ELEMENTARY_SIGNS];
         counters->by_roots += lane->decided[ELEMENTARY_ROOTS];
         counters->by_exact += lane->decided[ELEMENTARY_EXACT];
+        counters->tests += lane->separations;
         for (size_t j = 0; j < lane->count; j++) {
             if (ignored(d, &lane->contacts[j])) continue;
             *(lane->contacts[j].kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
+            counters->bounded += lane->contacts[j].bounded;
             items[kept++] = lane->contacts[j];
         }
     }
-    counters->tests = counters->by_signs + counters->by_roots + counters->by_exact;
+    counters->tests += counters->by_signs + counters->by_roots + counters->by_exact;
     sort_items(items, d->contacts.scratch, kept, sizeof *items, compare_contacts);
     *out = (cscd_contacts){items, kept};
     return CSCD_OK;

@@ -12,6 +12,27 @@ cscd_detector_options cscd_detector_defaults(void) {
         .struct_size = sizeof(cscd_detector_options), .method = CSCD_METHOD_NONE, .mode = CSCD_MODE_ALL};
 }
 
+/* Lengths are 0 or in the range of positions. */
+static bool is_length(double x) {
+    return x == 0.0 || (x >= 0x1p-300 && x <= 0x1p300); /* false for NaN */
+}
+
+static cscd_status check_separation(cscd_context *context, const cscd_detector_options *options) {
+    if (!is_length(options->min_separation))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "min_separation is %g, expected 0 or a length from 2^-300 to 2^300",
+                            options->min_separation);
+    if (!is_length(options->tolerance))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, expected 0 (the default) or a length from 2^-300 to 2^300",
+                            options->tolerance);
+    if (options->tolerance > 0.0 && options->min_separation == 0.0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, but without min_separation there is none; leave it at 0",
+                            options->tolerance);
+    return CSCD_OK;
+}
+
 static cscd_status check_options(cscd_context *context, const cscd_detector_options *options) {
     if (options->struct_size != sizeof *options)
         return context_fail(
@@ -22,7 +43,7 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown method %d", (int)options->method);
     if (options->mode != CSCD_MODE_ALL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
-    return CSCD_OK;
+    return check_separation(context, options);
 }
 
 static cscd_status allocate_parts(cscd_detector *d) {
@@ -52,6 +73,8 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_detector_opti
     d->context = context;
     d->mesh = mesh;
     d->options = chosen;
+    d->limit.distance = chosen.min_separation;
+    d->limit.tolerance = chosen.tolerance > 0.0 ? chosen.tolerance : 1e-6 * chosen.min_separation;
     status = allocate_parts(d);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
@@ -107,6 +130,7 @@ cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, 
 typedef struct sweep {
     cscd_detector *detector;
     const double *x0, *x1;
+    double distance;
 } sweep;
 
 static void sweep_vertices(void *data, uint32_t index) {
@@ -117,19 +141,26 @@ static void sweep_vertices(void *data, uint32_t index) {
         kdop_point(s->x0 + v * 3, &start);
         kdop_point(s->x1 + v * 3, &end);
         kdop_exact_add(&start, &end);
+        if (s->distance > 0.0) kdop_exact_widen(&start, s->distance);
         s->detector->vertex_volumes[v] = kdop_round(&start);
     }
 }
 
-cscd_status detector_update(cscd_detector *d, const double *x0, const double *x1) {
+/* The volumes of features that come within distance of each other overlap. */
+static cscd_status update_volumes(cscd_detector *d, const double *x0, const double *x1, double distance) {
     if (d->tree.nodes == NULL) {
-        cscd_status status = bvh_build(d->mesh, x0, &d->tree);
+        bvh_regions components = {d->mesh->triangle_components, d->mesh->component_count};
+        cscd_status status = bvh_build(d->mesh, components, x0, &d->tree);
         if (status != CSCD_OK) return status;
     }
-    sweep s = {d, x0, x1};
+    sweep s = {d, x0, x1, distance};
     parallel_run(d->context->threads, d->traversal.lane_count, sweep_vertices, &s);
     bvh_refit(&d->tree, d->mesh, d->vertex_volumes);
     return CSCD_OK;
+}
+
+cscd_status detector_update(cscd_detector *d, const double *x0, const double *x1) {
+    return update_volumes(d, x0, x1, 0.0);
 }
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
@@ -163,10 +194,10 @@ static cscd_status lanes_status(const cscd_detector *d) {
 static cscd_status find_by_trees(step_work *work, cscd_timings *timings, cscd_counters *counters) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
-    cscd_status status = detector_update(d, work->interval.x0, work->interval.x1);
+    cscd_status status = update_volumes(d, work->interval.x0, work->interval.x1, d->limit.distance);
     timer_lap(&since, &timings->update_ms);
     if (status != CSCD_OK) return status;
-    traversal_begin(&d->traversal, &d->tree);
+    traversal_begin(&d->traversal, &d->tree, false);
     for (bool more = true; more && status == CSCD_OK;) {
         status = traversal_round(&d->traversal, &more);
         timer_lap(&since, &timings->traversal_ms);
@@ -215,8 +246,9 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     cscd_timings timings = {.check_ms = detector->timings.check_ms};
     cscd_counters counters = {0};
     cscd_contacts contacts;
-    step_work work = {detector,
-                      {detector->mesh, start, end, detector->vertex_volumes, detector->representatives}};
+    step_work work = {
+        detector,
+        {detector->mesh, start, end, detector->vertex_volumes, detector->representatives, detector->limit}};
     status = step(&work, &timings, &counters, &contacts);
     if (status != CSCD_OK) return context_out_of_memory(context);
     timer_lap(&since, &timings.total_ms);

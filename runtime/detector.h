@@ -16,6 +16,7 @@ struct cscd_detector {
     cscd_context *context;
     const cscd_mesh *mesh;
     cscd_detector_options options;
+    separation limit; /* of the options, the default tolerance filled in */
 
     bvh tree;             /* built from the first positions seen */
     kdop *vertex_volumes; /* of the interval or moment at hand */

@@ -40,6 +40,15 @@ static inline void kdop_exact_add(kdop_exact *volume, const kdop_exact *other) {
         volume->bounds[i] = volume->bounds[i] > other->bounds[i] ? volume->bounds[i] : other->bounds[i];
 }
 
+/* Grown on every side by half of distance, which along the diagonals is sqrt 3 / 2 of it: the volumes of
+ * features that are within distance of each other overlap. 2^-51 of a bound covers its rounding. */
+static inline void kdop_exact_widen(kdop_exact *volume, double distance) {
+    for (int i = 0; i < KDOP_BOUND_COUNT; i++) {
+        double bound = volume->bounds[i] + (i % KDOP_AXIS_COUNT < 3 ? 0.5 : 0.866025403785) * distance;
+        volume->bounds[i] = bound + 0x1p-51 * fabs(bound);
+    }
+}
+
 static inline bool kdop_exact_overlap(const kdop_exact *a, const kdop_exact *b) {
     bool apart = false;
     for (int i = 0; i < KDOP_AXIS_COUNT; i++)

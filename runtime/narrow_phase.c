@@ -9,6 +9,7 @@ void contact_lane_reset(contact_lane *lane) {
     lane->count = 0;
     lane->feature_pairs = 0;
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
+    lane->separations = 0;
     lane->out_of_memory = false;
 }
 
@@ -27,7 +28,7 @@ static bool make_room(cscd_context *context, contact_lane *lane) {
 }
 
 static void add_contact(const swept_interval *interval, contact_lane *lane, cscd_contact_kind kind,
-                        uint32_t a, uint32_t b, const elementary_hit *hit) {
+                        uint32_t a, uint32_t b, const elementary_hit *hit, bool bounded) {
     if (!make_room(interval->mesh->context, lane)) return;
     cscd_contact *contact = &lane->contacts[lane->count++];
     memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
@@ -39,6 +40,22 @@ static void add_contact(const swept_interval *interval, contact_lane *lane, cscd
     contact->v = hit->v;
     memcpy(contact->point, hit->point, sizeof contact->point);
     memcpy(contact->normal, hit->normal, sizeof contact->normal);
+    contact->bounded = bounded;
+}
+
+static void test_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                      const elementary_query *query, contact_lane *lane) {
+    elementary_hit hit;
+    bool vf = kind == CSCD_CONTACT_VF, found, bounded = false;
+    if (interval->limit.distance > 0.0) {
+        found = (vf ? separation_vf : separation_ee)(query, &interval->limit, &hit, &bounded);
+        lane->separations++;
+    } else {
+        elementary_verdict verdict = (vf ? elementary_vf : elementary_ee)(query, &hit);
+        found = verdict.touching;
+        lane->decided[verdict.level]++;
+    }
+    if (found) add_contact(interval, lane, kind, a, b, &hit, bounded);
 }
 
 static void load_point(const swept_interval *interval, uint32_t vertex, elementary_query *query, int i) {
@@ -49,12 +66,9 @@ static void load_point(const swept_interval *interval, uint32_t vertex, elementa
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane) {
     elementary_query query;
-    elementary_hit hit;
     load_point(interval, vertex, &query, 0);
     for (int i = 0; i < 3; i++) load_point(interval, interval->mesh->triangles[triangle][i], &query, i + 1);
-    elementary_verdict verdict = elementary_vf(&query, &hit);
-    lane->decided[verdict.level]++;
-    if (verdict.touching) add_contact(interval, lane, CSCD_CONTACT_VF, vertex, triangle, &hit);
+    test_pair(interval, CSCD_CONTACT_VF, vertex, triangle, &query, lane);
 }
 
 /* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
@@ -62,11 +76,8 @@ void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint3
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
     uint32_t edges[2] = {a < b ? a : b, a < b ? b : a};
     elementary_query query;
-    elementary_hit hit;
     for (int i = 0; i < 4; i++) load_point(interval, interval->mesh->edges[edges[i / 2]][i % 2], &query, i);
-    elementary_verdict verdict = elementary_ee(&query, &hit);
-    lane->decided[verdict.level]++;
-    if (verdict.touching) add_contact(interval, lane, CSCD_CONTACT_EE, edges[0], edges[1], &hit);
+    test_pair(interval, CSCD_CONTACT_EE, edges[0], edges[1], &query, lane);
 }
 
 static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,

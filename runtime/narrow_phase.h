@@ -4,6 +4,7 @@
 
 #include "runtime/elementary.h"
 #include "runtime/kdop.h"
+#include "runtime/separation.h"
 #include "runtime/traversal.h"
 #include "src/mesh.h"
 
@@ -11,8 +12,9 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const kdop *vertex_volumes;     /* swept; NULL: pairs are filtered by the caller */
+    const kdop *vertex_volumes;     /* swept, widened by limit; NULL: pairs are filtered by the caller */
     const uint8_t *representatives; /* NULL when features are paired by the caller */
+    separation limit;               /* distance 0: a contact is touching */
 } swept_interval;
 
 /* What one thread finds. */
@@ -21,6 +23,7 @@ typedef struct contact_lane {
     size_t count, capacity;
     uint64_t feature_pairs;
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by what decided them */
+    uint64_t separations;                     /* tests for minimum separation */
     bool out_of_memory;
 } contact_lane;
 
@@ -29,7 +32,8 @@ void contact_lane_reset(contact_lane *lane);
 /* Tests all pairs of features that the two triangles represent and that share no vertex. */
 void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane);
 
-/* Tests one pair of features without a common vertex, and adds a contact where they touch. */
+/* Tests one pair of features without a common vertex, and adds a contact where they touch, or come within the
+ * limit's distance. */
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane);
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);

@@ -33,8 +33,9 @@ void traversal_destroy(traversal *t) {
     *t = (traversal){0};
 }
 
-void traversal_begin(traversal *t, const bvh *tree) {
+void traversal_begin(traversal *t, const bvh *tree, bool culling) {
     t->tree = tree;
+    t->culling = culling;
     for (uint32_t i = 0; i < t->lane_count; i++) {
         traversal_lane *lane = &t->lanes[i];
         lane->stack_count = lane->pair_count = 0;
@@ -71,7 +72,10 @@ static void split_pair(const bvh_node *nodes, traversal_lane *lane, uint32_t a, 
     }
 }
 
-static void visit(const bvh_node *nodes, traversal_lane *lane, node_pair pair) {
+static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
+    const bvh_node *nodes = t->tree->nodes;
+    const uint32_t *marks = t->tree->marks;
+    if (t->culling && bvh_marks_cull(marks[pair.a], marks[pair.b])) return;
     if (pair.a == pair.b) {
         split_self(nodes, lane, pair.a);
         return;
@@ -103,7 +107,7 @@ static void run_lane(void *data, uint32_t index) {
             lane->out_of_memory = true;
             return;
         }
-        visit(t->tree->nodes, lane, lane->stack[--lane->stack_count]);
+        visit(t, lane, lane->stack[--lane->stack_count]);
     }
 }
 
@@ -127,7 +131,7 @@ static bool spread(traversal *t) {
     while (next < first->stack_count && first->stack_count - next < wanted &&
            first->pair_count < TRAVERSAL_BATCH_SIZE) {
         if (!make_room(t->context, first, PUSHES_PER_STEP)) return false;
-        visit(t->tree->nodes, first, first->stack[next++]);
+        visit(t, first, first->stack[next++]);
     }
     first->stack_count -= next;
     memmove(first->stack, first->stack + next, first->stack_count * sizeof *first->stack);

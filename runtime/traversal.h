@@ -29,6 +29,7 @@ enum { TRAVERSAL_BATCH_SIZE = 1 << 14 };
 typedef struct traversal {
     cscd_context *context;
     const bvh *tree;
+    bool culling;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
 } traversal;
@@ -37,8 +38,9 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of tree, which is already refitted. */
-void traversal_begin(traversal *t, const bvh *tree);
+/* Starts anew at the root of tree, which is already refitted. With culling, pairs that the tree's marks rule
+ * out are left out. */
+void traversal_begin(traversal *t, const bvh *tree, bool culling);
 
 /* Fills each lane's batch with up to TRAVERSAL_BATCH_SIZE pairs; false when all is done and every batch is
  * empty. Between two rounds the caller consumes the batches. The union of all batches, and the sum of

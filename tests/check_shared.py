@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Compares the tool with the data to develop against: every sequence, and two pairs of simulation frames.
+"""Compares the product with the data to develop against: every sequence, two pairs of simulation frames, query sets.
 
-usage: CSCD_TOOL=path/to/cscd check_shared.py DATA
+usage: CSCD_TOOL=path/to/cscd CSCD_QUERIES=path/to/benchmarks/queries check_shared.py DATA
 
 Each sequence has a JSON file by independent programs: `static_pairs` per frame (properly crossing triangle pairs) and
 `ccd_hits` per interval (feature pairs that come within 1e-7 of the diagonal: an upper estimate of the contacts).
@@ -16,7 +16,6 @@ import tempfile
 # Exact truth (rational arithmetic) of one interval each.
 FRAME_PAIRS = [("cloth_ball92.ply", "cloth_ball93.ply", 19032, 94822),
                ("cloth_funnel227.ply", "cloth_funnel228.ply", 27, 107)]
-TOLERANCE = 0.02
 
 
 def replay(tool, model, frames):
@@ -80,9 +79,22 @@ def check_sequence(tool, path):
 def check_pair(tool, folder, first, second, vf, ee):
     first_path = os.path.join(folder, first)
     summary = replay(tool, first_path, [first_path, os.path.join(folder, second)])["summary"]
-    good = all(abs(summary[kind] - truth) <= TOLERANCE * truth for kind, truth in (("vf", vf), ("ee", ee)))
+    good = summary["vf"] == vf and summary["ee"] == ee
     print(f"{first:<20} VF {summary['vf']:>6} of {vf:>6}   EE {summary['ee']:>6} of {ee:>6}   "
-          f"{'agrees within 2 %' if good else 'DIFFERS by more than 2 %'}")
+          f"{'exact' if good else 'DIFFERS'}")
+    return good
+
+
+def check_queries(program, folder):
+    """Every query set: the verdicts must be the truth."""
+    files = sorted(glob.glob(os.path.join(folder, "*.csv")))
+    done = subprocess.run([program, "--json", *files], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{program}: exit {done.returncode}: {done.stderr.strip()}")
+    total = json.loads(done.stdout)["total"]
+    good = total["fp"] == 0 and total["fn"] == 0
+    print(f"{len(files)} query sets: {total['queries']} queries, {total['fp']} false positives, "
+          f"{total['fn']} false negatives, decided by level {total['levels']}   {'exact' if good else 'DIFFERS'}")
     return good
 
 
@@ -95,6 +107,7 @@ def main():
     print(f"{'sequence':<17} {'frames':>6} {'crossing':>8} {'expected':>8} {'VF':>7} {'EE':>7} {'ms/frame':>8}")
     good = [check_sequence(tool, path) for path in sequences]
     good += [check_pair(tool, os.path.join(data, "frames"), *pair) for pair in FRAME_PAIRS]
+    good.append(check_queries(os.environ["CSCD_QUERIES"], os.path.join(data, "queries")))
     print(f"{sum(good)} of {len(good)} comparisons agree")
     return 0 if all(good) else 1
 

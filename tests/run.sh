@@ -7,7 +7,8 @@ cd "$(dirname "$0")/.." || exit 1
 BUILD=$(cd "$BUILD" && pwd) || exit 1
 CSCD_TOOL=$BUILD/cscd
 CSCD_MODELS=$BUILD/models
-export CSCD_TOOL CSCD_MODELS
+CSCD_QUERIES=$BUILD/benchmarks/queries
+export CSCD_TOOL CSCD_MODELS CSCD_QUERIES
 
 log=$(mktemp) || exit 1
 trap 'rm -f "$log"' EXIT

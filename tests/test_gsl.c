@@ -1,4 +1,5 @@
-/* GSL's error handler belongs to the process: the library leaves it as it finds it, and never causes a call. */
+/* GSL's error handler belongs to the process: the library leaves it as it finds it, and never causes a call.
+ */
 #include "runtime/elementary.h"
 #include "tests/support/random.h"
 

@@ -8,8 +8,8 @@
  *   positions   packed x,y,z doubles, vertex_count * 3 values, in any one unit of length; each value is
  *               0 or has a magnitude in [2^-300, 2^300]
  *   time        fraction of the interval, 0 = start, 1 = end
- *   contact     two features that touch; features that share a vertex are never reported,
- *               features that touch at the start already are reported at time 0
+ *   contact     two features that touch, or come within min_separation; features that share a vertex are
+ *               never reported, features in contact at the start already are reported at time 0
  *   timings     milliseconds of wall clock
  *   errors      functions that can fail return cscd_status and leave *out untouched unless CSCD_OK;
  *               cscd_context_detail then says in a sentence what is wrong, where, and what to do (a NULL
@@ -164,9 +164,18 @@ typedef struct cscd_detector_options {
 
     /* Pairs to leave out: a contact is not reported, and a self-intersection not listed, when this says
      * true for two triangles a < b of which one contains (or is) the one feature and the other the other.
-     * Called on the calling thread, for pairs that touch only. Default NULL: nothing is left out. */
+     * Called on the calling thread, for pairs in contact only. Default NULL: nothing is left out. */
     bool (*ignore)(void *user, uint32_t a, uint32_t b);
     void *ignore_user;
+
+    /* Lengths, each 0 or from 2^-300 to 2^300. min_separation 0, the default: a contact is touching; d: a
+     * contact is coming within d. Then every pair that comes within d is reported, and toi is not after the
+     * first moment at which its distance is d; at toi it is at most d + tolerance, so no pair that stays
+     * farther apart is reported. Only contacts that are marked as bounded may be farther apart at toi.
+     * tolerance: 0, the default, stands for 1e-6 d; without min_separation it must be 0. Rounding sets it a
+     * limit: for a pair whose positions at both ends extend over a length s along x, y or z, a tolerance
+     * below 2^-42 s is taken for 2^-42 s. */
+    double min_separation, tolerance;
 } cscd_detector_options;
 
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
@@ -179,7 +188,7 @@ typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact
 /* "vf", "ee"; static storage, never NULL. */
 CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
 
-/* Where two features meet at time toi:
+/* Where two features meet at time toi, or with min_separation, their nearest points then:
  *   VF  a = vertex, b = triangle (p0,p1,p2): (1-u-v) p0 + u p1 + v p2
  *   EE  a < b edges: (1-u) a0 + u a1 and (1-v) b0 + v b1 */
 typedef struct cscd_contact {
@@ -188,7 +197,10 @@ typedef struct cscd_contact {
     double toi; /* in [0,1] */
     double u, v;
     double point[3];  /* midpoint of the two points named by u and v at toi */
-    double normal[3]; /* unit, against the motion of a relative to b; 0 where the features have none */
+    double normal[3]; /* unit, against the motion of a relative to b; 0 where the features have none; with
+                       * min_separation from b's nearest point to a's, unless the features touch */
+    bool bounded;     /* only with min_separation > 0: the bound on work was hit, so toi is safe but may be
+                       * early, and the pair may stay farther apart than min_separation */
 } cscd_contact;
 
 /* Sorted by (toi, kind, a, b). Owned by the detector, valid until its next call. */
@@ -236,8 +248,10 @@ typedef struct cscd_counters { /* of the last step; exact, and the same for any 
     uint64_t tests;            /* elementary tests: those of them whose own swept volumes overlap */
     uint64_t by_signs;         /* tests that signs rejected, */
     uint64_t by_roots;         /* those that intervals about the roots decided, */
-    uint64_t by_exact;         /* and those that took exact arithmetic: together all tests */
+    uint64_t by_exact;         /* and those that took exact arithmetic: together all tests, or with
+                                * min_separation none */
     uint64_t vf, ee;           /* contacts reported */
+    uint64_t bounded;          /* of these, cscd_contact.bounded */
 } cscd_counters;
 
 CSCD_API cscd_timings cscd_detector_timings(const cscd_detector *detector);

@@ -152,8 +152,12 @@ static void edge_vertices(const recording *r, uint32_t edge, uint32_t vertices[2
 }
 
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact) {
-    contact_record record = {
-        .frame = frame, .kind = contact->kind, .toi = contact->toi, .u = contact->u, .v = contact->v};
+    contact_record record = {.frame = frame,
+                             .kind = contact->kind,
+                             .toi = contact->toi,
+                             .u = contact->u,
+                             .v = contact->v,
+                             .bounded = contact->bounded};
     if (contact->kind == CSCD_CONTACT_VF) {
         record.a[0] = r->welded ? r->weld.file_vertex[contact->a] : contact->a;
         memcpy(record.b, r->file.triangles + (size_t)recording_file_triangle(r, contact->b) * 3,

@@ -61,6 +61,7 @@ static bool prepare_detector(replay *r, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = r->options->method;
     options.mode = r->options->mode;
+    options.min_separation = r->options->min_separation;
     if (r->options->ignore_path != NULL || r->options->ignore_rest) {
         options.ignore = ignore_pairs_contain;
         options.ignore_user = &r->ignored;
@@ -78,7 +79,7 @@ static bool open_outputs(replay *r, io_error *error) {
         !output_path_opens(r->options->json_path, error))
         return false;
     if (r->options->contacts_path != NULL &&
-        !contact_file_open(r->options->contacts_path, &r->contacts, error))
+        !contact_file_open(r->options->contacts_path, r->options->min_separation > 0.0, &r->contacts, error))
         return false;
     return summary_open(r->options->json_path, r->recording.mesh, &r->summary, error);
 }
@@ -177,6 +178,9 @@ static void print_results(const replay *r) {
     printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->vf,
            (unsigned long long)t->ee, t->intervals_with_contact, t->intervals);
     frame_list_print(&r->contact_frames, "; from frame ");
+    if (r->options->min_separation > 0.0)
+        printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
+               r->options->min_separation, (unsigned long long)t->bounded);
     if (t->frames_checked > 0) {
         printf("crossing: %u of %u frames", t->frames_crossing, t->frames_checked);
         frame_list_print(&r->crossing_frames, "; ");
@@ -191,10 +195,17 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     r->contacts = NULL;
     if (r->summary == NULL) return written;
     const replay_options *o = r->options;
-    summary_ending ending = {
-        &r->totals,    &r->recording,  cscd_method_name(o->method), cscd_mode_name(o->mode),
-        o->model_path, o->frame_paths, o->frame_path_count,         o->argument_count,
-        o->arguments,  stopped_by};
+    summary_ending ending = {.totals = &r->totals,
+                             .recording = &r->recording,
+                             .method = cscd_method_name(o->method),
+                             .mode = cscd_mode_name(o->mode),
+                             .min_separation = o->min_separation,
+                             .model_path = o->model_path,
+                             .frame_paths = o->frame_paths,
+                             .frame_path_count = o->frame_path_count,
+                             .argument_count = o->argument_count,
+                             .arguments = o->arguments,
+                             .stopped_by = stopped_by};
     written = summary_close(r->summary, &ending, error) && written;
     r->summary = NULL;
     return written;

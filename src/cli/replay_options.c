@@ -21,6 +21,9 @@ static const char help[] =
     "  --frames A:B                  only from frame A to frame B, both included (A: and :B are open ends)\n"
     "  --method none|brute           how pairs are found (default none: volumes; brute: all, slow)\n"
     "  --mode all                    what is promised (default all: every contact)\n"
+    "  --min-separation D            a contact is coming within D, a length in the files' unit, not "
+    "touching\n"
+    "                                (default 0); the static check stays one of crossing and touching\n"
     "  --no-check                    skip the static check of every frame; start states are then unknown\n"
     "  --weld exact|EPS              join vertices that coincide, or lie within EPS, in the first frame\n"
     "  --ignore-rest                 leave out triangle pairs that touch or cross in the first frame\n"
@@ -36,6 +39,7 @@ enum option_id {
     OPTION_FRAMES,
     OPTION_METHOD,
     OPTION_MODE,
+    OPTION_MIN_SEPARATION,
     OPTION_NO_CHECK,
     OPTION_WELD,
     OPTION_IGNORE_REST,
@@ -52,6 +56,7 @@ static const struct option long_options[] = {
     {"frames", required_argument, NULL, OPTION_FRAMES},
     {"method", required_argument, NULL, OPTION_METHOD},
     {"mode", required_argument, NULL, OPTION_MODE},
+    {"min-separation", required_argument, NULL, OPTION_MIN_SEPARATION},
     {"no-check", no_argument, NULL, OPTION_NO_CHECK},
     {"weld", required_argument, NULL, OPTION_WELD},
     {"ignore-rest", no_argument, NULL, OPTION_IGNORE_REST},
@@ -69,6 +74,15 @@ bool parse_weld(const char *text, bool *weld, double *epsilon) {
     return strcmp(text, "exact") == 0 || (parse_double(text, epsilon) && *epsilon > 0.0);
 }
 
+/* 0, or a length that the library takes. */
+static bool parse_length(const char *text, double *out) {
+    double value;
+    if (!parse_double(text, &value) || value < 0.0) return false;
+    if (value != 0.0 && (value < 0x1p-300 || value > 0x1p300)) return false;
+    *out = value;
+    return true;
+}
+
 /* False when the value does not fit. */
 static bool set_option(int id, const char *value, replay_options *o) {
     switch (id) {
@@ -84,6 +98,8 @@ static bool set_option(int id, const char *value, replay_options *o) {
         return cscd_method_from_name(value, &o->method);
     case OPTION_MODE:
         return cscd_mode_from_name(value, &o->mode);
+    case OPTION_MIN_SEPARATION:
+        return parse_length(value, &o->min_separation);
     case OPTION_NO_CHECK:
         return o->no_check = true;
     case OPTION_WELD:

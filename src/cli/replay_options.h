@@ -17,6 +17,7 @@ typedef struct replay_options {
     uint32_t thread_count;
     bool weld;
     double weld_epsilon;
+    double min_separation;
     bool ignore_rest, no_check, quiet, fail_on_contact;
     const char *ignore_path, *contacts_path, *json_path;
     int argument_count; /* the command line, for the provenance */

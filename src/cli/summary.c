@@ -90,6 +90,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json_integer(out, "frame", result->frame);
     json_integer(out, "vf", result->counters.vf);
     json_integer(out, "ee", result->counters.ee);
+    json_integer(out, "bounded", result->counters.bounded);
     if (result->contacts.count > 0)
         json_number(out, "earliest_toi", result->contacts.items[0].toi);
     else
@@ -147,6 +148,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
     json_string(out, "method", e->method);
     json_string(out, "mode", e->mode);
+    json_number(out, "min_separation", e->min_separation);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
     json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
     json_integer(out, "components", cscd_mesh_component_count(w->mesh));
@@ -162,6 +164,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_integer(out, "contradictions", t->contradictions);
     json_integer(out, "vf", t->vf);
     json_integer(out, "ee", t->ee);
+    json_integer(out, "bounded", t->bounded);
     write_column(out, "update_ms", &t->update, t->intervals);
     write_column(out, "traversal_ms", &t->traversal, t->intervals);
     write_column(out, "contact_ms", &t->contact, t->intervals);

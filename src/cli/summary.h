@@ -34,7 +34,7 @@ typedef struct totals {
     uint32_t intervals, intervals_with_contact, states[4];
     uint32_t frames_checked, frames_crossing, first_contact_frame;
     uint32_t contradictions; /* clean intervals that end crossing: contacts that were lost */
-    uint64_t vf, ee;
+    uint64_t vf, ee, bounded;
     column update, traversal, contact, check, total, pcp, tests;
 } totals;
 
@@ -57,6 +57,7 @@ typedef struct summary_ending {
     size_t frame_path_count;
     int argument_count;
     char **arguments;
+    double min_separation;
     const char *stopped_by; /* why not every interval is there; NULL when all are */
 } summary_ending;
 

@@ -14,6 +14,7 @@ void totals_add(totals *t, const interval_result *r) {
     t->states[r->state]++;
     t->vf += r->counters.vf;
     t->ee += r->counters.ee;
+    t->bounded += r->counters.bounded;
     add(&t->update, r->timings.update_ms);
     add(&t->traversal, r->timings.traversal_ms);
     add(&t->contact, r->timings.contact_ms);

@@ -14,7 +14,7 @@
 struct contact_file {
     FILE *file;
     char *path;
-    bool csv;
+    bool csv, with_bounded;
 };
 
 static bool write_failed(const contact_file *file, io_error *error) {
@@ -30,7 +30,13 @@ bool contact_file_names_format(const char *path) {
     return path_has_extension(path, ".csv") || path_has_extension(path, ".jsonl");
 }
 
-bool contact_file_open(const char *path, contact_file **out, io_error *error) {
+static bool write_header(const contact_file *file) {
+    const char *last = file->with_bounded ? ",bounded" : "";
+    return !file->csv ||
+           fprintf(file->file, "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz%s\n", last) >= 0;
+}
+
+bool contact_file_open(const char *path, bool with_bounded, contact_file **out, io_error *error) {
     bool csv = path_has_extension(path, ".csv");
     if (!contact_file_names_format(path))
         return io_fail(error, "%s: contacts are written as .csv or .jsonl", path);
@@ -40,13 +46,14 @@ bool contact_file_open(const char *path, contact_file **out, io_error *error) {
         return io_fail(error, "%s: out of memory", path);
     }
     file->csv = csv;
+    file->with_bounded = with_bounded;
     file->file = fopen(path, "w");
     if (file->file == NULL) {
         write_failed(file, error);
         free_contact_file(file);
         return false;
     }
-    if (csv && fputs("frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz\n", file->file) < 0) {
+    if (!write_header(file)) {
         write_failed(file, error);
         fclose(file->file);
         free_contact_file(file);
@@ -56,7 +63,7 @@ bool contact_file_open(const char *path, contact_file **out, io_error *error) {
     return true;
 }
 
-static void write_csv(FILE *file, const contact_record *r) {
+static void write_csv(FILE *file, const contact_record *r, bool with_bounded) {
     fprintf(file, "%" PRIu32 ",%s,%.17g,", r->frame, cscd_contact_kind_name(r->kind), r->toi);
     if (r->kind == CSCD_CONTACT_VF)
         fprintf(file, "%" PRIu32 ",,%" PRIu32 ",%" PRIu32 ",%" PRIu32, r->a[0], r->b[0], r->b[1], r->b[2]);
@@ -65,6 +72,7 @@ static void write_csv(FILE *file, const contact_record *r) {
     fprintf(file, ",%.17g,%.17g", r->u, r->v);
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->point[k]);
     for (int k = 0; k < 3; k++) fprintf(file, ",%.17g", r->normal[k]);
+    if (with_bounded) fprintf(file, ",%d", r->bounded);
     fputc('\n', file);
 }
 
@@ -80,7 +88,7 @@ static void write_vector(json *out, const char *key, const double vector[3]) {
     json_end_array(out);
 }
 
-static void write_json_line(FILE *file, const contact_record *r) {
+static void write_json_line(FILE *file, const contact_record *r, bool with_bounded) {
     json out = {.file = file};
     bool vf = r->kind == CSCD_CONTACT_VF;
     json_begin_object(&out, NULL);
@@ -93,15 +101,16 @@ static void write_json_line(FILE *file, const contact_record *r) {
     json_number(&out, "v", r->v);
     write_vector(&out, "point", r->point);
     write_vector(&out, "normal", r->normal);
+    if (with_bounded) json_boolean(&out, "bounded", r->bounded);
     json_end_object(&out);
     fputc('\n', file);
 }
 
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error) {
     if (file->csv)
-        write_csv(file->file, record);
+        write_csv(file->file, record, file->with_bounded);
     else
-        write_json_line(file->file, record);
+        write_json_line(file->file, record, file->with_bounded);
     return !ferror(file->file) || write_failed(file, error);
 }
 

@@ -13,6 +13,7 @@ typedef struct contact_record {
     uint32_t a[2], b[3];
     double toi, u, v;
     double point[3], normal[3];
+    bool bounded;
 } contact_record;
 
 typedef struct contact_file contact_file;
@@ -20,8 +21,9 @@ typedef struct contact_file contact_file;
 /* Does the extension say a format that contact_file_open knows? */
 bool contact_file_names_format(const char *path);
 
-/* The format follows from the extension: .csv or .jsonl. On false *out is untouched. */
-bool contact_file_open(const char *path, contact_file **out, io_error *error);
+/* The format follows from the extension: .csv or .jsonl. with_bounded: each row says it, else none has room
+ * for it. On false *out is untouched. */
+bool contact_file_open(const char *path, bool with_bounded, contact_file **out, io_error *error);
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);
 /* Everything written so far reaches the system. */
 bool contact_file_flush(contact_file *file, io_error *error);

@@ -47,7 +47,16 @@ static elementary_query load(const scene *s, const uint32_t vertices[4]) {
     return query;
 }
 
-static void find_vf(const scene *s, oracle_list *out) {
+static void test_pair(const elementary_query *query, const separation *limit, cscd_contact_kind kind,
+                      uint32_t a, uint32_t b, oracle_list *out) {
+    elementary_hit hit;
+    bool vf = kind == CSCD_CONTACT_VF, bounded;
+    bool found = limit == NULL ? (vf ? elementary_vf : elementary_ee)(query, &hit).touching
+                               : (vf ? separation_vf : separation_ee)(query, limit, &hit, &bounded);
+    if (found) add(out, kind, a, b, hit.toi);
+}
+
+static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
     bool used[SCENE_VERTICES_MAX] = {false};
     for (uint32_t i = 0; i < s->triangle_count * 3; i++) used[s->triangles[i]] = true;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
@@ -55,13 +64,12 @@ static void find_vf(const scene *s, oracle_list *out) {
             const uint32_t *c = s->triangles + (size_t)t * 3;
             if (c[0] == v || c[1] == v || c[2] == v) continue;
             elementary_query query = load(s, (uint32_t[4]){v, c[0], c[1], c[2]});
-            elementary_hit hit;
-            if (elementary_vf(&query, &hit).touching) add(out, CSCD_CONTACT_VF, v, t, hit.toi);
+            test_pair(&query, limit, CSCD_CONTACT_VF, v, t, out);
         }
     }
 }
 
-static void find_ee(const scene *s, oracle_list *out) {
+static void find_ee(const scene *s, const separation *limit, oracle_list *out) {
     static edge edges[SCENE_TRIANGLES_MAX * 3];
     uint32_t count = find_edges(s, edges);
     for (uint32_t i = 0; i < count; i++) {
@@ -69,8 +77,7 @@ static void find_ee(const scene *s, oracle_list *out) {
             const uint32_t *a = edges[i].ends, *b = edges[j].ends;
             if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
             elementary_query query = load(s, (uint32_t[4]){a[0], a[1], b[0], b[1]});
-            elementary_hit hit;
-            if (elementary_ee(&query, &hit).touching) add(out, CSCD_CONTACT_EE, i, j, hit.toi);
+            test_pair(&query, limit, CSCD_CONTACT_EE, i, j, out);
         }
     }
 }
@@ -84,9 +91,13 @@ static int compare_contacts(const void *left, const void *right) {
 }
 
 void oracle_find(const scene *s, oracle_list *out) {
+    oracle_find_within(s, NULL, out);
+}
+
+void oracle_find_within(const scene *s, const separation *limit, oracle_list *out) {
     out->count = 0;
-    find_vf(s, out);
-    find_ee(s, out);
+    find_vf(s, limit, out);
+    find_ee(s, limit, out);
     if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);
 }
 

@@ -3,6 +3,7 @@
 #define CSCD_ORACLE_H
 
 #include "cscd/cscd.h"
+#include "runtime/separation.h"
 #include "tests/support/scenes.h"
 
 /* A contact as a triple that can be sorted and compared. */
@@ -20,6 +21,10 @@ typedef struct oracle_list {
 /* All VF and EE pairs without a common vertex, each given to the elementary test; no volumes, no stars.
  * Sorted by (toi, kind, a, b). Edges are numbered as the public API says, by its own reckoning. */
 void oracle_find(const scene *s, oracle_list *out);
+
+/* The same with the test for minimum separation. */
+void oracle_find_within(const scene *s, const separation *limit, oracle_list *out);
+
 void oracle_free(oracle_list *list);
 
 #endif

@@ -8,15 +8,19 @@ typedef struct random_stream {
     uint64_t state;
 } random_stream;
 
-static inline random_stream stream_start(uint64_t seed) {
-    return (random_stream){seed * 0x9e3779b97f4a7c15u + 0x243f6a8885a308d3u};
-}
-
-static inline uint64_t stream_bits(random_stream *random) {
-    uint64_t z = random->state += 0x9e3779b97f4a7c15u;
+static inline uint64_t stream_mix(uint64_t z) {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
+}
+
+/* Mixed, or neighbouring seeds would give one stream, shifted. */
+static inline random_stream stream_start(uint64_t seed) {
+    return (random_stream){stream_mix(seed + 0x243f6a8885a308d3u)};
+}
+
+static inline uint64_t stream_bits(random_stream *random) {
+    return stream_mix(random->state += 0x9e3779b97f4a7c15u);
 }
 
 /* 0 .. limit - 1; limit > 0 */
