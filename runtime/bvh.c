@@ -179,16 +179,18 @@ void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
     }
 }
 
-void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations) {
-    uint32_t several = regions.count << BVH_FLAG_BITS | ORIENTATION_ZERO;
+void bvh_mark(bvh *tree, const cscd_mesh *mesh, bvh_regions regions, const uint8_t *orientations,
+              const bool *included) {
     for (uint32_t i = tree->node_count; i-- > 0;) {
         const bvh_node *node = &tree->nodes[i];
         if (bvh_is_leaf(node)) {
-            tree->marks[i] =
-                regions.of_triangle[node->triangle] << BVH_FLAG_BITS | orientations[node->triangle];
+            uint32_t t = node->triangle;
+            bool counts = included == NULL || included[mesh->triangle_components[t]];
+            tree->marks[i] = regions.of_triangle[t] << BVH_FLAG_BITS | (counts ? orientations[t] : 0);
         } else {
             uint32_t left = tree->marks[i + 1], right = tree->marks[node->right];
-            tree->marks[i] = (left ^ right) >> BVH_FLAG_BITS == 0 ? left | right : several;
+            uint32_t region = (left ^ right) >> BVH_FLAG_BITS == 0 ? left >> BVH_FLAG_BITS : BVH_SEVERAL;
+            tree->marks[i] = region << BVH_FLAG_BITS | bvh_mark_orientation(left | right);
         }
     }
 }

@@ -38,15 +38,30 @@ static inline bool bvh_is_leaf(const bvh_node *node) {
 /* vertex_volumes: swept 14-DOP of every vertex. Refits bottom-up. */
 void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes);
 
+/* A mark holds a node's region and, in the two lowest bits, the orientations of its triangles or'ed. Nodes of
+ * several regions have BVH_SEVERAL for a region. included: per component, NULL for all; triangles of others
+ * have no orientation. */
+void bvh_mark(bvh *tree, const cscd_mesh *mesh, bvh_regions regions, const uint8_t *orientations,
+              const bool *included);
+
+enum { BVH_FLAG_BITS = 2, BVH_SEVERAL = (1 << 30) - 1 };
+
+static inline uint8_t bvh_mark_orientation(uint32_t mark) {
+    return (uint8_t)(mark & 3);
+}
+
 /* Two subtrees cannot be the first to touch when they lie in one region and all their triangles have one
- * orientation. A mark holds a node's region and, in the two lowest bits, the flags of its triangles or'ed;
- * nodes of several regions have a region of their own and all flags. */
-void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations);
-
-enum { BVH_FLAG_BITS = 2, BVH_REGIONS_MAX = (1 << 30) - 2 };
-
+ * orientation. */
 static inline bool bvh_marks_cull(uint32_t a, uint32_t b) {
-    return (a ^ b) >> BVH_FLAG_BITS == 0 && !orientations_may_touch((uint8_t)(a & 3), (uint8_t)(b & 3));
+    return (a ^ b) >> BVH_FLAG_BITS == 0 && a >> BVH_FLAG_BITS != BVH_SEVERAL &&
+           !orientations_may_touch(bvh_mark_orientation(a), bvh_mark_orientation(b));
+}
+
+/* May two subtrees hold a pair of triangles that is culled? For two triangles: is it, itself? */
+static inline bool bvh_marks_hold_culled(uint32_t a, uint32_t b) {
+    bool one_region = (a ^ b) >> BVH_FLAG_BITS == 0 || a >> BVH_FLAG_BITS == BVH_SEVERAL ||
+                      b >> BVH_FLAG_BITS == BVH_SEVERAL;
+    return one_region && (bvh_mark_orientation(a) & bvh_mark_orientation(b)) != 0;
 }
 
 #endif

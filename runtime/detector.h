@@ -2,7 +2,9 @@
 #ifndef CSCD_DETECTOR_H
 #define CSCD_DETECTOR_H
 
+#include "runtime/culling.h"
 #include "runtime/narrow_phase.h"
+#include "runtime/start_state.h"
 #include "runtime/static_check.h"
 #include "runtime/traversal.h"
 
@@ -18,6 +20,14 @@ struct cscd_detector {
     cscd_detector_options options;
     separation limit; /* of the options, the default tolerance filled in */
 
+    culling culling;
+    start_states starts;
+    bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
+    bool *touched;              /* it has a contact with itself, */
+    bool *unfinished;           /* both, and the contacts are to be completed */
+    bool *crossing;             /* per component, at the moment checked last */
+    cscd_guarantee *guarantees; /* per component, of the last step */
+
     bvh tree;             /* built from the first positions seen */
     kdop *vertex_volumes; /* of the interval or moment at hand */
     uint8_t *representatives;
@@ -31,9 +41,16 @@ struct cscd_detector {
     cscd_counters counters;
 };
 
-/* Volumes of all vertices over x0 -> x1 (the same array twice for a moment) and a refitted tree, which is
- * built first when there is none yet. */
-cscd_status detector_update(cscd_detector *detector, const double *x0, const double *x1);
+/* Volumes of all vertices over x0 -> x1 (the same array twice for a moment), widened so that those of
+ * features that come within distance of each other overlap, and a refitted tree, which is built first when
+ * there is none yet. */
+cscd_status detector_update(cscd_detector *detector, const double *x0, const double *x1, double distance);
+
+/* Does the method cull pairs by orientation? */
+static inline bool detector_culls(const cscd_detector *d) {
+    return d->options.method != CSCD_METHOD_NONE && d->options.method != CSCD_METHOD_BRUTE &&
+           d->limit.distance == 0.0;
+}
 
 /* Makes room for count results of size bytes; what the buffer held is dropped. */
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count, size_t size);

@@ -80,12 +80,58 @@ void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b
     test_pair(interval, CSCD_CONTACT_EE, edges[0], edges[1], &query, lane);
 }
 
+/* ---- which triangle pair answers for a pair of features --------------------------------------------- */
+
+/* Without culling: that of the first triangles of both stars. With it: the first pair, in the order of the
+ * stars, that the flags leave (then it is reached, for its volumes contain the features'); and among the
+ * culled pairs that of the first triangles, where the flags leave none. */
+static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
+                              uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
+    for (uint32_t i = begin; i < end; i++) {
+        if (culling_keeps(interval->culling, mesh->vertex_stars[i], against))
+            return !interval->culled_pairs && mesh->vertex_stars[i] == of;
+    }
+    return interval->culled_pairs && mesh->vertex_stars[begin] == of;
+}
+
+static bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
+    if (interval->culling == NULL) return represents_vertex(interval->representatives[of], i);
+    return first_kept_vertex(interval, of, interval->mesh->triangles[of][i], against);
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_kept_edges(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin_a = mesh->edge_star_offsets[a], end_a = mesh->edge_star_offsets[a + 1];
+    uint32_t begin_b = mesh->edge_star_offsets[b], end_b = mesh->edge_star_offsets[b + 1];
+    for (uint32_t i = begin_a; i < end_a; i++) {
+        for (uint32_t j = begin_b; j < end_b; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (culling_keeps(interval->culling, s, t))
+                return !interval->culled_pairs && s == pair.a && t == pair.b;
+        }
+    }
+    return interval->culled_pairs && mesh->edge_stars[begin_a] == pair.a &&
+           mesh->edge_stars[begin_b] == pair.b;
+}
+
+static bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j) {
+    if (interval->culling == NULL)
+        return represents_edge(interval->representatives[pair.a], i) &&
+               represents_edge(interval->representatives[pair.b], j);
+    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
+    if (a < b) return first_kept_edges(interval, pair, a, b);
+    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
+}
+
 static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,
                           contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = mesh->triangles[of][i];
-        if (!represents_vertex(interval->representatives[of], i)) continue;
+        if (!answers_for_vertex(interval, of, i, against)) continue;
         if (triangle_contains(mesh->triangles[against], vertex)) continue;
         lane->feature_pairs++;
         if (kdop_overlap(&interval->vertex_volumes[vertex], face))
@@ -104,13 +150,12 @@ static void test_edges(const swept_interval *interval, triangle_pair pair, const
     kdop volumes_b[3];
     for (int j = 0; j < 3; j++) volumes_b[j] = edge_volume(interval, mesh->triangle_edges[pair.b][j]);
     for (int i = 0; i < 3; i++) {
-        if (!represents_edge(interval->representatives[pair.a], i)) continue;
         uint32_t a = mesh->triangle_edges[pair.a][i];
         kdop volume_a = edge_volume(interval, a);
         bool near = kdop_overlap(&volume_a, face_b);
         for (int j = 0; j < 3; j++) {
             uint32_t b = mesh->triangle_edges[pair.b][j];
-            if (!represents_edge(interval->representatives[pair.b], j)) continue;
+            if (!answers_for_edges(interval, pair, i, j)) continue;
             if (edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
             lane->feature_pairs++;
             if (near && kdop_overlap(&volume_a, &volumes_b[j])) narrow_phase_test_ee(interval, a, b, lane);
@@ -123,7 +168,14 @@ static kdop face_volume(const swept_interval *interval, uint32_t triangle) {
     return kdop_triangle(interval->vertex_volumes, v);
 }
 
+static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
+    return triangle_contains(a, b[0]) || triangle_contains(a, b[1]) || triangle_contains(a, b[2]);
+}
+
 void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (interval->skip_adjacent && triangles_share_vertex(mesh->triangles[pair.a], mesh->triangles[pair.b]))
+        return;
     kdop face_a = face_volume(interval, pair.a), face_b = face_volume(interval, pair.b);
     test_vertices(interval, pair.a, pair.b, &face_b, lane);
     test_vertices(interval, pair.b, pair.a, &face_a, lane);

@@ -2,6 +2,7 @@
 #ifndef CSCD_NARROW_PHASE_H
 #define CSCD_NARROW_PHASE_H
 
+#include "runtime/culling.h"
 #include "runtime/elementary.h"
 #include "runtime/kdop.h"
 #include "runtime/separation.h"
@@ -14,6 +15,9 @@ typedef struct swept_interval {
     const double *x0, *x1;
     const kdop *vertex_volumes;     /* swept, widened by limit; NULL: pairs are filtered by the caller */
     const uint8_t *representatives; /* NULL when features are paired by the caller */
+    const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
+    bool culled_pairs;              /* with culling: the pairs that it culled are those that are reached */
+    bool skip_adjacent;             /* triangles that share a vertex are not tested: as published */
     separation limit;               /* distance 0: a contact is touching */
 } swept_interval;
 

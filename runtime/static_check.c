@@ -92,7 +92,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    traversal_begin(&d->traversal, &d->tree, false);
+    traversal_begin(&d->traversal, &d->tree, TRAVERSAL_ALL);
     for (bool more = true; more;) {
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;
@@ -102,6 +102,40 @@ static cscd_status find_intersections(moment *now) {
         }
     }
     return CSCD_OK;
+}
+
+/* What the lanes hold, ignored pairs among it, is what components are judged by. */
+static void record_starts(const moment *now) {
+    cscd_detector *d = now->detector;
+    const cscd_mesh *mesh = d->mesh;
+    bool zero_areas = false;
+    for (uint32_t c = 0; c < mesh->component_count; c++) d->crossing[c] = false;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        const intersection_lane *lane = &d->intersection_lanes[i];
+        zero_areas |= lane->zero_area_triangles > 0;
+        for (size_t j = 0; j < lane->count; j++) {
+            uint32_t a = mesh->triangle_components[lane->items[j].a];
+            if (a == mesh->triangle_components[lane->items[j].b]) d->crossing[a] = true;
+        }
+    }
+    for (uint32_t t = 0; zero_areas && t < mesh->triangle_count; t++) {
+        const double *corners[3];
+        for (int i = 0; i < 3; i++) corners[i] = now->positions + (size_t)mesh->triangles[t][i] * 3;
+        if (collinear(corners[0], corners[1], corners[2])) d->crossing[mesh->triangle_components[t]] = true;
+    }
+    start_states_checked(&d->starts, now->positions, d->crossing);
+}
+
+static cscd_status check_moment(moment *now) {
+    cscd_status status = detector_update(now->detector, now->positions, now->positions, 0.0);
+    if (status == CSCD_OK) status = find_intersections(now);
+    if (status == CSCD_OK) record_starts(now);
+    return status;
+}
+
+cscd_status static_check_components(cscd_detector *detector, const double *positions) {
+    moment now = {detector, positions};
+    return check_moment(&now);
 }
 
 cscd_status cscd_detector_check(cscd_detector *detector, const double *positions, cscd_intersections *out) {
@@ -114,8 +148,7 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
 
     moment now = {detector, positions};
     cscd_intersections result;
-    status = detector_update(detector, positions, positions);
-    if (status == CSCD_OK) status = find_intersections(&now);
+    status = check_moment(&now);
     if (status == CSCD_OK) status = collect(detector, &result);
     if (status != CSCD_OK) return context_out_of_memory(context);
     timer_lap(&since, &spent);

@@ -12,4 +12,8 @@ typedef struct intersection_lane {
     bool out_of_memory;
 } intersection_lane;
 
+/* Finds out which components meet themselves at one moment, or have triangles of zero area, and tells the
+ * detector's start states. */
+cscd_status static_check_components(cscd_detector *detector, const double *positions);
+
 #endif

@@ -33,9 +33,9 @@ void traversal_destroy(traversal *t) {
     *t = (traversal){0};
 }
 
-void traversal_begin(traversal *t, const bvh *tree, bool culling) {
+void traversal_begin(traversal *t, const bvh *tree, traversal_pass pass) {
     t->tree = tree;
-    t->culling = culling;
+    t->pass = pass;
     for (uint32_t i = 0; i < t->lane_count; i++) {
         traversal_lane *lane = &t->lanes[i];
         lane->stack_count = lane->pair_count = 0;
@@ -75,7 +75,8 @@ static void split_pair(const bvh_node *nodes, traversal_lane *lane, uint32_t a, 
 static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
     const bvh_node *nodes = t->tree->nodes;
     const uint32_t *marks = t->tree->marks;
-    if (t->culling && bvh_marks_cull(marks[pair.a], marks[pair.b])) return;
+    if (t->pass == TRAVERSAL_KEPT && bvh_marks_cull(marks[pair.a], marks[pair.b])) return;
+    if (t->pass == TRAVERSAL_CULLED && !bvh_marks_hold_culled(marks[pair.a], marks[pair.b])) return;
     if (pair.a == pair.b) {
         split_self(nodes, lane, pair.a);
         return;
@@ -83,10 +84,10 @@ static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
     const bvh_node *a = &nodes[pair.a], *b = &nodes[pair.b];
     lane->boxes_tested++;
     if (!kdop_overlap(&a->volume, &b->volume)) return;
-    if (bvh_is_leaf(a) && bvh_is_leaf(b))
-        lane->pairs[lane->pair_count++] = (triangle_pair){a->triangle, b->triangle};
-    else
+    if (!bvh_is_leaf(a) || !bvh_is_leaf(b))
         split_pair(nodes, lane, pair.a, pair.b);
+    else if (t->pass != TRAVERSAL_CULLED || bvh_marks_cull(marks[pair.a], marks[pair.b]))
+        lane->pairs[lane->pair_count++] = (triangle_pair){a->triangle, b->triangle};
 }
 
 static bool make_room(cscd_context *context, traversal_lane *lane, size_t pushes) {

@@ -14,6 +14,10 @@ typedef struct node_pair {
     uint32_t a, b;
 } node_pair;
 
+/* Which pairs of triangles are looked for, of those whose volumes overlap: all; those that the tree's marks
+ * leave; those that they cull. The second and the third together are the first. */
+typedef enum traversal_pass { TRAVERSAL_ALL, TRAVERSAL_KEPT, TRAVERSAL_CULLED } traversal_pass;
+
 /* What one thread works on: its share of the open node pairs and its batch of results. */
 typedef struct traversal_lane {
     _Alignas(CACHE_LINE_SIZE) node_pair *stack;
@@ -29,7 +33,7 @@ enum { TRAVERSAL_BATCH_SIZE = 1 << 14 };
 typedef struct traversal {
     cscd_context *context;
     const bvh *tree;
-    bool culling;
+    traversal_pass pass;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
 } traversal;
@@ -38,9 +42,8 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of tree, which is already refitted. With culling, pairs that the tree's marks rule
- * out are left out. */
-void traversal_begin(traversal *t, const bvh *tree, bool culling);
+/* Starts anew at the root of tree, which is already refitted, and marked unless the pass is ALL. */
+void traversal_begin(traversal *t, const bvh *tree, traversal_pass pass);
 
 /* Fills each lane's batch with up to TRAVERSAL_BATCH_SIZE pairs; false when all is done and every batch is
  * empty. Between two rounds the caller consumes the batches. The union of all batches, and the sum of

@@ -36,8 +36,19 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
     return "unknown kind";
 }
 
-static const char *const method_names[] = {[CSCD_METHOD_NONE] = "none", [CSCD_METHOD_BRUTE] = "brute"};
-static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all"};
+static const char *const method_names[] = {
+    [CSCD_METHOD_AUTO] = "auto",          [CSCD_METHOD_NONE] = "none",     [CSCD_METHOD_BRUTE] = "brute",
+    [CSCD_METHOD_SINGLE] = "single",      [CSCD_METHOD_KMEANS] = "kmeans", [CSCD_METHOD_CHARGE] = "charge",
+    [CSCD_METHOD_PUBLISHED] = "published"};
+static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EARLIEST] = "earliest"};
+static const char *const reasons[] = {
+    [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
+    [CSCD_REASON_SURFACE] = "open, non-manifold or inconsistently oriented",
+    [CSCD_REASON_CROSSING] = "crosses or touches itself at the start",
+    [CSCD_REASON_UNPROVEN] = "not known to be free of self-contact at the start",
+    [CSCD_REASON_CLEAN] = "embedded at the start, and no contact",
+    [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
+    [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing"};
 
 static const char *name_at(const char *const *names, size_t count, size_t i) {
     return i < count ? names[i] : "unknown";
@@ -72,4 +83,8 @@ bool cscd_mode_from_name(const char *name, cscd_mode *out) {
     if (i == COUNT(mode_names)) return false;
     *out = (cscd_mode)i;
     return true;
+}
+
+const char *cscd_reason_text(cscd_reason reason) {
+    return name_at(reasons, COUNT(reasons), (size_t)reason);
 }

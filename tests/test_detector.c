@@ -146,12 +146,12 @@ static void bad_arguments_are_refused(void **state) {
     assert_int_equal(cscd_detector_step(r.detector, NULL, interval.x1, &found), CSCD_INVALID_ARGUMENT);
     assert_int_equal(cscd_detector_step(r.detector, interval.x0, NULL, &found), CSCD_INVALID_ARGUMENT);
     assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_detector_create(NULL, NULL, &detector), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(NULL, NULL, NULL, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, NULL), CSCD_INVALID_ARGUMENT);
     options.method = (cscd_method)99;
-    assert_int_equal(cscd_detector_create(r.mesh, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     options = (cscd_detector_options){0};
-    assert_int_equal(cscd_detector_create(r.mesh, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(r.context), "cscd_detector_defaults"));
     assert_null(detector);
     rig_destroy(&r);

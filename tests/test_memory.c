@@ -46,7 +46,7 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
     cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
     out.status = cscd_context_create(&options, &context);
     if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, &mesh);
-    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, NULL, &detector);
+    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, NULL, NULL, &detector);
     if (out.status == CSCD_OK) {
         out.status = use_detector(detector, &out);
         if (out.status == CSCD_OUT_OF_MEMORY) {
@@ -105,7 +105,7 @@ static void steady_state_allocates_nothing(void **state) {
     outcome out;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, NULL, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_create(mesh, NULL, NULL, &detector), CSCD_OK);
     assert_int_equal(use_detector(detector, &out), CSCD_OK);
     size_t calls = counter.calls;
     for (int i = 0; i < 20; i++) assert_int_equal(use_detector(detector, &out), CSCD_OK);

@@ -28,7 +28,7 @@ static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_
     cscd_detector *detector = NULL;
     options.method = method;
     assert_int_equal(cscd_mesh_create(context, &desc, mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(*mesh, &options, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_create(*mesh, NULL, &options, &detector), CSCD_OK);
     return detector;
 }
 

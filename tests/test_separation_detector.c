@@ -185,7 +185,7 @@ static void expect_refused(const rig *r, double min_separation, double tolerance
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = min_separation;
     options.tolerance = tolerance;
-    assert_int_equal(cscd_detector_create(r->mesh, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(r->mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_null(detector);
     if (strstr(cscd_context_detail(r->context), word) == NULL)
         fail_msg("%s", cscd_context_detail(r->context));

@@ -136,31 +136,115 @@ CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
 CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
 
+/* ---- plan: what is found out about a mesh once, at rest --------------------------------------------- */
+
+/* How pairs are left out that need no test. Methods differ in time only: in one mode every method keeps the
+ * same guarantee, but for PUBLISHED. */
+typedef enum cscd_method {
+    CSCD_METHOD_AUTO,     /* the plan's, or NONE without a plan */
+    CSCD_METHOD_NONE,     /* bounding volumes, no culling */
+    CSCD_METHOD_BRUTE,    /* every pair of features: the reference, O(n^2) */
+    CSCD_METHOD_SINGLE,   /* one region per component */
+    CSCD_METHOD_KMEANS,   /* regions by k-means */
+    CSCD_METHOD_CHARGE,   /* regions by charge density */
+    CSCD_METHOD_PUBLISHED /* the thesis's culling as published; loses contacts, for comparison only */
+} cscd_method;
+
+/* "auto", "none", "brute", "single", "kmeans", "charge", "published"; static storage, never NULL. from_name
+ * leaves *out untouched when it returns false. */
+CSCD_API const char *cscd_method_name(cscd_method method);
+CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
+
+typedef struct cscd_plan cscd_plan;
+
+typedef struct cscd_plan_options {
+    uint32_t struct_size; /* set by cscd_plan_defaults */
+    cscd_method method;   /* CHARGE (default), KMEANS or SINGLE */
+    uint32_t k;           /* KMEANS: how many regions, shared out over the components; default 4 */
+    uint32_t seed;        /* KMEANS; default 1 */
+    double threshold;     /* CHARGE: share of the triangles, by density, that cuts start from; default 0.1 */
+    bool published;       /* CHARGE: equalize with 256 bins as published; default false */
+    size_t memory_limit;  /* CHARGE: in bytes, for the dense system; 0 (default): what the system has */
+} cscd_plan_options;
+
+CSCD_API cscd_plan_options cscd_plan_defaults(void);
+
+/* Cuts the mesh, at rest in positions, into regions. CHARGE solves a dense system: 4 bytes per pair of
+ * triangles of a component, and time with the cube. OUT_OF_MEMORY: the sentence gives the amount. */
+CSCD_API cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions,
+                                      const cscd_plan_options *options, cscd_plan **out);
+CSCD_API void cscd_plan_destroy(cscd_plan *plan);
+
+/* A region: connected triangles of one component, and the point that they are seen from. */
+typedef struct cscd_region {
+    uint32_t component, triangle_count;
+    double area;          /* of its triangles at rest */
+    double visible_share; /* of that area, what faces the detector point, in [0,1] */
+    double detector_point[3];
+} cscd_region;
+
+/* A plan from what an earlier one held, for the same mesh: triangle_regions per triangle, region_count
+ * detector points of 3 doubles, and with CHARGE also charges per triangle and capacitances per component
+ * (else both NULL). INVALID_ARGUMENT names what does not fit. */
+typedef struct cscd_plan_parts {
+    cscd_method method; /* CHARGE, KMEANS or SINGLE */
+    uint32_t region_count;
+    const uint32_t *triangle_regions;
+    const double *detector_points, *charges, *capacitances;
+} cscd_plan_parts;
+
+CSCD_API cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
+                                                 const cscd_plan_parts *parts, cscd_plan **out);
+
+CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
+CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
+CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
+CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
+
+/* Charge per area at potential 1 of the triangle's component, in Gaussian units; 0 without CHARGE. */
+CSCD_API double cscd_plan_triangle_charge(const cscd_plan *plan, uint32_t triangle);
+
+/* Of a component, in units of length (Gaussian); 0 without CHARGE. */
+CSCD_API double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component);
+
+typedef struct cscd_preprocess_timings {
+    double assembly_ms, solve_ms; /* CHARGE */
+    double regions_ms;            /* cuts or k-means, detector points, visible shares */
+    double total_ms;
+} cscd_preprocess_timings;
+
+CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
+
+/* A hash of the vertex count and the triangles in their order, not of positions: plans fit where it is equal.
+ */
+CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
+
 /* ---- detector: the runtime ------------------------------------------------------------------------- */
 
 typedef struct cscd_detector cscd_detector;
 
-/* Methods differ in time only: in one mode every method keeps the same guarantee. */
-typedef enum cscd_method {
-    CSCD_METHOD_NONE, /* bounding volumes, no culling */
-    CSCD_METHOD_BRUTE /* every pair of features: the reference, O(n^2) */
-} cscd_method;
-
-/* "none", "brute"; static storage, never NULL. from_name leaves *out untouched when it returns false. */
-CSCD_API const char *cscd_method_name(cscd_method method);
-CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
-
 typedef enum cscd_mode {
-    CSCD_MODE_ALL /* every contact of the interval is reported, whatever the mesh and its start state */
+    CSCD_MODE_ALL,     /* every contact of the interval is reported, whatever the mesh and its start state */
+    CSCD_MODE_EARLIEST /* of a component whose start is proven embedded, at least one contact with itself at
+                        * its earliest time; so none is a proof that there is none. All other contacts as in
+                        * ALL. See cscd_detector_guarantee */
 } cscd_mode;
 
 CSCD_API const char *cscd_mode_name(cscd_mode mode);
 CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
 
+/* What is done to prove that a component's start is embedded, so that culling by orientation is sound. */
+typedef enum cscd_start {
+    CSCD_START_PROVE,   /* the static check, when the start is not the end of a clean interval */
+    CSCD_START_VOUCHED, /* nothing: the caller knows that every start is embedded */
+    CSCD_START_UNKNOWN  /* nothing: components are culled only after a cscd_detector_check of the start */
+} cscd_start;
+
 typedef struct cscd_detector_options {
     uint32_t struct_size; /* set by cscd_detector_defaults */
-    cscd_method method;   /* default NONE */
+    cscd_method method;   /* default AUTO */
     cscd_mode mode;       /* default ALL */
+    cscd_start start;     /* default PROVE */
 
     /* Pairs to leave out: a contact is not reported, and a self-intersection not listed, when this says
      * true for two triangles a < b of which one contains (or is) the one feature and the other the other.
@@ -179,8 +263,11 @@ typedef struct cscd_detector_options {
 } cscd_detector_options;
 
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
-CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_detector_options *options,
-                                          cscd_detector **out);
+
+/* plan: NULL, or one of the mesh; the detector copies what it needs. A method that culls wants a plan of that
+ * method; with PUBLISHED any will do. */
+CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
+                                          const cscd_detector_options *options, cscd_detector **out);
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
 typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact_kind;
@@ -209,8 +296,8 @@ typedef struct cscd_contacts {
     size_t count;
 } cscd_contacts;
 
-/* All contacts between start and end, two arrays of positions. The first call builds the trees from
- * start, so it is slower; later calls allocate only when a buffer has to grow. */
+/* The contacts between start and end, two arrays of positions, that the mode promises. The first call builds
+ * the trees from start, so it is slower; later calls allocate only when a buffer has to grow. */
 CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
                                         cscd_contacts *out);
 
@@ -233,15 +320,46 @@ typedef struct cscd_intersections {
 CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *positions,
                                          cscd_intersections *out);
 
+/* Why a component's contacts with itself in the last step are what they are. */
+typedef enum cscd_reason {
+    CSCD_REASON_METHOD,   /* complete: the method does not cull, or not with min_separation */
+    CSCD_REASON_SURFACE,  /* complete: open, non-manifold or inconsistently oriented, so never culled */
+    CSCD_REASON_CROSSING, /* complete: the start is known to cross or touch itself */
+    CSCD_REASON_UNPROVEN, /* complete: the start is not known to be embedded */
+    CSCD_REASON_CLEAN,    /* complete: the start is embedded, and there is no contact */
+    CSCD_REASON_FINISHED, /* complete: the start is embedded, there are contacts, and mode ALL found all */
+    CSCD_REASON_EARLIEST  /* the start is embedded, and mode EARLIEST promises the first contacts only */
+} cscd_reason;
+
+/* A sentence's part: "open, non-manifold or inconsistently oriented"; static storage, never NULL. */
+CSCD_API const char *cscd_reason_text(cscd_reason reason);
+
+typedef struct cscd_guarantee {
+    bool complete;       /* every contact of the component with itself was reported */
+    bool start_embedded; /* proven, or vouched for */
+    cscd_reason reason;
+} cscd_guarantee;
+
+/* Of the last step; contacts between components are always complete. component < the mesh's count. */
+CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
+
+/* How a triangle faced its region's detector point during the last step: 1 (S+), -1 (S-), or 0: neither
+ * throughout, or its component was not culled. */
+CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
+
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
     double update_ms;         /* BVH update: swept boxes and refit */
+    double orientation_ms;    /* detector points, orientation check */
     double traversal_ms;      /* overlapping triangle pairs */
     double contact_ms;        /* representatives, elementary tests, sorting */
     double total_ms;          /* the whole step, checks of the input included */
+    double proof_ms;          /* static check of the start within the step, a part of total_ms */
     double check_ms;          /* the last cscd_detector_check */
 } cscd_timings;
 
 typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
+    uint64_t static_checks;    /* of the start, within the step */
+    uint64_t plus, minus;      /* triangles that are S+ and S- */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
     uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */

@@ -15,7 +15,7 @@ rig rig_create(const scene *s, uint32_t thread_count, const cscd_detector_option
     cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
     assert_int_equal(cscd_context_create(&context_options, &r.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r.mesh, options, &r.detector), CSCD_OK);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, options, &r.detector), CSCD_OK);
     return r;
 }
 

@@ -1,0 +1,258 @@
+/* From a mesh at rest to its plan: charge, regions, detector points, what these see. */
+#include "src/plan.h"
+
+#include "preprocess/charge.h"
+#include "preprocess/kmeans.h"
+#include "preprocess/regions.h"
+#include "preprocess/surface.h"
+#include "preprocess/visibility.h"
+#include "src/positions.h"
+#include "src/timer.h"
+
+#include <math.h>
+#include <string.h>
+
+cscd_plan_options cscd_plan_defaults(void) {
+    return (cscd_plan_options){.struct_size = sizeof(cscd_plan_options),
+                               .method = CSCD_METHOD_CHARGE,
+                               .k = 4,
+                               .seed = 1,
+                               .threshold = 0.1};
+}
+
+/* What the steps fill before the plan is made. */
+typedef struct draft {
+    const cscd_mesh *mesh;
+    const double *positions;
+    cscd_plan_options options;
+    uint32_t *regions;
+    uint32_t region_count;
+    double *detector_points, *charges, *capacitances;
+    cscd_preprocess_timings timings;
+} draft;
+
+static bool makes_plans(cscd_method method) {
+    return method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_KMEANS || method == CSCD_METHOD_SINGLE;
+}
+
+static cscd_status check_options(cscd_context *context, const cscd_plan_options *options) {
+    if (options->struct_size != sizeof *options)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "plan options were not made by cscd_plan_defaults (struct_size %u, expected %zu)",
+                            options->struct_size, sizeof *options);
+    if (!makes_plans(options->method))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "method %s makes no plan: use charge, kmeans or single",
+                            cscd_method_name(options->method));
+    if (!(options->threshold > 0.0 && options->threshold < 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "threshold is %g, expected a share of the triangles between 0 and 1",
+                            options->threshold);
+    return CSCD_OK;
+}
+
+static cscd_status solve_charge(draft *d) {
+    charge_timings timings = {0};
+    d->charges = context_allocate(d->mesh->context, d->mesh->triangle_count, sizeof *d->charges);
+    d->capacitances = context_allocate(d->mesh->context, d->mesh->component_count, sizeof *d->capacitances);
+    if (d->charges == NULL || d->capacitances == NULL) return context_out_of_memory(d->mesh->context);
+    size_t limit = d->options.memory_limit;
+    cscd_status status =
+        limit == 0 ? charge_solve(d->mesh, d->positions, d->charges, d->capacitances, &timings)
+                   : charge_solve_within(d->mesh, d->positions, limit, d->charges, d->capacitances, &timings);
+    d->timings.assembly_ms = timings.assembly_ms;
+    d->timings.solve_ms = timings.factor_ms + timings.refine_ms;
+    return status;
+}
+
+static cscd_status find_regions(draft *d) {
+    const cscd_mesh *mesh = d->mesh;
+    region_options by_charge = region_options_defaults();
+    by_charge.threshold = d->options.threshold;
+    by_charge.published = d->options.published;
+    switch (d->options.method) {
+    case CSCD_METHOD_CHARGE:
+        return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count);
+    case CSCD_METHOD_KMEANS:
+        return regions_kmeans(mesh, d->positions, d->options.k, d->options.seed, d->regions, &d->region_count,
+                              d->detector_points);
+    default:
+        return regions_single(mesh, d->regions, &d->region_count);
+    }
+}
+
+/* Detector points of a method that brings none. */
+static cscd_status place_detector_points(draft *d) {
+    if (d->options.method == CSCD_METHOD_KMEANS) return CSCD_OK;
+    d->detector_points = context_allocate(d->mesh->context, d->region_count, sizeof(double[3]));
+    if (d->detector_points == NULL) return context_out_of_memory(d->mesh->context);
+    return detector_points_from_regions(d->mesh, d->positions, d->regions, d->region_count,
+                                        d->detector_points);
+}
+
+/* ---- regions of the plan --------------------------------------------------------------------------- */
+
+static void count_regions(cscd_plan *plan, const draft *d) {
+    for (uint32_t t = 0; t < plan->triangle_count; t++) {
+        cscd_region *region = &plan->regions[d->regions[t]];
+        region->component = d->mesh->triangle_components[t];
+        region->triangle_count++;
+        region->area += surface_area(d->mesh, d->positions, t);
+    }
+}
+
+/* Triangle weights, and the way from the weighted centroid to the detector point. */
+static void weigh_triangles(cscd_plan *plan, const draft *d) {
+    for (uint32_t r = 0; r < plan->region_count; r++)
+        memcpy(plan->detector_offsets[r], plan->regions[r].detector_point, sizeof(double[3]));
+    for (uint32_t t = 0; t < plan->triangle_count; t++) {
+        const cscd_region *region = &plan->regions[d->regions[t]];
+        double weight = region->area > 0.0 ? surface_area(d->mesh, d->positions, t) / region->area
+                                           : 1.0 / region->triangle_count;
+        plan->triangle_weights[t] = weight;
+        for (int i = 0; i < 3; i++) {
+            const double *p = d->positions + (size_t)d->mesh->triangles[t][i] * 3;
+            for (int k = 0; k < 3; k++) plan->detector_offsets[d->regions[t]][k] -= weight / 3.0 * p[k];
+        }
+    }
+}
+
+static cscd_status fill_plan(cscd_plan *plan, const draft *d) {
+    double *shares = context_allocate(plan->context, plan->region_count, sizeof *shares);
+    if (shares == NULL) return context_out_of_memory(plan->context);
+    cscd_status status =
+        visible_shares(d->mesh, d->positions, d->regions, plan->region_count, d->detector_points, shares);
+    if (status == CSCD_OK) {
+        memcpy(plan->triangle_regions, d->regions, plan->triangle_count * sizeof *plan->triangle_regions);
+        count_regions(plan, d);
+        for (uint32_t r = 0; r < plan->region_count; r++) {
+            plan->regions[r].visible_share = shares[r];
+            memcpy(plan->regions[r].detector_point, d->detector_points + (size_t)r * 3, sizeof(double[3]));
+        }
+        weigh_triangles(plan, d);
+        if (plan->charges != NULL) {
+            memcpy(plan->charges, d->charges, plan->triangle_count * sizeof *plan->charges);
+            memcpy(plan->capacitances, d->capacitances, plan->component_count * sizeof *plan->capacitances);
+        }
+    }
+    context_free(plan->context, shares);
+    return status;
+}
+
+static cscd_status make_plan(const draft *d, cscd_plan **out) {
+    cscd_plan *plan = plan_allocate(d->mesh, d->options.method, d->region_count);
+    if (plan == NULL) return context_out_of_memory(d->mesh->context);
+    cscd_status status = fill_plan(plan, d);
+    if (status != CSCD_OK) {
+        cscd_plan_destroy(plan);
+        return status;
+    }
+    *out = plan;
+    return CSCD_OK;
+}
+
+static cscd_status run_draft(draft *d, cscd_plan **out) {
+    double start = timer_now_ms(), since = start;
+    cscd_status status = d->options.method == CSCD_METHOD_CHARGE ? solve_charge(d) : CSCD_OK;
+    since = timer_now_ms();
+    if (status == CSCD_OK) status = find_regions(d);
+    if (status == CSCD_OK) status = place_detector_points(d);
+    if (status == CSCD_OK) status = make_plan(d, out);
+    if (status != CSCD_OK) return status;
+    timer_lap(&since, &d->timings.regions_ms);
+    timer_lap(&start, &d->timings.total_ms);
+    (*out)->timings = d->timings;
+    return CSCD_OK;
+}
+
+cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions, const cscd_plan_options *options,
+                             cscd_plan **out) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create: out is NULL");
+    draft d = {.mesh = mesh, .positions = positions};
+    d.options = options != NULL ? *options : cscd_plan_defaults();
+    cscd_status status = check_options(context, &d.options);
+    if (status == CSCD_OK) status = positions_check(context, positions, mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+    d.regions = context_allocate(context, mesh->triangle_count, sizeof *d.regions);
+    bool allocated = d.regions != NULL;
+    if (allocated && d.options.method == CSCD_METHOD_KMEANS) {
+        d.detector_points = context_allocate(context, kmeans_capacity(mesh, d.options.k), sizeof(double[3]));
+        allocated = d.detector_points != NULL;
+    }
+    status = allocated ? run_draft(&d, out) : context_out_of_memory(context);
+    context_free(context, d.regions);
+    context_free(context, d.detector_points);
+    context_free(context, d.charges);
+    context_free(context, d.capacitances);
+    return status;
+}
+
+/* ---- from parts ------------------------------------------------------------------------------------ */
+
+static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *parts, uint32_t *component_of) {
+    cscd_context *context = mesh->context;
+    if (!makes_plans(parts->method))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s makes no plan",
+                            cscd_method_name(parts->method));
+    if (parts->triangle_regions == NULL || parts->detector_points == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "triangle_regions or detector_points is NULL");
+    bool charged = parts->charges != NULL && parts->capacitances != NULL;
+    if (charged != (parts->method == CSCD_METHOD_CHARGE))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "charges and capacitances belong to method charge, and to no other");
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        uint32_t region = parts->triangle_regions[t], component = mesh->triangle_components[t];
+        if (region >= parts->region_count)
+            return context_fail(context, CSCD_INVALID_ARGUMENT,
+                                "triangle %u is in region %u, but there are %u", t, region,
+                                parts->region_count);
+        if (component_of[region] != 0 && component_of[region] != component + 1)
+            return context_fail(context, CSCD_INVALID_ARGUMENT, "region %u spans the components %u and %u",
+                                region, component_of[region] - 1, component);
+        component_of[region] = component + 1;
+    }
+    for (uint32_t r = 0; r < parts->region_count; r++) {
+        if (component_of[r] == 0)
+            return context_fail(context, CSCD_INVALID_ARGUMENT, "region %u has no triangle", r);
+        for (int k = 0; k < 3; k++) {
+            if (!(fabs(parts->detector_points[(size_t)r * 3 + (size_t)k]) <= 0x1p301))
+                return context_fail(context, CSCD_INVALID_ARGUMENT,
+                                    "the detector point of region %u is not finite", r);
+        }
+    }
+    return CSCD_OK;
+}
+
+/* The pointers of parts are copied from, not written through. */
+static draft draft_of_parts(const cscd_mesh *mesh, const double *positions, const cscd_plan_parts *parts) {
+    draft d = {.mesh = mesh, .positions = positions, .region_count = parts->region_count};
+    d.options.method = parts->method;
+    d.regions = (uint32_t *)(uintptr_t)parts->triangle_regions;
+    d.detector_points = (double *)(uintptr_t)parts->detector_points;
+    d.charges = (double *)(uintptr_t)parts->charges;
+    d.capacitances = (double *)(uintptr_t)parts->capacitances;
+    return d;
+}
+
+cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
+                                        const cscd_plan_parts *parts, cscd_plan **out) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    if (parts == NULL || out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "cscd_plan_create_from_parts: parts or out is NULL");
+    if (parts->region_count == 0 || parts->region_count > mesh->triangle_count)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%u regions for %u triangles",
+                            parts->region_count, mesh->triangle_count);
+    cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+    uint32_t *component_of = context_allocate(context, parts->region_count, sizeof *component_of);
+    if (component_of == NULL) return context_out_of_memory(context);
+    status = check_parts(mesh, parts, component_of);
+    context_free(context, component_of);
+    if (status != CSCD_OK) return status;
+    draft d = draft_of_parts(mesh, positions, parts);
+    return make_plan(&d, out);
+}

@@ -1,0 +1,252 @@
+/* One interval through the stages of the pipeline. */
+#include "runtime/detector.h"
+
+#include "runtime/brute_force.h"
+#include "runtime/contact_list.h"
+#include "src/positions.h"
+#include "src/timer.h"
+
+/* ---- BVH update ------------------------------------------------------------------------------------ */
+
+typedef struct sweep {
+    cscd_detector *detector;
+    const double *x0, *x1;
+    double distance;
+} sweep;
+
+static void sweep_vertices(void *data, uint32_t index) {
+    const sweep *s = data;
+    size_t count = s->detector->mesh->vertex_count, lanes = s->detector->traversal.lane_count;
+    for (size_t v = count * index / lanes; v < count * (index + 1) / lanes; v++) {
+        kdop_exact start, end;
+        kdop_point(s->x0 + v * 3, &start);
+        kdop_point(s->x1 + v * 3, &end);
+        kdop_exact_add(&start, &end);
+        if (s->distance > 0.0) kdop_exact_widen(&start, s->distance);
+        s->detector->vertex_volumes[v] = kdop_round(&start);
+    }
+}
+
+static bvh_regions regions_of(const cscd_detector *d) {
+    return (bvh_regions){d->culling.triangle_regions, d->culling.region_count};
+}
+
+cscd_status detector_update(cscd_detector *d, const double *x0, const double *x1, double distance) {
+    if (d->tree.nodes == NULL) {
+        cscd_status status = bvh_build(d->mesh, regions_of(d), x0, &d->tree);
+        if (status != CSCD_OK) return status;
+    }
+    sweep s = {d, x0, x1, distance};
+    parallel_run(d->context->threads, d->traversal.lane_count, sweep_vertices, &s);
+    bvh_refit(&d->tree, d->mesh, d->vertex_volumes);
+    return CSCD_OK;
+}
+
+/* ---- one interval ---------------------------------------------------------------------------------- */
+
+typedef struct step_work {
+    cscd_detector *detector;
+    swept_interval interval;
+    cscd_timings timings;
+    cscd_counters counters;
+    bool any_culled;
+} step_work;
+
+static void test_batch(void *data, uint32_t index) {
+    step_work *work = data;
+    const traversal_lane *batch = &work->detector->traversal.lanes[index];
+    contact_lane *lane = &work->detector->contact_lanes[index];
+    for (uint32_t i = 0; i < batch->pair_count && !lane->out_of_memory; i++)
+        narrow_phase_test(&work->interval, batch->pairs[i], lane);
+}
+
+static void test_share(void *data, uint32_t index) {
+    step_work *work = data;
+    brute_force_test(&work->interval, index, work->detector->traversal.lane_count,
+                     &work->detector->contact_lanes[index]);
+}
+
+static cscd_status lanes_status(const cscd_detector *d) {
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        if (d->contact_lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    return CSCD_OK;
+}
+
+static cscd_status traverse(step_work *work, traversal_pass pass) {
+    cscd_detector *d = work->detector;
+    cscd_status status = CSCD_OK;
+    double since = timer_now_ms();
+    traversal_begin(&d->traversal, &d->tree, pass);
+    for (bool more = true; more && status == CSCD_OK;) {
+        status = traversal_round(&d->traversal, &more);
+        timer_lap(&since, &work->timings.traversal_ms);
+        if (status != CSCD_OK) return status;
+        for (uint32_t i = 0; i < d->traversal.lane_count; i++)
+            work->counters.pcp += d->traversal.lanes[i].pair_count;
+        parallel_run(d->context->threads, d->traversal.lane_count, test_batch, work);
+        status = lanes_status(d);
+        timer_lap(&since, &work->timings.contact_ms);
+    }
+    work->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
+    return status;
+}
+
+/* ---- culling --------------------------------------------------------------------------------------- */
+
+/* Which components are culled: those whose start is embedded, for certain. */
+static cscd_status prove_starts(step_work *work) {
+    cscd_detector *d = work->detector;
+    double since = timer_now_ms();
+    start_states_begin(&d->starts, work->interval.x0);
+    if (!detector_culls(d)) return CSCD_OK;
+    if (d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
+    if (d->options.start == CSCD_START_PROVE && start_states_want_check(&d->starts)) {
+        cscd_status status = static_check_components(d, work->interval.x0);
+        if (status != CSCD_OK) return status;
+        work->counters.static_checks++;
+    }
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        bool embedded = d->mesh->components[c].closed_manifold && d->starts.of[c].state == START_EMBEDDED;
+        d->culled[c] = embedded || d->options.method == CSCD_METHOD_PUBLISHED;
+        work->any_culled |= d->culled[c];
+    }
+    timer_lap(&since, &work->timings.proof_ms);
+    return CSCD_OK;
+}
+
+static void orient(step_work *work) {
+    cscd_detector *d = work->detector;
+    bool published = d->options.method == CSCD_METHOD_PUBLISHED;
+    double since = timer_now_ms();
+    culling_orient(&d->culling, work->interval.x0, work->interval.x1, d->culled, published);
+    bvh_mark(&d->tree, d->mesh, regions_of(d), d->culling.orientations, NULL);
+    timer_lap(&since, &work->timings.orientation_ms);
+    work->counters.plus = d->culling.plus;
+    work->counters.minus = d->culling.minus;
+    work->interval.culling = published ? NULL : &d->culling;
+    work->interval.skip_adjacent = published;
+}
+
+/* The component that both features belong to; UINT32_MAX: two. */
+static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *contact) {
+    bool vf = contact->kind == CSCD_CONTACT_VF;
+    uint32_t first = vf ? mesh->vertex_stars[mesh->vertex_star_offsets[contact->a]]
+                        : mesh->edge_stars[mesh->edge_star_offsets[contact->a]];
+    uint32_t second = vf ? contact->b : mesh->edge_stars[mesh->edge_star_offsets[contact->b]];
+    uint32_t a = mesh->triangle_components[first], b = mesh->triangle_components[second];
+    return a == b ? a : UINT32_MAX;
+}
+
+/* Components with a contact with themselves, ignored pairs among them. */
+static void find_touched(const cscd_detector *d) {
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->touched[c] = false;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        for (size_t j = 0; j < d->contact_lanes[i].count; j++) {
+            uint32_t component = common_component(d->mesh, &d->contact_lanes[i].contacts[j]);
+            if (component != UINT32_MAX) d->touched[component] = true;
+        }
+    }
+}
+
+/* Mode ALL: the pairs that were culled in components that did touch themselves. */
+static cscd_status finish_touched(step_work *work) {
+    cscd_detector *d = work->detector;
+    bool any = false;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        d->unfinished[c] = d->culled[c] && d->touched[c];
+        any |= d->unfinished[c];
+    }
+    if (!any) return CSCD_OK;
+    double since = timer_now_ms();
+    bvh_mark(&d->tree, d->mesh, regions_of(d), d->culling.orientations, d->unfinished);
+    timer_lap(&since, &work->timings.orientation_ms);
+    work->interval.culled_pairs = true;
+    return traverse(work, TRAVERSAL_CULLED);
+}
+
+static cscd_status find_by_trees(step_work *work) {
+    cscd_detector *d = work->detector;
+    double since = timer_now_ms();
+    cscd_status status = detector_update(d, work->interval.x0, work->interval.x1, d->limit.distance);
+    timer_lap(&since, &work->timings.update_ms);
+    if (status != CSCD_OK) return status;
+    if (!work->any_culled) return traverse(work, TRAVERSAL_ALL);
+    orient(work);
+    status = traverse(work, TRAVERSAL_KEPT);
+    if (status != CSCD_OK || d->options.mode != CSCD_MODE_ALL || work->interval.culling == NULL)
+        return status;
+    find_touched(d);
+    return finish_touched(work);
+}
+
+static cscd_status find_by_brute_force(step_work *work) {
+    cscd_detector *d = work->detector;
+    double since = timer_now_ms();
+    parallel_run(d->context->threads, d->traversal.lane_count, test_share, work);
+    timer_lap(&since, &work->timings.contact_ms);
+    return lanes_status(d);
+}
+
+static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
+    start_state start = d->starts.of[component].state;
+    cscd_guarantee g = {true, start == START_EMBEDDED, CSCD_REASON_METHOD};
+    if (d->options.method == CSCD_METHOD_PUBLISHED) g.complete = false;
+    if (!detector_culls(d) || d->options.method == CSCD_METHOD_PUBLISHED) return g;
+    if (!d->mesh->components[component].closed_manifold)
+        g.reason = CSCD_REASON_SURFACE;
+    else if (start != START_EMBEDDED)
+        g.reason = start == START_CROSSING ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
+    else if (!d->touched[component])
+        g.reason = CSCD_REASON_CLEAN;
+    else
+        g.reason = d->options.mode == CSCD_MODE_ALL ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
+    g.complete = g.reason != CSCD_REASON_EARLIEST;
+    return g;
+}
+
+static cscd_status step(step_work *work, cscd_contacts *contacts) {
+    cscd_detector *d = work->detector;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) contact_lane_reset(&d->contact_lanes[i]);
+    culling_clear(&d->culling);
+    cscd_status status = prove_starts(work);
+    if (status == CSCD_OK)
+        status = d->options.method == CSCD_METHOD_BRUTE ? find_by_brute_force(work) : find_by_trees(work);
+    if (status != CSCD_OK) return status;
+    find_touched(d);
+    double since = timer_now_ms();
+    status = contact_list_collect(d, &work->counters, contacts);
+    timer_lap(&since, &work->timings.contact_ms);
+    return status;
+}
+
+cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
+                               cscd_contacts *out) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
+    double since = timer_now_ms();
+    cscd_status status = positions_check(context, start, detector->mesh->vertex_count, "start");
+    if (status == CSCD_OK) status = positions_check(context, end, detector->mesh->vertex_count, "end");
+    if (status != CSCD_OK) return status;
+
+    cscd_contacts contacts;
+    step_work work = {.detector = detector,
+                      .interval = {.mesh = detector->mesh,
+                                   .x0 = start,
+                                   .x1 = end,
+                                   .vertex_volumes = detector->vertex_volumes,
+                                   .representatives = detector->representatives,
+                                   .limit = detector->limit},
+                      .timings = {.check_ms = detector->timings.check_ms}};
+    status = step(&work, &contacts);
+    if (status != CSCD_OK) return context_out_of_memory(context);
+    for (uint32_t c = 0; c < detector->mesh->component_count; c++)
+        detector->guarantees[c] = guarantee_of(detector, c);
+    start_states_end(&detector->starts, end, detector->touched);
+    timer_lap(&since, &work.timings.total_ms);
+    detector->timings = work.timings;
+    detector->counters = work.counters;
+    *out = contacts;
+    return CSCD_OK;
+}

@@ -1,0 +1,257 @@
+/* Culling by orientation on random intervals: mode all equals the method that culls nothing, and mode
+ * earliest loses no first contact of an embedded component; the published rule does. */
+#include "cscd/cscd.h"
+#include "tests/support/scenes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { INTERVALS_PER_FAMILY = 25 };
+#else
+enum { INTERVALS_PER_FAMILY = 250 };
+#endif
+
+enum { PUBLISHED_INTERVALS_PER_FAMILY = 150, COMPONENTS_MAX = 2000 };
+
+/* A TOI is early by less than this. */
+#define TOI_EARLY 1e-9
+
+static scene interval; /* large; one test at a time */
+
+/* One scene, and what it has without culling. */
+typedef struct reference {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+    cscd_contacts contacts;
+} reference;
+
+static reference reference_create(const scene *s) {
+    reference r = {0};
+    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+    assert_int_equal(cscd_detector_step(r.detector, s->x0, s->x1, &r.contacts), CSCD_OK);
+    return r;
+}
+
+static void reference_destroy(reference *r) {
+    cscd_detector_destroy(r->detector);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+}
+
+/* The component of a feature of a mesh: of the first triangle that holds it. */
+static uint32_t component_of(const cscd_mesh *mesh, const scene *s, cscd_contact_kind kind, uint32_t feature,
+                             bool second) {
+    uint32_t vertices[2] = {feature, 0};
+    if (kind == CSCD_CONTACT_VF && second) return cscd_mesh_triangle_component(mesh, feature);
+    if (kind == CSCD_CONTACT_EE) cscd_mesh_edge(mesh, feature, vertices);
+    for (uint32_t t = 0; t < s->triangle_count; t++) {
+        for (int i = 0; i < 3; i++) {
+            if (s->triangles[t * 3 + (uint32_t)i] == vertices[0])
+                return cscd_mesh_triangle_component(mesh, t);
+        }
+    }
+    return UINT32_MAX;
+}
+
+/* The component whose contact with itself this is; UINT32_MAX: it is one between two. */
+static uint32_t self_component(const cscd_mesh *mesh, const scene *s, const cscd_contact *c) {
+    uint32_t a = component_of(mesh, s, c->kind, c->a, false), b = component_of(mesh, s, c->kind, c->b, true);
+    return a == b ? a : UINT32_MAX;
+}
+
+static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+static void check_complete(const cscd_contacts *found, const cscd_contacts *truth) {
+    assert_int_equal(found->count, truth->count);
+    for (size_t i = 0; i < found->count; i++) assert_true(same_contact(&found->items[i], &truth->items[i]));
+}
+
+/* Per component the earliest contact with itself in a list, INFINITY where there is none. */
+static void earliest_times(const reference *r, const scene *s, const cscd_contacts *list,
+                           double times[COMPONENTS_MAX]) {
+    for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) times[c] = INFINITY;
+    for (size_t i = 0; i < list->count; i++) {
+        uint32_t c = self_component(r->mesh, s, &list->items[i]);
+        if (c != UINT32_MAX) times[c] = fmin(times[c], list->items[i].toi);
+    }
+}
+
+/* The list is part of the truth, in the same order; what is missing is of embedded components, and not their
+ * first. Returns how many are missing. */
+static size_t check_earliest(const reference *r, const scene *s, const cscd_detector *detector,
+                             const cscd_contacts *found) {
+    static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
+    size_t next = 0;
+    for (size_t i = 0; i < r->contacts.count; i++) {
+        if (next < found->count && same_contact(&found->items[next], &r->contacts.items[i])) {
+            next++;
+            continue;
+        }
+        uint32_t c = self_component(r->mesh, s, &r->contacts.items[i]);
+        assert_true(c != UINT32_MAX && cscd_detector_guarantee(detector, c).start_embedded);
+        assert_false(cscd_detector_guarantee(detector, c).complete);
+    }
+    assert_int_equal(next, found->count);
+    earliest_times(r, s, &r->contacts, expected);
+    earliest_times(r, s, found, times);
+    for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
+        assert_true(isinf(expected[c]) == isinf(times[c]));
+        if (!isinf(expected[c])) assert_true(fabs(times[c] - expected[c]) <= TOI_EARLY);
+    }
+    return r->contacts.count - found->count;
+}
+
+/* ---- methods --------------------------------------------------------------------------------------- */
+
+typedef struct tally {
+    uint32_t intervals, embedded, first_contacts, lost;
+    size_t contacts, missing;
+    uint64_t pairs, pairs_without;
+} tally;
+
+typedef struct variant {
+    cscd_method method;
+    uint32_t k;
+} variant;
+
+static cscd_plan *make_plan(const reference *r, const scene *s, variant v, uint32_t seed) {
+    cscd_plan *plan = NULL;
+    cscd_plan_options options = cscd_plan_defaults();
+    if (v.k == 0) return NULL;
+    options.method = CSCD_METHOD_KMEANS;
+    options.k = v.k;
+    options.seed = seed;
+    assert_int_equal(cscd_plan_create(r->mesh, s->x0, &options, &plan), CSCD_OK);
+    return plan;
+}
+
+static bool all_embedded(const reference *r, const cscd_detector *detector) {
+    for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
+        if (!cscd_detector_guarantee(detector, c).start_embedded) return false;
+    }
+    return true;
+}
+
+static void run_variant(const reference *r, const scene *s, variant v, cscd_mode mode, uint32_t seed,
+                        tally *sum) {
+    cscd_plan *plan = make_plan(r, s, v, seed);
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_detector *detector = NULL;
+    cscd_contacts found;
+    options.method = v.method;
+    options.mode = mode;
+    assert_int_equal(cscd_detector_create(r->mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_step(detector, s->x0, s->x1, &found), CSCD_OK);
+    if (mode == CSCD_MODE_ALL)
+        check_complete(&found, &r->contacts);
+    else
+        sum->missing += check_earliest(r, s, detector, &found);
+    sum->intervals++;
+    sum->embedded += all_embedded(r, detector);
+    sum->first_contacts += all_embedded(r, detector) && r->contacts.count > 0;
+    sum->contacts += r->contacts.count;
+    sum->pairs += cscd_detector_counters(detector).pcp;
+    sum->pairs_without += cscd_detector_counters(r->detector).pcp;
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+}
+
+static void print_tally(const char *name, const tally *t) {
+    print_message(
+        "  %-15s %5u intervals, %4u embedded, %4u of these with contact; %7zu contacts, %6zu not in "
+        "earliest; pairs %5.1f %%\n",
+        name, t->intervals, t->embedded, t->first_contacts, t->contacts, t->missing,
+        100.0 * (double)t->pairs / (double)t->pairs_without);
+}
+
+/* Modes alternate; each interval sees two of the variants in both. */
+static void run_family(scene_family family, tally *sum) {
+    static const variant variants[3] = {
+        {CSCD_METHOD_SINGLE, 0}, {CSCD_METHOD_KMEANS, 2}, {CSCD_METHOD_KMEANS, 5}};
+    tally own = {0};
+    for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
+        scene_make(family, seed + 1000, &interval);
+        reference r = reference_create(&interval);
+        variant second = variants[1 + seed % 2];
+        run_variant(&r, &interval, variants[0], CSCD_MODE_EARLIEST, seed, &own);
+        run_variant(&r, &interval, second, CSCD_MODE_EARLIEST, seed, &own);
+        run_variant(&r, &interval, seed % 4 < 2 ? variants[0] : second, CSCD_MODE_ALL, seed, &own);
+        reference_destroy(&r);
+    }
+    print_tally(scene_family_name(family), &own);
+    sum->intervals += own.intervals;
+    sum->embedded += own.embedded;
+    sum->first_contacts += own.first_contacts;
+    sum->contacts += own.contacts;
+    sum->missing += own.missing;
+    sum->pairs += own.pairs;
+    sum->pairs_without += own.pairs_without;
+}
+
+static void culling_loses_no_first_contact(void **state) {
+    tally sum = {0};
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
+    print_tally("all", &sum);
+    assert_true(sum.embedded * 4 >= sum.intervals && sum.first_contacts * 10 >= sum.intervals);
+    assert_true(sum.missing > 0);
+}
+
+/* ---- the published rule ---------------------------------------------------------------------------- */
+
+/* Loses first contacts on the same scenes, or these tests could not fail. */
+static void published_rule_loses_first_contacts(void **state) {
+    uint32_t with_contact = 0, lost = 0;
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint32_t seed = 0; seed < PUBLISHED_INTERVALS_PER_FAMILY; seed++) {
+            static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
+            scene_make((scene_family)family, seed + 1000, &interval);
+            reference r = reference_create(&interval);
+            cscd_detector_options options = cscd_detector_defaults();
+            cscd_detector *proven = NULL, *published = NULL;
+            cscd_contacts found;
+            options.method = CSCD_METHOD_SINGLE;
+            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &proven), CSCD_OK);
+            assert_int_equal(cscd_detector_step(proven, interval.x0, interval.x1, &found), CSCD_OK);
+            options.method = CSCD_METHOD_PUBLISHED;
+            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &published), CSCD_OK);
+            assert_int_equal(cscd_detector_step(published, interval.x0, interval.x1, &found), CSCD_OK);
+            earliest_times(&r, &interval, &r.contacts, expected);
+            earliest_times(&r, &interval, &found, times);
+            for (uint32_t c = 0; c < cscd_mesh_component_count(r.mesh); c++) {
+                if (isinf(expected[c]) || !cscd_detector_guarantee(proven, c).start_embedded) continue;
+                with_contact++;
+                lost += times[c] > expected[c] + TOI_EARLY;
+            }
+            cscd_detector_destroy(proven);
+            cscd_detector_destroy(published);
+            reference_destroy(&r);
+        }
+    }
+    print_message("  the published rule: %u of %u first contacts lost\n", lost, with_contact);
+    assert_true(lost > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(culling_loses_no_first_contact),
+        cmocka_unit_test(published_rule_loses_first_contacts),
+    };
+    return cmocka_run_group_tests_name("culling", tests, NULL, NULL);
+}
