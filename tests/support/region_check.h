@@ -1,0 +1,18 @@
+/* What holds for every division into regions; used inside cmocka tests. */
+#ifndef CSCD_TEST_REGION_CHECK_H
+#define CSCD_TEST_REGION_CHECK_H
+
+#include "src/mesh.h"
+#include "tests/support/body_shapes.h"
+
+/* Numbered from 0 by first triangles, connected, and none in two components. */
+void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t region_count);
+
+/* The mesh of a body, in a context of its own with that many threads. */
+cscd_mesh *body_mesh(const body *b, uint32_t thread_count);
+void body_mesh_destroy(cscd_mesh *mesh);
+
+/* Adds a copy of the triangles and vertices of another body, moved. */
+void body_append(body *b, const body *other, const double offset[3]);
+
+#endif
