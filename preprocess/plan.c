@@ -198,8 +198,8 @@ static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *par
                             cscd_method_name(parts->method));
     if (parts->triangle_regions == NULL || parts->detector_points == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "triangle_regions or detector_points is NULL");
-    bool charged = parts->charges != NULL && parts->capacitances != NULL;
-    if (charged != (parts->method == CSCD_METHOD_CHARGE))
+    bool charged = parts->method == CSCD_METHOD_CHARGE;
+    if ((parts->charges != NULL) != charged || (parts->capacitances != NULL) != charged)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "charges and capacitances belong to method charge, and to no other");
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {

@@ -39,14 +39,19 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
     outcome out = {CSCD_OK, 0, 0};
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
+    cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(counter);
     options.thread_count = thread_count;
+    cscd_plan_options plan_options = cscd_plan_defaults();
+    plan_options.method = CSCD_METHOD_KMEANS;
+    plan_options.k = 2;
     cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
     out.status = cscd_context_create(&options, &context);
     if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, &mesh);
-    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, NULL, NULL, &detector);
+    if (out.status == CSCD_OK) out.status = cscd_plan_create(mesh, s.x0, &plan_options, &plan);
+    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, plan, NULL, &detector);
     if (out.status == CSCD_OK) {
         out.status = use_detector(detector, &out);
         if (out.status == CSCD_OUT_OF_MEMORY) {
@@ -58,6 +63,7 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
     }
     assert_true(context == NULL || cscd_context_bytes(context) == counter->bytes);
     cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     assert_int_equal(counter->live, 0);
