@@ -92,7 +92,7 @@ fuzz-elementary: packages
 	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling
 
 lint: packages
 	@.ci/lint
@@ -131,8 +131,11 @@ $(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
 $(BUILD)/models/%: $(BUILD)/models/%.o $(TOOL_OBJECTS) $(LIBRARY)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
-$(BUILD)/benchmarks/queries: $(call objects,$(BENCHMARK_SOURCES)) $(CORE_OBJECTS) $(TOOL_OBJECTS)
+$(BUILD)/benchmarks/queries: $(call objects,benchmarks/queries.c benchmarks/query_file.c) $(CORE_OBJECTS) $(TOOL_OBJECTS)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
+
+$(BUILD)/benchmarks/culling: $(BUILD)/benchmarks/culling.o $(TOOL_OBJECTS) $(LIBRARY)
+	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
 # must be smaller than the tool).
