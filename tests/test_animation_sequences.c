@@ -153,6 +153,7 @@ static void folder_ignores_other_files(void **state) {
     write_frame("._take2_f11_v3.OFF", 11);
     temp_file_write(&frame_fixture_folder, "readme.txt", "x", 1);
     temp_file_write(&frame_fixture_folder, "f1.mtl", "x", 1);
+    temp_file_write(&frame_fixture_folder, "take2_f2_v3.plan.ply", "x", 1);
     temp_file_write(&frame_fixture_folder, "obj", "x", 1);
     assert_int_equal(mkdir(temp_file_path(&frame_fixture_folder, "take2_f12_v3.OFF").text, 0700), 0);
     static const uint32_t expected[] = {2, 10};

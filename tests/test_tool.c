@@ -55,7 +55,7 @@ static void says_its_version(void **state) {
 
 static void helps_on_every_command(void **state) {
     (void)state;
-    static const char *const commands[] = {"replay", "check", "info", "render"};
+    static const char *const commands[] = {"preprocess", "replay", "check", "info", "render"};
     EXPECT_OUT("usage: cscd COMMAND", "--help");
     EXPECT_OUT("usage: cscd COMMAND", "help");
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
@@ -68,7 +68,7 @@ static void helps_on_every_command(void **state) {
 
 static void refuses_unknown_commands_and_options(void **state) {
     (void)state;
-    static const char *const commands[] = {"replay", "check", "info", "render"};
+    static const char *const commands[] = {"preprocess", "replay", "check", "info", "render"};
     run_tool_expect_error(2, TEXTS("no command given"), (const char *const[]){NULL});
     EXPECT_ERROR(2, TEXTS("unknown command 'play'", "'cscd --help'"), "play");
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
@@ -86,11 +86,16 @@ static void refuses_unknown_commands_and_options(void **state) {
 static void refuses_unfit_values(void **state) {
     (void)state;
     static const char *const unfit[][2] = {
-        {"--frames", "a:b"},    {"--frames", "3:1"},  {"--frames", ":"},         {"--frames", ""},
-        {"--frames", "1:2:3"},  {"--frames", "-1:2"}, {"--method", "iccd"},      {"--mode", "some"},
-        {"--threads", "-1"},    {"--threads", "257"}, {"--threads", "two"},      {"--weld", "-1"},
-        {"--weld", "0"},        {"--weld", "nan"},    {"--contacts", "out.txt"}, {"--frames", "4294967296:"},
-        {"--contacts", ".csv"},
+        {"--frames", "a:b"},       {"--frames", "3:1"},
+        {"--frames", ":"},         {"--frames", ""},
+        {"--frames", "1:2:3"},     {"--frames", "-1:2"},
+        {"--method", "iccd"},      {"--mode", "some"},
+        {"--threads", "-1"},       {"--threads", "257"},
+        {"--threads", "two"},      {"--weld", "-1"},
+        {"--weld", "0"},           {"--weld", "nan"},
+        {"--contacts", "out.txt"}, {"--frames", "4294967296:"},
+        {"--contacts", ".csv"},    {"--method", "kmeans:0"},
+        {"--method", "kmeans:x"},  {"--start", "maybe"},
     };
     for (size_t i = 0; i < sizeof unfit / sizeof *unfit; i++)
         EXPECT_ERROR(2, TEXTS(unfit[i][0], unfit[i][1]), "replay", model.text, cache.text, unfit[i][0],

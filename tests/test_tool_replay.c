@@ -123,7 +123,8 @@ static void json_lines_hold_what_the_csv_holds(void **state) {
 }
 
 static void check_milliseconds(const json_node *interval) {
-    static const char *const stages[] = {"update", "orientation", "traversal", "contact", "check", "total"};
+    static const char *const stages[] = {"update", "orientation", "traversal", "contact",
+                                         "proof",  "check",       "total"};
     const json_node *ms = json_node_member(interval, "ms");
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
         assert_true(json_node_number(ms, stages[i]) >= 0);

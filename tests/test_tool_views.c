@@ -202,6 +202,31 @@ static void render_marks_contacts(void **state) {
     free(without);
 }
 
+static void render_draws_a_plan(void **state) {
+    (void)state;
+    static const uint8_t first_region[3] = {86, 180, 233}, second_region[3] = {230, 159, 0};
+    temp_path plan = temp_file_path(&folder, "two.ply");
+    const size_t count = 320 * 240;
+    EXPECT_TOOL(0, "render", model.text, "--colour", "region", "-o", png.text, "--size", "320x240");
+    unsigned char *region = read_png(320, 240);
+    EXPECT_TOOL(0, "render", model.text, "--colour", "charge", "-o", png.text, "--size", "320x240");
+    unsigned char *charge = read_png(320, 240);
+    assert_true(count_pixels(region, count, first_region[0], first_region[1], first_region[2]) > 5);
+    assert_true(count_pixels(region, count, second_region[0], second_region[1], second_region[2]) > 5);
+    assert_true(count_pixels(charge, count, 68, 1, 84) > 5 && count_pixels(charge, count, 253, 231, 37) > 5);
+    EXPECT_TOOL(0, "preprocess", model.text, "--method", "single", "-o", plan.text, "--quiet");
+    EXPECT_TOOL(0, "render", model.text, "--colour", "region", "--plan", plan.text, "-o", png.text, "--size",
+                "320x240");
+    unsigned char *single = read_png(320, 240);
+    assert_memory_not_equal(single, region, count * 3); /* the caption says by which method */
+    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "5", "--colour", "region", "-o", png.text);
+    EXPECT_ERROR(1, TEXTS("two.ply", "of method single, expected charge"), "render", model.text, "--colour",
+                 "charge", "--plan", plan.text, "-o", png.text);
+    free(region);
+    free(charge);
+    free(single);
+}
+
 static void render_refuses_frames_that_are_not_there(void **state) {
     (void)state;
     EXPECT_ERROR(1, TEXTS("--frame 8", "frames 0 to 7"), "render", model.text, cache.text, "-o", png.text,
@@ -220,6 +245,7 @@ int main(void) {
         cmocka_unit_test(info_describes_defects),
         cmocka_unit_test(render_draws_a_frame),
         cmocka_unit_test(render_marks_contacts),
+        cmocka_unit_test(render_draws_a_plan),
         cmocka_unit_test(render_refuses_frames_that_are_not_there),
     };
     return cmocka_run_group_tests_name("tool_views", tests, make_files, remove_files);

@@ -101,7 +101,7 @@ static bool prepare(check *c, io_error *error) {
     if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
         return false;
     if (o->ignore_rest && !ignore_pairs_add_rest(&c->ignored, &c->recording, error)) return false;
-    if (cscd_detector_create(c->recording.mesh, &options, &c->detector) != CSCD_OK)
+    if (cscd_detector_create(c->recording.mesh, NULL, &options, &c->detector) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
     if (c->positions == NULL) return io_fail(error, "out of memory");

@@ -14,6 +14,7 @@ typedef enum exit_code {
 } exit_code;
 
 /* Each takes the arguments from the command's name on. */
+int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
 int command_check(int argument_count, char **arguments);
 int command_info(int argument_count, char **arguments);

@@ -85,7 +85,7 @@ static bool mark_contacts(contact_picture *p, recording *r, cscd_detector *detec
 static bool find_contacts(contact_picture *p, recording *r, uint32_t frame, io_error *error) {
     cscd_detector *detector = NULL;
     double *end = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *end);
-    bool created = end != NULL && cscd_detector_create(r->mesh, NULL, &detector) == CSCD_OK;
+    bool created = end != NULL && cscd_detector_create(r->mesh, NULL, NULL, &detector) == CSCD_OK;
     bool marked =
         created ? mark_contacts(p, r, detector, frame, end, error) : io_fail(error, "out of memory");
     cscd_detector_destroy(detector);

@@ -114,7 +114,7 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
     cscd_detector *detector = NULL;
     bool added = positions != NULL || io_fail(error, "out of memory");
     added = added && recording_read(r, 0, positions, error);
-    if (added && (cscd_detector_create(r->mesh, NULL, &detector) != CSCD_OK ||
+    if (added && (cscd_detector_create(r->mesh, NULL, NULL, &detector) != CSCD_OK ||
                   !add_intersections(pairs, detector, positions)))
         added = io_fail(error, "frame 0: %s", cscd_context_detail(r->context));
     cscd_detector_destroy(detector);

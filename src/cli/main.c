@@ -14,6 +14,7 @@ typedef struct command {
 } command;
 
 static const command commands[] = {
+    {"preprocess", "cut a mesh into regions by charge, once, so that replays are faster", command_preprocess},
     {"replay", "find every self-collision of a recorded animation", command_replay},
     {"check", "find where a mesh crosses or touches itself, frame by frame", command_check},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
@@ -25,7 +26,7 @@ enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 static void print_help(void) {
     printf("cscd - continuous self-collision detection for deforming triangle meshes\n\n"
            "usage: cscd COMMAND ...\n\n");
-    for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-8s %s\n", commands[i].name, commands[i].summary);
+    for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-11s %s\n", commands[i].name, commands[i].summary);
     printf("\ncscd COMMAND --help says more; cscd --version.\n"
            "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
 }

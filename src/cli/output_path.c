@@ -53,12 +53,17 @@ bool output_path_opens(const char *path, io_error *error) {
     return true;
 }
 
-bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error) {
-    if (path == NULL) return true;
-    for (size_t i = 0; i < other_count; i++) {
+bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error) {
+    for (size_t i = 0; path != NULL && i < other_count; i++) {
         if (others[i] != NULL && same_file(path, others[i]))
             return io_fail(error, "'%s' would overwrite '%s'", path, others[i]);
     }
+    return true;
+}
+
+bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error) {
+    if (path == NULL) return true;
+    if (!output_path_differs(path, others, other_count, error)) return false;
     char *target = realpath(path, NULL);
     bool like_input = named_like_input(path) || (target != NULL && named_like_input(target));
     free(target);

@@ -29,6 +29,12 @@ void progress_update(progress *p, uint32_t done, uint32_t total, const char *wha
     fflush(stderr);
 }
 
+void progress_say(progress *p, const char *text) {
+    if (!p->shown) return;
+    fprintf(stderr, "\r%s ...\033[K", text);
+    fflush(stderr);
+}
+
 void progress_end(progress *p) {
     if (p->shown) fputs("\r\033[K", stderr);
     p->shown = false;

@@ -13,6 +13,8 @@ typedef struct progress {
 /* Shows only when stderr is a terminal and quiet is false. */
 void progress_begin(progress *p, bool quiet);
 void progress_update(progress *p, uint32_t done, uint32_t total, const char *what);
+/* A text instead of the bar. */
+void progress_say(progress *p, const char *text);
 /* Clears the line. */
 void progress_end(progress *p);
 

@@ -140,6 +140,13 @@ bool recording_read(recording *r, uint32_t frame, double *positions, io_error *e
     return true;
 }
 
+void recording_rest(const recording *r, double *positions) {
+    for (uint32_t v = 0; v < cscd_mesh_vertex_count(r->mesh); v++) {
+        uint32_t from = r->welded ? r->weld.file_vertex[v] : v;
+        memcpy(positions + (size_t)v * 3, r->file.positions + (size_t)from * 3, 3 * sizeof *positions);
+    }
+}
+
 uint32_t recording_file_triangle(const recording *r, uint32_t triangle) {
     return r->welded ? r->weld.file_triangle[triangle] : triangle;
 }

@@ -38,6 +38,9 @@ void recording_close(recording *r);
  * them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
+/* The positions of the model file itself, as they are there; positions as above. */
+void recording_rest(const recording *r, double *positions);
+
 /* Adds the file's positions of the frame read last to frames_hash. */
 void recording_hash_frame(recording *r);
 

@@ -1,7 +1,9 @@
-/* `cscd render`: draws a frame to a PNG, plain or with the contacts of its interval. */
+/* `cscd render`: draws a frame to a PNG: plain, with the contacts of its interval, or with a plan. */
 #include "src/cli/command.h"
 #include "src/cli/contact_picture.h"
 #include "src/cli/output_path.h"
+#include "src/cli/plan_choice.h"
+#include "src/cli/plan_picture.h"
 #include "src/cli/replay_options.h"
 
 #include <getopt.h>
@@ -19,6 +21,9 @@ static const char help[] =
     "  --colour contacts      the contacts of the interval from frame K to K + 1 on the surface at its "
     "start:\n"
     "                         the triangles that contain a touching feature, and a dot at each contact\n"
+    "  --colour charge        charge density by rank, dark the least\n"
+    "  --colour region        the regions of the plan; without FRAMES a dot at each detector point\n"
+    "  --plan PLAN.ply        which plan (default as for replay: MODEL.plan.ply, or made on the way)\n"
     "  --size WxH             pixels (default 1280x960)\n"
     "  --view AZ,EL           camera: degrees around the vertical axis, degrees above the horizon\n"
     "  --zoom                 with contacts: only the neighbourhood of the contacts\n"
@@ -26,29 +31,51 @@ static const char help[] =
     "  --wire                 draw the triangles' edges\n"
     "  --weld exact|EPS       join vertices that coincide, or lie within EPS, in the first frame\n";
 
+typedef enum colouring { COLOUR_PLAIN, COLOUR_CONTACTS, COLOUR_CHARGE, COLOUR_REGION } colouring;
+
 typedef struct render_options {
     recording_options source;
-    const char *output_path;
+    const char *output_path, *plan_path;
     uint32_t frame;
-    bool contacts, zoom;
+    colouring colouring;
+    bool zoom;
     picture_options picture;
 } render_options;
 
 static bool load(const render_options *o, recording *r, contact_picture *picture, io_error *error) {
-    uint32_t needed = o->contacts ? o->frame + 1 : o->frame;
+    bool contacts = o->colouring == COLOUR_CONTACTS;
+    uint32_t needed = contacts ? o->frame + 1 : o->frame;
     if (needed >= r->frame_count)
         return io_fail(error, "--frame %u%s: there are the frames 0 to %u", o->frame,
-                       o->contacts ? " with its contacts needs the next one" : "", r->frame_count - 1);
-    return contact_picture_load(picture, r, o->frame, o->contacts, error);
+                       contacts ? " with its contacts needs the next one" : "", r->frame_count - 1);
+    return contact_picture_load(picture, r, o->frame, contacts, error);
+}
+
+/* Charge wants a plan that has some; without FRAMES the mesh is at rest, where the detector points belong. */
+static bool paint_plan(const render_options *o, const recording *r, contact_picture *picture,
+                       plan_legend *legend, io_error *error) {
+    bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = o->source.frame_path_count == 0;
+    plan_request request = {.model_path = o->source.model_path,
+                            .plan_path = o->plan_path,
+                            .method = by_charge ? CSCD_METHOD_CHARGE : CSCD_METHOD_PUBLISHED};
+    plan_choice choice;
+    if (!plan_choose(&request, r, &choice, error)) return false;
+    bool painted = plan_picture_paint(picture, legend, r, choice.plan, by_charge, error) &&
+                   (by_charge || !at_rest || plan_picture_mark(picture, legend, choice.plan, error));
+    plan_choice_free(&choice);
+    return painted;
 }
 
 static int draw(const render_options *o) {
     recording r;
     contact_picture picture = {0};
+    plan_legend legend;
     picture_options options = o->picture;
     io_error error = {""};
     if (!recording_open(&o->source, &r, &error)) return fail_input("%s", error.text);
     bool drawn = load(o, &r, &picture, &error);
+    if (o->colouring == COLOUR_CHARGE || o->colouring == COLOUR_REGION)
+        drawn = drawn && paint_plan(o, &r, &picture, &legend, &error);
     if (drawn) {
         if (o->zoom) contact_picture_focus(&picture, &options);
         drawn = picture_render(&picture.scene, &options, o->output_path, &error);
@@ -59,8 +86,13 @@ static int draw(const render_options *o) {
 }
 
 static bool parse_colour(const char *text, render_options *o) {
-    o->contacts = strcmp(text, "contacts") == 0;
-    return o->contacts || strcmp(text, "plain") == 0;
+    static const char *const names[] = {"plain", "contacts", "charge", "region"};
+    for (int i = 0; i < 4; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        o->colouring = (colouring)i;
+        return true;
+    }
+    return false;
 }
 
 static bool parse_size(const char *text, picture_options *picture) {
@@ -90,6 +122,9 @@ static bool set_option(int id, const char *value, render_options *o) {
         return parse_unsigned(value, &o->frame);
     case 'c':
         return parse_colour(value, o);
+    case 'p':
+        o->plan_path = value;
+        return true;
     case 's':
         return parse_size(value, &o->picture);
     case 'v':
@@ -108,13 +143,19 @@ static bool set_option(int id, const char *value, render_options *o) {
 }
 
 int command_render(int argument_count, char **arguments) {
-    static const struct option long_options[] = {
-        {"output", required_argument, NULL, 'o'}, {"frame", required_argument, NULL, 'f'},
-        {"colour", required_argument, NULL, 'c'}, {"color", required_argument, NULL, 'c'},
-        {"size", required_argument, NULL, 's'},   {"view", required_argument, NULL, 'v'},
-        {"zoom", no_argument, NULL, 'z'},         {"up", required_argument, NULL, 'u'},
-        {"wire", no_argument, NULL, 'e'},         {"weld", required_argument, NULL, 'w'},
-        {"help", no_argument, NULL, 'h'},         {NULL, 0, NULL, 0}};
+    static const struct option long_options[] = {{"output", required_argument, NULL, 'o'},
+                                                 {"frame", required_argument, NULL, 'f'},
+                                                 {"colour", required_argument, NULL, 'c'},
+                                                 {"color", required_argument, NULL, 'c'},
+                                                 {"plan", required_argument, NULL, 'p'},
+                                                 {"size", required_argument, NULL, 's'},
+                                                 {"view", required_argument, NULL, 'v'},
+                                                 {"zoom", no_argument, NULL, 'z'},
+                                                 {"up", required_argument, NULL, 'u'},
+                                                 {"wire", no_argument, NULL, 'e'},
+                                                 {"weld", required_argument, NULL, 'w'},
+                                                 {"help", no_argument, NULL, 'h'},
+                                                 {NULL, 0, NULL, 0}};
     render_options options = {.source = {.thread_count = 1}, .picture = picture_options_defaults()};
     opterr = 0;
     optind = 1;
@@ -125,9 +166,6 @@ int command_render(int argument_count, char **arguments) {
             return EXIT_RAN;
         }
         if (id == ':' || id == '?') return fail_option("render", id, arguments);
-        if (id == 'c' && (strcmp(optarg, "region") == 0 || strcmp(optarg, "charge") == 0))
-            return fail_usage("render", "--colour %s draws a plan of regions, and this version makes none",
-                              optarg);
         if (!set_option(id, optarg, &options))
             return fail_usage("render", "--%s cannot be '%s'", long_options[index].name, optarg);
     }
@@ -135,7 +173,8 @@ int command_render(int argument_count, char **arguments) {
     if (options.output_path == NULL) return fail_usage("render", "no -o OUT.png given");
     const char *const *inputs = (const char *const *)(arguments + optind);
     io_error error;
-    if (!output_path_is_safe(options.output_path, inputs, (size_t)(argument_count - optind), &error))
+    if (!output_path_is_safe(options.output_path, inputs, (size_t)(argument_count - optind), &error) ||
+        !output_path_differs(options.output_path, &options.plan_path, 1, &error))
         return fail_usage("render", "-o %s", error.text);
     options.source.model_path = inputs[0];
     options.source.frame_paths = inputs + 1;

@@ -3,6 +3,7 @@
 #include "src/cli/frame_list.h"
 #include "src/cli/ignore_pairs.h"
 #include "src/cli/output_path.h"
+#include "src/cli/plan_choice.h"
 #include "src/cli/progress.h"
 #include "src/cli/replay_options.h"
 #include "src/cli/summary.h"
@@ -16,6 +17,7 @@ typedef struct replay {
     const replay_options *options;
     recording recording;
     ignore_pairs ignored;
+    plan_choice plan;
     cscd_detector *detector;
     double *x0, *x1;
     uint32_t first, last; /* frames */
@@ -57,16 +59,27 @@ static bool prepare_ignored(replay *r, io_error *error) {
     return true;
 }
 
+static bool prepare_plan(replay *r, io_error *error) {
+    const replay_options *o = r->options;
+    plan_request request = {o->model_path, o->plan_path, o->method, o->k, o->min_separation};
+    progress_begin(&r->progress, o->quiet);
+    progress_say(&r->progress, "preprocessing");
+    bool chosen = plan_choose(&request, &r->recording, &r->plan, error);
+    progress_end(&r->progress);
+    return chosen;
+}
+
 static bool prepare_detector(replay *r, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
-    options.method = r->options->method;
+    options.method = r->plan.method;
     options.mode = r->options->mode;
+    options.start = r->options->start;
     options.min_separation = r->options->min_separation;
     if (r->options->ignore_path != NULL || r->options->ignore_rest) {
         options.ignore = ignore_pairs_contain;
         options.ignore_user = &r->ignored;
     }
-    if (cscd_detector_create(r->recording.mesh, &options, &r->detector) != CSCD_OK)
+    if (cscd_detector_create(r->recording.mesh, r->plan.plan, &options, &r->detector) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->recording.context));
     size_t size = (size_t)cscd_mesh_vertex_count(r->recording.mesh) * 3 * sizeof *r->x0;
     r->x0 = malloc(size);
@@ -74,10 +87,12 @@ static bool prepare_detector(replay *r, io_error *error) {
     return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
 }
 
+/* Asked before anything takes time, or is truncated. */
+static bool outputs_open(const replay_options *o, io_error *error) {
+    return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error);
+}
+
 static bool open_outputs(replay *r, io_error *error) {
-    if (!output_path_opens(r->options->contacts_path, error) ||
-        !output_path_opens(r->options->json_path, error))
-        return false;
     if (r->options->contacts_path != NULL &&
         !contact_file_open(r->options->contacts_path, r->options->min_separation > 0.0, &r->contacts, error))
         return false;
@@ -90,13 +105,19 @@ static bool begin(replay *r, io_error *error) {
     recording_options source = {o->model_path, o->frame_paths,  o->frame_path_count,
                                 o->weld,       o->weld_epsilon, o->thread_count};
     return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
-           prepare_ignored(r, error) && prepare_detector(r, error) && open_outputs(r, error);
+           prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
+           prepare_detector(r, error) && open_outputs(r, error);
 }
 
-/* Reads a frame and checks it, unless told not to. */
-static bool load_frame(replay *r, uint32_t frame, double *positions, frame_state *state, io_error *error) {
+static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *error) {
     if (!recording_read(&r->recording, frame, positions, error)) return false;
     recording_hash_frame(&r->recording);
+    return true;
+}
+
+/* The static check of a frame, unless told not to. */
+static bool check_frame(replay *r, uint32_t frame, const double *positions, frame_state *state,
+                        io_error *error) {
     *state = FRAME_UNCHECKED;
     if (!r->options->no_check) {
         cscd_intersections found;
@@ -123,42 +144,50 @@ static interval_state state_of(const replay *r, size_t contact_count) {
 /* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
  */
 static void alarm_contradiction(replay *r, const interval_result *result) {
-    bool complete = r->options->ignore_path == NULL && !r->options->ignore_rest;
-    if (!complete || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
+    bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
+    if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
+    if (r->plan.method == CSCD_METHOD_PUBLISHED) return; /* as is known of it */
     warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
          "lost, "
          "please report this recording",
          result->frame);
 }
 
-static bool write_contacts(replay *r, const interval_result *result, io_error *error) {
+static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *contacts, io_error *error) {
     if (r->contacts == NULL) return true;
-    for (size_t i = 0; i < result->contacts.count; i++) {
-        contact_record record = recording_contact(&r->recording, result->frame, &result->contacts.items[i]);
+    for (size_t i = 0; i < contacts->count; i++) {
+        contact_record record = recording_contact(&r->recording, frame, &contacts->items[i]);
         if (!contact_file_write(r->contacts, &record, error)) return false;
     }
     return contact_file_flush(r->contacts, error);
 }
 
-/* The interval from frame k, whose positions are in x0, to frame k + 1. */
+/* The interval from frame k, whose positions are in x0, to frame k + 1. The frame at its end is checked after
+ * the step, so that the detector knows it when the next interval starts there. */
 static bool run_interval(replay *r, uint32_t k, io_error *error) {
-    if (!load_frame(r, k + 1, r->x1, &r->end_state, error)) return false;
-    interval_result result = {.frame = k};
-    if (cscd_detector_step(r->detector, r->x0, r->x1, &result.contacts) != CSCD_OK)
-        return api_failed(r, k, error);
+    cscd_contacts contacts;
+    if (!read_frame(r, k + 1, r->x1, error)) return false;
+    if (cscd_detector_step(r->detector, r->x0, r->x1, &contacts) != CSCD_OK) return api_failed(r, k, error);
+    interval_result result = {.frame = k,
+                              .contact_count = contacts.count,
+                              .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,
+                              .detector = r->detector,
+                              .counters = cscd_detector_counters(r->detector)};
+    if (!write_contacts(r, k, &contacts, error) || !check_frame(r, k + 1, r->x1, &r->end_state, error))
+        return false;
     result.timings = cscd_detector_timings(r->detector);
-    result.counters = cscd_detector_counters(r->detector);
-    result.state = state_of(r, result.contacts.count);
-    totals_add(&r->totals, &result);
+    result.state = state_of(r, result.contact_count);
+    totals_add(&r->totals, &result, r->recording.mesh);
     alarm_contradiction(r, &result);
-    if (result.contacts.count > 0 && !frame_list_add(&r->contact_frames, k))
+    if (result.contact_count > 0 && !frame_list_add(&r->contact_frames, k))
         return io_fail(error, "out of memory");
-    return write_contacts(r, &result, error) && summary_add_interval(r->summary, &result, error);
+    return summary_add_interval(r->summary, &result, error);
 }
 
 static bool run_intervals(replay *r, io_error *error) {
-    if (!load_frame(r, r->first, r->x0, &r->start_state, error)) return false;
+    if (!read_frame(r, r->first, r->x0, error) || !check_frame(r, r->first, r->x0, &r->start_state, error))
+        return false;
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;
@@ -187,7 +216,13 @@ static void print_results(const replay *r) {
     }
     printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
-    totals_print_table(t, cscd_method_name(r->options->method));
+    if (t->intervals_complete < t->intervals)
+        printf("%s: in %u of %u intervals later contacts of a component with itself may be missing\n",
+               r->plan.method == CSCD_METHOD_PUBLISHED ? "method published" : "mode earliest",
+               t->intervals - t->intervals_complete, t->intervals);
+    if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
+    plan_choice_print(&r->plan);
+    totals_print_table(t, cscd_method_name(r->plan.method), r->plan.plan != NULL);
 }
 
 static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
@@ -197,7 +232,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     const replay_options *o = r->options;
     summary_ending ending = {.totals = &r->totals,
                              .recording = &r->recording,
-                             .method = cscd_method_name(o->method),
+                             .plan = &r->plan,
                              .mode = cscd_mode_name(o->mode),
                              .min_separation = o->min_separation,
                              .model_path = o->model_path,
@@ -213,6 +248,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
 
 static void end(replay *r) {
     cscd_detector_destroy(r->detector);
+    plan_choice_free(&r->plan);
     ignore_pairs_free(&r->ignored);
     if (r->recording.mesh != NULL) recording_close(&r->recording);
     frame_list_free(&r->contact_frames);

@@ -19,12 +19,21 @@ static const char help[] =
     "normal\n"
     "  --json OUT.json               write a summary: every interval, every frame, timings, provenance\n"
     "  --frames A:B                  only from frame A to frame B, both included (A: and :B are open ends)\n"
-    "  --method none|brute           how pairs are found (default none: volumes; brute: all, slow)\n"
-    "  --mode all                    what is promised (default all: every contact)\n"
+    "  --plan PLAN.ply               the regions that cscd preprocess found (default: MODEL.plan.ply if it "
+    "fits,\n"
+    "                                else made on the way: by charge up to 6000 triangles, else single)\n"
+    "  --method charge|kmeans:K|single  cull by such a plan, that of --plan or made on the way\n"
+    "  --method none|brute           no culling; all pairs of features, slow\n"
+    "  --method published            as the thesis culls, which loses contacts: for comparison only\n"
+    "  --mode all|earliest           what is promised (default all: every contact; earliest: of each closed\n"
+    "                                component that starts free of crossings, the first with itself)\n"
+    "  --start prove|vouched|unknown  what is done to know that a start is free of crossings: the static\n"
+    "                                check (default), nothing since you know that it is, nothing\n"
     "  --min-separation D            a contact is coming within D, a length in the files' unit, not "
     "touching\n"
     "                                (default 0); the static check stays one of crossing and touching\n"
-    "  --no-check                    skip the static check of every frame; start states are then unknown\n"
+    "  --no-check                    skip the static check of every frame; how intervals start is then "
+    "unknown\n"
     "  --weld exact|EPS              join vertices that coincide, or lie within EPS, in the first frame\n"
     "  --ignore-rest                 leave out triangle pairs that touch or cross in the first frame\n"
     "  --ignore LIST                 leave out the pairs of a file: lines 'A B' (triangles) or 'components A "
@@ -37,8 +46,10 @@ enum option_id {
     OPTION_CONTACTS = 1,
     OPTION_JSON,
     OPTION_FRAMES,
+    OPTION_PLAN,
     OPTION_METHOD,
     OPTION_MODE,
+    OPTION_START,
     OPTION_MIN_SEPARATION,
     OPTION_NO_CHECK,
     OPTION_WELD,
@@ -54,8 +65,10 @@ static const struct option long_options[] = {
     {"contacts", required_argument, NULL, OPTION_CONTACTS},
     {"json", required_argument, NULL, OPTION_JSON},
     {"frames", required_argument, NULL, OPTION_FRAMES},
+    {"plan", required_argument, NULL, OPTION_PLAN},
     {"method", required_argument, NULL, OPTION_METHOD},
     {"mode", required_argument, NULL, OPTION_MODE},
+    {"start", required_argument, NULL, OPTION_START},
     {"min-separation", required_argument, NULL, OPTION_MIN_SEPARATION},
     {"no-check", no_argument, NULL, OPTION_NO_CHECK},
     {"weld", required_argument, NULL, OPTION_WELD},
@@ -72,6 +85,25 @@ bool parse_weld(const char *text, bool *weld, double *epsilon) {
     *weld = true;
     *epsilon = 0.0;
     return strcmp(text, "exact") == 0 || (parse_double(text, epsilon) && *epsilon > 0.0);
+}
+
+bool parse_method(const char *text, cscd_method *method, uint32_t *k) {
+    uint32_t regions;
+    if (strncmp(text, "kmeans:", 7) != 0) return cscd_method_from_name(text, method);
+    if (!parse_unsigned(text + 7, &regions) || regions == 0) return false;
+    *method = CSCD_METHOD_KMEANS;
+    *k = regions;
+    return true;
+}
+
+static bool parse_start(const char *text, cscd_start *out) {
+    static const char *const names[] = {"prove", "vouched", "unknown"};
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        *out = (cscd_start)i;
+        return true;
+    }
+    return false;
 }
 
 /* 0, or a length that the library takes. */
@@ -95,7 +127,12 @@ static bool set_option(int id, const char *value, replay_options *o) {
     case OPTION_FRAMES:
         return parse_frame_range(value, &o->frames);
     case OPTION_METHOD:
-        return cscd_method_from_name(value, &o->method);
+        return parse_method(value, &o->method, &o->k);
+    case OPTION_PLAN:
+        o->plan_path = value;
+        return true;
+    case OPTION_START:
+        return parse_start(value, &o->start);
     case OPTION_MODE:
         return cscd_mode_from_name(value, &o->mode);
     case OPTION_MIN_SEPARATION:
@@ -139,15 +176,15 @@ static int read_options(int argument_count, char **arguments, replay_options *o,
 
 /* Outputs are not inputs, and not each other. */
 static bool outputs_are_safe(const replay_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->ignore_path, o->contacts_path};
+    const char *others[] = {o->plan_path, o->ignore_path, o->contacts_path};
     io_error error;
     if (!output_path_is_safe(o->contacts_path, inputs, input_count, &error) ||
-        !output_path_is_safe(o->contacts_path, others, 1, &error)) {
+        !output_path_is_safe(o->contacts_path, others, 2, &error)) {
         fail_usage("replay", "--contacts %s", error.text);
         return false;
     }
     if (!output_path_is_safe(o->json_path, inputs, input_count, &error) ||
-        !output_path_is_safe(o->json_path, others, 2, &error)) {
+        !output_path_is_safe(o->json_path, others, 3, &error)) {
         fail_usage("replay", "--json %s", error.text);
         return false;
     }
@@ -156,7 +193,7 @@ static bool outputs_are_safe(const replay_options *o, const char *const *inputs,
 
 bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code) {
     bool help_wanted = false;
-    replay_options o = {.method = CSCD_METHOD_NONE,
+    replay_options o = {.method = CSCD_METHOD_AUTO,
                         .mode = CSCD_MODE_ALL,
                         .frames = {0, UINT32_MAX},
                         .thread_count = 1,
@@ -170,6 +207,9 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (o.contacts_path != NULL && !contact_file_names_format(o.contacts_path))
         *code = fail_usage("replay", "--contacts '%s': expected a name that ends in .csv or .jsonl",
                            o.contacts_path);
+    if (*code == EXIT_RAN && o.plan_path != NULL &&
+        (o.method == CSCD_METHOD_NONE || o.method == CSCD_METHOD_BRUTE))
+        *code = fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o.method));
     const char *const *inputs = (const char *const *)(arguments + optind);
     if (*code == EXIT_RAN && !outputs_are_safe(&o, inputs, (size_t)rest)) *code = EXIT_USAGE;
     if (*code != EXIT_RAN) return false;

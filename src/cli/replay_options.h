@@ -12,13 +12,16 @@ typedef struct replay_options {
     const char *const *frame_paths;
     size_t frame_path_count;
     cscd_method method;
+    uint32_t k; /* of method KMEANS; 0: not given */
     cscd_mode mode;
+    cscd_start start;
     frame_range frames;
     uint32_t thread_count;
     bool weld;
     double weld_epsilon;
     double min_separation;
     bool ignore_rest, no_check, quiet, fail_on_contact;
+    const char *plan_path; /* NULL: not given */
     const char *ignore_path, *contacts_path, *json_path;
     int argument_count; /* the command line, for the provenance */
     char **arguments;
@@ -29,5 +32,8 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
 
 /* --weld exact|EPS, for the commands that have it. */
 bool parse_weld(const char *text, bool *weld, double *epsilon);
+
+/* --method NAME|kmeans:K; *k stays as it is without a K. */
+bool parse_method(const char *text, cscd_method *method, uint32_t *k);
 
 #endif

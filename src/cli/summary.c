@@ -51,21 +51,14 @@ bool summary_open(const char *path, const cscd_mesh *mesh, summary_writer **out,
     return true;
 }
 
-static const char *guarantee_reason(const cscd_component *component) {
-    if (component->open_edges > 0) return "open: has boundary edges";
-    if (component->non_manifold_edges > 0 || component->non_manifold_vertices > 0) return "non-manifold";
-    if (component->inconsistent_edges > 0) return "inconsistently oriented";
-    return "every pair of features whose volumes overlap is tested";
-}
-
-static void write_guarantees(summary_writer *w) {
+static void write_guarantees(summary_writer *w, const cscd_detector *detector) {
     json_begin_array(&w->out, "guarantee");
     for (uint32_t i = 0; i < cscd_mesh_component_count(w->mesh); i++) {
-        cscd_component component = cscd_mesh_component(w->mesh, i);
+        cscd_guarantee guarantee = cscd_detector_guarantee(detector, i);
         json_begin_object(&w->out, NULL);
         json_integer(&w->out, "component", i);
-        json_string(&w->out, "mode", cscd_mode_name(CSCD_MODE_ALL));
-        json_string(&w->out, "reason", guarantee_reason(&component));
+        json_string(&w->out, "mode", cscd_mode_name(guarantee.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
+        json_string(&w->out, "reason", cscd_reason_text(guarantee.reason));
         json_end_object(&w->out);
     }
     json_end_array(&w->out);
@@ -74,9 +67,10 @@ static void write_guarantees(summary_writer *w) {
 static void write_times(json *out, const cscd_timings *t) {
     json_begin_object(out, "ms");
     json_number(out, "update", t->update_ms);
-    json_number(out, "orientation", 0.0);
+    json_number(out, "orientation", t->orientation_ms);
     json_number(out, "traversal", t->traversal_ms);
     json_number(out, "contact", t->contact_ms);
+    json_number(out, "proof", t->proof_ms);
     json_number(out, "check", t->check_ms);
     json_number(out, "total", t->total_ms);
     json_end_object(out);
@@ -91,14 +85,17 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json_integer(out, "vf", result->counters.vf);
     json_integer(out, "ee", result->counters.ee);
     json_integer(out, "bounded", result->counters.bounded);
-    if (result->contacts.count > 0)
-        json_number(out, "earliest_toi", result->contacts.items[0].toi);
+    if (result->contact_count > 0)
+        json_number(out, "earliest_toi", result->earliest_toi);
     else
         json_null(out, "earliest_toi");
     json_integer(out, "pcp", result->counters.pcp);
     json_integer(out, "tests", result->counters.tests);
+    json_integer(out, "plus", result->counters.plus);
+    json_integer(out, "minus", result->counters.minus);
+    json_integer(out, "static_checks", result->counters.static_checks);
     json_string(out, "state", interval_state_name(result->state));
-    write_guarantees(w);
+    write_guarantees(w, result->detector);
     write_times(out, &result->timings);
     json_end_object(out);
     return fflush(w->file) == 0 || write_failed(w, error);
@@ -139,6 +136,20 @@ static void write_column(json *out, const char *key, const column *c, uint32_t c
     json_end_object(out);
 }
 
+static void write_plan(json *out, const plan_choice *plan) {
+    json_begin_object(out, "plan");
+    json_string(out, "source", plan_source_name(plan->source));
+    json_string(out, "method",
+                cscd_method_name(plan->plan != NULL ? cscd_plan_method(plan->plan) : CSCD_METHOD_NONE));
+    json_integer(out, "regions", plan->plan != NULL ? cscd_plan_region_count(plan->plan) : 0);
+    if (plan->path != NULL)
+        json_string(out, "path", plan->path);
+    else
+        json_null(out, "path");
+    json_number(out, "made_ms", plan->made_ms);
+    json_end_object(out);
+}
+
 static void write_summary(summary_writer *w, const summary_ending *e) {
     const totals *t = e->totals;
     json *out = &w->out;
@@ -146,13 +157,15 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_begin_object(out, "summary");
     json_boolean(out, "complete", e->stopped_by == NULL);
     if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
-    json_string(out, "method", e->method);
+    json_string(out, "method", cscd_method_name(e->plan->method));
     json_string(out, "mode", e->mode);
     json_number(out, "min_separation", e->min_separation);
+    write_plan(out, e->plan);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
     json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
     json_integer(out, "components", cscd_mesh_component_count(w->mesh));
     json_integer(out, "intervals", t->intervals);
+    json_integer(out, "intervals_complete", t->intervals_complete);
     json_integer(out, "intervals_with_contact", t->intervals_with_contact);
     for (int i = 0; i < 4; i++) json_integer(out, interval_state_name((interval_state)i), t->states[i]);
     json_integer(out, "frames_checked", t->frames_checked);
@@ -165,13 +178,18 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_integer(out, "vf", t->vf);
     json_integer(out, "ee", t->ee);
     json_integer(out, "bounded", t->bounded);
+    json_integer(out, "static_checks", t->static_checks);
     write_column(out, "update_ms", &t->update, t->intervals);
+    write_column(out, "orientation_ms", &t->orientation, t->intervals);
     write_column(out, "traversal_ms", &t->traversal, t->intervals);
     write_column(out, "contact_ms", &t->contact, t->intervals);
+    write_column(out, "proof_ms", &t->proof, t->intervals);
     write_column(out, "check_ms", &t->check, t->intervals);
     write_column(out, "total_ms", &t->total, t->intervals);
     write_column(out, "pcp", &t->pcp, t->intervals);
     write_column(out, "tests", &t->tests, t->intervals);
+    write_column(out, "plus", &t->plus, t->intervals);
+    write_column(out, "minus", &t->minus, t->intervals);
     json_end_object(out);
 }
 

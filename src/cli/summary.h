@@ -2,7 +2,7 @@
 #ifndef CSCD_SUMMARY_H
 #define CSCD_SUMMARY_H
 
-#include "src/cli/recording.h"
+#include "src/cli/plan_choice.h"
 
 /* What is known of a frame after its static check. */
 typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
@@ -20,8 +20,10 @@ const char *interval_state_name(interval_state state);
 typedef struct interval_result {
     uint32_t frame;
     interval_state state;
-    cscd_contacts contacts;
-    cscd_timings timings; /* check_ms: of the frame at the interval's end */
+    size_t contact_count;
+    double earliest_toi;           /* of the contacts, where there are any */
+    const cscd_detector *detector; /* for the guarantees of this, its last step */
+    cscd_timings timings;          /* check_ms: of the frame at the interval's end */
     cscd_counters counters;
 } interval_result;
 
@@ -33,13 +35,15 @@ typedef struct column {
 typedef struct totals {
     uint32_t intervals, intervals_with_contact, states[4];
     uint32_t frames_checked, frames_crossing, first_contact_frame;
-    uint32_t contradictions; /* clean intervals that end crossing: contacts that were lost */
-    uint64_t vf, ee, bounded;
-    column update, traversal, contact, check, total, pcp, tests;
+    uint32_t contradictions;     /* clean intervals that end crossing: contacts that were lost */
+    uint32_t intervals_complete; /* every component's contacts are complete */
+    uint64_t vf, ee, bounded, static_checks;
+    column update, orientation, traversal, contact, proof, check, total, pcp, tests, plus, minus;
 } totals;
 
-void totals_add(totals *t, const interval_result *result);
-void totals_print_table(const totals *t, const char *method);
+void totals_add(totals *t, const interval_result *result, const cscd_mesh *mesh);
+/* oriented: the method checks orientations. */
+void totals_print_table(const totals *t, const char *method, bool oriented);
 
 typedef struct summary_writer summary_writer;
 
@@ -52,7 +56,8 @@ bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_
 typedef struct summary_ending {
     const totals *totals;
     const recording *recording;
-    const char *method, *mode, *model_path;
+    const plan_choice *plan;
+    const char *mode, *model_path;
     const char *const *frame_paths;
     size_t frame_path_count;
     int argument_count;

@@ -11,9 +11,10 @@ typedef struct name_difference {
     size_t last_number; /* how many numbers precede the last one that differs */
 } name_difference;
 
+/* Plans lie beside the meshes that they were made for. */
 static bool keep_mesh(const char *name, const void *context) {
     (void)context;
-    return name[0] != '.' && frame_names_is_mesh(name);
+    return name[0] != '.' && frame_names_is_mesh(name) && !path_has_extension(name, ".plan.ply");
 }
 
 /* Steps over the numbers that both names have here; true if their values are the same. */

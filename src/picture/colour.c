@@ -36,3 +36,16 @@ void picture_colour_map(double value, uint8_t rgb[3]) {
     for (int i = 0; i < 3; i++)
         rgb[i] = (uint8_t)(viridis[lower][i] * (1.0 - share) + viridis[lower + 1][i] * share + 0.5);
 }
+
+/* The colours of Okabe and Ito (2008), told apart with any colour vision; then the same lighter, and darker.
+ */
+void picture_colour_category(uint32_t index, uint8_t rgb[3]) {
+    static const uint8_t hues[7][3] = {{86, 180, 233}, {230, 159, 0}, {0, 158, 115},  {213, 94, 0},
+                                       {240, 228, 66}, {0, 114, 178}, {204, 121, 167}};
+    static const struct {
+        uint16_t target, share; /* how many 256ths of the way to this grey */
+    } tones[3] = {{0, 0}, {255, 128}, {0, 112}};
+    const uint8_t *hue = hues[index % 7];
+    uint32_t tone = index / 7 % 3, share = tones[tone].share, target = tones[tone].target;
+    for (int i = 0; i < 3; i++) rgb[i] = (uint8_t)((hue[i] * (256 - share) + target * share) / 256);
+}

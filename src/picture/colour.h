@@ -20,4 +20,7 @@ uint8_t picture_gamma_encode(const picture_gamma *gamma, double linear);
 /* A perceptually uniform map (viridis) from dark violet at 0 over green to yellow at 1; value is clamped. */
 void picture_colour_map(double value, uint8_t rgb[3]);
 
+/* One of 21 distinct colours, the first seven the most; those of index and index + 21 are the same. */
+void picture_colour_category(uint32_t index, uint8_t rgb[3]);
+
 #endif

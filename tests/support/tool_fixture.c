@@ -176,6 +176,45 @@ recorded recorded_torus(uint32_t rings, uint32_t segments) {
     return r;
 }
 
+/* The tips are the last two vertices. */
+static void add_spindle(const recorded *r, uint32_t rings, uint32_t segments) {
+    uint32_t *t = r->triangles, first = rings * segments, last = first + 1;
+    for (uint32_t i = 0; i < segments; i++) {
+        uint32_t next = (i + 1) % segments, end = (rings - 1) * segments;
+        memcpy(t, (uint32_t[6]){first, next, i, last, end + i, end + next}, 6 * sizeof *t);
+        t += 6;
+        for (uint32_t j = 0; j + 1 < rings; j++, t += 6) {
+            uint32_t a = j * segments + i, b = j * segments + next;
+            memcpy(t, (uint32_t[6]){a, b, a + segments, b, b + segments, a + segments}, 6 * sizeof *t);
+        }
+    }
+}
+
+/* s runs along the spindle from -6 to 6, w around it; bent by the angle in the xy plane, and a little out of
+ * it. */
+static void put_spindle(const recorded *r, uint32_t frame, uint32_t vertex, double s, double w,
+                        double angle) {
+    double radius = 12.0 / angle, turned = s / radius, thick = sqrt(fmax(0.0, 1.0 - s * s / 36.0));
+    double from_centre = radius + thick * cos(w);
+    put(r, frame, vertex, from_centre * sin(turned), from_centre * cos(turned) - radius,
+        thick * sin(w) + 0.03 * s + 0.01 * sin(3.0 * s));
+}
+
+recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count) {
+    recorded r = make(rings * segments + 2, rings * segments * 2, frame_count);
+    add_spindle(&r, rings, segments);
+    for (uint32_t k = 0; k < frame_count; k++) {
+        double angle = (30.0 + 370.0 * k / (frame_count - 1.0)) / 180.0 * pi;
+        for (uint32_t v = 0; v < rings * segments; v++) {
+            double s = 12.0 * (v / segments + 1) / (rings + 1.0) - 6.0;
+            put_spindle(&r, k, v, s, 2.0 * pi * (v % segments + 0.3 * (v / segments)) / segments, angle);
+        }
+        put_spindle(&r, k, rings * segments, -6.0, 0.0, angle);
+        put_spindle(&r, k, rings * segments + 1, 6.0, 0.0, angle);
+    }
+    return r;
+}
+
 static void write_ply(const char *path, const mesh_file *mesh) {
     FILE *file = fopen(path, "w");
     require(file != NULL, path);

@@ -35,6 +35,10 @@ recorded recorded_bow_tie(void);
 /* A closed torus of rings by segments quads. One frame. */
 recorded recorded_torus(uint32_t rings, uint32_t segments);
 
+/* A closed spindle of rings by segments quads and two tips, twelve units long, that bends, from 30 degrees to
+ * 400: its tips meet shortly before the last frame. */
+recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count);
+
 void recorded_free(recorded *r);
 
 const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vertex);
