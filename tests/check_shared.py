@@ -18,11 +18,11 @@ FRAME_PAIRS = [("cloth_ball92.ply", "cloth_ball93.ply", 19032, 94822),
                ("cloth_funnel227.ply", "cloth_funnel228.ply", 27, 107)]
 
 
-def replay(tool, model, frames):
+def replay(tool, model, frames, *options):
     """The JSON summary of a replay."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "summary.json")
-        command = [tool, "replay", model, *frames, "--json", path, "--quiet", "--threads", "0"]
+        command = [tool, "replay", model, *frames, "--json", path, "--quiet", "--threads", "0", *options]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(command)}: exit {done.returncode}: {done.stderr.strip()}")
@@ -85,6 +85,19 @@ def check_pair(tool, folder, first, second, vf, ee):
     return good
 
 
+def check_culling(tool, path):
+    """A recording without contact: culling leaves a quarter of the triangle pairs at most, for one static check."""
+    sums = {}
+    for method in ("none", "single"):
+        intervals = replay(tool, path + ".obj", [path + ".pc2"], "--method", method, "--mode", "earliest", "--no-check")["intervals"]
+        sums[method] = sum(interval["pcp"] for interval in intervals)
+        checks = sum(interval["static_checks"] for interval in intervals)
+    good = 4 * sums["single"] <= sums["none"] and checks == 1
+    print(f"{os.path.basename(path)}: culling leaves {100 * sums['single'] / sums['none']:.1f} % of {sums['none']} pairs, "
+          f"{checks} static check   {'agrees' if good else 'VIOLATES: a quarter at most, one check'}")
+    return good
+
+
 def check_queries(program, folder):
     """Every query set: the verdicts must be the truth."""
     files = sorted(glob.glob(os.path.join(folder, "*.csv")))
@@ -107,6 +120,7 @@ def main():
     print(f"{'sequence':<17} {'frames':>6} {'crossing':>8} {'expected':>8} {'VF':>7} {'EE':>7} {'ms/frame':>8}")
     good = [check_sequence(tool, path) for path in sequences]
     good += [check_pair(tool, os.path.join(data, "frames"), *pair) for pair in FRAME_PAIRS]
+    good.append(check_culling(tool, os.path.join(data, "sequences", "elephant_free")))
     good.append(check_queries(os.environ["CSCD_QUERIES"], os.path.join(data, "queries")))
     print(f"{sum(good)} of {len(good)} comparisons agree")
     return 0 if all(good) else 1
