@@ -3,6 +3,8 @@
 
 #include "runtime/vector.h"
 
+#include <stdbool.h>
+
 static double clamp01(double x) {
     return x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
 }
@@ -44,17 +46,21 @@ static double closest_on_sides(const double p[3], const double a[3], const doubl
     return best;
 }
 
-/* Adds to u and v what the residual of p at them projects to: twice over, the point is good to rounding even
- * in a thin triangle, where the first answer is not. */
-static void project(const double p[3], const double a[3], const double ab[3], const double ac[3],
+enum { PROJECTIONS_MAX = 16 };
+
+/* Adds to u and v what the residual of p at them projects to, and says whether that changed them. Repeated,
+ * the point becomes good to rounding even in a thin triangle, where the first answer is not. */
+static bool project(const double p[3], const double a[3], const double ab[3], const double ac[3],
                     const double normal[3], double area, double *u, double *v) {
     double residual[3], side[3];
     for (int k = 0; k < 3; k++) residual[k] = (p[k] - a[k]) - *u * ab[k] - *v * ac[k];
     vector_cross(residual, ac, side);
     double step_u = vector_dot(side, normal) / area;
     vector_cross(ab, residual, side);
+    double step_v = vector_dot(side, normal) / area, old_u = *u, old_v = *v;
     *u += step_u;
-    *v += vector_dot(side, normal) / area;
+    *v += step_v;
+    return *u != old_u || *v != old_v;
 }
 
 double closest_point_triangle(const double p[3], const double a[3], const double b[3], const double c[3],
@@ -66,10 +72,13 @@ double closest_point_triangle(const double p[3], const double a[3], const double
     double area = vector_dot(normal, normal);
     double best = closest_on_sides(p, a, b, c, u, v);
     if (!(area > 0.0)) return best;
-    for (int i = 0; i < 3; i++) project(p, a, ab, ac, normal, area, &inside_u, &inside_v);
+    for (int i = 0; i < PROJECTIONS_MAX; i++) {
+        if (!project(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
+    }
     if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return best;
     double distance = squared_distance_at(p, a, b, c, inside_u, inside_v);
-    if (distance >= best) return best;
+    if (distance > best)
+        return best; /* where rounding sees no difference, the inner point is the better one */
     *u = inside_u;
     *v = inside_v;
     return distance;
@@ -119,7 +128,7 @@ double closest_segments(const double a0[3], const double a1[3], const double b0[
     vector_add_scaled(b0, *v, along_b, point);
     *u = nearest_on_segment(point, a0, a1);
     double distance = segment_distance_at(a0, a1, b0, b1, *u, *v);
-    if (distance < best) return distance;
+    if (distance <= best) return distance;
     *u = best_u;
     *v = best_v;
     return best;

@@ -4,8 +4,8 @@
 
 #include <stdint.h>
 
-/* Limbs of 64 bits that the exact level of one elementary test ever holds at once. Its greatest demand, with
- * coordinates from 2^-300 to 2^300 in one query, is measured by tests/test_algebraic.c. */
+/* More limbs of 64 bits than the exact level of one elementary test ever holds at once, with coordinates from
+ * 2^-300 to 2^300 in one query: docs/elementary.md counts them. */
 enum { INTEGER_POOL_LIMBS = 6144 };
 
 /* |size| limbs, least significant first, the last one not 0; a negative size means a negative number. */

@@ -42,10 +42,10 @@ static void add_axis(axis_list *axes, const double axis[3], const double change[
 }
 
 /* The edges in which the shortest connection ends, and those that are perpendicular to it by chance. */
-static axis_list find_axes(const moving_features *f, const shortest_connection *shortest) {
+static axis_list find_axes(const moving_features *f, const shortest_connection *shortest, int axes_max) {
     static const int ends[2][3][2] = {{{1, 2}, {1, 3}, {2, 3}}, {{0, 1}, {2, 3}}};
     axis_list axes = {.count = 0};
-    for (int i = 0; i < (f->first_count == 1 ? 3 : 2) && axes.count < 2; i++) {
+    for (int i = 0; i < (f->first_count == 1 ? 3 : 2) && axes.count < axes_max; i++) {
         const int *edge = ends[f->first_count - 1][i];
         double axis[3], change[3];
         vector_subtract(f->x[edge[1]], f->x[edge[0]], axis);
@@ -60,9 +60,10 @@ static axis_list find_axes(const moving_features *f, const shortest_connection *
 /* The normal n is offset made perpendicular to the axes q, which removes the rounding of the nearest points
  * where it would tilt the plane. It turns by n': n'.q = -n.q' keeps it so, n'.n = 0, and what freedom is left
  * follows the offset. A normal of 0 proves nothing. */
-separating_plane separating_plane_find(const moving_features *f, const shortest_connection *shortest) {
-    axis_list axes = find_axes(f, shortest);
-    separating_plane plane;
+separating_plane separating_plane_find(const moving_features *f, const shortest_connection *shortest,
+                                       int axes_max) {
+    axis_list axes = find_axes(f, shortest, axes_max);
+    separating_plane plane = {.axis_count = axes.count};
     for (int k = 0; k < 3; k++) {
         plane.normal[k] = shortest->offset[k];
         plane.turn[k] = axes.count < 2 ? shortest->change[k] : 0.0;
@@ -72,7 +73,7 @@ separating_plane separating_plane_find(const moving_features *f, const shortest_
         remove_along(axes.axis[i], plane.turn);
     }
     double length = sqrt(vector_dot(plane.normal, plane.normal));
-    if (!(length > shortest_normal)) return (separating_plane){{0}, {0}};
+    if (!(length > shortest_normal)) return (separating_plane){.axis_count = axes.count};
     remove_along(plane.normal, plane.turn);
     for (int k = 0; k < 3; k++) {
         plane.normal[k] /= length;

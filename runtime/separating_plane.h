@@ -22,10 +22,14 @@ typedef struct shortest_connection {
 /* Perpendicular to normal + s * turn at time s from now; normal is a unit vector up to rounding. */
 typedef struct separating_plane {
     double normal[3], turn[3];
+    int axis_count;
 } separating_plane;
 
-/* The plane that stays, to first order, across the shortest connection. */
-separating_plane separating_plane_find(const moving_features *features, const shortest_connection *shortest);
+/* The plane that stays, to first order, across the shortest connection and along axes_max of the edges in
+ * which that ends, or fewer: axis_count. Two edges that are nearly parallel tilt it by rounding; fewer do
+ * not. */
+separating_plane separating_plane_find(const moving_features *features, const shortest_connection *shortest,
+                                       int axes_max);
 
 /* What separating_plane_holds must allow for rounding: it proves nothing to features that are no more than
  * this beyond the distance. */

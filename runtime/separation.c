@@ -142,13 +142,25 @@ static moment start(const local_query *local) {
 
 /* ---- conservative advancement ---------------------------------------------------------------------- */
 
+/* For how long from the moment on the features are certainly apart: any plane proves it, and fewer axes may
+ * prove more. */
+static double time_apart(const local_query *local, const moment *m) {
+    double longest = 0.0;
+    for (int axes_max = 2; axes_max >= 0 && longest < 1.0 - m->t; axes_max--) {
+        separating_plane plane = separating_plane_find(&m->features, &m->shortest, axes_max);
+        longest = fmax(longest, separating_plane_holds(&m->features, &plane, local->distance));
+        if (plane.axis_count < axes_max) axes_max = plane.axis_count;
+        if (plane.axis_count < 2 && longest > 0.0) break;
+    }
+    return longest;
+}
+
 /* From moment to moment, each as late as a plane keeps the features apart, until they are no farther apart
  * than reach. A time t + s is rounded down: times 1 - 2^-53 is the next smaller double. */
 static bool advance(const local_query *local, double reach, moment *m, bool *bounded) {
     *bounded = false;
     for (int step = 0; m->distance > reach; step++) {
-        separating_plane plane = separating_plane_find(&m->features, &m->shortest);
-        double time = separating_plane_holds(&m->features, &plane, local->distance);
+        double time = time_apart(local, m);
         if (time >= 1.0 - m->t) return false;
         double later = (m->t + time) * (1.0 - 0x1p-53);
         if (step == SEPARATION_STEPS_MAX || !(later > m->t)) return *bounded = true;
