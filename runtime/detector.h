@@ -49,7 +49,7 @@ cscd_status detector_update(cscd_detector *detector, const double *x0, const dou
 /* Does the method cull pairs by orientation? */
 static inline bool detector_culls(const cscd_detector *d) {
     return d->options.method != CSCD_METHOD_NONE && d->options.method != CSCD_METHOD_BRUTE &&
-           d->limit.distance == 0.0;
+           d->limit.distance == 0.0 && d->culling.region_count < BVH_SEVERAL;
 }
 
 /* Makes room for count results of size bytes; what the buffer held is dropped. */

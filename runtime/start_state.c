@@ -80,12 +80,14 @@ void start_states_checked(start_states *s, const double *x, const bool *crossing
 }
 
 void start_states_vouch(start_states *s) {
-    for (uint32_t c = 0; c < s->mesh->component_count; c++) s->of[c].state = START_EMBEDDED;
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) {
+        if (s->of[c].state == START_UNKNOWN) s->of[c].state = START_EMBEDDED;
+    }
 }
 
 void start_states_end(start_states *s, const double *x, const bool *touched) {
     for (uint32_t c = 0; c < s->mesh->component_count; c++) {
-        if (touched[c]) s->of[c].state = START_UNKNOWN;
+        if (touched == NULL || touched[c] || s->of[c].state == START_CROSSING) s->of[c].state = START_UNKNOWN;
     }
     remember(s, x);
 }

@@ -29,8 +29,7 @@ typedef struct start_states {
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);
 
-/* An interval begins at x: components whose vertices are not bit for bit where they were seen last become
- * UNKNOWN. */
+/* An interval begins at x: components whose vertices are not where they were seen last become UNKNOWN. */
 void start_states_begin(start_states *s, const double *x);
 
 /* Of a component that could be culled, is UNKNOWN, and waits no longer: does any want a static check? Those
@@ -41,11 +40,11 @@ bool start_states_want_check(start_states *s);
 /* A static check at x: crossing per component. */
 void start_states_checked(start_states *s, const double *x, const bool *crossing);
 
-/* The caller says that all components are embedded. */
+/* The caller says that all components are embedded; what a check of these positions found stands. */
 void start_states_vouch(start_states *s);
 
-/* The interval ends at x; touched: components with a contact with themselves. What was embedded and did not
- * touch itself still is; what crossed and did not touch itself still does. */
+/* The interval ends at x; touched: components with a contact with themselves, NULL: that is not known. What
+ * was embedded and did not touch itself still is; all else is UNKNOWN. */
 void start_states_end(start_states *s, const double *x, const bool *touched);
 
 #endif

@@ -149,7 +149,12 @@ static void find_touched(const cscd_detector *d) {
     }
 }
 
-/* Mode ALL: the pairs that were culled in components that did touch themselves. */
+/* A first contact that is to be left out may hide the one to report: then mode EARLIEST finishes, too. */
+static bool finishes(const cscd_detector *d) {
+    return d->options.mode == CSCD_MODE_ALL || d->options.ignore != NULL;
+}
+
+/* The pairs that were culled in components that did touch themselves. */
 static cscd_status finish_touched(step_work *work) {
     cscd_detector *d = work->detector;
     bool any = false;
@@ -174,8 +179,7 @@ static cscd_status find_by_trees(step_work *work) {
     if (!work->any_culled) return traverse(work, TRAVERSAL_ALL);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || d->options.mode != CSCD_MODE_ALL || work->interval.culling == NULL)
-        return status;
+    if (status != CSCD_OK || !finishes(d) || work->interval.culling == NULL) return status;
     find_touched(d);
     return finish_touched(work);
 }
@@ -191,17 +195,18 @@ static cscd_status find_by_brute_force(step_work *work) {
 static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     start_state start = d->starts.of[component].state;
     cscd_guarantee g = {true, start == START_EMBEDDED, CSCD_REASON_METHOD};
-    if (d->options.method == CSCD_METHOD_PUBLISHED) g.complete = false;
-    if (!detector_culls(d) || d->options.method == CSCD_METHOD_PUBLISHED) return g;
-    if (!d->mesh->components[component].closed_manifold)
+    if (!detector_culls(d)) return g;
+    if (d->options.method == CSCD_METHOD_PUBLISHED)
+        g.reason = CSCD_REASON_PUBLISHED;
+    else if (!d->mesh->components[component].closed_manifold)
         g.reason = CSCD_REASON_SURFACE;
     else if (start != START_EMBEDDED)
         g.reason = start == START_CROSSING ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
     else if (!d->touched[component])
         g.reason = CSCD_REASON_CLEAN;
     else
-        g.reason = d->options.mode == CSCD_MODE_ALL ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
-    g.complete = g.reason != CSCD_REASON_EARLIEST;
+        g.reason = finishes(d) ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
+    g.complete = g.reason != CSCD_REASON_EARLIEST && g.reason != CSCD_REASON_PUBLISHED;
     return g;
 }
 
@@ -243,7 +248,8 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     if (status != CSCD_OK) return context_out_of_memory(context);
     for (uint32_t c = 0; c < detector->mesh->component_count; c++)
         detector->guarantees[c] = guarantee_of(detector, c);
-    start_states_end(&detector->starts, end, detector->touched);
+    bool lossy = detector->options.method == CSCD_METHOD_PUBLISHED;
+    start_states_end(&detector->starts, end, lossy ? NULL : detector->touched);
     timer_lap(&since, &work.timings.total_ms);
     detector->timings = work.timings;
     detector->counters = work.counters;

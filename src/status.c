@@ -48,6 +48,7 @@ static const char *const reasons[] = {
     [CSCD_REASON_UNPROVEN] = "not known to be free of self-contact at the start",
     [CSCD_REASON_CLEAN] = "embedded at the start, and no contact",
     [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
+    [CSCD_REASON_PUBLISHED] = "culled as published, which loses contacts",
     [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing"};
 
 static const char *name_at(const char *const *names, size_t count, size_t i) {

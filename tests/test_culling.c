@@ -212,6 +212,40 @@ static void culling_loses_no_first_contact(void **state) {
     assert_true(sum.missing > 0);
 }
 
+/* ---- pairs to leave out ------------------------------------------------------------------------------ */
+
+static bool ignore_some(void *user, uint32_t a, uint32_t b) {
+    (void)user;
+    return (a * 2654435761u ^ b * 40503u) % 16 == 0;
+}
+
+/* A first contact that is left out must not hide a later one: mode earliest finishes then. */
+static void ignored_contacts_hide_none(void **state) {
+    static const scene_family families[3] = {SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS, SCENE_SPIKE};
+    size_t kept = 0;
+    (void)state;
+    for (uint32_t seed = 0; seed < 3 * PUBLISHED_INTERVALS_PER_FAMILY; seed++) {
+        scene_make(families[seed % 3], seed + 5000, &interval);
+        reference r = reference_create(&interval);
+        cscd_detector_options options = cscd_detector_defaults();
+        cscd_detector *detectors[2] = {NULL, NULL};
+        cscd_contacts found[2];
+        options.ignore = ignore_some;
+        for (int i = 0; i < 2; i++) {
+            options.method = i == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
+            options.mode = i == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
+            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &detectors[i]), CSCD_OK);
+            assert_int_equal(cscd_detector_step(detectors[i], interval.x0, interval.x1, &found[i]), CSCD_OK);
+        }
+        check_complete(&found[1], &found[0]);
+        kept += found[0].count;
+        cscd_detector_destroy(detectors[0]);
+        cscd_detector_destroy(detectors[1]);
+        reference_destroy(&r);
+    }
+    assert_true(kept > 0);
+}
+
 /* ---- the published rule ---------------------------------------------------------------------------- */
 
 /* Loses first contacts on the same scenes, or these tests could not fail. */
@@ -251,6 +285,7 @@ static void published_rule_loses_first_contacts(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(culling_loses_no_first_contact),
+        cmocka_unit_test(ignored_contacts_hide_none),
         cmocka_unit_test(published_rule_loses_first_contacts),
     };
     return cmocka_run_group_tests_name("culling", tests, NULL, NULL);

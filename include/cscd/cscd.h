@@ -224,10 +224,11 @@ CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
 typedef struct cscd_detector cscd_detector;
 
 typedef enum cscd_mode {
-    CSCD_MODE_ALL,     /* every contact of the interval is reported, whatever the mesh and its start state */
+    CSCD_MODE_ALL, /* every contact of the interval is reported, whatever the mesh and its start state (but
+                    * for method PUBLISHED, and starts vouched for wrongly) */
     CSCD_MODE_EARLIEST /* of a component whose start is proven embedded, at least one contact with itself at
                         * its earliest time; so none is a proof that there is none. All other contacts as in
-                        * ALL. See cscd_detector_guarantee */
+                        * ALL, and all with pairs to leave out. See cscd_detector_guarantee */
 } cscd_mode;
 
 CSCD_API const char *cscd_mode_name(cscd_mode mode);
@@ -264,8 +265,8 @@ typedef struct cscd_detector_options {
 
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
 
-/* plan: NULL, or one of the mesh; the detector copies what it needs. A method that culls wants a plan of that
- * method; with PUBLISHED any will do. */
+/* plan: NULL, or one of the mesh; the detector copies what it needs. CHARGE and KMEANS
+ * want a plan of that method; SINGLE and PUBLISHED take any, or none. */
 CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
@@ -322,13 +323,14 @@ CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *
 
 /* Why a component's contacts with itself in the last step are what they are. */
 typedef enum cscd_reason {
-    CSCD_REASON_METHOD,   /* complete: the method does not cull, or not with min_separation */
-    CSCD_REASON_SURFACE,  /* complete: open, non-manifold or inconsistently oriented, so never culled */
-    CSCD_REASON_CROSSING, /* complete: the start is known to cross or touch itself */
-    CSCD_REASON_UNPROVEN, /* complete: the start is not known to be embedded */
-    CSCD_REASON_CLEAN,    /* complete: the start is embedded, and there is no contact */
-    CSCD_REASON_FINISHED, /* complete: the start is embedded, there are contacts, and mode ALL found all */
-    CSCD_REASON_EARLIEST  /* the start is embedded, and mode EARLIEST promises the first contacts only */
+    CSCD_REASON_METHOD,    /* complete: the method does not cull, or not with min_separation */
+    CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so never culled */
+    CSCD_REASON_CROSSING,  /* complete: the start is known to cross or touch itself */
+    CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded */
+    CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
+    CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
+    CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED */
+    CSCD_REASON_EARLIEST   /* the start is embedded, and mode EARLIEST promises the first contacts only */
 } cscd_reason;
 
 /* A sentence's part: "open, non-manifold or inconsistently oriented"; static storage, never NULL. */
@@ -340,11 +342,12 @@ typedef struct cscd_guarantee {
     cscd_reason reason;
 } cscd_guarantee;
 
-/* Of the last step; contacts between components are always complete. component < the mesh's count. */
+/* Of the last step, meaningless before the first; contacts between components are always complete. component
+ * < the mesh's count. */
 CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 
 /* How a triangle faced its region's detector point during the last step: 1 (S+), -1 (S-), or 0: neither
- * throughout, or its component was not culled. */
+ * throughout, or its component was not culled. Undefined after a step that failed. */
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
 
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
