@@ -42,9 +42,10 @@ SUPPORT_SOURCES := $(wildcard tests/support/*.c)
 TEST_SOURCES    := $(filter-out $(if $(filter 0,$(GSL)),tests/test_gsl.c),$(wildcard tests/test_*.c))
 FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
+MODEL_PARTS     := $(wildcard models/*/*.c)
 BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
 SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
-           $(MODEL_SOURCES) $(BENCHMARK_SOURCES)
+           $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES)
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
@@ -128,7 +129,9 @@ $(LIBRARY): $(CORE_OBJECTS)
 $(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
-$(BUILD)/models/%: $(BUILD)/models/%.o $(TOOL_OBJECTS) $(LIBRARY)
+# models/*.c are programs, in models/*/ is what they are made of; they live on the public API too.
+MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
+$(MODELS): $(BUILD)/models/%: $(BUILD)/models/%.o $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
 	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 $(BUILD)/benchmarks/queries: $(call objects,benchmarks/queries.c benchmarks/query_file.c) $(CORE_OBJECTS) $(TOOL_OBJECTS)
@@ -147,7 +150,7 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
 	ar rcs $@ $^
 
 # q: objects of different folders may have one name.
-$(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS)
+$(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	rm -f $@
 	ar qcs $@ $^
