@@ -1,4 +1,4 @@
-/* The commands that look at single frames: check, info and render. */
+/* The commands that look at single frames: check and info. */
 #include "tests/support/json_reader.h"
 #include "tests/support/run_tool.h"
 #include "tests/support/tool_fixture.h"
@@ -10,14 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <png.h>
-
 #include <cmocka.h>
 
 enum { FRAMES = 8 };
 
 static temp_folder folder;
-static temp_path model, cache, json, png;
+static temp_path model, cache, json;
 
 static int make_files(void **state) {
     (void)state;
@@ -26,7 +24,6 @@ static int make_files(void **state) {
     model = recorded_write_mesh(&folder, "flight.obj", &flight, 0);
     cache = recorded_write_cache(&folder, "flight.pc2", &flight);
     json = temp_file_path(&folder, "check.json");
-    png = temp_file_path(&folder, "picture.png");
     recorded_free(&flight);
     return 0;
 }
@@ -53,6 +50,16 @@ static void check_lists_crossing_frames(void **state) {
     EXPECT_TOOL(0, "check", model.text, cache.text, "--fail-on-contact", "--frames", ":3");
     EXPECT_TOOL(3, "check", model.text, cache.text, "--fail-on-contact", "--frames", "4");
     EXPECT_TOOL(0, "check", model.text, "--fail-on-contact");
+    run = RUN_TOOL("check", model.text, cache.text, "--frames", "1::3");
+    expect_in(run.out, "2 of 3 frames cross or touch themselves: 4, 7\n");
+    tool_run_free(&run);
+    static const char *const wrong[] = {":", "1:2:", "1:2:0", "1:2:x", "1:2:3:4", "5:2", "::", ""};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        EXPECT_ERROR(2, TEXTS("--frames cannot be '"), "check", model.text, cache.text, "--frames", wrong[i]);
+    EXPECT_ERROR(1, TEXTS("no frame 8", "frames 0 to 7"), "check", model.text, cache.text, "--frames",
+                 "3:8:5");
+    EXPECT_ERROR(2, TEXTS("a step of 2", "replay takes A:B only"), "replay", model.text, cache.text,
+                 "--frames", "0:4:2");
     run = RUN_TOOL("check", model.text, cache.text, "--quiet");
     assert_string_equal(run.out, "");
     tool_run_free(&run);
@@ -147,95 +154,6 @@ static void info_describes_defects(void **state) {
     recorded_free(&turned);
 }
 
-/* The picture as RGB, to be freed. */
-static unsigned char *read_png(uint32_t width, uint32_t height) {
-    static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    size_t size;
-    char *bytes = read_whole_file(png.text, &size);
-    assert_true(size > 8);
-    assert_memory_equal(bytes, signature, sizeof signature);
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    assert_true(png_image_begin_read_from_memory(&image, bytes, size));
-    assert_int_equal(image.width, width);
-    assert_int_equal(image.height, height);
-    image.format = PNG_FORMAT_RGB;
-    unsigned char *pixels = malloc(PNG_IMAGE_SIZE(image));
-    assert_non_null(pixels);
-    assert_true(png_image_finish_read(&image, NULL, pixels, 0, NULL));
-    free(bytes);
-    return pixels;
-}
-
-/* Pixels of just this colour. */
-static size_t count_pixels(const unsigned char *pixels, size_t count, int r, int g, int b) {
-    size_t found = 0;
-    for (size_t i = 0; i < count; i++)
-        found += pixels[i * 3] == r && pixels[i * 3 + 1] == g && pixels[i * 3 + 2] == b;
-    return found;
-}
-
-static void render_draws_a_frame(void **state) {
-    (void)state;
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "4", "-o", png.text, "--size", "320x240");
-    unsigned char *first = read_png(320, 240);
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "0", "-o", png.text, "--size", "320x240");
-    unsigned char *second = read_png(320, 240);
-    assert_memory_not_equal(first, second, 320 * 240 * 3);
-    EXPECT_TOOL(0, "render", model.text, "-o", png.text, "--wire", "--up", "y", "--view", "30,20");
-    free(read_png(1280, 960));
-    free(first);
-    free(second);
-}
-
-static void render_marks_contacts(void **state) {
-    (void)state;
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "3", "--colour", "contacts", "-o", png.text);
-    unsigned char *with = read_png(1280, 960);
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "3", "--colour", "plain", "-o", png.text);
-    unsigned char *without = read_png(1280, 960);
-    assert_true(count_pixels(with, 1280 * 960, 0, 90, 181) > 20); /* dots and legend */
-    assert_int_equal(count_pixels(without, 1280 * 960, 0, 90, 181), 0);
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "3", "--color", "contacts", "--zoom", "-o",
-                png.text);
-    free(read_png(1280, 960));
-    free(with);
-    free(without);
-}
-
-static void render_draws_a_plan(void **state) {
-    (void)state;
-    static const uint8_t first_region[3] = {86, 180, 233}, second_region[3] = {230, 159, 0};
-    temp_path plan = temp_file_path(&folder, "two.ply");
-    const size_t count = 320 * 240;
-    EXPECT_TOOL(0, "render", model.text, "--colour", "region", "-o", png.text, "--size", "320x240");
-    unsigned char *region = read_png(320, 240);
-    EXPECT_TOOL(0, "render", model.text, "--colour", "charge", "-o", png.text, "--size", "320x240");
-    unsigned char *charge = read_png(320, 240);
-    assert_true(count_pixels(region, count, first_region[0], first_region[1], first_region[2]) > 5);
-    assert_true(count_pixels(region, count, second_region[0], second_region[1], second_region[2]) > 5);
-    assert_true(count_pixels(charge, count, 68, 1, 84) > 5 && count_pixels(charge, count, 253, 231, 37) > 5);
-    EXPECT_TOOL(0, "preprocess", model.text, "--method", "single", "-o", plan.text, "--quiet");
-    EXPECT_TOOL(0, "render", model.text, "--colour", "region", "--plan", plan.text, "-o", png.text, "--size",
-                "320x240");
-    unsigned char *single = read_png(320, 240);
-    assert_memory_not_equal(single, region, count * 3); /* the caption says by which method */
-    EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "5", "--colour", "region", "-o", png.text);
-    EXPECT_ERROR(1, TEXTS("two.ply", "of method single, expected charge"), "render", model.text, "--colour",
-                 "charge", "--plan", plan.text, "-o", png.text);
-    free(region);
-    free(charge);
-    free(single);
-}
-
-static void render_refuses_frames_that_are_not_there(void **state) {
-    (void)state;
-    EXPECT_ERROR(1, TEXTS("--frame 8", "frames 0 to 7"), "render", model.text, cache.text, "-o", png.text,
-                 "--frame", "8");
-    EXPECT_ERROR(1, TEXTS("--frame 7", "next"), "render", model.text, cache.text, "-o", png.text, "--frame",
-                 "7", "--colour", "contacts");
-    EXPECT_TOOL(0, "render", model.text, cache.text, "-o", png.text, "--frame", "7");
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(check_lists_crossing_frames),
@@ -243,10 +161,6 @@ int main(void) {
         cmocka_unit_test(check_keeps_what_precedes_a_bad_frame),
         cmocka_unit_test(info_describes_closed_meshes),
         cmocka_unit_test(info_describes_defects),
-        cmocka_unit_test(render_draws_a_frame),
-        cmocka_unit_test(render_marks_contacts),
-        cmocka_unit_test(render_draws_a_plan),
-        cmocka_unit_test(render_refuses_frames_that_are_not_there),
     };
     return cmocka_run_group_tests_name("tool_views", tests, make_files, remove_files);
 }

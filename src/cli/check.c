@@ -1,6 +1,7 @@
 /* `cscd check`: where a mesh crosses or touches itself, frame by frame. */
 #include "src/cli/command.h"
 #include "src/cli/frame_list.h"
+#include "src/cli/frame_range.h"
 #include "src/cli/ignore_pairs.h"
 #include "src/cli/output_path.h"
 #include "src/cli/progress.h"
@@ -20,7 +21,7 @@ static const char help[] =
     "Exact: the answer is that of the given coordinates, without rounding.\n"
     "\n"
     "  --json OUT.json      write the pairs of every frame (triangles as in MODEL, from 0)\n"
-    "  --frames A:B         only the frames A to B, both included\n"
+    "  --frames A:B[:STEP]  only the frames A to B, both included, or every STEP-th of them\n"
     "  --weld exact|EPS     join vertices that coincide, or lie within EPS, in the first frame\n"
     "  --ignore LIST        leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'\n"
     "  --ignore-rest        leave out the pairs that meet in the first frame\n"
@@ -43,7 +44,8 @@ typedef struct check {
     double *positions;
     json out; /* file NULL when not asked for */
     progress progress;
-    uint32_t first, last, frames_checked;
+    frame_range frames;
+    uint32_t frames_checked;
     frame_list crossing;
 } check;
 
@@ -82,18 +84,10 @@ static bool check_frame(check *c, uint32_t frame, io_error *error) {
     return true;
 }
 
-static bool choose_frames(check *c, io_error *error) {
-    uint32_t count = c->recording.frame_count;
-    c->first = c->options->frames.first;
-    c->last = c->options->frames.last == UINT32_MAX ? count - 1 : c->options->frames.last;
-    if (c->first < count && c->last < count) return true;
-    return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
-                   c->first >= count ? c->first : c->last, count - 1);
-}
-
 static bool prepare(check *c, io_error *error) {
     const check_options *o = c->options;
-    if (!choose_frames(c, error)) return false;
+    c->frames = o->frames;
+    if (!frame_range_close(&c->frames, c->recording.frame_count, error)) return false;
     cscd_detector_options options = cscd_detector_defaults();
     options.ignore = o->ignore_path != NULL || o->ignore_rest ? ignore_pairs_contain : NULL;
     options.ignore_user = &c->ignored;
@@ -114,9 +108,10 @@ static bool prepare(check *c, io_error *error) {
 }
 
 static bool check_frames(check *c, io_error *error) {
-    for (uint32_t k = c->first; k <= c->last && !interrupted(); k++) {
-        progress_update(&c->progress, k - c->first, c->last - c->first + 1, "check");
-        if (!check_frame(c, k, error)) return false;
+    uint32_t count = frame_range_count(&c->frames);
+    for (uint32_t i = 0; i < count && !interrupted(); i++) {
+        progress_update(&c->progress, i, count, "check");
+        if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
     }
     return true;
 }
@@ -169,7 +164,7 @@ static bool set_option(int id, const char *value, check_options *o) {
         o->json_path = value;
         return true;
     case 'f':
-        return parse_frame_range(value, &o->frames);
+        return frame_range_parse(value, &o->frames);
     case 'w':
         return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
     case 'i':
@@ -199,7 +194,7 @@ int command_check(int argument_count, char **arguments) {
                                                  {"quiet", no_argument, NULL, 'q'},
                                                  {"help", no_argument, NULL, 'h'},
                                                  {NULL, 0, NULL, 0}};
-    check_options options = {.source = {.thread_count = 1}, .frames = {0, UINT32_MAX}};
+    check_options options = {.source = {.thread_count = 1}, .frames = frame_range_all()};
     opterr = 0;
     optind = 1;
     for (int id, index = 0; (id = getopt_long(argument_count, arguments, ":", long_options, &index)) != -1;) {

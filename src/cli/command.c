@@ -66,21 +66,3 @@ bool parse_double(const char *text, double *out) {
     *out = value;
     return true;
 }
-
-bool parse_frame_range(const char *text, frame_range *out) {
-    char first[16] = "";
-    const char *colon = strchr(text, ':');
-    size_t length = colon != NULL ? (size_t)(colon - text) : strlen(text);
-    if (length >= sizeof first) return false;
-    memcpy(first, text, length);
-    frame_range range = {0, UINT32_MAX};
-    if (length > 0 && !parse_unsigned(first, &range.first)) return false;
-    if (colon == NULL)
-        range.last = range.first;
-    else if (colon[1] != '\0' && !parse_unsigned(colon + 1, &range.last))
-        return false;
-    if (length == 0 && (colon == NULL || colon[1] == '\0')) return false;
-    if (range.first > range.last) return false;
-    *out = range;
-    return true;
-}

@@ -33,11 +33,4 @@ void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_double(const char *text, double *out);
 
-/* Frames A:B, both inclusive; A: and :B are open ends, one number is one frame. */
-typedef struct frame_range {
-    uint32_t first, last; /* last UINT32_MAX: to the end */
-} frame_range;
-
-bool parse_frame_range(const char *text, frame_range *out);
-
 #endif

@@ -1,4 +1,4 @@
-/* One frame of a recording as a scene, the contacts of its interval marked when wanted. */
+/* A frame of a recording as a scene, the contacts of its interval marked when wanted. */
 #include "src/cli/contact_picture.h"
 
 #include <math.h>
@@ -13,17 +13,22 @@ static const picture_legend legend[] = {{{0, 90, 181}, "vertex-face contact"},
                                         {{220, 50, 32}, "edge-edge contact"},
                                         {{255, 176, 66}, "triangles that touch"}};
 
-static bool copy_mesh(contact_picture *p, const cscd_mesh *mesh, io_error *error) {
+bool contact_picture_load(contact_picture *p, const recording *r, io_error *error) {
+    const cscd_mesh *mesh = r->mesh;
     size_t vertex_count = cscd_mesh_vertex_count(mesh), triangle_count = cscd_mesh_triangle_count(mesh);
     p->positions = malloc(vertex_count * 3 * sizeof *p->positions);
     p->triangles = malloc(triangle_count * 3 * sizeof *p->triangles);
     p->colours = malloc(triangle_count * 3);
     if (p->positions == NULL || p->triangles == NULL || p->colours == NULL)
         return io_fail(error, "out of memory");
-    for (uint32_t t = 0; t < triangle_count; t++) {
-        cscd_mesh_triangle(mesh, t, p->triangles + (size_t)t * 3);
-        memcpy(p->colours + (size_t)t * 3, plain_colour, 3);
-    }
+    for (uint32_t t = 0; t < triangle_count; t++) cscd_mesh_triangle(mesh, t, p->triangles + (size_t)t * 3);
+    p->scene.vertex_count = cscd_mesh_vertex_count(mesh);
+    p->scene.triangle_count = cscd_mesh_triangle_count(mesh);
+    p->scene.positions = p->positions;
+    p->scene.triangles = p->triangles;
+    p->scene.triangle_colours = p->colours;
+    p->scene.caption = p->caption;
+    contact_picture_clear(p);
     return true;
 }
 
@@ -68,41 +73,48 @@ static bool place_markers(contact_picture *p, const cscd_contacts *contacts, io_
     return true;
 }
 
-static bool mark_contacts(contact_picture *p, recording *r, cscd_detector *detector, uint32_t frame,
-                          double *end, io_error *error) {
+static bool create_detector(contact_picture *p, const recording *r, io_error *error) {
+    if (p->detector != NULL) return true;
+    p->end = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *p->end);
+    return (p->end != NULL && cscd_detector_create(r->mesh, NULL, NULL, &p->detector) == CSCD_OK) ||
+           io_fail(error, "out of memory");
+}
+
+static bool mark_contacts(contact_picture *p, recording *r, uint32_t frame, io_error *error) {
     cscd_contacts contacts;
-    if (!recording_read(r, frame + 1, end, error)) return false;
-    if (cscd_detector_step(detector, p->positions, end, &contacts) != CSCD_OK)
+    if (!create_detector(p, r, error) || !recording_read(r, frame + 1, p->end, error)) return false;
+    if (cscd_detector_step(p->detector, p->positions, p->end, &contacts) != CSCD_OK)
         return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->context));
-    cscd_counters counters = cscd_detector_counters(detector);
+    cscd_counters counters = cscd_detector_counters(p->detector);
+    p->vf_count = counters.vf;
+    p->ee_count = counters.ee;
     snprintf(p->caption, sizeof p->caption, "frame %u to %u: %llu VF and %llu EE contacts", frame, frame + 1,
-             (unsigned long long)counters.vf, (unsigned long long)counters.ee);
+             (unsigned long long)p->vf_count, (unsigned long long)p->ee_count);
     p->scene.legend = legend;
     p->scene.legend_count = sizeof legend / sizeof *legend;
     return colour_features(p, r->mesh, &contacts, error) && place_markers(p, &contacts, error);
 }
 
-static bool find_contacts(contact_picture *p, recording *r, uint32_t frame, io_error *error) {
-    cscd_detector *detector = NULL;
-    double *end = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *end);
-    bool created = end != NULL && cscd_detector_create(r->mesh, NULL, NULL, &detector) == CSCD_OK;
-    bool marked =
-        created ? mark_contacts(p, r, detector, frame, end, error) : io_fail(error, "out of memory");
-    cscd_detector_destroy(detector);
-    free(end);
-    return marked;
+bool contact_picture_show(contact_picture *p, recording *r, uint32_t frame, bool contacts, io_error *error) {
+    if (!recording_read(r, frame, p->positions, error)) return false;
+    snprintf(p->caption, sizeof p->caption, "frame %u", frame);
+    if (!contacts) return true;
+    contact_picture_clear(p);
+    return mark_contacts(p, r, frame, error);
 }
 
-bool contact_picture_load(contact_picture *p, recording *r, uint32_t frame, bool contacts, io_error *error) {
-    if (!copy_mesh(p, r->mesh, error) || !recording_read(r, frame, p->positions, error)) return false;
-    p->scene.vertex_count = cscd_mesh_vertex_count(r->mesh);
-    p->scene.triangle_count = cscd_mesh_triangle_count(r->mesh);
-    p->scene.positions = p->positions;
-    p->scene.triangles = p->triangles;
-    p->scene.triangle_colours = p->colours;
-    p->scene.caption = p->caption;
-    snprintf(p->caption, sizeof p->caption, "frame %u", frame);
-    return !contacts || find_contacts(p, r, frame, error);
+void contact_picture_clear(contact_picture *p) {
+    for (uint32_t t = 0; t < p->scene.triangle_count; t++)
+        memcpy(p->colours + (size_t)t * 3, plain_colour, 3);
+    free(p->markers);
+    p->markers = NULL;
+    p->scene.markers = NULL;
+    p->scene.marker_count = p->scene.legend_count = 0;
+    p->vf_count = p->ee_count = 0;
+}
+
+void contact_picture_kind_colour(int kind, uint8_t rgb[3]) {
+    memcpy(rgb, kind_colours[kind], 3);
 }
 
 void contact_picture_focus(const contact_picture *p, picture_options *options) {
@@ -133,5 +145,7 @@ void contact_picture_free(contact_picture *p) {
     free(p->triangles);
     free(p->colours);
     free(p->markers);
+    free(p->end);
+    cscd_detector_destroy(p->detector);
     *p = (contact_picture){0};
 }

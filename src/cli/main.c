@@ -18,7 +18,7 @@ static const command commands[] = {
     {"replay", "find every self-collision of a recorded animation", command_replay},
     {"check", "find where a mesh crosses or touches itself, frame by frame", command_check},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
-    {"render", "draw a frame to a PNG", command_render},
+    {"render", "draw frames to a PNG", command_render},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };

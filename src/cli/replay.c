@@ -34,15 +34,13 @@ static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
 }
 
 static bool choose_frames(replay *r, io_error *error) {
-    uint32_t count = r->recording.frame_count;
-    r->first = r->options->frames.first;
-    r->last = r->options->frames.last == UINT32_MAX ? count - 1 : r->options->frames.last;
-    if (r->first >= count || r->last >= count)
-        return io_fail(error, "--frames: there is no frame %u, the recording has the frames 0 to %u",
-                       r->first >= count ? r->first : r->last, count - 1);
+    frame_range frames = r->options->frames;
+    if (!frame_range_close(&frames, r->recording.frame_count, error)) return false;
+    r->first = frames.first;
+    r->last = frames.last;
     if (r->first >= r->last)
         return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
-                       r->first, r->last, count);
+                       r->first, r->last, r->recording.frame_count);
     return true;
 }
 

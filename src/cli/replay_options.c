@@ -125,7 +125,7 @@ static bool set_option(int id, const char *value, replay_options *o) {
         o->json_path = value;
         return true;
     case OPTION_FRAMES:
-        return parse_frame_range(value, &o->frames);
+        return frame_range_parse(value, &o->frames);
     case OPTION_METHOD:
         return parse_method(value, &o->method, &o->k);
     case OPTION_PLAN:
@@ -195,7 +195,7 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     bool help_wanted = false;
     replay_options o = {.method = CSCD_METHOD_AUTO,
                         .mode = CSCD_MODE_ALL,
-                        .frames = {0, UINT32_MAX},
+                        .frames = frame_range_all(),
                         .thread_count = 1,
                         .argument_count = argument_count,
                         .arguments = arguments};
@@ -210,6 +210,11 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
     if (*code == EXIT_RAN && o.plan_path != NULL &&
         (o.method == CSCD_METHOD_NONE || o.method == CSCD_METHOD_BRUTE))
         *code = fail_usage("replay", "--plan is of no use with --method %s", cscd_method_name(o.method));
+    if (*code == EXIT_RAN && o.frames.step != 1)
+        *code = fail_usage("replay",
+                           "--frames with a step of %u: a contact lies between one frame and the next, so "
+                           "replay takes A:B only",
+                           o.frames.step);
     const char *const *inputs = (const char *const *)(arguments + optind);
     if (*code == EXIT_RAN && !outputs_are_safe(&o, inputs, (size_t)rest)) *code = EXIT_USAGE;
     if (*code != EXIT_RAN) return false;

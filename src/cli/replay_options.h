@@ -4,6 +4,7 @@
 
 #include "cscd/cscd.h"
 #include "src/cli/command.h"
+#include "src/cli/frame_range.h"
 
 #include <stddef.h>
 

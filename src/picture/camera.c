@@ -2,6 +2,7 @@
 #include "src/picture/camera.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -40,6 +41,13 @@ static double least_distance(const double *points, size_t point_count) {
     return extent > 1e-9 * magnitude ? 0.01 * extent : 1e-3 * magnitude + 1e-30;
 }
 
+/* Tangents of the half angles of view, kept free of the margin. */
+static void free_slopes(const picture_camera *camera, double width, double height, double slope[2]) {
+    double frame = margin * fmin(width, height);
+    slope[0] = (0.5 * width - frame) / camera->focal;
+    slope[1] = (0.5 * height - frame) / camera->focal;
+}
+
 /* Places the eye. Across one image axis, with s the tangent of the half angle kept free of the margin, a
  * point at (r, f) in camera axes is inside when |r - eye_r| <= s (f - eye_f). With A = max(r - s f) and B =
  * max(-r - s f) over the points, both sides are tight at eye_r = (A - B) / 2 and eye_f = -(A + B) / (2 s);
@@ -47,10 +55,9 @@ static double least_distance(const double *points, size_t point_count) {
  * axis allows. */
 static void place_eye(picture_camera *camera, const double *points, size_t point_count, double width,
                       double height) {
-    double frame = margin * fmin(width, height);
-    const double slope[2] = {(0.5 * width - frame) / camera->focal, (0.5 * height - frame) / camera->focal};
-    double nearest = HUGE_VAL, across[2];
+    double slope[2], nearest = HUGE_VAL, across[2];
     double a[2] = {-HUGE_VAL, -HUGE_VAL}, b[2] = {-HUGE_VAL, -HUGE_VAL};
+    free_slopes(camera, width, height, slope);
     for (size_t i = 0; i < point_count; i++) {
         double turned[3];
         picture_camera_turn(camera, points + 3 * i, turned);
@@ -71,14 +78,50 @@ static void place_eye(picture_camera *camera, const double *points, size_t point
     camera->near_depth = 0.02 * (nearest - forward);
 }
 
-void picture_camera_frame(const double *points, size_t point_count, double azimuth, double elevation,
-                          bool y_up, uint32_t width, uint32_t height, picture_camera *out) {
-    static const double origin[3] = {0.0, 0.0, 0.0};
+/* All but the eye. */
+static void set_lens(picture_camera *out, double azimuth, double elevation, bool y_up, double width,
+                     double height) {
     orient(out, azimuth, elevation, y_up);
     out->focal = 0.5 * fmin(width, height) / tan(half_view_degrees * pi / 180.0);
     out->centre[0] = 0.5 * width;
     out->centre[1] = 0.5 * height;
+}
+
+void picture_camera_frame(const double *points, size_t point_count, double azimuth, double elevation,
+                          bool y_up, uint32_t width, uint32_t height, picture_camera *out) {
+    static const double origin[3] = {0.0, 0.0, 0.0};
+    set_lens(out, azimuth, elevation, y_up, width, height);
     place_eye(out, point_count > 0 ? points : origin, point_count > 0 ? point_count : 1, width, height);
+}
+
+/* The points with the greatest A and B of either axis, and the nearest one; see place_eye. */
+void picture_camera_outermost(const double *points, size_t point_count, double azimuth, double elevation,
+                              bool y_up, uint32_t width, uint32_t height, double out[PICTURE_OUTERMOST][3]) {
+    picture_camera camera;
+    double slope[2], most[PICTURE_OUTERMOST];
+    set_lens(&camera, azimuth, elevation, y_up, width, height);
+    free_slopes(&camera, width, height, slope);
+    for (int i = 0; i < PICTURE_OUTERMOST; i++) most[i] = -HUGE_VAL;
+    memset(out, 0, PICTURE_OUTERMOST * sizeof *out);
+    for (size_t i = 0; i < point_count; i++) {
+        double turned[3];
+        picture_camera_turn(&camera, points + 3 * i, turned);
+        const double values[PICTURE_OUTERMOST] = {
+            turned[0] - slope[0] * turned[2], -turned[0] - slope[0] * turned[2],
+            turned[1] - slope[1] * turned[2], -turned[1] - slope[1] * turned[2], -turned[2]};
+        for (int k = 0; k < PICTURE_OUTERMOST; k++) {
+            if (!(values[k] > most[k])) continue;
+            most[k] = values[k];
+            memcpy(out[k], points + 3 * i, sizeof out[k]);
+        }
+    }
+}
+
+void picture_camera_unproject(const picture_camera *camera, double x, double y, double depth, double out[3]) {
+    double across = (x - camera->centre[0]) / camera->focal, along = (y - camera->centre[1]) / camera->focal;
+    for (int i = 0; i < 3; i++)
+        out[i] = camera->eye[i] +
+                 depth * (across * camera->right[i] + along * camera->down[i] + camera->forward[i]);
 }
 
 void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]) {

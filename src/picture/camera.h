@@ -20,9 +20,19 @@ typedef struct picture_camera {
 void picture_camera_frame(const double *points, size_t point_count, double azimuth, double elevation,
                           bool y_up, uint32_t width, uint32_t height, picture_camera *out);
 
+enum { PICTURE_OUTERMOST = 5 };
+
+/* Of many points those that decide where picture_camera_frame, with the same arguments, places the eye: a
+ * motion can be framed as a whole with a few points of each of its frames. */
+void picture_camera_outermost(const double *points, size_t point_count, double azimuth, double elevation,
+                              bool y_up, uint32_t width, uint32_t height, double out[PICTURE_OUTERMOST][3]);
+
 /* Homogeneous pixel coordinates: the point lies at (out[0] / out[2], out[1] / out[2]) in depth out[2], which
  * is negative behind the eye. */
 void picture_camera_project(const picture_camera *camera, const double point[3], double out[3]);
+
+/* The point of the world seen at pixel (x, y) in the given depth. */
+void picture_camera_unproject(const picture_camera *camera, double x, double y, double depth, double out[3]);
 
 /* A direction in camera space. */
 void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]);

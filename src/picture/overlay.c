@@ -96,11 +96,11 @@ static void draw_panel(picture_image *image, double left, double top, double rig
             picture_image_blend(image, column, row, paper, 0.8);
 }
 
-void picture_draw_caption(picture_image *image, const char *caption, const picture_legend *legend,
-                          size_t count) {
+void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
+                          const picture_legend *legend, size_t count) {
     if (caption == NULL && count == 0) return;
     double side = fmin(image->width, image->height);
-    double scale = fmax(1.0, 0.5 * ceil(side / 200.0)), line = scale * 12.0, left = scale * 8.0,
+    double scale = enlarged * fmax(1.0, 0.5 * ceil(side / 200.0)), line = scale * 12.0, left = scale * 8.0,
            top = scale * 8.0;
     size_t longest = caption != NULL ? strlen(caption) : 0, lines = count + (caption != NULL);
     for (size_t i = 0; i < count; i++) {

@@ -27,8 +27,9 @@ bool picture_draw_markers(picture_image *image, const picture_visibility *visibi
                           const picture_camera *camera, const picture_marker *markers, size_t count,
                           io_error *error);
 
-/* In the upper left corner; caption may be NULL. Printable ASCII; anything else becomes '?'. */
-void picture_draw_caption(picture_image *image, const char *caption, const picture_legend *legend,
-                          size_t count);
+/* In the upper left corner, `enlarged` times the usual size; caption may be NULL. Printable ASCII; anything
+ * else becomes '?'. */
+void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
+                          const picture_legend *legend, size_t count);
 
 #endif

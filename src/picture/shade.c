@@ -59,7 +59,7 @@ static const light lights[] = {
 /* Ambient light from the sky above and from the ground. */
 static const double sky[3] = {0.26, 0.27, 0.29}, ground[3] = {0.13, 0.12, 0.12};
 
-static void light_surface(const double normal[3], const double view[3], double colour[3]) {
+static void light_surface(const double normal[3], const double view[3], double gloss, double colour[3]) {
     double upward = 0.5 - 0.5 * normal[1];
     double sum[3], half[3];
     for (int i = 0; i < 3; i++) sum[i] = sky[i] * upward + ground[i] * (1.0 - upward);
@@ -69,7 +69,7 @@ static void light_surface(const double normal[3], const double view[3], double c
     }
     for (int i = 0; i < 3; i++) half[i] = lights[0].direction[i] + view[i];
     normalise(half);
-    double glint = 0.10 * pow(fmax(dot(normal, half), 0.0), 40.0);
+    double glint = gloss * pow(fmax(dot(normal, half), 0.0), 40.0);
     /* Darker towards the outline, which a white background would otherwise swallow. */
     double facing = fmin(fmax(dot(normal, view), 0.0), 1.0);
     double outline = 1.0 - 0.45 * pow(1.0 - facing, 3.0);
@@ -78,22 +78,23 @@ static void light_surface(const double normal[3], const double view[3], double c
 
 typedef struct shading_pass {
     const picture_visibility *visibility;
-    const picture_surface *surface;
+    const picture_surface *surfaces;
     const picture_camera *camera;
     picture_gamma gamma;
 } shading_pass;
 
 static const uint8_t plain_colour[3] = {150, 172, 204}, back_tint[3] = {214, 138, 92};
+static const uint8_t scenery_colour[3] = {190, 186, 177};
 
 /* The triangle's colour with the given barycentric weights, linear. */
-static void surface_colour(const shading_pass *pass, uint32_t triangle, const double weights[3], bool front,
-                           double out[3]) {
-    const picture_surface *surface = pass->surface;
+static void surface_colour(const shading_pass *pass, const picture_surface *surface, uint32_t triangle,
+                           const double weights[3], bool front, double out[3]) {
     const uint32_t *corners = surface->triangles + 3 * (size_t)triangle;
     const uint8_t *flat = surface->triangle_colours != NULL ? surface->triangle_colours + 3 * (size_t)triangle
+                          : surface->ground != NULL         ? scenery_colour
                           : surface->vertex_colours == NULL ? plain_colour
                                                             : NULL;
-    bool tinted = !front && surface->shading != PICTURE_UNLIT;
+    bool tinted = !front && surface->ground == NULL && surface->shading != PICTURE_UNLIT;
     for (int i = 0; i < 3; i++) {
         out[i] = 0.0;
         if (flat != NULL) out[i] = pass->gamma.linear[flat[i]];
@@ -119,13 +120,13 @@ static void seen_normal(const picture_camera *camera, const picture_edges *edges
  * degrees, less than at any corner of a cube, whichever way its squares are cut. */
 static const double crease_cosine = 0.83;
 
-static void interpolate_normal(const shading_pass *pass, const uint32_t corners[3], const double weights[3],
-                               bool front, double normal[3]) {
+static void interpolate_normal(const picture_surface *surface, const uint32_t corners[3],
+                               const double weights[3], bool front, double normal[3]) {
     const double face[3] = {normal[0], normal[1], normal[2]};
     double side = front ? 1.0 : -1.0;
     double sum[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < 3; k++) {
-        const float *at = pass->surface->normals + 3 * (size_t)corners[k];
+        const float *at = surface->normals + 3 * (size_t)corners[k];
         const double smooth[3] = {side * at[0], side * at[1], side * at[2]};
         const double *chosen = dot(smooth, face) >= crease_cosine ? smooth : face;
         for (int i = 0; i < 3; i++) sum[i] += weights[k] * chosen[i];
@@ -152,11 +153,27 @@ static double wire_darkness(const picture_edges *edges, const double *projected,
     return 0.55 * line * fade;
 }
 
-/* The linear colour of the triangle at pixel coordinates (x, y). */
-static void shade_point(const shading_pass *pass, uint32_t triangle, double x, double y, double out[3]) {
-    const picture_surface *surface = pass->surface;
+/* Lights the colour by the surface's normal at pixel coordinates (x, y), 1 / nearness away. */
+static void light_point(const shading_pass *pass, const picture_surface *surface, const uint32_t corners[3],
+                        const picture_edges *edges, const double weights[3], double x, double y,
+                        double nearness, double colour[3]) {
     const picture_camera *camera = pass->camera;
-    const uint32_t *corners = surface->triangles + 3 * (size_t)triangle;
+    double normal[3];
+    double view[3] = {(camera->centre[0] - x) / camera->focal, (camera->centre[1] - y) / camera->focal, -1.0};
+    normalise(view);
+    seen_normal(camera, edges, normal);
+    if (surface->normals != NULL) interpolate_normal(surface, corners, weights, edges->front, normal);
+    light_surface(normal, view, surface->ground == NULL ? 0.10 : 0.0, colour);
+    if (surface->ground == NULL || !(nearness > 0.0)) return;
+    double share = picture_ground_light(surface->ground, camera, normal, view, x, y, 1.0 / nearness);
+    for (int i = 0; i < 3; i++) colour[i] *= share;
+}
+
+/* The linear colour of the triangle at pixel coordinates (x, y). */
+static void shade_point(const shading_pass *pass, uint32_t number, double x, double y, double out[3]) {
+    const picture_surface *surface = pass->surfaces;
+    while (number >= surface->triangle_count) number -= surface++->triangle_count;
+    const uint32_t *corners = surface->triangles + 3 * (size_t)number;
     picture_edges edges;
     picture_edges_set(surface->projected, corners, &edges);
     double weights[3], total = 0.0;
@@ -165,16 +182,9 @@ static void shade_point(const shading_pass *pass, uint32_t triangle, double x, d
         total += weights[k];
     }
     for (int k = 0; k < 3; k++) weights[k] = total > 0.0 ? weights[k] / total : 1.0 / 3.0;
-    surface_colour(pass, triangle, weights, edges.front, out);
-    if (surface->shading != PICTURE_UNLIT) {
-        double normal[3];
-        double view[3] = {(camera->centre[0] - x) / camera->focal, (camera->centre[1] - y) / camera->focal,
-                          -1.0};
-        normalise(view);
-        seen_normal(camera, &edges, normal);
-        if (surface->normals != NULL) interpolate_normal(pass, corners, weights, edges.front, normal);
-        light_surface(normal, view, out);
-    }
+    surface_colour(pass, surface, number, weights, edges.front, out);
+    if (surface->shading != PICTURE_UNLIT)
+        light_point(pass, surface, corners, &edges, weights, x, y, total / edges.volume, out);
     if (!surface->wire) return;
     double light_left = 1.0 - wire_darkness(&edges, surface->projected, corners, x, y);
     for (int i = 0; i < 3; i++) out[i] *= light_left;
@@ -227,9 +237,9 @@ static void shade_pixel(const shading_pass *pass, uint32_t column, uint32_t row,
     pixel[3] = transparent ? (uint8_t)(255.0 * covered / all + 0.5) : 255;
 }
 
-void picture_shade(const picture_visibility *visibility, const picture_surface *surface,
+void picture_shade(const picture_visibility *visibility, const picture_surface *surfaces,
                    const picture_camera *camera, bool transparent, picture_image *image) {
-    shading_pass pass = {.visibility = visibility, .surface = surface, .camera = camera};
+    shading_pass pass = {.visibility = visibility, .surfaces = surfaces, .camera = camera};
     picture_gamma_set(&pass.gamma);
     for (uint32_t row = 0; row < image->height; row++)
         for (uint32_t column = 0; column < image->width; column++)

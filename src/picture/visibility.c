@@ -137,13 +137,14 @@ static void draw_samples(picture_visibility *visibility, const picture_edges *ed
 }
 
 void picture_visibility_draw(picture_visibility *visibility, const double *projected,
-                             const uint32_t *triangles, uint32_t triangle_count, double near_depth) {
+                             const uint32_t *triangles, uint32_t triangle_count, uint32_t first_number,
+                             double near_depth) {
     for (uint32_t triangle = 0; triangle < triangle_count; triangle++) {
         const uint32_t *corners = triangles + 3 * (size_t)triangle;
         bounds box;
         picture_edges edges;
         if (visible_bounds(projected, corners, near_depth, &box) &&
             picture_edges_set(projected, corners, &edges))
-            draw_samples(visibility, &edges, &box, triangle);
+            draw_samples(visibility, &edges, &box, first_number + triangle);
     }
 }

@@ -1,0 +1,28 @@
+/* The frames that --frames A:B:STEP chooses. */
+#ifndef CSCD_FRAME_RANGE_H
+#define CSCD_FRAME_RANGE_H
+
+#include "src/io/io_error.h"
+
+#include <stdint.h>
+
+/* Frames A:B, both inclusive; A: and :B are open ends, one number is one frame. A:B:STEP is every STEP-th of
+ * them, from A on. */
+typedef struct frame_range {
+    uint32_t first, last; /* last UINT32_MAX: to the end */
+    uint32_t step;
+} frame_range;
+
+/* Every frame. */
+frame_range frame_range_all(void);
+
+/* Whole strings only; false leaves *out untouched. */
+bool frame_range_parse(const char *text, frame_range *out);
+
+/* Closes an open end; false, with a sentence, where the recording lacks a frame of the range. */
+bool frame_range_close(frame_range *range, uint32_t frame_count, io_error *error);
+
+/* How many frames a closed range has. */
+uint32_t frame_range_count(const frame_range *range);
+
+#endif

@@ -1,0 +1,14 @@
+/* Several frames of a recording side by side in one picture. */
+#ifndef CSCD_STRIP_H
+#define CSCD_STRIP_H
+
+#include "src/cli/contact_picture.h"
+#include "src/cli/render_options.h"
+#include "src/cli/scenery.h"
+
+/* picture: loaded, and painted unless contacts are wanted. beside: NULL for none. Writes the file of the
+ * options. */
+bool strip_draw(const render_options *options, recording *r, contact_picture *picture, scenery *beside,
+                io_error *error);
+
+#endif
