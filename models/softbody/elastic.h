@@ -1,0 +1,32 @@
+/* Elastic tetrahedra as XPBD constraints: neo-Hookean, volume and shape apart. */
+#ifndef CSCD_MODELS_ELASTIC_H
+#define CSCD_MODELS_ELASTIC_H
+
+#include "models/softbody/lattice.h"
+
+typedef struct material {
+    double density;        /* mass per volume */
+    double young, poisson; /* stiffness (force per area), and 0 to 0.49: how much volume is kept */
+    double damping;        /* share of a cell's motion that is not rigid, lost per second (1/s) */
+} material;
+
+typedef struct tetrahedron {
+    uint32_t nodes[4];
+    double to_rest[3][3]; /* inverse of the matrix whose columns are the rest edges from nodes[0] */
+    double volume;
+    double shear, bulk; /* Lame's mu and lambda */
+} tetrahedron;
+
+/* Five tetrahedra per cell, 5 * cell_count; stiffness(cell centre at rest) scales the material if not NULL.
+ * The caller frees them. */
+tetrahedron *tetrahedra_make(const lattice *l, const material *m, double (*stiffness)(const double rest[3]));
+
+/* One XPBD iteration over all tetrahedra, in order (Macklin and Mueller, "A constraint-based formulation of
+ * stable neo-Hookean materials", 2021, equations 9 and 10). inverse_masses per node, step in seconds. */
+void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const double *inverse_masses,
+                      double step, double *nodes);
+
+/* Energy above that of the rest shape. */
+double tetrahedra_energy(const tetrahedron *tetrahedra, uint32_t count, const double *nodes);
+
+#endif

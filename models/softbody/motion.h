@@ -1,0 +1,31 @@
+/* How soft and how fast a recording is, and where it runs into itself. */
+#ifndef CSCD_MODELS_MOTION_H
+#define CSCD_MODELS_MOTION_H
+
+#include "cscd/cscd.h"
+
+/* What has been measured so far. Residuals are root mean squares over the vertices of what is left after the
+ * best rigid motion from the first frame, as shares of the first frame's diagonal. */
+typedef struct motion {
+    const cscd_mesh *mesh;
+    cscd_detector *detector;
+    double *first, *last;
+    double diagonal, edge_length; /* of the first frame; the mean */
+    uint32_t frame_count;
+    uint32_t soft_frames;       /* residual above 3 % */
+    uint32_t crossing_frames;   /* the mesh crosses itself there */
+    uint32_t contact_intervals; /* from frame to frame */
+    double largest_residual;
+    double largest_motion; /* of a vertex from frame to frame, in edge lengths */
+} motion;
+
+/* At the first frame. On another status than CSCD_OK there is nothing to free. */
+cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out);
+cscd_status motion_add(motion *m, const double *frame);
+void motion_free(motion *m);
+
+/* Root mean square of what the best rigid motion leaves between two sets of points (Horn, "Closed-form
+ * solution of absolute orientation using unit quaternions", 1987). */
+double rigid_residual(const double *from, const double *to, uint32_t point_count);
+
+#endif

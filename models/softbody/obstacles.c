@@ -1,0 +1,73 @@
+/* What a soft body falls onto: ground, stairs, balls. z is up. */
+#include "models/softbody/obstacles.h"
+#include "models/softbody/vector.h"
+
+#include <string.h>
+
+double obstacles_height(const obstacles *o, double x) {
+    if (o->step_count == 0) return 0.0;
+    double step = fmax(floor((x - o->start) / o->tread), 0.0);
+    return step >= o->step_count ? 0.0 : (o->step_count - step) * o->riser;
+}
+
+/* Out through the top, or forwards through the riser that is nearer. */
+bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out) {
+    double depth = obstacles_height(o, point[0]) - point[2];
+    if (depth <= 0.0) return false;
+    *out = (obstacle_hit){{0.0, 0.0, 1.0}, depth, NULL};
+    if (o->step_count == 0 || point[2] <= 0.0) return true;
+    double steps_below = ceil(o->step_count - point[2] / o->riser);
+    double forwards = o->start + steps_below * o->tread - point[0];
+    if (forwards > 0.0 && forwards < depth) *out = (obstacle_hit){{1.0, 0.0, 0.0}, forwards, NULL};
+    return true;
+}
+
+bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out) {
+    ball *b = &o->balls[which];
+    double away[3];
+    difference(point, b->centre, away);
+    double distance = norm(away);
+    if (distance >= b->radius || !normalize(away)) return false;
+    *out = (obstacle_hit){{away[0], away[1], away[2]}, b->radius - distance, b};
+    return true;
+}
+
+void obstacles_begin(obstacles *o, double step) {
+    for (uint32_t i = 0; i < o->ball_count; i++) {
+        ball *b = &o->balls[i];
+        memcpy(b->previous, b->centre, sizeof b->previous);
+        b->velocity[2] -= o->gravity * step;
+        add_scaled(b->centre, step, b->velocity);
+    }
+}
+
+static void keep_off_ball(ball *a, ball *b) {
+    double away[3];
+    difference(a->centre, b->centre, away);
+    double depth = a->radius + b->radius - norm(away);
+    if (depth <= 0.0 || !normalize(away)) return;
+    double share = b->mass / (a->mass + b->mass);
+    add_scaled(a->centre, depth * share, away);
+    add_scaled(b->centre, -depth * (1.0 - share), away);
+}
+
+void obstacles_end(obstacles *o, double step) {
+    for (uint32_t i = 0; i < o->ball_count; i++) {
+        ball *b = &o->balls[i];
+        for (uint32_t j = 0; j < i; j++) keep_off_ball(b, &o->balls[j]);
+        b->centre[2] = fmax(b->centre[2], obstacles_height(o, b->centre[0]) + b->radius);
+    }
+    for (uint32_t i = 0; i < o->ball_count; i++) {
+        ball *b = &o->balls[i];
+        for (int k = 0; k < 3; k++) b->velocity[k] = (b->centre[k] - b->previous[k]) / step;
+    }
+}
+
+double obstacles_energy(const obstacles *o) {
+    double energy = 0.0;
+    for (uint32_t i = 0; i < o->ball_count; i++) {
+        const ball *b = &o->balls[i];
+        energy += b->mass * (0.5 * dot(b->velocity, b->velocity) + o->gravity * b->centre[2]);
+    }
+    return energy;
+}

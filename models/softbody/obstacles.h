@@ -1,0 +1,48 @@
+/* What a soft body falls onto: ground, stairs, balls. z is up. */
+#ifndef CSCD_MODELS_OBSTACLES_H
+#define CSCD_MODELS_OBSTACLES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { BALLS_MAX = 8 };
+
+/* A rigid ball that the body and the ground push. It slides, it does not spin. */
+typedef struct ball {
+    double centre[3], previous[3], velocity[3];
+    double radius, mass;
+} ball;
+
+/* Ground at z = 0 below everything. Stairs descend along +x: step i of step_count covers the x from
+ * start + i * tread to start + (i + 1) * tread, with its top at (step_count - i) * riser; before the first
+ * the top stays as high. */
+typedef struct obstacles {
+    uint32_t step_count, ball_count;
+    double start, tread, riser;
+    double friction; /* Coulomb's coefficient */
+    double gravity;  /* acceleration downwards */
+    ball balls[BALLS_MAX];
+} obstacles;
+
+/* The top of ground or stairs below a place. */
+double obstacles_height(const obstacles *o, double x);
+
+/* Where a point is inside an obstacle: the way out, and whose. */
+typedef struct obstacle_hit {
+    double normal[3], depth;
+    ball *pushed; /* NULL: ground or stairs */
+} obstacle_hit;
+
+/* Calls for each obstacle that the point is inside of: ball `which`, or UINT32_MAX for ground and stairs. */
+bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out);
+bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out);
+
+/* The balls' own motion: obstacles_begin moves them freely, then bodies may push them, then obstacles_end
+ * keeps them off the terrain and each other and takes their new velocities. step in seconds. */
+void obstacles_begin(obstacles *o, double step);
+void obstacles_end(obstacles *o, double step);
+
+/* Kinetic and potential energy of the balls. */
+double obstacles_energy(const obstacles *o);
+
+#endif

@@ -1,0 +1,33 @@
+/* Runs a scene frame by frame: the soft body moves, cscd finds where it runs into itself, the body responds.
+ */
+#ifndef CSCD_MODELS_RECORDER_H
+#define CSCD_MODELS_RECORDER_H
+
+#include "models/softbody/scene.h"
+
+typedef struct recorder {
+    const scene *scene;
+    body shape;    /* as the body begins, in single precision: the model that the frames belong to */
+    double *frame; /* its vertices now, in single precision */
+    obstacles around;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_detector *detector;
+    soft_body soft;
+    self_contacts contacts;
+    double *start; /* the vertices where the detector's interval starts */
+} recorder;
+
+/* At the first frame. recorder_close takes it back; on false there is nothing to close, and *error says why.
+ */
+bool recorder_open(const scene *s, recorder *out, io_error *error);
+void recorder_close(recorder *r);
+
+/* On to the next frame. */
+bool recorder_advance(recorder *r, io_error *error);
+
+/* Of the body and the balls: kinetic, potential and elastic. */
+double recorder_energy(const recorder *r);
+
+#endif

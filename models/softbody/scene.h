@@ -1,0 +1,34 @@
+/* The recordings: which body falls how, onto what. */
+#ifndef CSCD_MODELS_SCENE_H
+#define CSCD_MODELS_SCENE_H
+
+#include "models/shapes/catalogue.h"
+#include "models/softbody/soft_body.h"
+
+/* Lengths in the bodies' unit, times in seconds. */
+typedef struct scene {
+    const char *name, *text;
+    body_kind kind;
+    double spacing; /* of the lattice */
+    material stuff;
+    double (*stiffness)(const double rest[3]); /* NULL: the same everywhere */
+    double axis[3], degrees;                   /* how the body is turned at the start, */
+    double height;                             /* how far its lowest point is above the ground, */
+    double offset[2];                          /* where its centre is along x and y, */
+    double velocity[3], spin[3];               /* and how it moves */
+    obstacles around;
+    uint32_t frame_count;
+    double frame_seconds;
+    uint32_t checks, steps; /* per frame: detector steps; and in each of these, small steps */
+} scene;
+
+extern const scene scenes[];
+extern const uint32_t scene_count;
+
+/* NULL: there is none of this name. */
+const scene *scene_find(const char *name);
+
+/* Places the body, which is at rest as catalogue.h says, as the scene begins. */
+soft_body scene_begin(const scene *s, const body *shape);
+
+#endif

@@ -1,0 +1,300 @@
+/* The response to self-contacts: pairs that cscd reports are kept on their sides, gently. */
+#include "models/softbody/self_contact.h"
+#include "models/shapes/body.h"
+#include "models/softbody/soft_body.h"
+#include "models/softbody/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A point of the surface: weighted vertices. */
+typedef struct surface_point {
+    int count;
+    uint32_t vertices[3];
+    double weights[3];
+} surface_point;
+
+/* Edges are sorted by their vertices. */
+static uint32_t find_edge(const cscd_mesh *mesh, uint32_t v, uint32_t w) {
+    uint32_t low = 0, high = cscd_mesh_edge_count(mesh), smaller = v < w ? v : w, larger = v < w ? w : v;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2, found[2];
+        cscd_mesh_edge(mesh, middle, found);
+        bool beyond = found[0] > smaller || (found[0] == smaller && found[1] > larger);
+        *(beyond ? &high : &low) = middle;
+    }
+    return low;
+}
+
+self_contacts self_contacts_make(const cscd_mesh *mesh, const double *rest, double near) {
+    uint32_t triangle_count = cscd_mesh_triangle_count(mesh), edge_count = cscd_mesh_edge_count(mesh);
+    self_contacts s = {.mesh = mesh,
+                       .near = near,
+                       .gap = near / 40.0,
+                       .depth = 0.75 * near,
+                       .healing = near / 200.0,
+                       .friction = 0.5};
+    size_t bytes = (size_t)cscd_mesh_vertex_count(mesh) * 3 * sizeof *rest;
+    s.rest = memcpy(body_allocate(bytes, 1), rest, bytes);
+    s.triangle_edges = body_allocate(triangle_count, sizeof *s.triangle_edges);
+    s.edge_triangles = body_allocate(edge_count, sizeof *s.edge_triangles);
+    memset(s.edge_triangles, 0xff, edge_count * sizeof *s.edge_triangles);
+    for (uint32_t t = 0; t < triangle_count; t++) {
+        uint32_t v[3];
+        cscd_mesh_triangle(mesh, t, v);
+        for (int i = 0; i < 3; i++) {
+            uint32_t edge = find_edge(mesh, v[i], v[(i + 1) % 3]);
+            s.triangle_edges[t][i] = edge;
+            s.edge_triangles[edge][s.edge_triangles[edge][0] != UINT32_MAX] = t;
+        }
+    }
+    return s;
+}
+
+void self_contacts_free(self_contacts *s) {
+    free(s->rest);
+    free(s->triangle_edges);
+    free(s->edge_triangles);
+    free(s->pairs);
+    *s = (self_contacts){0};
+}
+
+/* Not normalized: twice the area. */
+static void triangle_normal(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
+                            double out[3]) {
+    uint32_t v[3];
+    double first[3], second[3];
+    cscd_mesh_triangle(mesh, triangle, v);
+    difference(positions + v[1] * 3, positions + v[0] * 3, first);
+    difference(positions + v[2] * 3, positions + v[0] * 3, second);
+    cross(first, second, out);
+}
+
+/* From b outwards, across both features; false where they do not face each other clearly. */
+static bool outward_normal(const self_contacts *s, const double *positions, const held_pair *pair,
+                           double out[3]) {
+    if (pair->kind == CSCD_CONTACT_VF) {
+        triangle_normal(s->mesh, positions, pair->b, out);
+        return normalize(out);
+    }
+    uint32_t a[2], b[2];
+    double along_a[3], along_b[3], facing[3] = {0.0, 0.0, 0.0};
+    cscd_mesh_edge(s->mesh, pair->a, a);
+    cscd_mesh_edge(s->mesh, pair->b, b);
+    difference(positions + a[1] * 3, positions + a[0] * 3, along_a);
+    difference(positions + b[1] * 3, positions + b[0] * 3, along_b);
+    cross(along_a, along_b, out);
+    for (int i = 0; i < 4; i++) {
+        double normal[3];
+        triangle_normal(s->mesh, positions, s->edge_triangles[i < 2 ? pair->a : pair->b][i % 2], normal);
+        if (normalize(normal)) add_scaled(facing, i < 2 ? -0.25 : 0.25, normal);
+    }
+    if (norm(out) < 0.1 * norm(along_a) * norm(along_b) || !normalize(out)) return false;
+    double side = dot(out, facing);
+    for (int k = 0; k < 3; k++) out[k] = side < 0.0 ? -out[k] : out[k];
+    return fabs(side) > 0.2;
+}
+
+static surface_point point_on_edge(const cscd_mesh *mesh, uint32_t edge, double along) {
+    surface_point p = {.count = 2, .weights = {1.0 - along, along}};
+    cscd_mesh_edge(mesh, edge, p.vertices);
+    return p;
+}
+
+static surface_point point_on_triangle(const cscd_mesh *mesh, uint32_t triangle, double u, double v) {
+    surface_point p = {.count = 3, .weights = {1.0 - u - v, u, v}};
+    cscd_mesh_triangle(mesh, triangle, p.vertices);
+    return p;
+}
+
+static void place(const surface_point *p, const double *positions, double out[3]) {
+    out[0] = out[1] = out[2] = 0.0;
+    for (int i = 0; i < p->count; i++) add_scaled(out, p->weights[i], positions + p->vertices[i] * 3);
+}
+
+/* Whether a comes from another part of the body, and from the outside of b. */
+static bool is_collision(const self_contacts *s, const cscd_contact *c, const double *start,
+                         const double *end) {
+    bool vf = c->kind == CSCD_CONTACT_VF;
+    const held_pair pair = {c->kind, c->a, c->b};
+    surface_point a = vf ? (surface_point){1, {c->a}, {1.0}} : point_on_edge(s->mesh, c->a, c->u);
+    surface_point b = vf ? point_on_triangle(s->mesh, c->b, c->u, c->v) : point_on_edge(s->mesh, c->b, c->v);
+    double normal[3], a_start[3], a_end[3], b_start[3], b_end[3];
+    place(&a, s->rest, a_start);
+    place(&b, s->rest, b_start);
+    difference(a_start, b_start, normal);
+    if (norm(normal) < s->near || !outward_normal(s, start, &pair, normal)) return false;
+    place(&a, start, a_start);
+    place(&a, end, a_end);
+    place(&b, start, b_start);
+    place(&b, end, b_end);
+    return dot(a_end, normal) - dot(a_start, normal) < dot(b_end, normal) - dot(b_start, normal);
+}
+
+static int compare_pairs(const void *left, const void *right) {
+    const held_pair *a = left, *b = right;
+    if (a->kind != b->kind) return a->kind < b->kind ? -1 : 1;
+    if (a->a != b->a) return a->a < b->a ? -1 : 1;
+    return (a->b > b->b) - (a->b < b->b);
+}
+
+void self_contacts_add(self_contacts *s, const cscd_contacts *found, const double *start, const double *end) {
+    if (s->count + found->count > s->capacity) {
+        held_pair *grown = body_allocate(2 * (s->count + found->count), sizeof *grown);
+        if (s->count > 0) memcpy(grown, s->pairs, s->count * sizeof *grown);
+        free(s->pairs);
+        s->pairs = grown;
+        s->capacity = 2 * (s->count + found->count);
+    }
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        if (is_collision(s, c, start, end)) s->pairs[s->count++] = (held_pair){c->kind, c->a, c->b};
+    }
+    if (s->count == 0) return;
+    qsort(s->pairs, s->count, sizeof *s->pairs, compare_pairs);
+    size_t kept = 1;
+    for (size_t i = 1; i < s->count; i++) {
+        if (compare_pairs(&s->pairs[i], &s->pairs[kept - 1]) != 0) s->pairs[kept++] = s->pairs[i];
+    }
+    s->count = kept;
+}
+
+/* The vertex's place over its triangle's plane; when it has slid over an edge, the next triangle. False: the
+ * vertex belongs to that one. */
+static bool find_below(const self_contacts *s, const double *positions, held_pair *pair,
+                       surface_point *below) {
+    double normal[3], least = 0.0;
+    int over = -1;
+    *below = point_on_triangle(s->mesh, pair->b, 0.0, 0.0);
+    triangle_normal(s->mesh, positions, pair->b, normal);
+    for (int i = 0; i < 3; i++) { /* the part of the triangle that lies opposite corner i */
+        const double *from = positions + below->vertices[(i + 1) % 3] * 3;
+        double along[3], to_vertex[3], across[3];
+        difference(positions + below->vertices[(i + 2) % 3] * 3, from, along);
+        difference(positions + pair->a * 3, from, to_vertex);
+        cross(along, to_vertex, across);
+        below->weights[i] = dot(across, normal) / dot(normal, normal);
+        if (below->weights[i] < least) {
+            least = below->weights[i];
+            over = i;
+        }
+    }
+    if (over < 0) return true;
+    double sum = 0.0;
+    for (int i = 0; i < 3; i++) sum += below->weights[i] = fmax(below->weights[i], 0.0);
+    for (int i = 0; i < 3; i++) below->weights[i] /= sum;
+    const uint32_t *beside = s->edge_triangles[s->triangle_edges[pair->b][(over + 1) % 3]];
+    uint32_t next = beside[0] == pair->b ? beside[1] : beside[0], v[3];
+    cscd_mesh_triangle(s->mesh, next, v);
+    pair->b = next;
+    return v[0] != pair->a && v[1] != pair->a && v[2] != pair->a;
+}
+
+/* The nearest points of the two edges' lines, false outside of the edges. */
+static bool find_crossing(const self_contacts *s, const double *positions, const held_pair *pair,
+                          surface_point *a, surface_point *b) {
+    double along_a[3], along_b[3], between[3];
+    *a = point_on_edge(s->mesh, pair->a, 0.0);
+    *b = point_on_edge(s->mesh, pair->b, 0.0);
+    difference(positions + a->vertices[1] * 3, positions + a->vertices[0] * 3, along_a);
+    difference(positions + b->vertices[1] * 3, positions + b->vertices[0] * 3, along_b);
+    difference(positions + b->vertices[0] * 3, positions + a->vertices[0] * 3, between);
+    double aa = dot(along_a, along_a), bb = dot(along_b, along_b), ab = dot(along_a, along_b);
+    double area = aa * bb - ab * ab, da = dot(along_a, between), db = dot(along_b, between);
+    if (!(area > 0.0)) return false;
+    double u = (da * bb - db * ab) / area, v = (da * ab - db * aa) / area;
+    *a = point_on_edge(s->mesh, pair->a, u);
+    *b = point_on_edge(s->mesh, pair->b, v);
+    return u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
+}
+
+static double mobility(const soft_body *soft, const surface_point *p) {
+    double sum = 0.0;
+    for (int i = 0; i < p->count; i++) sum += p->weights[i] * soft->vertex_mobilities[p->vertices[i]];
+    return sum;
+}
+
+/* Moves the points apart by change, each by its mobility's share. */
+static void push_apart(const soft_body *soft, double *nodes, const surface_point *a, const surface_point *b,
+                       const double change[3]) {
+    const surface_point *const sides[2] = {a, b};
+    double mobilities[2] = {mobility(soft, a), -mobility(soft, b)};
+    for (int side = 0; side < 2; side++) {
+        double factor = mobilities[side] / (mobilities[0] - mobilities[1]);
+        for (int i = 0; i < sides[side]->count; i++) {
+            double share[3];
+            for (int k = 0; k < 3; k++) share[k] = factor * sides[side]->weights[i] * change[k];
+            soft_body_push(soft, nodes, sides[side]->vertices[i], share);
+        }
+    }
+}
+
+/* Where the two points have moved apart by since the small step's start. */
+static void relative_motion(const soft_body *soft, const double *positions, const surface_point *a,
+                            const surface_point *b, double out[3]) {
+    const surface_point *const sides[2] = {a, b};
+    out[0] = out[1] = out[2] = 0.0;
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < sides[side]->count; i++) {
+            double before[3], weight = (side == 0 ? 1.0 : -1.0) * sides[side]->weights[i];
+            lattice_place_vertex(&soft->frame, soft->previous, sides[side]->vertices[i], before);
+            add_scaled(out, weight, positions + sides[side]->vertices[i] * 3);
+            add_scaled(out, -weight, before);
+        }
+    }
+}
+
+/* Earlier pairs of the pass have moved the lattice. */
+static void refresh(const self_contacts *s, soft_body *soft, const held_pair *pair) {
+    uint32_t vertices[4] = {pair->a};
+    if (pair->kind == CSCD_CONTACT_VF) {
+        cscd_mesh_triangle(s->mesh, pair->b, vertices + 1);
+    } else {
+        cscd_mesh_edge(s->mesh, pair->a, vertices);
+        cscd_mesh_edge(s->mesh, pair->b, vertices + 2);
+    }
+    for (int i = 0; i < 4; i++)
+        lattice_place_vertex(&soft->frame, soft->nodes, vertices[i], soft->vertices + vertices[i] * 3);
+}
+
+/* The approach stops; what has got too near parts slowly, without a velocity: contacts only ever take energy.
+ * False: the pair has parted, or is lost. */
+static bool solve_pair(self_contacts *s, soft_body *soft, held_pair *pair) {
+    const double *positions = soft->vertices;
+    surface_point a = {1, {pair->a}, {1.0}}, b;
+    double normal[3], place_a[3], place_b[3], slid[3], change[3] = {0.0, 0.0, 0.0};
+    refresh(s, soft, pair);
+    if (!outward_normal(s, positions, pair, normal)) return false;
+    if (pair->kind == CSCD_CONTACT_VF ? !find_below(s, positions, pair, &b)
+                                      : !find_crossing(s, positions, pair, &a, &b))
+        return false;
+    place(&a, positions, place_a);
+    place(&b, positions, place_b);
+    double distance = dot(place_a, normal) - dot(place_b, normal);
+    if (distance > 2.0 * s->gap || distance < -s->depth) return false;
+    double depth = s->gap - distance;
+    if (depth <= 0.0) return true;
+    relative_motion(soft, positions, &a, &b, slid);
+    double approach = -dot(slid, normal), stopped = fmin(depth, fmax(approach, 0.0)), sliding;
+    add_scaled(slid, approach, normal);
+    sliding = norm(slid);
+    add_scaled(change, stopped, normal);
+    if (sliding > 0.0) add_scaled(change, -fmin(s->friction * stopped, sliding) / sliding, slid);
+    push_apart(soft, soft->nodes, &a, &b, change);
+    double healed = fmin(depth - stopped, s->healing);
+    for (int k = 0; k < 3; k++) change[k] = healed * normal[k];
+    push_apart(soft, soft->nodes, &a, &b, change);
+    push_apart(soft, soft->previous, &a, &b, change);
+    return true;
+}
+
+void self_contacts_solve(self_contacts *s, soft_body *soft) {
+    size_t kept = 0;
+    if (s->count == 0) return;
+    lattice_place_vertices(&soft->frame, soft->nodes, soft->vertices);
+    for (size_t i = 0; i < s->count; i++) {
+        held_pair pair = s->pairs[i];
+        if (solve_pair(s, soft, &pair)) s->pairs[kept++] = pair;
+    }
+    s->count = kept;
+}

@@ -1,0 +1,42 @@
+/* A soft body that falls, bends and runs into things and into itself: extended position-based dynamics (XPBD)
+ * on a lattice around a closed surface, in small steps (Macklin et al., "Small steps in physics simulation",
+ * 2019). Everything runs in a fixed order: the same input gives the same motion, bit for bit. */
+#ifndef CSCD_MODELS_SOFT_BODY_H
+#define CSCD_MODELS_SOFT_BODY_H
+
+#include "models/softbody/elastic.h"
+#include "models/softbody/obstacles.h"
+#include "models/softbody/self_contact.h"
+
+typedef struct soft_body {
+    lattice frame;
+    tetrahedron *tetrahedra;
+    double *masses, *inverse_masses; /* per node */
+    double *nodes, *previous, *velocities;
+    double *vertices;          /* of the surface, vertex_count * 3 */
+    double *vertex_mobilities; /* inverse masses of the surface's vertices, as pushed points of the lattice */
+    double damping;
+} soft_body;
+
+/* At rest, as given; spacing is the width of the lattice's cells. stiffness: see tetrahedra_make. */
+soft_body soft_body_make(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
+                         uint32_t triangle_count, double spacing, const material *m,
+                         double (*stiffness)(const double rest[3]));
+void soft_body_free(soft_body *b);
+
+/* Turns the body, then moves it, before the first step. */
+void soft_body_place(soft_body *b, double turn[3][3], const double offset[3]);
+void soft_body_throw(soft_body *b, const double velocity[3], const double spin[3]);
+
+/* `seconds` in `step_count` small steps. contacts: found before, or NULL. The surface's vertices follow. */
+void soft_body_advance(soft_body *b, obstacles *o, self_contacts *contacts, double seconds,
+                       uint32_t step_count);
+
+/* Moves a vertex of the surface with the lattice around it, in nodes: the body's nodes, or its previous ones,
+ * so that a move of both leaves the velocity. Used by the contacts. */
+void soft_body_push(const soft_body *b, double *nodes, uint32_t vertex, const double change[3]);
+
+/* Kinetic, potential (of height z) and elastic energy. */
+double soft_body_energy(const soft_body *b, double gravity);
+
+#endif

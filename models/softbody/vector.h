@@ -1,0 +1,39 @@
+/* Three-vectors. */
+#ifndef CSCD_MODELS_VECTOR_H
+#define CSCD_MODELS_VECTOR_H
+
+#include <math.h>
+#include <stdbool.h>
+
+static inline double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void difference(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
+}
+
+/* a += factor * b */
+static inline void add_scaled(double a[3], double factor, const double b[3]) {
+    for (int k = 0; k < 3; k++) a[k] += factor * b[k];
+}
+
+static inline double norm(const double a[3]) {
+    return sqrt(dot(a, a));
+}
+
+/* To length 1; false and unchanged for the zero vector. */
+static inline bool normalize(double a[3]) {
+    double length = norm(a);
+    if (!(length > 0.0)) return false;
+    for (int k = 0; k < 3; k++) a[k] /= length;
+    return true;
+}
+
+#endif
