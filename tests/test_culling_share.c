@@ -1,7 +1,7 @@
 /* That culling is really on: on a human-like body that moves without contact, charge and single leave at most
  * a quarter of the triangle pairs, and one static check serves the whole recording. */
 #include "cscd/cscd.h"
-#include "tests/support/body_shapes.h"
+#include "tests/support/body_of.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -34,7 +34,7 @@ static void pose(const body *shape, double t, double *out) {
 
 static int record(void **state) {
     static recording r;
-    r.shape = body_make_sized(BODY_HUMAN, TRIANGLE_COUNT);
+    r.shape = body_of(BODY_FIGURE, TRIANGLE_COUNT);
     cscd_mesh_desc desc = {r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles};
     if (cscd_context_create(NULL, &r.context) != CSCD_OK) return -1;
     if (cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK) return -1;

@@ -45,7 +45,7 @@ static void assert_same(const division *a, const division *b) {
 
 static void one_is_the_mean(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_PAWN, 1500);
+    body b = body_of(BODY_PAWN, 1500);
     double mean[3] = {0, 0, 0};
     for (uint32_t i = 0; i < b.vertex_count * 3; i++) mean[i % 3] += b.positions[i] / b.vertex_count;
     body_add_vertex(&b, 1e6, 0, 0); /* without a triangle: it does not count */
@@ -58,7 +58,7 @@ static void one_is_the_mean(void **state) {
 /* Two well separated clusters are found from any start. */
 static void two_balls(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_DUMBBELL, 2000);
+    body b = body_of(BODY_DUMBBELL, 2000);
     for (uint32_t seed = 0; seed < 20; seed++) {
         divide(&b, 2, seed, &found);
         assert_int_equal(found.count, 2);
@@ -72,7 +72,7 @@ static void two_balls(void **state) {
 
 static void seeds(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_HUMAN, 2000);
+    body b = body_of(BODY_FIGURE, 2000);
     bool differ = false;
     for (uint32_t k = 2; k <= 9; k++) {
         divide(&b, k, 7, &found);
@@ -89,7 +89,7 @@ static void seeds(void **state) {
 /* At least one region each, the others by vertices; none spans two. */
 static void components_share_k(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_BALL, 2000), small = {0};
+    body b = body_of(BODY_SPHERE, 2000), small = {0};
     for (int i = 0; i < 4; i++) body_add_vertex(&small, i == 1, i == 2, i == 3);
     body_add_triangle(&small, 0, 2, 1);
     body_add_triangle(&small, 0, 1, 3);
@@ -109,7 +109,7 @@ static void components_share_k(void **state) {
 /* As many centroids as vertices, or more: no more regions than fit, and each is still connected. */
 static void more_than_vertices(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_DUMBBELL, 1500);
+    body b = body_of(BODY_DUMBBELL, 1500);
     const uint32_t ks[] = {100,     500,       750, b.vertex_count - 1, b.vertex_count, b.vertex_count + 1,
                            1000000, UINT32_MAX};
     for (size_t i = 0; i < sizeof ks / sizeof *ks; i++) {
@@ -151,7 +151,7 @@ static void fewest_edges(void **state) {
     (void)state;
     enum { K = 5 };
     static uint32_t distances[K][TRIANGLES_MAX];
-    body b = body_make_sized(BODY_BALL, 1500);
+    body b = body_of(BODY_SPHERE, 1500);
     divide(&b, K, 11, &found);
     assert_int_equal(found.count, K);
     for (uint32_t r = 0; r < K; r++)
@@ -192,7 +192,7 @@ static void lloyd_on_a_line(void **state) {
 
 static void zero_is_refused(void **state) {
     (void)state;
-    body b = body_make_sized(BODY_BALL, 1500);
+    body b = body_of(BODY_SPHERE, 1500);
     cscd_mesh *mesh = body_mesh(&b, 1);
     uint32_t count = 77;
     assert_int_equal(regions_kmeans(mesh, b.positions, 0, 1, found.regions, &count, found.points),

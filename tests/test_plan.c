@@ -1,6 +1,6 @@
 /* Plans through the public API: every method, parts and their errors, the mesh's hash, refusals. */
 #include "cscd/cscd.h"
-#include "tests/support/body_shapes.h"
+#include "tests/support/body_of.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -18,7 +18,7 @@ static cscd_mesh *mesh;
 
 static int make(void **state) {
     (void)state;
-    shape = body_make_sized(BODY_DUMBBELL, 1500);
+    shape = body_of(BODY_DUMBBELL, 1500);
     cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
     if (cscd_context_create(NULL, &context) != CSCD_OK) return -1;
     return cscd_mesh_create(context, &desc, &mesh) == CSCD_OK ? 0 : -1;

@@ -2,7 +2,7 @@
 #include "preprocess/kmeans.h"
 #include "preprocess/regions.h"
 #include "preprocess/visibility.h"
-#include "tests/support/body_shapes.h"
+#include "tests/support/body_of.h"
 #include "tests/support/counting_allocator.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ static uint32_t *regions;
 /* Low at the rod of the dumbbell. */
 static int make_shape(void **state) {
     (void)state;
-    shape = body_make_sized(BODY_DUMBBELL, 1500);
+    shape = body_of(BODY_DUMBBELL, 1500);
     density = calloc(shape.triangle_count, sizeof *density);
     regions = calloc(shape.triangle_count, sizeof *regions);
     if (density == NULL || regions == NULL) return -1;

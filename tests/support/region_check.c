@@ -47,15 +47,3 @@ void body_mesh_destroy(cscd_mesh *mesh) {
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
 }
-
-void body_append(body *b, const body *other, const double offset[3]) {
-    uint32_t first = b->vertex_count;
-    for (uint32_t v = 0; v < other->vertex_count; v++) {
-        const double *p = other->positions + (size_t)v * 3;
-        body_add_vertex(b, p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]);
-    }
-    for (uint32_t t = 0; t < other->triangle_count; t++) {
-        const uint32_t *v = other->triangles + (size_t)t * 3;
-        body_add_triangle(b, first + v[0], first + v[1], first + v[2]);
-    }
-}

@@ -3,7 +3,7 @@
 #define CSCD_TEST_REGION_CHECK_H
 
 #include "src/mesh.h"
-#include "tests/support/body_shapes.h"
+#include "tests/support/body_of.h"
 
 /* Numbered from 0 by first triangles, connected, and none in two components. */
 void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t region_count);
@@ -11,8 +11,5 @@ void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t regi
 /* The mesh of a body, in a context of its own with that many threads. */
 cscd_mesh *body_mesh(const body *b, uint32_t thread_count);
 void body_mesh_destroy(cscd_mesh *mesh);
-
-/* Adds a copy of the triangles and vertices of another body, moved. */
-void body_append(body *b, const body *other, const double offset[3]);
 
 #endif
