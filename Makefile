@@ -57,7 +57,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo test test-run benchmarks lint format examples clean help fuzz-elementary
+.PHONY: all tool library packages demo models gallery test test-run benchmarks lint format examples clean help fuzz-elementary
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -74,8 +74,21 @@ packages:
 	@GSL=$(GSL) .ci/packages
 
 demo: packages
-	@$(MAKE) --no-print-directory tool $(BUILD)/models/capsule_bend
+	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
+
+# The recordings, and every shape at its default size: about 20 s, once.
+models: packages
+	@$(MAKE) --no-print-directory build/models/made
+
+build/models/made: $(BUILD)/models/record $(BUILD)/models/shape
+	@BUILD=$(BUILD) models/make.sh build/models
+	@touch $@
+
+# Redraws the pictures of README and docs.
+gallery: models
+	@$(MAKE) --no-print-directory tool
+	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 
 test: packages
 	@$(MAKE) --no-print-directory test-run
@@ -108,7 +121,9 @@ clean:
 	rm -rf build cscd
 
 help:
-	@echo 'make demo      generate a bending capsule, replay it, draw it'
+	@echo 'make demo      a soft pawn falls and bows: simulate it, find where it hits itself, draw it'
+	@echo 'make models    all shapes and recordings, in build/models'
+	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
 	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'

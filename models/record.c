@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { PATH_MAX_LENGTH = 4096 };
 
@@ -75,6 +76,16 @@ static void print_summary(const recorder *r, const motion *m, double start_energ
            m->largest_motion, most_energy / start_energy);
 }
 
+/* On a terminal only, on one line. */
+static void show_progress(const scene *s, uint32_t frame) {
+    if (!isatty(STDERR_FILENO)) return;
+    if (frame < s->frame_count)
+        fprintf(stderr, "\r%s: frame %u of %u ", s->name, frame + 1, s->frame_count);
+    else
+        fprintf(stderr, "\r\033[K");
+    fflush(stderr);
+}
+
 static bool record(const scene *s, const char *folder, io_error *error) {
     recorder r;
     outputs out = {NULL, NULL, {0}};
@@ -83,10 +94,12 @@ static bool record(const scene *s, const char *folder, io_error *error) {
     double start_energy = recorder_energy(&r), most_energy = start_energy;
     bool good = open_outputs(folder, &r, &out, error);
     for (uint32_t frame = 0; good && frame < s->frame_count; frame++) {
+        show_progress(s, frame);
         good = (frame == 0 || recorder_advance(&r, error)) && measure(&r, &m, error) &&
                write_frame(&r, &out, error);
         most_energy = fmax(most_energy, recorder_energy(&r));
     }
+    show_progress(s, s->frame_count);
     io_error closing;
     bool complete = close_outputs(&out, &closing);
     if (good && !complete) *error = closing;

@@ -96,23 +96,32 @@ static void draw_panel(picture_image *image, double left, double top, double rig
             picture_image_blend(image, column, row, paper, 0.8);
 }
 
-void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
-                          const picture_legend *legend, size_t count) {
-    if (caption == NULL && count == 0) return;
-    double side = fmin(image->width, image->height);
-    double scale = enlarged * fmax(1.0, 0.5 * ceil(side / 200.0)), line = scale * 12.0, left = scale * 8.0,
-           top = scale * 8.0;
+static double text_scale(uint32_t width, uint32_t height, double enlarged) {
+    return enlarged * fmax(1.0, 0.5 * ceil(fmin(width, height) / 200.0));
+}
+
+void picture_caption_size(uint32_t width, uint32_t height, double enlarged, const char *caption,
+                          const picture_legend *legend, size_t count, double size[2]) {
+    double scale = text_scale(width, height, enlarged);
     size_t longest = caption != NULL ? strlen(caption) : 0, lines = count + (caption != NULL);
     for (size_t i = 0; i < count; i++) {
         size_t length = strlen(legend[i].text) + 2;
         if (length > longest) longest = length;
     }
-    draw_panel(image, left - 4.0 * scale, top - 4.0 * scale,
-               left + scale * ((double)longest * (PICTURE_GLYPH_WIDTH + 1) + 3.0),
-               top + (double)lines * line + scale);
+    size[0] = lines > 0 ? scale * (11.0 + (double)longest * (PICTURE_GLYPH_WIDTH + 1)) : 0.0;
+    size[1] = lines > 0 ? scale * (9.0 + 12.0 * (double)lines) : 0.0;
+}
+
+void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
+                          const picture_legend *legend, size_t count) {
+    if (caption == NULL && count == 0) return;
+    double scale = text_scale(image->width, image->height, enlarged), line = scale * 12.0;
+    double left = scale * 8.0, top = scale * 8.0, size[2];
+    picture_caption_size(image->width, image->height, enlarged, caption, legend, count, size);
+    draw_panel(image, 0.5 * left, 0.5 * top, size[0], size[1]);
     if (caption != NULL) draw_text(image, left, top, scale, caption);
     if (caption != NULL) top += line;
-    for (size_t i = 0; i < count && top < side; i++, top += line) {
+    for (size_t i = 0; i < count && top < image->height; i++, top += line) {
         draw_disc(image, left + 3.5 * scale, top + 3.5 * scale, 3.5 * scale, legend[i].colour, 1.0);
         draw_text(image, left + 2.0 * scale * (PICTURE_GLYPH_WIDTH + 1), top, scale, legend[i].text);
     }

@@ -27,6 +27,10 @@ bool picture_draw_markers(picture_image *image, const picture_visibility *visibi
                           const picture_camera *camera, const picture_marker *markers, size_t count,
                           io_error *error);
 
+/* How far picture_draw_caption, with the same arguments, reaches from the upper left corner, in pixels. */
+void picture_caption_size(uint32_t width, uint32_t height, double enlarged, const char *caption,
+                          const picture_legend *legend, size_t count, double size[2]);
+
 /* In the upper left corner, `enlarged` times the usual size; caption may be NULL. Printable ASCII; anything
  * else becomes '?'. */
 void picture_draw_caption(picture_image *image, double enlarged, const char *caption,

@@ -34,20 +34,6 @@ static bool check_scene(const picture_scene *scene, io_error *error) {
                            error);
 }
 
-void picture_scene_camera(const picture_scene *scene, const picture_options *options, picture_camera *out) {
-    double corners[8][3];
-    if (options->camera != NULL) {
-        *out = *options->camera;
-        return;
-    }
-    for (int corner = 0; corner < 8; corner++)
-        for (int i = 0; i < 3; i++)
-            corners[corner][i] = corner >> i & 1 ? options->focus_max[i] : options->focus_min[i];
-    picture_camera_frame(options->focus ? corners[0] : scene->positions,
-                         options->focus ? 8 : scene->vertex_count, options->azimuth, options->elevation,
-                         options->y_up, options->width, options->height, out);
-}
-
 /* Per-vertex arrays of one mesh in one rendering. */
 typedef struct vertex_arrays {
     double *projected;

@@ -1,0 +1,35 @@
+#!/bin/sh
+# Draws the pictures of README and docs/gallery.md; `make gallery` calls it. usage: gallery.sh MODELS IMAGES
+set -eu
+: "${BUILD:?BUILD must name the build folder}"
+models=$1
+images=$2
+tool=$BUILD/cscd
+mkdir -p "$images"
+
+strip() { # strip NAME VIEW COLUMNS FRAMES: contacts on the body, with what it falls onto
+    scenery=$models/$1-scenery
+    moving=
+    [ ! -e "$scenery.pc2" ] || moving="--scenery-frames $scenery.pc2"
+    # shellcheck disable=SC2086
+    "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$4" --columns "$3" --colour contacts --size 300x225 \
+        --view "$2" --scenery "$scenery.obj" $moving -o "$images/$1.png"
+}
+
+for name in pawn dumbbell figure; do
+    "$tool" preprocess "$models/$name.obj" -o "$models/$name.plan.ply" --quiet
+    for colour in charge region; do
+        "$tool" render "$models/$name.obj" --colour "$colour" --view 30,12 --size 640x480 -o "$images/$name-$colour.png"
+    done
+done
+for name in torus genus2 coil slab chain; do
+    "$tool" render "$models/$name.obj" --wire --view 30,30 --size 360x300 -o "$images/$name.png"
+done
+strip pawn-drop 20,12 4 0:143:13
+strip pawn-drop-free 20,12 4 0:140:20
+strip dumbbell-stairs 25,14 4 0:143:13
+strip dumbbell-stairs-free 25,14 4 0:140:20
+strip figure-balls 25,14 4 12:144:12
+strip figure-balls-free 25,14 4 12:138:18
+"$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --frame 84 --colour contacts --view 0,10 --size 900x560 \
+    --scenery "$models/pawn-drop-scenery.obj" -o "$images/pawn-contacts.png"
