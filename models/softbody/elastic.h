@@ -6,7 +6,7 @@
 
 typedef struct material {
     double density;        /* mass per volume */
-    double young, poisson; /* stiffness (force per area), and 0 to 0.49: how much volume is kept */
+    double young, poisson; /* stiffness (force per area), and above 0 to 0.49: how much volume is kept */
     double damping;        /* share of a cell's motion that is not rigid, lost per second (1/s) */
 } material;
 

@@ -78,8 +78,12 @@ cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out
         difference(first + (size_t)v[1] * 3, first + (size_t)v[0] * 3, along);
         m.edge_length += norm(along) / edge_count;
     }
-    *out = m;
-    return motion_add(out, first);
+    status = motion_add(&m, first);
+    if (status == CSCD_OK)
+        *out = m;
+    else
+        motion_free(&m);
+    return status;
 }
 
 static cscd_status add_contacts(motion *m, const double *frame) {

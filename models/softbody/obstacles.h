@@ -33,7 +33,7 @@ typedef struct obstacle_hit {
     ball *pushed; /* NULL: ground or stairs */
 } obstacle_hit;
 
-/* Calls for each obstacle that the point is inside of: ball `which`, or UINT32_MAX for ground and stairs. */
+/* Whether the point is inside ground or stairs, or inside ball `which`; if not, *out is untouched. */
 bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out);
 bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out);
 

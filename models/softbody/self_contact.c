@@ -208,10 +208,12 @@ static bool find_crossing(const self_contacts *s, const double *positions, const
     return u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
 }
 
+/* Movement per momentum when the vertices move by their weights: what push_apart gives to one side it takes
+ * from the other. */
 static double mobility(const soft_body *soft, const surface_point *p) {
-    double sum = 0.0;
-    for (int i = 0; i < p->count; i++) sum += p->weights[i] * soft->vertex_mobilities[p->vertices[i]];
-    return sum;
+    double momentum = 0.0;
+    for (int i = 0; i < p->count; i++) momentum += p->weights[i] / soft->vertex_mobilities[p->vertices[i]];
+    return 1.0 / momentum;
 }
 
 /* Moves the points apart by change, each by its mobility's share. */
@@ -257,8 +259,8 @@ static void refresh(const self_contacts *s, soft_body *soft, const held_pair *pa
         lattice_place_vertex(&soft->frame, soft->nodes, vertices[i], soft->vertices + vertices[i] * 3);
 }
 
-/* The approach stops; what has got too near parts slowly, without a velocity: contacts only ever take energy.
- * False: the pair has parted, or is lost. */
+/* The approach stops; what has got too near parts slowly, without a velocity: contacts only ever take kinetic
+ * energy. False: the pair has parted, or is lost. */
 static bool solve_pair(self_contacts *s, soft_body *soft, held_pair *pair) {
     const double *positions = soft->vertices;
     surface_point a = {1, {pair->a}, {1.0}}, b;

@@ -1,0 +1,34 @@
+/* Soft bodies for tests, far above the ground, and what they have that the laws of motion keep. */
+#ifndef CSCD_TEST_SOFT_FIXTURE_H
+#define CSCD_TEST_SOFT_FIXTURE_H
+
+#include "models/shapes/body.h"
+#include "models/softbody/soft_body.h"
+
+/* to = matrix * from + offset, for each point. */
+void affine_map(double matrix[3][3], const double offset[3], const double *from, uint32_t point_count,
+                double *to);
+
+/* A rotation by the angle (radians) about the axis, which need not have length 1. */
+void rotation_matrix(const double axis[3], double angle, double out[3][3]);
+
+/* Twelve triangles, the corners' bits x, y, z. */
+body box_body(const double low[3], const double high[3]);
+
+/* At rest, so far up that it does not reach the ground within a test. */
+extern const double soft_fixture_height;
+soft_body soft_body_of(const body *b, double spacing, const material *m);
+void soft_body_lift(soft_body *b, double height);
+
+typedef struct soft_momentum {
+    double mass, centre[3], linear[3], angular[3]; /* angular: about the centre */
+} soft_momentum;
+
+soft_momentum soft_momentum_of(const soft_body *b);
+
+/* The largest distance between corresponding points. */
+double largest_distance(const double *a, const double *b, uint32_t point_count);
+
+double lowest_vertex(const soft_body *b);
+
+#endif
