@@ -6,6 +6,7 @@
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache_write.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,36 +20,43 @@ typedef struct outputs {
     body scenery;
 } outputs;
 
+/* FOLDER/NAMEending; the current folder where the folder has no name. */
+static bool name_file(const char *folder, const char *name, const char *ending, char path[PATH_MAX_LENGTH],
+                      io_error *error) {
+    int length = snprintf(path, PATH_MAX_LENGTH, "%s/%s%s", folder[0] != '\0' ? folder : ".", name, ending);
+    return (length > 0 && length < PATH_MAX_LENGTH) ||
+           io_fail(error, "%s%s: the folder's name is too long", name, ending);
+}
+
 static bool write_model(const char *folder, const char *name, const char *ending, const body *b,
                         io_error *error) {
     char path[PATH_MAX_LENGTH];
     const mesh_file mesh = {b->vertex_count, b->triangle_count, b->positions, b->triangles};
-    snprintf(path, sizeof path, "%s/%s%s.obj", folder, name, ending);
-    return mesh_file_write_obj(path, &mesh, error);
+    return name_file(folder, name, ending, path, error) && mesh_file_write_obj(path, &mesh, error);
 }
 
 static bool open_frames(const char *folder, const recorder *r, const char *ending, uint32_t vertex_count,
                         point_cache_writer **out, io_error *error) {
     char path[PATH_MAX_LENGTH];
-    snprintf(path, sizeof path, "%s/%s%s.pc2", folder, r->scene->name, ending);
-    return point_cache_writer_open(path, vertex_count, r->scene->frame_count, out, error);
+    return name_file(folder, r->scene->name, ending, path, error) &&
+           point_cache_writer_open(path, vertex_count, r->scene->frame_count, out, error);
 }
 
 /* Scenery frames only where balls move. */
 static bool open_outputs(const char *folder, const recorder *r, outputs *out, io_error *error) {
     if (!scenery_make(&r->around, &out->scenery, error)) return false;
-    return write_model(folder, r->scene->name, "", &r->shape, error) &&
-           write_model(folder, r->scene->name, "-scenery", &out->scenery, error) &&
-           open_frames(folder, r, "", r->shape.vertex_count, &out->frames, error) &&
+    return write_model(folder, r->scene->name, ".obj", &r->shape, error) &&
+           write_model(folder, r->scene->name, "-scenery.obj", &out->scenery, error) &&
+           open_frames(folder, r, ".pc2", r->shape.vertex_count, &out->frames, error) &&
            (r->around.ball_count == 0 ||
-            open_frames(folder, r, "-scenery", out->scenery.vertex_count, &out->scenery_frames, error));
+            open_frames(folder, r, "-scenery.pc2", out->scenery.vertex_count, &out->scenery_frames, error));
 }
 
 static bool write_frame(const recorder *r, outputs *out, io_error *error) {
     if (!point_cache_writer_write(out->frames, r->frame, error)) return false;
     if (out->scenery_frames == NULL) return true;
-    scenery_follow(&r->around, &out->scenery);
-    return point_cache_writer_write(out->scenery_frames, out->scenery.positions, error);
+    return scenery_follow(&r->around, &out->scenery, error) &&
+           point_cache_writer_write(out->scenery_frames, out->scenery.positions, error);
 }
 
 /* True if all that was opened is complete. */
@@ -123,7 +131,7 @@ static int print_help(FILE *stream) {
     return stream == stdout ? 0 : 2;
 }
 
-int main(int argument_count, char **arguments) {
+static int run(int argument_count, char **arguments) {
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) return print_help(stdout);
     if (argument_count < 3) return print_help(stderr);
     const char *folder = arguments[argument_count - 1];
@@ -142,4 +150,11 @@ int main(int argument_count, char **arguments) {
         return 1;
     }
     return 0;
+}
+
+int main(int argument_count, char **arguments) {
+    int code = run(argument_count, arguments);
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    fprintf(stderr, "record: standard output: %s\n", strerror(errno));
+    return 1;
 }

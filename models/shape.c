@@ -68,7 +68,7 @@ static int read_arguments(int count, char **arguments, request *out) {
     return 0;
 }
 
-int main(int argument_count, char **arguments) {
+static int run(int argument_count, char **arguments) {
     request wanted = {0};
     body b = {0};
     io_error error;
@@ -90,4 +90,11 @@ int main(int argument_count, char **arguments) {
                b.vertex_count, b.triangle_count, body_least_angle(&b));
     body_free(&b);
     return written ? 0 : 1;
+}
+
+int main(int argument_count, char **arguments) {
+    int code = run(argument_count, arguments);
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    fprintf(stderr, "shape: standard output: %s\n", strerror(errno));
+    return 1;
 }

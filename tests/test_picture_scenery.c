@@ -150,6 +150,23 @@ static void shadow_lies_below_and_softens(void **state) {
     }
 }
 
+/* A power of two, as large and as small as coordinates may be, changes nothing. */
+static void shadows_have_no_unit(void **state) {
+    (void)state;
+    const double scales[] = {1.0, 0x1p290, 0x1p-290};
+    double positions[24], expected = 0.0;
+    for (int i = 0; i < 3; i++) {
+        picture_shadow shadow;
+        make_box(0.0, false, positions);
+        for (int k = 0; k < 24; k++) positions[k] *= scales[i];
+        assert_true(picture_shadow_create(positions, 8, box_triangles, 12, false, &shadow, NULL));
+        double here = shadow_of(&shadow, false, 1.05 * scales[i], 0.5 * scales[i], -scales[i]);
+        if (i == 0) expected = here;
+        assert_true(here > 0.05 && here == expected);
+        picture_shadow_free(&shadow);
+    }
+}
+
 static void bodies_without_extent_cast_no_shadow(void **state) {
     (void)state;
     const uint32_t triangle[3] = {0, 1, 2};
@@ -200,6 +217,30 @@ static const uint8_t *pixel_of(const picture_image *image, const picture_scene *
     picture_scene_camera(scene, options, &camera);
     picture_camera_project(&camera, (const double[3]){x, y, z}, at);
     return pixel_at(image, at[0] / at[2], at[1] / at[2]);
+}
+
+/* The same picture to the last bit, from the largest coordinates to the smallest; with a caption beside it.
+ */
+static void pictures_have_no_unit(void **state) {
+    (void)state;
+    const double scales[] = {1.0, 0x1p-7, 0x1p280, 0x1p-290};
+    picture_image images[4];
+    for (int i = 0; i < 4; i++) {
+        double positions[24], around[12];
+        make_box(0.0, false, positions);
+        for (int k = 0; k < 24; k++) positions[k] *= scales[i];
+        for (int k = 0; k < 12; k++) around[k] = ground_positions[k] * scales[i];
+        const picture_mesh ground = {4, 2, around, ground_triangles};
+        picture_scene scene = box_scene(positions, &ground);
+        picture_options options = small_picture();
+        scene.caption = "so long that the box would lie below it";
+        options.focus = false;
+        options.square = 0.25 * scales[i];
+        images[i] = render(&scene, &options);
+        assert_memory_equal(images[i].pixels, images[0].pixels, (size_t)4 * 200 * 150);
+    }
+    assert_false(images[0].pixels[4 * (75 * 200 + 100)] == 255); /* and it is not empty */
+    for (int i = 0; i < 4; i++) picture_image_free(&images[i]);
 }
 
 /* A ground that passes below and behind the camera fills the picture, whichever way its triangles turn, and
@@ -295,7 +336,9 @@ int main(void) {
         cmocka_unit_test(outermost_points_frame_a_motion),
         cmocka_unit_test(unproject_undoes_project),
         cmocka_unit_test(shadow_lies_below_and_softens),
+        cmocka_unit_test(shadows_have_no_unit),
         cmocka_unit_test(bodies_without_extent_cast_no_shadow),
+        cmocka_unit_test(pictures_have_no_unit),
         cmocka_unit_test(ground_is_drawn_around_the_body),
         cmocka_unit_test(squares_alternate_on_level_ground),
         cmocka_unit_test(given_camera_is_used),

@@ -173,7 +173,7 @@ static void volumes_add_up(void **state) {
     const material rubber = {.density = 1.0, .young = 100.0, .poisson = 0.4};
     for (int i = 0; i < CASE_COUNT; i++) {
         const lattice *l = &lattices[i];
-        tetrahedron *tetrahedra = tetrahedra_make(l, &rubber, NULL);
+        tetrahedron *tetrahedra = tetrahedra_make(l, &rubber);
         double cube = l->spacing * l->spacing * l->spacing;
         for (uint32_t cell = 0; cell < l->cell_count; cell++) {
             double sum = 0.0;
@@ -232,7 +232,7 @@ static uint32_t outer_cell_faces(const lattice *l) {
 
 static uint32_t outer_tetrahedron_faces(const lattice *l) {
     const material rubber = {.density = 1.0, .young = 100.0, .poisson = 0.4};
-    tetrahedron *tetrahedra = tetrahedra_make(l, &rubber, NULL);
+    tetrahedron *tetrahedra = tetrahedra_make(l, &rubber);
     face *faces = body_allocate((size_t)l->cell_count * 20, sizeof *faces);
     for (uint32_t i = 0; i < l->cell_count * 20; i++) {
         memcpy(faces[i].nodes, tetrahedra[i / 4].nodes, sizeof faces[i].nodes);

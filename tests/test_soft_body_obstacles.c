@@ -174,7 +174,7 @@ static void scenery_shows_them(void **state) {
             assert_true(fabs(norm(arm) - b->radius) < 1e-6);
         }
         o.balls[turn].centre[0] += 1.5;
-        scenery_follow(&o, &scenery);
+        assert_true(scenery_follow(&o, &scenery, &error));
     }
     assert_true(body_volume(&scenery) > 24.0 * 24.0 * 0.5);
     body_free(&scenery);

@@ -7,12 +7,12 @@
 
 /* z is up; lengths are in the unit of the models, about a metre:
  *   pawn       3 high, 2 wide, stands on z = 0: foot, waist, collar, head
- *   dumbbell   4.6 long along z: two balls on a rod
+ *   dumbbell   4.1 long along z: two balls on a rod
  *   figure     1.9 high, stands on z = 0, faces -y: a person, arms half raised, legs apart
  *   sphere     radius 1
  *   ellipsoid  half axes 1.5, 1, 0.7
  *   cube       edge 2
- *   torus      radii 1 and 0.35, flat on the floor's plane
+ *   torus      radii 1 and 0.35, about z
  *   genus2     two rings side by side that grew together
  *   capsule    radius 0.5, 3 long along z
  *   coil       a spring of five turns along z, round ends

@@ -110,7 +110,7 @@ static uint32_t corner(const ring *r, uint32_t i) {
     return r->first + (i + r->shift) % r->size;
 }
 
-/* Two rings of any two sizes: the shorter of the two next diagonals. */
+/* Two rings of any two sizes: always on along the one whose next edge has its middle first. */
 static void stitch(body *b, const ring *low, const ring *high) {
     uint32_t i = 0, j = 0;
     while (i < low->size || j < high->size) {

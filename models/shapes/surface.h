@@ -5,7 +5,7 @@
 #include "models/shapes/body.h"
 
 /* Half-edge h is the edge from corner h of the triangle h / 3 to the next corner; half-edges are named by
- * their origin's position in body.triangles. Dead triangles and vertices stay until surface_compact. */
+ * their origin's position in body.triangles. Dead triangles and vertices stay until surface_close. */
 typedef struct surface {
     body mesh;
     uint32_t *twins; /* per half-edge, the one in the other direction */

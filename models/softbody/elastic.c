@@ -47,9 +47,9 @@ static void deformation_gradient(const tetrahedron *t, const double *nodes, doub
 }
 
 static tetrahedron make_tetrahedron(const lattice *l, uint32_t cell, const uint8_t corners[4],
-                                    const material *m, double factor) {
+                                    const material *m) {
     tetrahedron t;
-    double edges[3][3], minors[3][3], young = m->young * factor;
+    double edges[3][3], minors[3][3], young = m->young;
     for (int i = 0; i < 4; i++) t.nodes[i] = l->cells[cell][corners[i]];
     edges_of(&t, l->rest, edges);
     if (determinant(edges) < 0.0) {
@@ -69,14 +69,11 @@ static tetrahedron make_tetrahedron(const lattice *l, uint32_t cell, const uint8
     return t;
 }
 
-tetrahedron *tetrahedra_make(const lattice *l, const material *m, double (*stiffness)(const double rest[3])) {
+tetrahedron *tetrahedra_make(const lattice *l, const material *m) {
     tetrahedron *out = body_allocate((size_t)l->cell_count * 5, sizeof *out);
     for (uint32_t cell = 0; cell < l->cell_count; cell++) {
-        double centre[3] = {0.0, 0.0, 0.0};
-        for (int i = 0; i < 8; i++) add_scaled(centre, 0.125, l->rest + l->cells[cell][i] * 3);
-        double factor = stiffness == NULL ? 1.0 : stiffness(centre);
         for (uint32_t i = 0; i < 5; i++)
-            out[cell * 5 + i] = make_tetrahedron(l, cell, cuts[l->parities[cell]][i], m, factor);
+            out[cell * 5 + i] = make_tetrahedron(l, cell, cuts[l->parities[cell]][i], m);
     }
     return out;
 }

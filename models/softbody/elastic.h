@@ -17,9 +17,9 @@ typedef struct tetrahedron {
     double shear, bulk; /* Lame's mu and lambda */
 } tetrahedron;
 
-/* Five tetrahedra per cell, 5 * cell_count; stiffness(cell centre at rest) scales the material if not NULL.
- * The caller frees them. */
-tetrahedron *tetrahedra_make(const lattice *l, const material *m, double (*stiffness)(const double rest[3]));
+/* Five tetrahedra per cell, 5 * cell_count, to be freed. The body has the mass of its cells, which is more
+ * than the surface holds. */
+tetrahedron *tetrahedra_make(const lattice *l, const material *m);
 
 /* One XPBD iteration over all tetrahedra, in order (Macklin and Mueller, "A constraint-based formulation of
  * stable neo-Hookean materials", 2021, equations 9 and 10). inverse_masses per node, step in seconds. */

@@ -38,8 +38,13 @@ static void find_cell(const cell_grid *g, const double p[3], uint32_t cell[3]) {
     for (int k = 0; k < 3; k++) cell[k] = (uint32_t)((p[k] - g->low[k]) / g->spacing);
 }
 
-static void mark_surface(cell_grid *g, const double *positions, const uint32_t *triangles,
-                         uint32_t triangle_count) {
+static void mark_surface(cell_grid *g, const double *positions, uint32_t vertex_count,
+                         const uint32_t *triangles, uint32_t triangle_count) {
+    for (uint32_t v = 0; v < vertex_count; v++) {
+        uint32_t cell[3];
+        find_cell(g, positions + v * 3, cell);
+        g->kinds[cell_at(g, cell[0], cell[1], cell[2])] = SURFACE;
+    }
     for (uint32_t t = 0; t < triangle_count; t++) {
         const double *a = positions + triangles[t * 3] * 3, *b = positions + triangles[t * 3 + 1] * 3,
                      *c = positions + triangles[t * 3 + 2] * 3;
@@ -139,7 +144,7 @@ lattice lattice_make(const double *positions, uint32_t vertex_count, const uint3
     lattice l = {.vertex_count = vertex_count, .spacing = spacing};
     cell_grid g = make_grid(positions, vertex_count, spacing);
     uint32_t *cell_numbers = body_allocate((size_t)g.size[0] * g.size[1] * g.size[2], sizeof *cell_numbers);
-    mark_surface(&g, positions, triangles, triangle_count);
+    mark_surface(&g, positions, vertex_count, triangles, triangle_count);
     flood_outside(&g);
     collect_cells(&l, &g, cell_numbers);
     hang_vertices(&l, &g, cell_numbers, positions);

@@ -2,15 +2,13 @@
  */
 #include "models/softbody/recorder.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static bool explain(const recorder *r, cscd_status status, io_error *error) {
     if (status == CSCD_OK) return true;
-    snprintf(error->text, sizeof error->text, "%s: %s: %s", r->scene->name, cscd_status_string(status),
-             cscd_context_detail(r->context));
-    return false;
+    return io_fail(error, "%s: %s: %s", r->scene->name, cscd_status_string(status),
+                   cscd_context_detail(r->context));
 }
 
 /* The body is planned at rest: regions are the parts that hardly bend. */

@@ -139,7 +139,7 @@ static void turn_matrix(const double axis[3], double degrees, double out[3][3]) 
 soft_body scene_begin(const scene *s, const body *shape) {
     double turn[3][3], low[3], high[3];
     soft_body b = soft_body_make(shape->positions, shape->vertex_count, shape->triangles,
-                                 shape->triangle_count, s->spacing, &s->stuff, s->stiffness);
+                                 shape->triangle_count, s->spacing, &s->stuff);
     turn_matrix(s->axis, s->degrees, turn);
     soft_body_place(&b, turn, (double[3]){0.0, 0.0, 0.0});
     for (uint32_t k = 0; k < 3; k++) low[k] = high[k] = b.vertices[k];
@@ -150,9 +150,8 @@ soft_body scene_begin(const scene *s, const body *shape) {
     for (int k = 0; k < 3; k++) {
         for (int j = 0; j < 3; j++) turn[k][j] = k == j;
     }
-    const double offset[3] = {s->offset[0] - 0.5 * (low[0] + high[0]),
-                              s->offset[1] - 0.5 * (low[1] + high[1]), s->height - low[2]};
+    const double offset[3] = {-0.5 * (low[0] + high[0]), -0.5 * (low[1] + high[1]), s->height - low[2]};
     soft_body_place(&b, turn, offset);
-    soft_body_throw(&b, s->velocity, s->spin);
+    soft_body_throw(&b, s->velocity, (double[3]){0.0, 0.0, 0.0});
     return b;
 }

@@ -11,11 +11,9 @@ typedef struct scene {
     body_kind kind;
     double spacing; /* of the lattice */
     material stuff;
-    double (*stiffness)(const double rest[3]); /* NULL: the same everywhere */
-    double axis[3], degrees;                   /* how the body is turned at the start, */
-    double height;                             /* how far its lowest point is above the ground, */
-    double offset[2];                          /* where its centre is along x and y, */
-    double velocity[3], spin[3];               /* and how it moves */
+    double axis[3], degrees; /* how the body is turned at the start, */
+    double height;           /* how far its lowest point is above the ground, */
+    double velocity[3];      /* and how it moves; its centre is above x = y = 0 */
     obstacles around;
     uint32_t frame_count;
     double frame_seconds;

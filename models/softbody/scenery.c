@@ -42,18 +42,22 @@ bool scenery_make(const obstacles *o, body *out, io_error *error) {
     }
     for (uint32_t i = 0; i < o->ball_count; i++) body_append(&made, &sphere, (double[3]){0.0, 0.0, 0.0});
     body_free(&sphere);
-    scenery_follow(o, &made);
+    if (!scenery_follow(o, &made, error)) {
+        body_free(&made);
+        return false;
+    }
     *out = made;
     return true;
 }
 
-void scenery_follow(const obstacles *o, body *scenery) {
+bool scenery_follow(const obstacles *o, body *scenery, io_error *error) {
     body sphere;
-    io_error error;
-    if (o->ball_count == 0 || !make_sphere(&sphere, &error)) return;
+    if (o->ball_count == 0) return true;
+    if (!make_sphere(&sphere, error)) return false;
     double *first =
         scenery->positions + (size_t)(scenery->vertex_count - o->ball_count * sphere.vertex_count) * 3;
     for (uint32_t i = 0; i < o->ball_count; i++)
         place_ball(&o->balls[i], &sphere, first + (size_t)i * sphere.vertex_count * 3);
     body_free(&sphere);
+    return true;
 }

@@ -10,6 +10,6 @@
 bool scenery_make(const obstacles *o, body *out, io_error *error);
 
 /* Moves the balls of a scenery to where they are now. */
-void scenery_follow(const obstacles *o, body *scenery);
+bool scenery_follow(const obstacles *o, body *scenery, io_error *error);
 
 #endif

@@ -208,25 +208,24 @@ static bool find_crossing(const self_contacts *s, const double *positions, const
     return u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
 }
 
-/* Movement per momentum when the vertices move by their weights: what push_apart gives to one side it takes
- * from the other. */
+/* How far the point moves at most for a momentum that its vertices share by their weights. */
 static double mobility(const soft_body *soft, const surface_point *p) {
-    double momentum = 0.0;
-    for (int i = 0; i < p->count; i++) momentum += p->weights[i] / soft->vertex_mobilities[p->vertices[i]];
-    return 1.0 / momentum;
+    double sum = 0.0;
+    for (int i = 0; i < p->count; i++) sum += p->weights[i] * soft->vertex_mobilities[p->vertices[i]];
+    return sum;
 }
 
-/* Moves the points apart by change, each by its mobility's share. */
+/* Moves the points apart by change at most: one momentum for a, its opposite for b. */
 static void push_apart(const soft_body *soft, double *nodes, const surface_point *a, const surface_point *b,
                        const double change[3]) {
     const surface_point *const sides[2] = {a, b};
-    double mobilities[2] = {mobility(soft, a), -mobility(soft, b)};
+    double per_change = 1.0 / (mobility(soft, a) + mobility(soft, b));
     for (int side = 0; side < 2; side++) {
-        double factor = mobilities[side] / (mobilities[0] - mobilities[1]);
         for (int i = 0; i < sides[side]->count; i++) {
-            double share[3];
-            for (int k = 0; k < 3; k++) share[k] = factor * sides[side]->weights[i] * change[k];
-            soft_body_push(soft, nodes, sides[side]->vertices[i], share);
+            uint32_t vertex = sides[side]->vertices[i];
+            double momentum = (side == 0 ? per_change : -per_change) * sides[side]->weights[i], share[3];
+            for (int k = 0; k < 3; k++) share[k] = momentum * soft->vertex_mobilities[vertex] * change[k];
+            soft_body_push(soft, nodes, vertex, share);
         }
     }
 }

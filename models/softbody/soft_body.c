@@ -15,12 +15,11 @@ static void share_masses(soft_body *b, double density) {
 }
 
 soft_body soft_body_make(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                         uint32_t triangle_count, double spacing, const material *m,
-                         double (*stiffness)(const double rest[3])) {
+                         uint32_t triangle_count, double spacing, const material *m) {
     soft_body b = {.damping = m->damping,
                    .frame = lattice_make(positions, vertex_count, triangles, triangle_count, spacing)};
     const lattice *l = &b.frame;
-    b.tetrahedra = tetrahedra_make(l, m, stiffness);
+    b.tetrahedra = tetrahedra_make(l, m);
     b.masses = body_allocate(l->node_count, sizeof *b.masses);
     b.inverse_masses = body_allocate(l->node_count, sizeof *b.inverse_masses);
     b.nodes = body_allocate(l->node_count, 3 * sizeof *b.nodes);

@@ -18,10 +18,9 @@ typedef struct soft_body {
     double damping;
 } soft_body;
 
-/* At rest, as given; spacing is the width of the lattice's cells. stiffness: see tetrahedra_make. */
+/* At rest, as given; spacing is the width of the lattice's cells. */
 soft_body soft_body_make(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
-                         uint32_t triangle_count, double spacing, const material *m,
-                         double (*stiffness)(const double rest[3]));
+                         uint32_t triangle_count, double spacing, const material *m);
 void soft_body_free(soft_body *b);
 
 /* Turns the body, then moves it, before the first step. */

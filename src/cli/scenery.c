@@ -15,7 +15,7 @@ static bool open_frames(const char *frames_path, uint32_t frame_count, scenery *
 
 bool scenery_open(const char *model_path, const char *frames_path, uint32_t frame_count, scenery *out,
                   io_error *error) {
-    scenery s = {.path = model_path};
+    scenery s = {.path = frames_path != NULL ? frames_path : model_path};
     if (!mesh_file_read(model_path, &s.file, error) ||
         (frames_path != NULL && !open_frames(frames_path, frame_count, &s, error))) {
         scenery_close(&s);
@@ -28,11 +28,12 @@ bool scenery_open(const char *model_path, const char *frames_path, uint32_t fram
 
 /* What can be drawn: products of a few coordinates must stay finite. */
 static bool check_range(const scenery *s, uint32_t frame, io_error *error) {
+    const double *x = s->file.positions;
     for (size_t i = 0; i < (size_t)s->file.vertex_count * 3; i++)
-        if (!(fabs(s->file.positions[i]) <= 0x1p300))
+        if (!(fabs(x[i]) <= 0x1p300))
             return io_fail(error,
                            "%s: frame %u: vertex %zu has %c = %g, expected a magnitude of 2^300 at most",
-                           s->path, frame, i / 3, "xyz"[i % 3], s -> file.positions[i]);
+                           s->path, frame, i / 3, "xyz"[i % 3], x[i]);
     return true;
 }
 

@@ -11,7 +11,7 @@ typedef struct scenery {
     mesh_file file;
     animation *frames; /* NULL: it stands still */
     uint32_t frame_count;
-    const char *path;
+    const char *path; /* where the positions come from */
 } scenery;
 
 /* frames_path: a point cache, a pattern or a folder, of frame_count frames or of one; or NULL. On false *out

@@ -75,7 +75,9 @@ static void place_eye(picture_camera *camera, const double *points, size_t point
     for (int i = 0; i < 3; i++)
         camera->eye[i] =
             across[0] * camera->right[i] + across[1] * camera->down[i] + forward * camera->forward[i];
-    camera->near_depth = 0.02 * (nearest - forward);
+    int exponent;
+    camera->near_depth = frexp(0.02 * (nearest - forward), &exponent);
+    camera->unit = ldexp(1.0, -exponent);
 }
 
 /* All but the eye. */
@@ -119,9 +121,10 @@ void picture_camera_outermost(const double *points, size_t point_count, double a
 
 void picture_camera_unproject(const picture_camera *camera, double x, double y, double depth, double out[3]) {
     double across = (x - camera->centre[0]) / camera->focal, along = (y - camera->centre[1]) / camera->focal;
+    double distance = depth / camera->unit;
     for (int i = 0; i < 3; i++)
         out[i] = camera->eye[i] +
-                 depth * (across * camera->right[i] + along * camera->down[i] + camera->forward[i]);
+                 distance * (across * camera->right[i] + along * camera->down[i] + camera->forward[i]);
 }
 
 void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]) {
@@ -136,6 +139,7 @@ void picture_camera_project(const picture_camera *camera, const double point[3],
                                 point[2] - camera->eye[2]};
     double turned[3];
     picture_camera_turn(camera, from_eye, turned);
+    for (int i = 0; i < 3; i++) turned[i] *= camera->unit;
     out[0] = camera->focal * turned[0] + camera->centre[0] * turned[2];
     out[1] = camera->focal * turned[1] + camera->centre[1] * turned[2];
     out[2] = turned[2];

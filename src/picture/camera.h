@@ -11,7 +11,8 @@ typedef struct picture_camera {
     double right[3], down[3], forward[3], eye[3];
     double focal;      /* pixels */
     double centre[2];  /* pixels from the upper left corner */
-    double near_depth; /* what is nearer along `forward` is not drawn */
+    double near_depth; /* what is nearer along `forward` is not drawn, 0.5 to 1 */
+    double unit;       /* depths are lengths times this power of two: single precision holds any model's */
 } picture_camera;
 
 /* Looks from azimuth and elevation (degrees) so that the points (x, y, z each; the corners of a box, say)
@@ -27,8 +28,8 @@ enum { PICTURE_OUTERMOST = 5 };
 void picture_camera_outermost(const double *points, size_t point_count, double azimuth, double elevation,
                               bool y_up, uint32_t width, uint32_t height, double out[PICTURE_OUTERMOST][3]);
 
-/* Homogeneous pixel coordinates: the point lies at (out[0] / out[2], out[1] / out[2]) in depth out[2], which
- * is negative behind the eye. */
+/* Homogeneous pixel coordinates: the point lies at (out[0] / out[2], out[1] / out[2]) in depth out[2], in
+ * the camera's unit, which is negative behind the eye. */
 void picture_camera_project(const picture_camera *camera, const double point[3], double out[3]);
 
 /* The point of the world seen at pixel (x, y) in the given depth. */

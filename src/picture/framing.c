@@ -32,7 +32,7 @@ static bool is_below(const view *v, const picture_camera *camera, const double s
 static double scale_at(const view *v, const picture_camera *camera) {
     double at[3];
     picture_camera_project(camera, v->points, at);
-    return camera->focal / at[2];
+    return camera->unit * camera->focal / at[2];
 }
 
 void picture_scene_camera(const picture_scene *scene, const picture_options *options, picture_camera *out) {

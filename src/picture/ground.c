@@ -46,6 +46,6 @@ double picture_ground_light(const picture_ground *ground, const picture_camera *
         light -= clamp(2.0 * upward - 0.2) * depth_of_shadow * picture_shadow_at(ground->shadow, point);
     double level = clamp((fabs(upward) - 0.8) / 0.15);
     if (!(ground->square > 0.0) || level == 0.0) return light;
-    double pixel_extent = depth / camera->focal / fmax(fabs(dot(normal, view)), 1e-3);
+    double pixel_extent = depth / camera->unit / camera->focal / fmax(fabs(dot(normal, view)), 1e-3);
     return light * (1.0 - level * contrast * (0.5 - 0.5 * squares(ground, point, pixel_extent)));
 }

@@ -17,15 +17,24 @@ static void normalise(double v[3]) {
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
+/* To each corner by the angle there: the parts of a flat side then count as one, however it is cut, and a
+ * large side of a box no more than a small one. */
 static void add_face_normal(const double *positions, const uint32_t corners[3], float *out) {
-    const double *a = positions + 3 * (size_t)corners[0], *b = positions + 3 * (size_t)corners[1],
-                 *c = positions + 3 * (size_t)corners[2];
-    const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const double ac[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    const double normal[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
-                              ab[0] * ac[1] - ab[1] * ac[0]};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++) out[3 * (size_t)corners[k] + (size_t)i] += (float)normal[i];
+    double edge[3][3];
+    for (int k = 0; k < 3; k++) {
+        const double *from = positions + 3 * (size_t)corners[k],
+                     *to = positions + 3 * (size_t)corners[(k + 1) % 3];
+        for (int i = 0; i < 3; i++) edge[k][i] = to[i] - from[i];
+        normalise(edge[k]);
+    }
+    double normal[3] = {edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1],
+                        edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],
+                        edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]};
+    normalise(normal);
+    for (int k = 0; k < 3; k++) {
+        double angle = acos(fmin(fmax(-dot(edge[k], edge[(k + 2) % 3]), -1.0), 1.0));
+        for (int i = 0; i < 3; i++) out[3 * (size_t)corners[k] + (size_t)i] += (float)(angle * normal[i]);
+    }
 }
 
 void picture_vertex_normals(const picture_camera *camera, const double *positions, uint32_t vertex_count,
@@ -116,9 +125,9 @@ static void seen_normal(const picture_camera *camera, const picture_edges *edges
     normalise(out);
 }
 
-/* Cosine of the angle between a corner's normal and the face beyond which the edge is meant to be sharp: 34
- * degrees, less than at any corner of a cube, whichever way its squares are cut. */
-static const double crease_cosine = 0.83;
+/* Cosine of the angle between a corner's normal and the face beyond which the edge is meant to be sharp: 40
+ * degrees, less than along the edges of a box. */
+static const double crease_cosine = 0.766;
 
 static void interpolate_normal(const picture_surface *surface, const uint32_t corners[3],
                                const double weights[3], bool front, double normal[3]) {

@@ -22,7 +22,7 @@ typedef struct picture_surface {
     const picture_ground *ground; /* of scenery; else NULL */
 } picture_surface;
 
-/* Area-weighted vertex normals in camera space, for picture_surface.normals. */
+/* Angle-weighted vertex normals in camera space, for picture_surface.normals. */
 void picture_vertex_normals(const picture_camera *camera, const double *positions, uint32_t vertex_count,
                             const uint32_t *triangles, uint32_t triangle_count, float *out);
 

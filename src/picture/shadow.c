@@ -11,7 +11,7 @@ static const double resolution = 192.0;
 /* The radius of a cell's shadow per height, and at most, as a share of the body's extent. */
 static const double widening = 0.4, widest = 0.18;
 
-/* What lies no higher than that above the point, as a share of the extent, touches it. */
+/* What lies no higher than that above the point touches it. Heights are shares of the body's extent. */
 static const double nothing = 1e-3;
 
 /* Points of a disc of the widest shadow, in cells, the denser the nearer to its middle, and the area that
@@ -47,7 +47,7 @@ static void add_triangle(picture_shadow *shadow, const double *const corners[3])
     for (int k = 0; k < 3; k++) {
         u[k] = (corners[k][shadow->across] - shadow->origin[shadow->across]) / shadow->cell;
         v[k] = (corners[k][shadow->along] - shadow->origin[shadow->along]) / shadow->cell;
-        height[k] = corners[k][shadow->up] - shadow->origin[shadow->up];
+        height[k] = (corners[k][shadow->up] - shadow->origin[shadow->up]) / shadow->extent;
     }
     double area = (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0]);
     if (area == 0.0) return;
@@ -108,31 +108,31 @@ static bool covered(const picture_shadow *shadow, double u, double v, double hei
     double column = floor(u + 0.5), row = floor(v + 0.5);
     if (!(column >= 0.0 && row >= 0.0 && column < shadow->columns && row < shadow->rows)) return false;
     size_t cell = (size_t)row * shadow->columns + (size_t)column;
-    if (!(shadow->high[cell] > height + nothing * shadow->extent)) return false;
+    if (!(shadow->high[cell] > height + nothing)) return false;
     *distance = fmax(shadow->low[cell] - height, 0.0);
     return true;
 }
 
 /* The shadow per area, in cells, that a cell so high above casts at that distance from below it; it adds up
  * to 1 over a disc, less what is lost on the way. */
-static double density(const picture_shadow *shadow, double height, double distance) {
+static double density(double height, double distance) {
     const double pi = 3.14159265358979324;
-    double radius = fmin(2.0 + widening * height / shadow->cell, widest * resolution);
+    double radius = fmin(2.0 + widening * height * resolution, widest * resolution);
     double inside = 1.0 - distance * distance / (radius * radius);
-    return inside > 0.0 ? 2.0 * inside / (pi * radius * radius) / (1.0 + 0.5 * height / shadow->extent) : 0.0;
+    return inside > 0.0 ? 2.0 * inside / (pi * radius * radius) / (1.0 + 0.5 * height) : 0.0;
 }
 
 double picture_shadow_at(const picture_shadow *shadow, const double point[3]) {
     if (!(shadow->extent > 0.0)) return 0.0;
     double u = (point[shadow->across] - shadow->origin[shadow->across]) / shadow->cell,
            v = (point[shadow->along] - shadow->origin[shadow->along]) / shadow->cell,
-           height = point[shadow->up] - shadow->origin[shadow->up];
+           height = (point[shadow->up] - shadow->origin[shadow->up]) / shadow->extent;
     double reach = widest * resolution, sum = 0.0, above = 0.0;
     if (!(u > -reach && v > -reach && u < shadow->columns + reach && v < shadow->rows + reach)) return 0.0;
     for (int i = 0; i < PICTURE_SHADOW_TAPS; i++) {
         const picture_shadow_tap *tap = &shadow->taps[i];
         if (covered(shadow, u + tap->offset[0], v + tap->offset[1], height, &above))
-            sum += tap->area * density(shadow, above, tap->radius);
+            sum += tap->area * density(above, tap->radius);
     }
     return fmin(sum, 1.0);
 }

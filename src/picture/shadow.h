@@ -14,7 +14,7 @@ typedef struct picture_shadow_tap {
     double offset[2], radius, area;
 } picture_shadow_tap;
 
-/* The body's least and greatest height over each cell of a level grid. */
+/* The body's least and greatest height over each cell of a level grid, as shares of its extent. */
 typedef struct picture_shadow {
     uint32_t columns, rows;
     int across, along, up; /* axes */

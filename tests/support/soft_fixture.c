@@ -48,7 +48,7 @@ void soft_body_lift(soft_body *b, double height) {
 
 soft_body soft_body_of(const body *b, double spacing, const material *m) {
     soft_body soft =
-        soft_body_make(b->positions, b->vertex_count, b->triangles, b->triangle_count, spacing, m, NULL);
+        soft_body_make(b->positions, b->vertex_count, b->triangles, b->triangle_count, spacing, m);
     soft_body_lift(&soft, soft_fixture_height);
     return soft;
 }
