@@ -47,6 +47,11 @@ BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
 SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES)
 
+# One short line per file; V=1 shows the commands.
+V ?= 0
+Q := $(if $(filter 1,$(V)),,@)
+say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
+
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
 TOOL_OBJECTS := $(call objects,$(TOOL_SOURCES))
@@ -57,7 +62,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery test test-run benchmarks lint format examples clean help fuzz-elementary
+.PHONY: all tool library packages demo models gallery bench bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -93,7 +98,7 @@ gallery: models
 test: packages
 	@$(MAKE) --no-print-directory test-run
 
-test-run: tool $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries
+test-run: tool $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
@@ -106,7 +111,20 @@ fuzz-elementary: packages
 	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
+	    $(BUILD)/benchmarks/experiments
+
+# All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
+BENCH ?= --json build/bench.json
+bench: packages
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/experiments
+	@$(BUILD)/benchmarks/methods $(BENCH)
+	@$(BUILD)/benchmarks/experiments
+
+# The charts of docs/benchmarks.md, from the last make bench.
+bench-plot:
+	@.ci/packages plots
+	@benchmarks/plot.sh build/bench.json docs/images
 
 lint: packages
 	@.ci/lint
@@ -126,6 +144,7 @@ help:
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
+	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
@@ -135,50 +154,68 @@ help:
 # The library is one relocatable object in which everything but the public API is local.
 $(LIBRARY): $(CORE_OBJECTS)
 	@mkdir -p $(@D)
-	ld -r -o $(BUILD)/cscd.o $^
-	objcopy --localize-hidden $(BUILD)/cscd.o
-	rm -f $@
-	ar rcs $@ $(BUILD)/cscd.o
+	$(say) '  AR $@'
+	$(Q)ld -r -o $(BUILD)/cscd.o $^
+	$(Q)objcopy --localize-hidden $(BUILD)/cscd.o
+	@rm -f $@
+	$(Q)ar rcs $@ $(BUILD)/cscd.o
 
 # The tool lives on the public API alone, so it links the library and not its objects.
 $(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # models/*.c are programs, in models/*/ is what they are made of; they live on the public API too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
 $(MODELS): $(BUILD)/models/%: $(BUILD)/models/%.o $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 $(BUILD)/benchmarks/queries: $(call objects,benchmarks/queries.c benchmarks/query_file.c) $(CORE_OBJECTS) $(TOOL_OBJECTS)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
 
 $(BUILD)/benchmarks/culling: $(BUILD)/benchmarks/culling.o $(TOOL_OBJECTS) $(LIBRARY)
-	$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+EXPERIMENTS_SOURCES := benchmarks/experiments.c benchmarks/scene_files.c src/timer.c
+$(BUILD)/benchmarks/experiments: $(call objects,$(EXPERIMENTS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+METHODS_SOURCES := benchmarks/methods.c benchmarks/methods_report.c benchmarks/contest.c benchmarks/scene_files.c \
+                   benchmarks/thesis_numbers.c src/cli/provenance.c src/timer.c
+$(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
 # must be smaller than the tool).
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/tests/inside.a
-	$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
 
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
-	rm -f $@
-	ar rcs $@ $^
+	@rm -f $@
+	$(Q)ar rcs $@ $^
 
 # q: objects of different folders may have one name.
 $(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
-	rm -f $@
-	ar qcs $@ $^
+	@rm -f $@
+	$(Q)ar qcs $@ $^
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -c -o $@ $<
+	$(say) '  CC $<'
+	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
 # Square roots without errno and comparisons without traps: or its loops are not vectorised.
 $(BUILD)/preprocess/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
 # Only this file depends on the commit, and only when the commit changes.
-$(BUILD)/src/cli/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"'
+$(BUILD)/src/cli/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
 $(BUILD)/src/cli/provenance.o: $(BUILD)/commit
 $(BUILD)/commit: FORCE
 	@mkdir -p $(@D)

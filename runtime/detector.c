@@ -35,7 +35,7 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
             context, CSCD_INVALID_ARGUMENT,
             "detector options were not made by cscd_detector_defaults (struct_size %u, expected %zu)",
             options->struct_size, sizeof *options);
-    if ((unsigned)options->method > CSCD_METHOD_PUBLISHED)
+    if ((unsigned)options->method > CSCD_METHOD_ICCD_PUBLISHED)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown method %d", (int)options->method);
     if ((unsigned)options->mode > CSCD_MODE_EARLIEST)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
@@ -134,6 +134,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     bvh_free(context, &d->tree);
+    patches_free(context, &d->patches);
     void *blocks[] = {d->vertex_volumes,
                       d->representatives,
                       d->contacts.items,

@@ -4,6 +4,7 @@
 
 #include "runtime/culling.h"
 #include "runtime/narrow_phase.h"
+#include "runtime/patches.h"
 #include "runtime/start_state.h"
 #include "runtime/static_check.h"
 #include "runtime/traversal.h"
@@ -28,6 +29,7 @@ struct cscd_detector {
     bool *crossing;             /* per component, at the moment checked last */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
+    patches patches;      /* of the tree, with ICCD */
     bvh tree;             /* built from the first positions seen */
     kdop *vertex_volumes; /* of the interval or moment at hand */
     uint8_t *representatives;
@@ -48,8 +50,16 @@ cscd_status detector_update(cscd_detector *detector, const double *x0, const dou
 
 /* Does the method cull pairs by orientation? */
 static inline bool detector_culls(const cscd_detector *d) {
-    return d->options.method != CSCD_METHOD_NONE && d->options.method != CSCD_METHOD_BRUTE &&
-           d->limit.distance == 0.0 && d->culling.region_count < BVH_SEVERAL;
+    cscd_method method = d->options.method;
+    bool by_orientation = method == CSCD_METHOD_SINGLE || method == CSCD_METHOD_KMEANS ||
+                          method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_PUBLISHED;
+    return by_orientation && d->limit.distance == 0.0 && d->culling.region_count < BVH_SEVERAL;
+}
+
+/* Does it look for patches that cannot touch themselves? */
+static inline bool detector_seals(const cscd_detector *d) {
+    cscd_method method = d->options.method;
+    return (method == CSCD_METHOD_ICCD || method == CSCD_METHOD_ICCD_PUBLISHED) && d->limit.distance == 0.0;
 }
 
 /* Makes room for count results of size bytes; what the buffer held is dropped. */

@@ -101,14 +101,15 @@ static cscd_status prove_starts(step_work *work) {
     start_states_begin(&d->starts, work->interval.x0);
     if (!detector_culls(d)) return CSCD_OK;
     if (d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
-    if (d->options.start == CSCD_START_PROVE && start_states_want_check(&d->starts)) {
+    bool published = d->options.method == CSCD_METHOD_PUBLISHED; /* proves nothing */
+    if (d->options.start == CSCD_START_PROVE && !published && start_states_want_check(&d->starts)) {
         cscd_status status = static_check_components(d, work->interval.x0);
         if (status != CSCD_OK) return status;
         work->counters.static_checks++;
     }
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         bool embedded = d->mesh->components[c].closed_manifold && d->starts.of[c].state == START_EMBEDDED;
-        d->culled[c] = embedded || d->options.method == CSCD_METHOD_PUBLISHED;
+        d->culled[c] = embedded || published;
         work->any_culled |= d->culled[c];
     }
     timer_lap(&since, &work->timings.proof_ms);
@@ -170,12 +171,30 @@ static cscd_status finish_touched(step_work *work) {
     return traverse(work, TRAVERSAL_CULLED);
 }
 
+/* ICCD needs no embedded start: a pair in a sealed patch never touches. */
+static cscd_status find_unsealed(step_work *work) {
+    cscd_detector *d = work->detector;
+    bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
+    double since = timer_now_ms();
+    if (d->patches.node_count == 0) {
+        cscd_status status = patches_create(d->mesh, &d->tree, &d->patches);
+        if (status != CSCD_OK) return status;
+    }
+    patches_seal(&d->patches, d->mesh, &d->tree, work->interval.x0, work->interval.x1, published);
+    timer_lap(&since, &work->timings.contour_ms);
+    work->counters.contours = d->patches.contours;
+    work->counters.sealed = d->patches.sealed;
+    work->interval.skip_adjacent = published;
+    return traverse(work, TRAVERSAL_UNSEALED);
+}
+
 static cscd_status find_by_trees(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
     cscd_status status = detector_update(d, work->interval.x0, work->interval.x1, d->limit.distance);
     timer_lap(&since, &work->timings.update_ms);
     if (status != CSCD_OK) return status;
+    if (detector_seals(d)) return find_unsealed(work);
     if (!work->any_culled) return traverse(work, TRAVERSAL_ALL);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
@@ -195,6 +214,12 @@ static cscd_status find_by_brute_force(step_work *work) {
 static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     start_state start = d->starts.of[component].state;
     cscd_guarantee g = {true, start == START_EMBEDDED, CSCD_REASON_METHOD};
+    if (detector_seals(d)) {
+        bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
+        g.reason = published ? CSCD_REASON_PUBLISHED : CSCD_REASON_CONTOUR;
+        g.complete = !published;
+        return g;
+    }
     if (!detector_culls(d)) return g;
     if (d->options.method == CSCD_METHOD_PUBLISHED)
         g.reason = CSCD_REASON_PUBLISHED;
@@ -248,7 +273,8 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     if (status != CSCD_OK) return context_out_of_memory(context);
     for (uint32_t c = 0; c < detector->mesh->component_count; c++)
         detector->guarantees[c] = guarantee_of(detector, c);
-    bool lossy = detector->options.method == CSCD_METHOD_PUBLISHED;
+    bool lossy = detector->options.method == CSCD_METHOD_PUBLISHED ||
+                 detector->options.method == CSCD_METHOD_ICCD_PUBLISHED;
     start_states_end(&detector->starts, end, lossy ? NULL : detector->touched);
     timer_lap(&since, &work.timings.total_ms);
     detector->timings = work.timings;

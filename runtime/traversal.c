@@ -78,6 +78,7 @@ static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
     if (t->pass == TRAVERSAL_KEPT && bvh_marks_cull(marks[pair.a], marks[pair.b])) return;
     if (t->pass == TRAVERSAL_CULLED && !bvh_marks_hold_culled(marks[pair.a], marks[pair.b])) return;
     if (pair.a == pair.b) {
+        if (t->pass == TRAVERSAL_UNSEALED && marks[pair.a] != 0) return;
         split_self(nodes, lane, pair.a);
         return;
     }

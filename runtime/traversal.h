@@ -15,8 +15,14 @@ typedef struct node_pair {
 } node_pair;
 
 /* Which pairs of triangles are looked for, of those whose volumes overlap: all; those that the tree's marks
- * leave; those that they cull. The second and the third together are the first. */
-typedef enum traversal_pass { TRAVERSAL_ALL, TRAVERSAL_KEPT, TRAVERSAL_CULLED } traversal_pass;
+ * leave; those that they cull (the second and the third together are the first); those that do not lie below
+ * one node that patches_seal has marked. */
+typedef enum traversal_pass {
+    TRAVERSAL_ALL,
+    TRAVERSAL_KEPT,
+    TRAVERSAL_CULLED,
+    TRAVERSAL_UNSEALED
+} traversal_pass;
 
 /* What one thread works on: its share of the open node pairs and its batch of results. */
 typedef struct traversal_lane {

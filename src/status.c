@@ -36,10 +36,15 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
     return "unknown kind";
 }
 
-static const char *const method_names[] = {
-    [CSCD_METHOD_AUTO] = "auto",          [CSCD_METHOD_NONE] = "none",     [CSCD_METHOD_BRUTE] = "brute",
-    [CSCD_METHOD_SINGLE] = "single",      [CSCD_METHOD_KMEANS] = "kmeans", [CSCD_METHOD_CHARGE] = "charge",
-    [CSCD_METHOD_PUBLISHED] = "published"};
+static const char *const method_names[] = {[CSCD_METHOD_AUTO] = "auto",
+                                           [CSCD_METHOD_NONE] = "none",
+                                           [CSCD_METHOD_BRUTE] = "brute",
+                                           [CSCD_METHOD_SINGLE] = "single",
+                                           [CSCD_METHOD_KMEANS] = "kmeans",
+                                           [CSCD_METHOD_CHARGE] = "charge",
+                                           [CSCD_METHOD_PUBLISHED] = "published",
+                                           [CSCD_METHOD_ICCD] = "iccd",
+                                           [CSCD_METHOD_ICCD_PUBLISHED] = "iccd-published"};
 static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EARLIEST] = "earliest"};
 static const char *const reasons[] = {
     [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
@@ -49,6 +54,7 @@ static const char *const reasons[] = {
     [CSCD_REASON_CLEAN] = "embedded at the start, and no contact",
     [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
     [CSCD_REASON_PUBLISHED] = "culled as published, which loses contacts",
+    [CSCD_REASON_CONTOUR] = "pairs in patches that cannot touch themselves are left out; all contacts found",
     [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing"};
 
 static const char *name_at(const char *const *names, size_t count, size_t i) {

@@ -98,6 +98,19 @@ def check_culling(tool, path):
     return good
 
 
+def check_iccd(tool, path, share):
+    """Normal cones and contours leave this share of the triangle pairs at most, and every contact, in every interval."""
+    none, iccd = (replay(tool, path + ".obj", [path + ".pc2"], "--method", method, "--no-check")["intervals"]
+                  for method in ("none", "iccd"))
+    pairs = [sum(interval["pcp"] for interval in intervals) for intervals in (none, iccd)]
+    differing = [k for k in range(len(none)) for key in ("vf", "ee", "earliest_toi") if none[k][key] != iccd[k][key]]
+    good = pairs[1] <= share * pairs[0] and not differing
+    print(f"{os.path.basename(path)}: iccd leaves {100 * pairs[1] / pairs[0]:.1f} % of {pairs[0]} pairs, at most "
+          f"{100 * share:.0f}; contacts differ from none's in intervals {ranges(sorted(set(differing)))}   "
+          f"{'agrees' if good else 'VIOLATES'}")
+    return good
+
+
 def check_queries(program, folder):
     """Every query set: the verdicts must be the truth."""
     files = sorted(glob.glob(os.path.join(folder, "*.csv")))
@@ -121,6 +134,8 @@ def main():
     good = [check_sequence(tool, path) for path in sequences]
     good += [check_pair(tool, os.path.join(data, "frames"), *pair) for pair in FRAME_PAIRS]
     good.append(check_culling(tool, os.path.join(data, "sequences", "elephant_free")))
+    for name in ("elephant_free", "hand_fist"):
+        good.append(check_iccd(tool, os.path.join(data, "sequences", name), 0.6))
     good.append(check_queries(os.environ["CSCD_QUERIES"], os.path.join(data, "queries")))
     print(f"{sum(good)} of {len(good)} comparisons agree")
     return 0 if all(good) else 1

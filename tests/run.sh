@@ -8,7 +8,8 @@ BUILD=$(cd "$BUILD" && pwd) || exit 1
 CSCD_TOOL=$BUILD/cscd
 CSCD_MODELS=$BUILD/models
 CSCD_QUERIES=$BUILD/benchmarks/queries
-export CSCD_TOOL CSCD_MODELS CSCD_QUERIES
+CSCD_METHODS=$BUILD/benchmarks/methods
+export CSCD_TOOL CSCD_MODELS CSCD_QUERIES CSCD_METHODS
 
 log=$(mktemp) || exit 1
 trap 'rm -f "$log"' EXIT

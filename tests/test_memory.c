@@ -35,7 +35,7 @@ static cscd_status use_detector(cscd_detector *detector, outcome *out) {
 
 /* Everything from the context to a step and a check; when that fails for want of memory, once more with the
  * same objects, which must then succeed. */
-static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
+static outcome run_library(counting_allocator *counter, uint32_t thread_count, cscd_method method) {
     outcome out = {CSCD_OK, 0, 0};
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
@@ -51,7 +51,9 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
     out.status = cscd_context_create(&options, &context);
     if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, &mesh);
     if (out.status == CSCD_OK) out.status = cscd_plan_create(mesh, s.x0, &plan_options, &plan);
-    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, plan, NULL, &detector);
+    cscd_detector_options detector_options = cscd_detector_defaults();
+    detector_options.method = method;
+    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, plan, &detector_options, &detector);
     if (out.status == CSCD_OK) {
         out.status = use_detector(detector, &out);
         if (out.status == CSCD_OUT_OF_MEMORY) {
@@ -71,17 +73,17 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count) {
     return out;
 }
 
-static void fail_each(scene_family family, uint64_t seed, uint32_t thread_count) {
+static void fail_each(scene_family family, uint64_t seed, uint32_t thread_count, cscd_method method) {
     scene_make(family, seed, &s);
     counting_allocator counter = counting_allocator_start();
-    outcome good = run_library(&counter, thread_count);
+    outcome good = run_library(&counter, thread_count, method);
     assert_int_equal(good.status, CSCD_OK);
     size_t calls = counter.calls;
     assert_true(calls > 20);
     for (size_t n = 0; n < calls; n++) {
         counter = counting_allocator_start();
         counter.fail_at = n;
-        outcome failed = run_library(&counter, thread_count);
+        outcome failed = run_library(&counter, thread_count, method);
         assert_int_equal(failed.status, CSCD_OUT_OF_MEMORY);
         if (failed.contacts == 0) continue; /* failed before there was a detector */
         assert_int_equal(failed.contacts, good.contacts);
@@ -91,14 +93,16 @@ static void fail_each(scene_family family, uint64_t seed, uint32_t thread_count)
 
 static void every_allocation_may_fail(void **state) {
     (void)state;
-    fail_each(SCENE_TWO_SPHERES, 3, 1);
-    fail_each(SCENE_FOLDED_SHEET, 7, 1);
-    fail_each(SCENE_SOUP, 11, 1);
-    fail_each(SCENE_BOW_TIE, 3, 3);
+    fail_each(SCENE_TWO_SPHERES, 3, 1, CSCD_METHOD_AUTO);
+    fail_each(SCENE_FOLDED_SHEET, 7, 1, CSCD_METHOD_AUTO);
+    fail_each(SCENE_SOUP, 11, 1, CSCD_METHOD_AUTO);
+    fail_each(SCENE_BOW_TIE, 3, 3, CSCD_METHOD_AUTO);
+    fail_each(SCENE_TWO_SPHERES, 3, 1, CSCD_METHOD_ICCD);
+    fail_each(SCENE_FOLDED_SHEET, 7, 3, CSCD_METHOD_ICCD);
+    fail_each(SCENE_SOUP, 11, 1, CSCD_METHOD_ICCD_PUBLISHED);
 }
 
-static void steady_state_allocates_nothing(void **state) {
-    (void)state;
+static void expect_steady_state(cscd_method method) {
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
@@ -106,12 +110,14 @@ static void steady_state_allocates_nothing(void **state) {
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(&counter);
     options.thread_count = 2;
+    cscd_detector_options detector_options = cscd_detector_defaults();
+    detector_options.method = method;
     scene_make(SCENE_NESTED_SPHERES, 2, &s);
     cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
     outcome out;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_create(mesh, NULL, &detector_options, &detector), CSCD_OK);
     assert_int_equal(use_detector(detector, &out), CSCD_OK);
     size_t calls = counter.calls;
     for (int i = 0; i < 20; i++) assert_int_equal(use_detector(detector, &out), CSCD_OK);
@@ -120,6 +126,12 @@ static void steady_state_allocates_nothing(void **state) {
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     assert_int_equal(counter.live, 0);
+}
+
+static void steady_state_allocates_nothing(void **state) {
+    (void)state;
+    expect_steady_state(CSCD_METHOD_AUTO);
+    expect_steady_state(CSCD_METHOD_ICCD);
 }
 
 int main(void) {

@@ -139,19 +139,21 @@ CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t t
 /* ---- plan: what is found out about a mesh once, at rest --------------------------------------------- */
 
 /* How pairs are left out that need no test. Methods differ in time only: in one mode every method keeps the
- * same guarantee, but for PUBLISHED. */
+ * same guarantee, but for those as published. */
 typedef enum cscd_method {
-    CSCD_METHOD_AUTO,     /* the plan's, or NONE without a plan */
-    CSCD_METHOD_NONE,     /* bounding volumes, no culling */
-    CSCD_METHOD_BRUTE,    /* every pair of features: the reference, O(n^2) */
-    CSCD_METHOD_SINGLE,   /* one region per component */
-    CSCD_METHOD_KMEANS,   /* regions by k-means */
-    CSCD_METHOD_CHARGE,   /* regions by charge density */
-    CSCD_METHOD_PUBLISHED /* the thesis's culling as published; loses contacts, for comparison only */
+    CSCD_METHOD_AUTO,      /* the plan's, or NONE without a plan */
+    CSCD_METHOD_NONE,      /* bounding volumes, no culling */
+    CSCD_METHOD_BRUTE,     /* every pair of features: the reference, O(n^2) */
+    CSCD_METHOD_SINGLE,    /* one region per component */
+    CSCD_METHOD_KMEANS,    /* regions by k-means */
+    CSCD_METHOD_CHARGE,    /* regions by charge density */
+    CSCD_METHOD_PUBLISHED, /* the thesis's culling as published; loses contacts, for comparison only */
+    CSCD_METHOD_ICCD,      /* normal cones and contour tests (Tang et al. 2009), corrected: to compare with */
+    CSCD_METHOD_ICCD_PUBLISHED /* the same as published; loses contacts, for comparison only */
 } cscd_method;
 
-/* "auto", "none", "brute", "single", "kmeans", "charge", "published"; static storage, never NULL. from_name
- * leaves *out untouched when it returns false. */
+/* "auto", "none", "brute", "single", "kmeans", "charge", "published", "iccd", "iccd-published"; static
+ * storage, never NULL. from_name leaves *out untouched when it returns false. */
 CSCD_API const char *cscd_method_name(cscd_method method);
 CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
 
@@ -225,7 +227,7 @@ typedef struct cscd_detector cscd_detector;
 
 typedef enum cscd_mode {
     CSCD_MODE_ALL, /* every contact of the interval is reported, whatever the mesh and its start state (but
-                    * for method PUBLISHED, and starts vouched for wrongly) */
+                    * for published methods, and starts vouched for wrongly) */
     CSCD_MODE_EARLIEST /* of a component whose start is proven embedded, at least one contact with itself at
                         * its earliest time; so none is a proof that there is none. All other contacts as in
                         * ALL, and all with pairs to leave out. See cscd_detector_guarantee */
@@ -266,7 +268,7 @@ typedef struct cscd_detector_options {
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
 
 /* plan: NULL, or one of the mesh; the detector copies what it needs. CHARGE and KMEANS
- * want a plan of that method; SINGLE and PUBLISHED take any, or none. */
+ * want a plan of that method; the others take any, or none. */
 CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
@@ -329,7 +331,8 @@ typedef enum cscd_reason {
     CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded */
     CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
     CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
-    CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED */
+    CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED or ICCD_PUBLISHED */
+    CSCD_REASON_CONTOUR,   /* complete: ICCD needs no embedded start */
     CSCD_REASON_EARLIEST   /* the start is embedded, and mode EARLIEST promises the first contacts only */
 } cscd_reason;
 
@@ -353,6 +356,7 @@ CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t t
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
     double update_ms;         /* BVH update: swept boxes and refit */
     double orientation_ms;    /* detector points, orientation check */
+    double contour_ms;        /* ICCD: normal cones and contour tests */
     double traversal_ms;      /* overlapping triangle pairs */
     double contact_ms;        /* representatives, elementary tests, sorting */
     double total_ms;          /* the whole step, checks of the input included */
@@ -363,6 +367,7 @@ typedef struct cscd_timings { /* of the last step; the seed of each is a stage o
 typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
     uint64_t static_checks;    /* of the start, within the step */
     uint64_t plus, minus;      /* triangles that are S+ and S- */
+    uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
     uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */

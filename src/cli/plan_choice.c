@@ -27,8 +27,10 @@ const char *plan_source_name(plan_source source) {
     return names[source];
 }
 
+/* By orientation, for which it needs regions. */
 static bool culls(cscd_method method) {
-    return method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE;
+    return method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE && method != CSCD_METHOD_ICCD &&
+           method != CSCD_METHOD_ICCD_PUBLISHED;
 }
 
 static bool makes_plans(cscd_method method) {

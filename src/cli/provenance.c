@@ -12,6 +12,14 @@
 #ifndef CSCD_COMMIT
 #define CSCD_COMMIT "unknown"
 #endif
+#ifndef CSCD_FLAGS
+#define CSCD_FLAGS "unknown"
+#endif
+#ifdef __clang__
+#define CSCD_COMPILER "clang " __clang_version__
+#else
+#define CSCD_COMPILER "gcc " __VERSION__
+#endif
 
 const char *provenance_commit(void) {
     return CSCD_COMMIT;
@@ -61,6 +69,8 @@ void provenance_write(json *out, int argument_count, char **arguments, uint32_t 
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
     json_string(out, "version", cscd_version_string());
     json_string(out, "commit", provenance_commit());
+    json_string(out, "compiler", CSCD_COMPILER);
+    json_string(out, "flags", CSCD_FLAGS);
     json_string(out, "date", date);
     write_machine(out);
     json_integer(out, "threads", thread_count);

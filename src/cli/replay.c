@@ -139,13 +139,18 @@ static interval_state state_of(const replay *r, size_t contact_count) {
     return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
 }
 
+/* Loses contacts, for comparison only. */
+static bool is_published(cscd_method method) {
+    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
+}
+
 /* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
  */
 static void alarm_contradiction(replay *r, const interval_result *result) {
     bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
-    if (r->plan.method == CSCD_METHOD_PUBLISHED) return; /* as is known of it */
+    if (is_published(r->plan.method)) return; /* as is known of them */
     warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
          "lost, "
          "please report this recording",
@@ -199,9 +204,10 @@ static bool run_intervals(replay *r, io_error *error) {
 
 static void print_results(const replay *r) {
     const totals *t = &r->totals;
-    printf("%s: %u vertices, %u triangles, %u components; frames %u to %u\n", r->options->model_path,
+    printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->model_path,
            cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
-           cscd_mesh_component_count(r->recording.mesh), r->first, r->first + t->intervals);
+           cscd_mesh_component_count(r->recording.mesh),
+           cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", r->first, r->first + t->intervals);
     printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->vf,
            (unsigned long long)t->ee, t->intervals_with_contact, t->intervals);
     frame_list_print(&r->contact_frames, "; from frame ");
@@ -215,12 +221,14 @@ static void print_results(const replay *r) {
     printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
     if (t->intervals_complete < t->intervals)
-        printf("%s: in %u of %u intervals later contacts of a component with itself may be missing\n",
-               r->plan.method == CSCD_METHOD_PUBLISHED ? "method published" : "mode earliest",
-               t->intervals - t->intervals_complete, t->intervals);
+        printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
+               is_published(r->plan.method) ? "method" : "mode",
+               is_published(r->plan.method) ? cscd_method_name(r->plan.method) : "earliest",
+               t->intervals - t->intervals_complete, t->intervals,
+               is_published(r->plan.method) ? "" : "later ");
     if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
     plan_choice_print(&r->plan);
-    totals_print_table(t, cscd_method_name(r->plan.method), r->plan.plan != NULL);
+    totals_print_table(t, r->plan.method);
 }
 
 static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {

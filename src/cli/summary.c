@@ -68,6 +68,7 @@ static void write_times(json *out, const cscd_timings *t) {
     json_begin_object(out, "ms");
     json_number(out, "update", t->update_ms);
     json_number(out, "orientation", t->orientation_ms);
+    json_number(out, "contour", t->contour_ms);
     json_number(out, "traversal", t->traversal_ms);
     json_number(out, "contact", t->contact_ms);
     json_number(out, "proof", t->proof_ms);
@@ -181,6 +182,7 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_integer(out, "static_checks", t->static_checks);
     write_column(out, "update_ms", &t->update, t->intervals);
     write_column(out, "orientation_ms", &t->orientation, t->intervals);
+    write_column(out, "contour_ms", &t->contour, t->intervals);
     write_column(out, "traversal_ms", &t->traversal, t->intervals);
     write_column(out, "contact_ms", &t->contact, t->intervals);
     write_column(out, "proof_ms", &t->proof, t->intervals);

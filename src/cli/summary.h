@@ -38,12 +38,11 @@ typedef struct totals {
     uint32_t contradictions;     /* clean intervals that end crossing: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete */
     uint64_t vf, ee, bounded, static_checks;
-    column update, orientation, traversal, contact, proof, check, total, pcp, tests, plus, minus;
+    column update, orientation, contour, traversal, contact, proof, check, total, pcp, tests, plus, minus;
 } totals;
 
 void totals_add(totals *t, const interval_result *result, const cscd_mesh *mesh);
-/* oriented: the method checks orientations. */
-void totals_print_table(const totals *t, const char *method, bool oriented);
+void totals_print_table(const totals *t, cscd_method method);
 
 typedef struct summary_writer summary_writer;
 

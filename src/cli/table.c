@@ -2,6 +2,7 @@
 #include "src/cli/summary.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static void add(column *c, double value) {
     c->sum += value;
@@ -26,6 +27,7 @@ void totals_add(totals *t, const interval_result *r, const cscd_mesh *mesh) {
     t->intervals_complete += all_complete(r->detector, mesh);
     add(&t->update, r->timings.update_ms);
     add(&t->orientation, r->timings.orientation_ms);
+    add(&t->contour, r->timings.contour_ms);
     add(&t->traversal, r->timings.traversal_ms);
     add(&t->contact, r->timings.contact_ms);
     add(&t->proof, r->timings.proof_ms);
@@ -41,34 +43,44 @@ static double mean(const column *c, uint32_t count) {
     return count > 0 ? c->sum / count : 0.0;
 }
 
-/* A stage of a method that may not have it. */
-static void print_stage(bool present, double ms) {
-    if (present)
-        printf(" %9.3f ms", ms);
-    else
-        printf(" %12s", "X");
+enum { STAGES = 6 };
+
+/* Of the columns up to the proof, which the method has; X stands for the others. */
+static void find_stages(cscd_method method, bool present[STAGES]) {
+    bool contours = method == CSCD_METHOD_ICCD || method == CSCD_METHOD_ICCD_PUBLISHED;
+    bool oriented = method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE && !contours;
+    const bool stages[STAGES] = {true, oriented, contours, true, true, oriented};
+    memcpy(present, stages, sizeof stages);
 }
 
-static void print_row(const char *method, bool oriented, const double row[8], const char *what) {
-    printf("%-9s %9.3f ms", method, row[0]);
-    print_stage(oriented, row[1]);
-    printf(" %9.3f ms %9.3f ms", row[2], row[3]);
-    print_stage(oriented, row[4]);
-    printf(" %12.0f %9.3f ms %9.3f ms  %s\n", row[5], row[6], row[7], what);
+static void print_row(const char *method, const bool present[STAGES], const double row[STAGES + 3],
+                      const char *what) {
+    printf("%-14s", method);
+    for (int i = 0; i < STAGES; i++) {
+        if (present[i])
+            printf(" %9.3f ms", row[i]);
+        else
+            printf(" %12s", "X");
+    }
+    printf(" %12.0f %9.3f ms %9.3f ms  %s\n", row[STAGES], row[STAGES + 1], row[STAGES + 2], what);
 }
 
-void totals_print_table(const totals *t, const char *method, bool oriented) {
-    const column *columns[8] = {&t->update, &t->orientation, &t->traversal, &t->contact,
-                                &t->proof,  &t->pcp,         &t->total,     &t->check};
-    double means[8], maxima[8];
-    for (int i = 0; i < 8; i++) {
+void totals_print_table(const totals *t, cscd_method method) {
+    static const char *const names[STAGES + 3] = {
+        "BVH update", "orientation", "contour", "traversal", "contact", "proof", "#PCPs", "total", "check"};
+    const column *columns[STAGES + 3] = {&t->update, &t->orientation, &t->contour, &t->traversal, &t->contact,
+                                         &t->proof,  &t->pcp,         &t->total,   &t->check};
+    double means[STAGES + 3], maxima[STAGES + 3];
+    bool present[STAGES];
+    find_stages(method, present);
+    printf("\n%-14s", "method");
+    for (int i = 0; i < STAGES + 3; i++) {
         means[i] = mean(columns[i], t->intervals);
         maxima[i] = columns[i]->max;
+        printf(" %12s", names[i]);
     }
-    printf("\n%-9s %12s %12s %12s %12s %12s %12s %12s %12s\n", "method", "BVH update", "orientation",
-           "traversal", "contact", "proof", "#PCPs", "total", "check");
-    print_row(method, oriented, means, "mean per frame");
-    print_row("", oriented, maxima, "maximum");
-    printf(oriented ? "" : "X: not part of this method. ");
-    printf("The check is not part of the total.\n");
+    putchar('\n');
+    print_row(cscd_method_name(method), present, means, "mean per frame");
+    print_row("", present, maxima, "maximum");
+    printf("X: not part of this method. The check is not part of the total.\n");
 }

@@ -1,0 +1,259 @@
+/* Patches of the tree's nodes: their contours, once; cones and contour tests, per interval. */
+#include "runtime/patches.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lists of edge numbers, one per node, while they are made: the last node's first. */
+typedef struct contour_lists {
+    cscd_context *context;
+    uint32_t *edges;
+    size_t count, capacity;
+    size_t *begins; /* per node */
+    uint32_t *sizes;
+} contour_lists;
+
+static bool reserve(contour_lists *l, size_t more) {
+    if (l->count + more <= l->capacity) return true;
+    size_t capacity = 2 * (l->count + more);
+    uint32_t *grown = context_grow(l->context, l->edges, l->count, capacity, sizeof *grown);
+    if (grown == NULL) return false;
+    l->edges = grown;
+    l->capacity = capacity;
+    return true;
+}
+
+static void sort_three(uint32_t e[3]) {
+    for (int i = 0; i < 3; i++) {
+        int a = i == 1 ? 1 : 0, b = a + 1;
+        uint32_t low = e[a] < e[b] ? e[a] : e[b], high = e[a] < e[b] ? e[b] : e[a];
+        e[a] = low;
+        e[b] = high;
+    }
+}
+
+/* What is in one of two ascending lists only: the contour of two patches together. */
+static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_t *b, uint32_t b_count,
+                              uint32_t *out) {
+    uint32_t i = 0, j = 0, count = 0;
+    while (i < a_count || j < b_count) {
+        if (j == b_count || (i < a_count && a[i] < b[j]))
+            out[count++] = a[i++];
+        else if (i == a_count || b[j] < a[i])
+            out[count++] = b[j++];
+        else {
+            i++;
+            j++;
+        }
+    }
+    return count;
+}
+
+static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const bvh *tree, uint32_t node) {
+    const bvh_node *n = &tree->nodes[node];
+    if (bvh_is_leaf(n)) {
+        if (!reserve(l, 3)) return false;
+        memcpy(l->edges + l->count, mesh->triangle_edges[n->triangle], 3 * sizeof(uint32_t));
+        sort_three(l->edges + l->count);
+        l->sizes[node] = 3;
+    } else {
+        uint32_t left = node + 1, right = n->right;
+        if (!reserve(l, (size_t)l->sizes[left] + l->sizes[right])) return false;
+        l->sizes[node] = difference_of(l->edges + l->begins[left], l->sizes[left],
+                                       l->edges + l->begins[right], l->sizes[right], l->edges + l->count);
+    }
+    l->begins[node] = l->count;
+    l->count += l->sizes[node];
+    return true;
+}
+
+/* What a look at one patch leaves behind: per vertex, when it was last seen, and its neighbours on the
+ * contour. */
+typedef struct vertex_visit {
+    uint32_t seen, degree, neighbours[2];
+} vertex_visit;
+
+/* Of triangles of one oriented manifold component: one loop through all edges, and the Euler characteristic
+ * of a disk; leaves are the patch's triangles. */
+static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const bvh_node *first,
+                    const bvh_node *end, vertex_visit *visits, uint32_t stamp) {
+    uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
+    for (const bvh_node *n = first; n < end; n++) {
+        if (!bvh_is_leaf(n)) continue;
+        if (triangles++ == 0) component = mesh->triangle_components[n->triangle];
+        if (mesh->triangle_components[n->triangle] != component) return false;
+        for (int i = 0; i < 3; i++) {
+            vertex_visit *v = &visits[mesh->triangles[n->triangle][i]];
+            if (v->seen == stamp) continue;
+            *v = (vertex_visit){.seen = stamp};
+            vertices++;
+        }
+    }
+    /* V - E + F = 1, where 2 E = 3 F + the contour's edges */
+    if (size == 0 || 2 * ((int64_t)vertices + triangles - 1) != 3 * (int64_t)triangles + size) return false;
+    for (uint32_t i = 0; i < size; i++) {
+        const uint32_t *v = mesh->edges[contour[i]];
+        for (int k = 0; k < 2; k++) {
+            vertex_visit *visit = &visits[v[k]];
+            if (visit->degree == 2) return false;
+            visit->neighbours[visit->degree++] = v[1 - k];
+        }
+    }
+    uint32_t start = mesh->edges[contour[0]][0], before = start, at = mesh->edges[contour[0]][1], length = 1;
+    for (; at != start; length++) {
+        const vertex_visit *visit = &visits[at];
+        if (visit->degree != 2) return false;
+        uint32_t next = visit->neighbours[0] == before ? visit->neighbours[1] : visit->neighbours[0];
+        before = at;
+        at = next;
+    }
+    return length == size;
+}
+
+/* Oriented manifolds only. In one component a patch of one loop has no closed part beside it. */
+static void find_disks(patches *p, const cscd_mesh *mesh, const bvh *tree, const contour_lists *l,
+                       vertex_visit *visits) {
+    uint32_t *ends = p->stack; /* one past the last node of each subtree */
+    for (uint32_t i = p->node_count; i-- > 0;) {
+        const bvh_node *n = &tree->nodes[i];
+        ends[i] = bvh_is_leaf(n) ? i + 1 : ends[n->right];
+        const bvh_node *leaf = n;
+        while (!bvh_is_leaf(leaf)) leaf++;
+        const cscd_component *c = &mesh->components[mesh->triangle_components[leaf->triangle]];
+        bool oriented =
+            c->non_manifold_edges == 0 && c->non_manifold_vertices == 0 && c->inconsistent_edges == 0;
+        p->disks[i] = oriented && is_disk(mesh, l->edges + l->begins[i], l->sizes[i], n,
+                                          tree->nodes + ends[i], visits, p->node_count - i);
+    }
+}
+
+/* Ascending lists into their places, with what the parent's has too in front. */
+static void place_contour(patches *p, const contour_lists *l, uint32_t node, uint32_t parent) {
+    const uint32_t *own = l->edges + l->begins[node];
+    const uint32_t *above = parent == UINT32_MAX ? own : l->edges + l->begins[parent];
+    uint32_t own_size = l->sizes[node], above_size = parent == UINT32_MAX ? 0 : l->sizes[parent];
+    uint32_t *out = p->contour_edges + p->contour_offsets[node], count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0, j = 0; i < own_size; i++) {
+            while (j < above_size && above[j] < own[i]) j++;
+            bool common = j < above_size && above[j] == own[i];
+            if (common == (pass == 0)) out[count++] = own[i];
+        }
+        if (pass == 0) p->inherited[node] = count;
+    }
+}
+
+static bool fill(patches *p, const cscd_mesh *mesh, const bvh *tree, contour_lists *l, vertex_visit *visits) {
+    uint32_t longest = 0;
+    size_t total = 0;
+    for (uint32_t i = p->node_count; i-- > 0;) {
+        if (!list_contour(l, mesh, tree, i)) return false;
+        if (l->sizes[i] > longest) longest = l->sizes[i];
+    }
+    p->contour_edges = context_allocate(l->context, l->count + 1, sizeof *p->contour_edges);
+    p->scratch = context_allocate(l->context, (size_t)longest + 1, sizeof *p->scratch);
+    if (p->contour_edges == NULL || p->scratch == NULL) return false;
+    for (uint32_t i = 0; i < p->node_count; i++) {
+        p->contour_offsets[i] = total;
+        total += l->sizes[i];
+    }
+    p->contour_offsets[p->node_count] = total;
+    place_contour(p, l, 0, UINT32_MAX);
+    for (uint32_t i = 0; i < p->node_count; i++) {
+        if (bvh_is_leaf(&tree->nodes[i])) continue;
+        place_contour(p, l, i + 1, i);
+        place_contour(p, l, tree->nodes[i].right, i);
+    }
+    find_disks(p, mesh, tree, l, visits);
+    return true;
+}
+
+cscd_status patches_create(const cscd_mesh *mesh, const bvh *tree, patches *out) {
+    cscd_context *context = mesh->context;
+    size_t count = tree->node_count;
+    patches p = {.node_count = tree->node_count};
+    contour_lists lists = {.context = context};
+    vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
+    lists.begins = context_allocate(context, count, sizeof *lists.begins);
+    lists.sizes = context_allocate(context, count, sizeof *lists.sizes);
+    p.contour_offsets = context_allocate(context, count + 1, sizeof *p.contour_offsets);
+    p.inherited = context_allocate(context, count, sizeof *p.inherited);
+    p.disks = context_allocate(context, count, sizeof *p.disks);
+    p.cones = context_allocate(context, count, sizeof *p.cones);
+    p.stack = context_allocate(context, count, sizeof *p.stack);
+    p.parent_tested = context_allocate(context, count, sizeof *p.parent_tested);
+    bool made = visits != NULL && lists.begins != NULL && lists.sizes != NULL && p.contour_offsets != NULL &&
+                p.inherited != NULL && p.disks != NULL && p.cones != NULL && p.stack != NULL &&
+                p.parent_tested != NULL && fill(&p, mesh, tree, &lists, visits);
+    context_free(context, visits);
+    context_free(context, lists.begins);
+    context_free(context, lists.sizes);
+    context_free(context, lists.edges);
+    if (!made) {
+        patches_free(context, &p);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = p;
+    return CSCD_OK;
+}
+
+void patches_free(cscd_context *context, patches *p) {
+    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited, p->disks,
+                      p->cones,           p->scratch,       p->stack,     p->parent_tested};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    *p = (patches){0};
+}
+
+/* ---- one interval ---------------------------------------------------------------------------------- */
+
+static void merge_cones(patches *p, const cscd_mesh *mesh, const bvh *tree, const double *x0,
+                        const double *x1, bool published) {
+    const float pi = 3.14159265f, limit = published ? pi : normal_cone_limit;
+    for (uint32_t i = p->node_count; i-- > 0;) {
+        const bvh_node *n = &tree->nodes[i];
+        if (bvh_is_leaf(n))
+            p->cones[i] =
+                (published ? normal_cone_of_ends : normal_cone_of)(mesh->triangles[n->triangle], x0, x1);
+        else
+            p->cones[i] = normal_cone_union(&p->cones[i + 1], &p->cones[n->right], limit);
+    }
+}
+
+static bool passes(patches *p, const cscd_mesh *mesh, uint32_t node, const double *x0, const double *x1,
+                   bool published) {
+    size_t first = p->contour_offsets[node];
+    const contour_query query = {.mesh = mesh,
+                                 .edges = p->contour_edges + first,
+                                 .edge_count = (uint32_t)(p->contour_offsets[node + 1] - first),
+                                 .x0 = x0,
+                                 .x1 = x1,
+                                 .axis = p->cones[node].axis,
+                                 .skipped = published && p->parent_tested[node] ? p->inherited[node] : 0,
+                                 .published = published};
+    p->contours++;
+    return contour_stays_simple(&query, p->scratch);
+}
+
+void patches_seal(patches *p, const cscd_mesh *mesh, bvh *tree, const double *x0, const double *x1,
+                  bool published) {
+    uint32_t depth = 0;
+    merge_cones(p, mesh, tree, x0, x1, published);
+    p->contours = p->sealed = 0;
+    p->parent_tested[0] = false;
+    p->stack[depth++] = 0;
+    while (depth > 0) {
+        uint32_t node = p->stack[--depth];
+        const bvh_node *n = &tree->nodes[node];
+        tree->marks[node] = 0;
+        if (bvh_is_leaf(n)) continue;
+        bool tested = p->cones[node].angle < INFINITY && (published || p->disks[node]);
+        if (tested && passes(p, mesh, node, x0, x1, published)) {
+            tree->marks[node] = 1;
+            p->sealed++;
+            continue;
+        }
+        p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
+        p->stack[depth++] = n->right;
+        p->stack[depth++] = node + 1;
+    }
+}

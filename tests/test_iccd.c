@@ -1,0 +1,252 @@
+/* Method iccd on random intervals: the contacts of method none, bit for bit, in whatever way it is asked; as
+ * published it loses some. */
+#include "tests/support/rig.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { INTERVALS_PER_FAMILY = 25 };
+#else
+enum { INTERVALS_PER_FAMILY = 200 };
+#endif
+
+enum { BRUTE_EVERY = 25, OPTIONS_EVERY = 5 };
+
+static scene interval; /* large; one test at a time */
+
+/* What a detector gave. */
+typedef struct outcome {
+    rig objects;
+    cscd_contacts contacts;
+    cscd_counters counters;
+} outcome;
+
+static outcome run(cscd_detector_options options, cscd_method method, uint32_t threads) {
+    outcome out;
+    options.method = method;
+    out.objects = rig_create(&interval, threads, &options);
+    out.contacts = rig_step(&out.objects, &interval);
+    out.counters = cscd_detector_counters(out.objects.detector);
+    return out;
+}
+
+static void check_same(const cscd_contacts *found, const cscd_contacts *truth) {
+    assert_int_equal(found->count, truth->count);
+    if (truth->count > 0)
+        assert_memory_equal(found->items, truth->items, truth->count * sizeof *truth->items);
+}
+
+/* The list of the method is that of none. */
+static outcome expect_same(cscd_detector_options options, cscd_method method, uint32_t threads,
+                           const cscd_contacts *truth) {
+    outcome out = run(options, method, threads);
+    check_same(&out.contacts, truth);
+    return out;
+}
+
+typedef struct tally {
+    uint64_t contacts, contours, sealed, pairs, pairs_without, intervals_published_loses, lost;
+} tally;
+
+static void add_tally(tally *sum, const tally *t) {
+    sum->contacts += t->contacts;
+    sum->contours += t->contours;
+    sum->sealed += t->sealed;
+    sum->pairs += t->pairs;
+    sum->pairs_without += t->pairs_without;
+    sum->intervals_published_loses += t->intervals_published_loses;
+    sum->lost += t->lost;
+}
+
+static void print_tally(const char *name, const tally *t) {
+    print_message("  %-14s %7llu contacts; %7llu contours tested, %6llu patches sealed; pairs %5.1f %%; as "
+                  "published %6llu lost, in %3llu intervals\n",
+                  name, (unsigned long long)t->contacts, (unsigned long long)t->contours,
+                  (unsigned long long)t->sealed, 100.0 * (double)t->pairs / (double)t->pairs_without,
+                  (unsigned long long)t->lost, (unsigned long long)t->intervals_published_loses);
+}
+
+/* Published lists are parts of the truth. Returns how many contacts are missing. */
+static uint64_t count_lost(const cscd_contacts *found, const cscd_contacts *truth) {
+    size_t next = 0;
+    for (size_t i = 0; i < truth->count && next < found->count; i++)
+        next += memcmp(&found->items[next], &truth->items[i], sizeof *truth->items) == 0;
+    assert_int_equal(next, found->count);
+    return truth->count - found->count;
+}
+
+static void run_interval(uint32_t seed, tally *sum) {
+    cscd_detector_options options = cscd_detector_defaults();
+    outcome none = run(options, CSCD_METHOD_NONE, 1);
+    outcome iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+    outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+    if (seed % BRUTE_EVERY == 0) {
+        outcome brute = expect_same(options, CSCD_METHOD_BRUTE, 1, &iccd.contacts);
+        rig_destroy(&brute.objects);
+    }
+    assert_true(iccd.counters.pcp <= none.counters.pcp);
+    uint64_t lost = count_lost(&published.contacts, &none.contacts);
+    const tally own = {.contacts = none.contacts.count,
+                       .contours = iccd.counters.contours,
+                       .sealed = iccd.counters.sealed,
+                       .pairs = iccd.counters.pcp,
+                       .pairs_without = none.counters.pcp,
+                       .intervals_published_loses = lost > 0,
+                       .lost = lost};
+    add_tally(sum, &own);
+    rig_destroy(&none.objects);
+    rig_destroy(&iccd.objects);
+    rig_destroy(&published.objects);
+}
+
+static void contacts_equal_those_of_none(void **state) {
+    tally sum = {0};
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        tally own = {0};
+        for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
+            scene_make((scene_family)family, seed + 30000, &interval);
+            run_interval(seed, &own);
+        }
+        print_tally(scene_family_name((scene_family)family), &own);
+        add_tally(&sum, &own);
+    }
+    print_tally("all", &sum);
+    assert_true(sum.contacts > 0 && sum.sealed > 0 && sum.lost > 0);
+    assert_true(10 * sum.pairs < 9 * sum.pairs_without);
+}
+
+/* ---- in whatever way it is asked ------------------------------------------------------------------- */
+
+static bool ignore_some(void *user, uint32_t a, uint32_t b) {
+    (void)user;
+    return (a * 2654435761u ^ b * 40503u) % 3 == 0;
+}
+
+/* Threads, mode earliest, pairs to leave out, and a distance, with which nothing is culled. */
+static void options_change_nothing(void **state) {
+    size_t kept = 0, near = 0;
+    (void)state;
+    for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY * SCENE_FAMILY_COUNT; seed += OPTIONS_EVERY) {
+        cscd_detector_options options = cscd_detector_defaults();
+        scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 40000, &interval);
+        outcome none = run(options, CSCD_METHOD_NONE, 1);
+        outcome threaded = expect_same(options, CSCD_METHOD_ICCD, 4, &none.contacts);
+        options.mode = CSCD_MODE_EARLIEST;
+        outcome earliest = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+        assert_int_equal(threaded.counters.pcp, earliest.counters.pcp);
+        assert_int_equal(threaded.counters.boxes_tested, earliest.counters.boxes_tested);
+        options.ignore = ignore_some;
+        outcome some = run(options, CSCD_METHOD_NONE, 1);
+        outcome some_iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &some.contacts);
+        kept += some.contacts.count;
+        outcome *done[] = {&none, &threaded, &earliest, &some, &some_iccd};
+        for (int i = 0; i < 5; i++) rig_destroy(&done[i]->objects);
+        if (seed % (8 * OPTIONS_EVERY) != 0) continue;
+        options = cscd_detector_defaults();
+        options.min_separation = 0.01;
+        none = run(options, CSCD_METHOD_NONE, 1);
+        outcome apart = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+        assert_int_equal(apart.counters.pcp, none.counters.pcp);
+        assert_int_equal(apart.counters.contours, 0);
+        assert_int_equal(cscd_detector_guarantee(apart.objects.detector, 0).reason, CSCD_REASON_METHOD);
+        near += none.contacts.count;
+        rig_destroy(&none.objects);
+        rig_destroy(&apart.objects);
+    }
+    assert_true(kept > 0 && near > 0);
+}
+
+/* One detector over a motion, there and back: patches are of the mesh, the rest is of each interval. */
+static void steps_do_not_remember(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        cscd_detector_options options = cscd_detector_defaults();
+        scene_make((scene_family)family, 50000, &interval);
+        outcome none = run(options, CSCD_METHOD_NONE, 1), iccd = run(options, CSCD_METHOD_ICCD, 1);
+        const double *ends[4] = {interval.x1, interval.x0, interval.x0, interval.x1};
+        const double *x = interval.x0;
+        for (int i = 0; i < 4; i++) {
+            cscd_contacts expected, found;
+            assert_int_equal(cscd_detector_step(none.objects.detector, x, ends[i], &expected), CSCD_OK);
+            assert_int_equal(cscd_detector_step(iccd.objects.detector, x, ends[i], &found), CSCD_OK);
+            check_same(&found, &expected);
+            x = ends[i];
+        }
+        rig_destroy(&none.objects);
+        rig_destroy(&iccd.objects);
+    }
+}
+
+/* A power of two changes nothing where squares stay in range; beyond, nothing is sealed and nothing lost. */
+static void scales_change_nothing(void **state) {
+    static const double scales[] = {0x1p-230, 0x1p-100, 0x1p100, 0x1p240, 0x1p-280, 0x1p285};
+    (void)state;
+    for (uint32_t seed = 0; seed < SCENE_FAMILY_COUNT; seed++) {
+        cscd_detector_options options = cscd_detector_defaults();
+        scene_make((scene_family)seed, seed + 60000, &interval);
+        for (uint32_t i = 0; i < interval.vertex_count * 3; i++) { /* 0, or far from the least magnitude */
+            interval.x0[i] = (double)(float)interval.x0[i] + 0.0;
+            interval.x1[i] = (double)(float)interval.x1[i] + 0.0;
+            if (interval.x0[i] < 1e-3 && interval.x0[i] > -1e-3) interval.x0[i] = 0.0;
+            if (interval.x1[i] < 1e-3 && interval.x1[i] > -1e-3) interval.x1[i] = 0.0;
+        }
+        scene original = interval;
+        outcome plain = run(options, CSCD_METHOD_ICCD, 1);
+        for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
+            for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
+                interval.x0[i] = original.x0[i] * scales[k];
+                interval.x1[i] = original.x1[i] * scales[k];
+            }
+            outcome none = run(options, CSCD_METHOD_NONE, 1);
+            outcome scaled = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+            assert_int_equal(scaled.counters.sealed, k < 4 ? plain.counters.sealed : 0);
+            rig_destroy(&none.objects);
+            rig_destroy(&scaled.objects);
+        }
+        rig_destroy(&plain.objects);
+    }
+}
+
+/* ---- what it promises ------------------------------------------------------------------------------ */
+
+static void guarantees_say_how(void **state) {
+    (void)state;
+    for (uint32_t family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 70000, &interval);
+        for (int mode = 0; mode < 2; mode++) {
+            cscd_detector_options options = cscd_detector_defaults();
+            options.mode = (cscd_mode)mode;
+            outcome iccd = run(options, CSCD_METHOD_ICCD, 1);
+            outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+            for (uint32_t c = 0; c < cscd_mesh_component_count(iccd.objects.mesh); c++) {
+                cscd_guarantee g = cscd_detector_guarantee(iccd.objects.detector, c);
+                assert_true(g.complete);
+                assert_int_equal(g.reason, CSCD_REASON_CONTOUR);
+                g = cscd_detector_guarantee(published.objects.detector, c);
+                assert_false(g.complete);
+                assert_int_equal(g.reason, CSCD_REASON_PUBLISHED);
+            }
+            rig_destroy(&iccd.objects);
+            rig_destroy(&published.objects);
+        }
+    }
+    assert_string_equal(cscd_method_name(CSCD_METHOD_ICCD), "iccd");
+    cscd_method method = CSCD_METHOD_AUTO;
+    assert_true(cscd_method_from_name("iccd-published", &method) && method == CSCD_METHOD_ICCD_PUBLISHED);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contacts_equal_those_of_none), cmocka_unit_test(options_change_nothing),
+        cmocka_unit_test(steps_do_not_remember),        cmocka_unit_test(scales_change_nothing),
+        cmocka_unit_test(guarantees_say_how),
+    };
+    return cmocka_run_group_tests_name("iccd", tests, NULL, NULL);
+}
