@@ -1,0 +1,212 @@
+/* The methods side by side on recordings: the thesis's tables, with what each method loses. */
+#include "benchmarks/methods_report.h"
+#include "benchmarks/thesis_numbers.h"
+#include "src/cli/provenance.h"
+#include "src/timer.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { SCENES_MAX = 64, KMEANS_RUNS = 5, REPEATS = 3 };
+
+static const char help[] =
+    "usage: methods [--quick] [--json OUT.json] [--threads N] [--cache FOLDER] [--data FOLDER] [SCENE...]\n"
+    "\n"
+    "Replays recordings with every method and prints the thesis's columns, what each method loses of the\n"
+    "contacts that method none finds, and ratios. A contact list that breaks its method's guarantee is an\n"
+    "error. '+' behind a method: mode earliest. What is missing is made first, and not counted.\n"
+    "\n"
+    "  --quick          pawn-drop, dumbbell-stairs and figure-balls, one thread, fewer repeats\n"
+    "  --json OUT.json  all rows, and where they come from\n"
+    "  --threads N      default 1\n"
+    "  --cache FOLDER   recordings and plans (default build/models)\n"
+    "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default ../shared/data/sequences, if it is "
+    "there)\n";
+
+typedef struct options {
+    bool quick;
+    const char *json_path, *cache, *data;
+    uint32_t thread_count;
+    const char *scenes[SCENES_MAX];
+    uint32_t scene_count;
+} options;
+
+static bool fail(const char *text) {
+    fprintf(stderr, "methods: %s\n", text);
+    return false;
+}
+
+/* ---- what takes part --------------------------------------------------------------------------------- */
+
+static bool enter(report *r, const entrant *e, uint32_t repeats, io_error *error) {
+    if (!contest_run(r->truth, e, repeats, &r->results[r->count], error)) return false;
+    r->count++;
+    return true;
+}
+
+static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t repeats, io_error *error) {
+    entrant e = {.method = method, .mode = mode};
+    snprintf(e.name, sizeof e.name, "%s%s", cscd_method_name(method), mode == CSCD_MODE_EARLIEST ? "+" : "");
+    return enter(r, &e, repeats, error);
+}
+
+/* Five seeded runs, as in the thesis. */
+static bool enter_kmeans(report *r, uint32_t k, cscd_mode mode, io_error *error) {
+    entrant e = {.method = CSCD_METHOD_KMEANS, .mode = mode, .k = k, .seed = 1};
+    snprintf(e.name, sizeof e.name, "kmeans:%u%s", k, mode == CSCD_MODE_EARLIEST ? "+" : "");
+    return enter(r, &e, KMEANS_RUNS, error);
+}
+
+static bool enter_all(report *r, bool every_k, uint32_t repeats, io_error *error) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE,
+                                          CSCD_METHOD_CHARGE};
+    uint32_t n = r->regions, from = every_k ? (n > 3 ? n - 2 : 1) : n, to = every_k ? n + 2 : n;
+    bool good = true;
+    for (int i = 0; good && i < 4; i++) good = enter_method(r, methods[i], CSCD_MODE_ALL, repeats, error);
+    for (uint32_t k = from; good && k <= to; k++) good = enter_kmeans(r, k, CSCD_MODE_ALL, error);
+    for (int i = 2; good && i < 4; i++)
+        good = enter_method(r, methods[i], CSCD_MODE_EARLIEST, repeats, error);
+    for (uint32_t k = from; good && k <= to; k++) good = enter_kmeans(r, k, CSCD_MODE_EARLIEST, error);
+    return good && enter_method(r, CSCD_METHOD_PUBLISHED, CSCD_MODE_ALL, repeats, error) &&
+           enter_method(r, CSCD_METHOD_ICCD_PUBLISHED, CSCD_MODE_ALL, repeats, error);
+}
+
+/* ---- scenes ------------------------------------------------------------------------------------------ */
+
+static const char *const own_scenes[] = {"pawn-drop",       "pawn-drop-free",
+                                         "dumbbell-stairs", "dumbbell-stairs-free",
+                                         "figure-balls",    "figure-balls-free"};
+
+static bool is_own(const char *scene) {
+    for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i++) {
+        if (strcmp(scene, own_scenes[i]) == 0) return true;
+    }
+    return false;
+}
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The recordings in the data folder, by name. */
+static void list_data(options *o) {
+    uint32_t first = o->scene_count;
+    DIR *folder = opendir(o->data);
+    for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
+        char *ending = strrchr(entry->d_name, '.');
+        if (ending == NULL || strcmp(ending, ".pc2") != 0 || o->scene_count == SCENES_MAX) continue;
+        char *name = strndup(entry->d_name, (size_t)(ending - entry->d_name));
+        if (name != NULL) o->scenes[o->scene_count++] = name;
+    }
+    if (folder != NULL) closedir(folder);
+    if (o->scene_count > first)
+        qsort(o->scenes + first, o->scene_count - first, sizeof *o->scenes, compare_names);
+    else
+        printf("%s: no recordings there, so only our own\n", o->data);
+}
+
+static void choose_scenes(options *o) {
+    if (o->scene_count > 0) return;
+    for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i += o->quick ? 2 : 1)
+        o->scenes[o->scene_count++] = own_scenes[i];
+    if (!o->quick) list_data(o);
+}
+
+static bool run_scene(const options *o, const char *scene, json *out, io_error *error) {
+    recording_data data;
+    truth known;
+    report r = {.count = 0};
+    bool own = is_own(scene);
+    if (!recording_data_open(own ? o->cache : o->data, scene, o->cache, o->thread_count, &data, error))
+        return false;
+    if (data.made_ms > 1000.0)
+        printf("\n%s: recording and plan made in %.1f s\n", scene, data.made_ms * 1e-3);
+    bool good = truth_find(&data, &known, error);
+    if (good) {
+        r.truth = &known;
+        r.regions = data.charge != NULL ? cscd_plan_region_count(data.charge) : 1;
+        good = enter_all(&r, own && !o->quick, own && !o->quick ? REPEATS : 1, error);
+        if (good) report_print(&r);
+        if (good) thesis_numbers_print(scene);
+        if (good && out != NULL) report_write(&r, out, o->thread_count);
+        truth_free(&known);
+    }
+    fflush(stdout);
+    recording_data_close(&data);
+    return good;
+}
+
+/* ---- the program ------------------------------------------------------------------------------------- */
+
+static bool run(const options *o, int argument_count, char **arguments) {
+    json out;
+    io_error error;
+    FILE *file = o->json_path != NULL ? fopen(o->json_path, "w") : NULL;
+    if (o->json_path != NULL && file == NULL) {
+        io_fail(&error, "%s: %s", o->json_path, strerror(errno));
+        return fail(error.text);
+    }
+    if (file != NULL) {
+        out = (json){.file = file};
+        json_begin_object(&out, NULL);
+        json_begin_array(&out, "rows");
+    }
+    bool good = true;
+    double since = timer_now_ms(), spent = 0.0;
+    for (uint32_t i = 0; good && i < o->scene_count; i++)
+        good = run_scene(o, o->scenes[i], file != NULL ? &out : NULL, &error) || fail(error.text);
+    timer_lap(&since, &spent);
+    if (good) printf("\n%u recordings in %.0f s\n", o->scene_count, spent * 1e-3);
+    if (file == NULL) return good;
+    json_end_array(&out);
+    json_begin_object(&out, "provenance");
+    provenance_write(&out, argument_count, arguments, o->thread_count);
+    json_end_object(&out);
+    json_end_object(&out);
+    fputc('\n', file);
+    bool written = !ferror(file);
+    written = fclose(file) == 0 && written;
+    return (written || fail("the JSON could not be written")) && good;
+}
+
+static bool parse(int count, char **arguments, options *o) {
+    for (int i = 1; i < count; i++) {
+        const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
+        const char **text = strcmp(name, "--json") == 0    ? &o->json_path
+                            : strcmp(name, "--cache") == 0 ? &o->cache
+                            : strcmp(name, "--data") == 0  ? &o->data
+                                                           : NULL;
+        if (strcmp(name, "--quick") == 0) {
+            o->quick = true;
+        } else if (text != NULL && value != NULL) {
+            *text = arguments[++i];
+        } else if (strcmp(name, "--threads") == 0 && value != NULL) {
+            o->thread_count = (uint32_t)strtoul(arguments[++i], NULL, 10);
+        } else if (name[0] != '-' && o->scene_count < SCENES_MAX) {
+            o->scenes[o->scene_count++] = name;
+        } else {
+            return false;
+        }
+    }
+    if (o->quick) o->thread_count = 1;
+    return true;
+}
+
+int main(int argument_count, char **arguments) {
+    options o = {.cache = "build/models", .data = "../shared/data/sequences", .thread_count = 1};
+    if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
+        fputs(help, stdout);
+        return 0;
+    }
+    if (!parse(argument_count, arguments, &o)) {
+        fputs(help, stderr);
+        return 2;
+    }
+    mkdir("build", 0777);
+    mkdir(o.cache, 0777);
+    choose_scenes(&o);
+    return run(&o, argument_count, arguments) ? 0 : 1;
+}

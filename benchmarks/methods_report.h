@@ -1,0 +1,22 @@
+/* The table and the JSON of benchmarks/methods. */
+#ifndef CSCD_BENCHMARK_METHODS_REPORT_H
+#define CSCD_BENCHMARK_METHODS_REPORT_H
+
+#include "benchmarks/contest.h"
+#include "src/io/json.h"
+
+enum { RESULTS_MAX = 32 };
+
+/* Of one recording; methods none and iccd first. */
+typedef struct report {
+    const truth *truth;
+    result results[RESULTS_MAX];
+    uint32_t count, regions;
+} report;
+
+void report_print(const report *r);
+
+/* One object per method, means per interval over all intervals. */
+void report_write(const report *r, json *out, uint32_t thread_count);
+
+#endif

@@ -1,0 +1,28 @@
+/* Recordings that benchmarks replay: all frames in memory, and a plan by charge from its cache. */
+#ifndef CSCD_BENCHMARK_SCENE_FILES_H
+#define CSCD_BENCHMARK_SCENE_FILES_H
+
+#include "cscd/cscd.h"
+#include "src/io/io_error.h"
+#include "src/io/mesh_file.h"
+
+typedef struct recording_data {
+    char name[64];
+    cscd_context *context;
+    cscd_mesh *mesh;
+    mesh_file model;
+    uint32_t frame_count;
+    double *frames;    /* frame_count * vertex_count * 3 */
+    cscd_plan *charge; /* by charge; NULL where nothing is closed */
+    double made_ms;    /* what was missing and has been made: recording, plan */
+} recording_data;
+
+/* folder/name.obj and .pc2, recorded first if they are missing and name is a scene of models/softbody; the
+ * plan from folder/name.plan.ply or cache/name.plan.ply, made and written to the cache if it is missing. */
+bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
+                         recording_data *out, io_error *error);
+void recording_data_close(recording_data *r);
+
+const double *recording_data_frame(const recording_data *r, uint32_t frame);
+
+#endif
