@@ -115,7 +115,7 @@ static bool compare(const truth *t, uint32_t interval, const cscd_detector *dete
             continue;
         }
         uint32_t component = own_component(t, &expected[i]);
-        s->lost++;
+        s->lost += 1.0;
         kept = kept && component != UINT32_MAX && !cscd_detector_guarantee(detector, component).complete;
     }
     kept = kept && next == found->count;
@@ -123,7 +123,7 @@ static bool compare(const truth *t, uint32_t interval, const cscd_detector *dete
     for (uint32_t c = 0; c < components; c++) {
         double wanted = first_time(t, expected, count, c);
         if (isinf(wanted) || first_time(t, found->items, found->count, c) <= wanted + toi_early) continue;
-        s->earliest_lost++;
+        s->earliest_lost += 1.0;
         kept = false;
     }
     return kept || published;
@@ -200,6 +200,10 @@ bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out
         double ms = (made.classes[0].total + made.classes[1].total - before) / intervals;
         made.least_ms = fmin(made.least_ms, ms);
         made.most_ms = fmax(made.most_ms, ms);
+    }
+    for (int i = 0; i < CLASS_COUNT; i++) {
+        made.classes[i].lost /= repeats;
+        made.classes[i].earliest_lost /= repeats;
     }
     *out = made;
     return true;

@@ -29,8 +29,8 @@ typedef struct score {
     uint32_t intervals;
     double update, orientation, contour, traversal, contact, proof, total;
     double pcp, tests, contacts;
-    uint64_t lost;          /* contacts of method none that are not reported */
-    uint64_t earliest_lost; /* intervals and components whose first contact is not reported in time */
+    double lost;          /* per run: contacts of method none that are not reported, */
+    double earliest_lost; /* and intervals and components whose first contact is not reported in time */
 } score;
 
 enum { CLASS_PROVEN, CLASS_OTHER, CLASS_COUNT };

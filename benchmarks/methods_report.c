@@ -25,9 +25,8 @@ static void print_row(const result *r, const score *s, const score *none, const 
     print_stage(s->traversal);
     print_stage(s->contact);
     print_stage(s->proof);
-    printf(" %8.0f %8.0f %8.1f %6llu %6llu %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
-           (unsigned long long)s->earliest_lost, (unsigned long long)s->lost, s->total, r->least_ms,
-           r->most_ms);
+    printf(" %8.0f %8.0f %8.1f %6.1f %6.1f %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
+           s->earliest_lost, s->lost, s->total, r->least_ms, r->most_ms);
     print_ratio(none, s);
     print_ratio(iccd, s);
     putchar('\n');
@@ -85,8 +84,8 @@ void report_write(const report *r, json *out, uint32_t thread_count) {
         json_number(out, "pcp", s.pcp);
         json_number(out, "tests", s.tests);
         json_number(out, "contacts", s.contacts);
-        json_integer(out, "earliest_lost", s.earliest_lost);
-        json_integer(out, "lost", s.lost);
+        json_number(out, "earliest_lost", s.earliest_lost);
+        json_number(out, "lost", s.lost);
         json_end_object(out);
     }
 }

@@ -89,7 +89,7 @@ static void refuses_unfit_values(void **state) {
         {"--frames", "a:b"},       {"--frames", "3:1"},
         {"--frames", ":"},         {"--frames", ""},
         {"--frames", "1:2:0"},     {"--frames", "-1:2"},
-        {"--method", "iccd"},      {"--mode", "some"},
+        {"--method", "icc"},       {"--mode", "some"},
         {"--threads", "-1"},       {"--threads", "257"},
         {"--threads", "two"},      {"--weld", "-1"},
         {"--weld", "0"},           {"--weld", "nan"},
