@@ -112,14 +112,16 @@ fuzz-elementary: packages
 
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
-	    $(BUILD)/benchmarks/experiments
+	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
 bench: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/experiments
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/experiments \
+	    $(BUILD)/benchmarks/published_rules
 	@$(BUILD)/benchmarks/methods $(BENCH)
 	@$(BUILD)/benchmarks/experiments
+	@$(BUILD)/benchmarks/published_rules
 
 # The charts of docs/benchmarks.md, from the last make bench.
 bench-plot:
@@ -181,6 +183,12 @@ $(BUILD)/benchmarks/culling: $(BUILD)/benchmarks/culling.o $(TOOL_OBJECTS) $(LIB
 
 EXPERIMENTS_SOURCES := benchmarks/experiments.c benchmarks/scene_files.c src/timer.c
 $(BUILD)/benchmarks/experiments: $(call objects,$(EXPERIMENTS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+# Switches rules off that only the inside knows.
+RULES_SOURCES := benchmarks/published_rules.c benchmarks/contest.c benchmarks/scene_files.c
+$(BUILD)/benchmarks/published_rules: $(call objects,$(RULES_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(CORE_OBJECTS)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 

@@ -21,7 +21,7 @@ typedef struct entrant {
     char name[32]; /* of the row */
     cscd_method method;
     cscd_mode mode;
-    uint32_t k, seed; /* k-means */
+    uint32_t k, seed; /* k-means; repeat i has seed + i */
 } entrant;
 
 /* Sums over intervals; ms. */
@@ -44,10 +44,11 @@ typedef struct result {
 } result;
 
 /* Replays `repeats` times. False: *error says that a call failed, or which interval's contacts break the
- * guarantee that the method gave for it. Published methods give none. */
+ * guarantee that the method gave for it. Published methods may lose anything; none may add or alter a
+ * contact. */
 bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out, io_error *error);
 
-/* Both classes together; means per interval. */
+/* Of one class, or, where only is CLASS_COUNT, of both; means per interval, losses as they are. */
 score score_mean(const score classes[CLASS_COUNT], int only);
 
 #endif

@@ -47,7 +47,9 @@ static bool enter(report *r, const entrant *e, uint32_t repeats, io_error *error
     return true;
 }
 
+/* Where nothing is closed there are no regions, and methods that want them do not take part. */
 static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t repeats, io_error *error) {
+    if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = mode};
     snprintf(e.name, sizeof e.name, "%s%s", cscd_method_name(method), mode == CSCD_MODE_EARLIEST ? "+" : "");
     return enter(r, &e, repeats, error);
@@ -55,6 +57,7 @@ static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t
 
 /* Five seeded runs, as in the thesis. */
 static bool enter_kmeans(report *r, uint32_t k, cscd_mode mode, io_error *error) {
+    if (r->truth->recording->charge == NULL) return true;
     entrant e = {.method = CSCD_METHOD_KMEANS, .mode = mode, .k = k, .seed = 1};
     snprintf(e.name, sizeof e.name, "kmeans:%u%s", k, mode == CSCD_MODE_EARLIEST ? "+" : "");
     return enter(r, &e, KMEANS_RUNS, error);
@@ -97,7 +100,11 @@ static void list_data(options *o) {
     DIR *folder = opendir(o->data);
     for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
         char *ending = strrchr(entry->d_name, '.');
-        if (ending == NULL || strcmp(ending, ".pc2") != 0 || o->scene_count == SCENES_MAX) continue;
+        if (ending == NULL || strcmp(ending, ".pc2") != 0) continue;
+        if (o->scene_count == SCENES_MAX) {
+            printf("%s: %s and what follows are left out: too many recordings\n", o->data, entry->d_name);
+            break;
+        }
         char *name = strndup(entry->d_name, (size_t)(ending - entry->d_name));
         if (name != NULL) o->scenes[o->scene_count++] = name;
     }
@@ -172,6 +179,18 @@ static bool run(const options *o, int argument_count, char **arguments) {
     return (written || fail("the JSON could not be written")) && good;
 }
 
+static bool refuse(const char *argument, const char *why) {
+    fprintf(stderr, "methods: %s %s\n", argument, why);
+    return false;
+}
+
+/* A whole number from 1 to 999. */
+static bool parse_threads(const char *text, uint32_t *out) {
+    size_t digits = strspn(text, "0123456789");
+    *out = digits < 4 && text[digits] == '\0' ? (uint32_t)strtoul(text, NULL, 10) : 0;
+    return *out > 0;
+}
+
 static bool parse(int count, char **arguments, options *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
@@ -179,16 +198,22 @@ static bool parse(int count, char **arguments, options *o) {
                             : strcmp(name, "--cache") == 0 ? &o->cache
                             : strcmp(name, "--data") == 0  ? &o->data
                                                            : NULL;
+        bool threads = strcmp(name, "--threads") == 0;
+        if ((text != NULL || threads) && (value == NULL || value[0] == '-'))
+            return refuse(name, "wants a value");
         if (strcmp(name, "--quick") == 0) {
             o->quick = true;
-        } else if (text != NULL && value != NULL) {
+        } else if (text != NULL) {
             *text = arguments[++i];
-        } else if (strcmp(name, "--threads") == 0 && value != NULL) {
-            o->thread_count = (uint32_t)strtoul(arguments[++i], NULL, 10);
-        } else if (name[0] != '-' && o->scene_count < SCENES_MAX) {
-            o->scenes[o->scene_count++] = name;
+        } else if (threads) {
+            if (!parse_threads(arguments[++i], &o->thread_count))
+                return refuse(value, "is no number of threads");
+        } else if (name[0] == '-') {
+            return refuse(name, "is no option");
+        } else if (o->scene_count == SCENES_MAX) {
+            return refuse(name, "is one scene too many");
         } else {
-            return false;
+            o->scenes[o->scene_count++] = name;
         }
     }
     if (o->quick) o->thread_count = 1;

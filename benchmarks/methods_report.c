@@ -55,7 +55,8 @@ void report_print(const report *r) {
     if (proven == 0 || proven == intervals) return;
     snprintf(title, sizeof title, "%u intervals that start proven to be embedded", proven);
     print_class(r, CLASS_PROVEN, title);
-    snprintf(title, sizeof title, "%u intervals that do not: `earliest` promises no less than `all` there",
+    snprintf(title, sizeof title,
+             "%u intervals that do not: a component without a proven start gets every contact, with + too",
              intervals - proven);
     print_class(r, CLASS_OTHER, title);
 }

@@ -16,7 +16,7 @@ typedef struct report {
 
 void report_print(const report *r);
 
-/* One object per method, means per interval over all intervals. */
+/* One object per method over all intervals: means per interval, but losses per run. */
 void report_write(const report *r, json *out, uint32_t thread_count);
 
 #endif

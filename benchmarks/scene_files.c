@@ -50,8 +50,12 @@ static bool read_frames(recording_data *r, const char *path, io_error *error) {
     size_t size = (size_t)r->model.vertex_count * 3;
     if (!animation_open(&path, 1, r->model.vertex_count, &frames, error)) return false;
     r->frame_count = animation_frame_count(frames);
-    r->frames = malloc(r->frame_count * size * sizeof *r->frames);
-    bool read = r->frames != NULL || io_fail(error, "%s: out of memory for %u frames", path, r->frame_count);
+    bool read = r->frame_count > 1 ||
+                io_fail(error, "%s: %u frames, at least two were expected", path, r->frame_count);
+    if (read) {
+        r->frames = malloc(r->frame_count * size * sizeof *r->frames);
+        read = r->frames != NULL || io_fail(error, "%s: out of memory for %u frames", path, r->frame_count);
+    }
     for (uint32_t i = 0; read && i < r->frame_count; i++)
         read = animation_read(frames, i, r->frames + i * size, error);
     animation_close(frames);

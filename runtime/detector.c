@@ -106,6 +106,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->context = context;
     d->mesh = mesh;
     d->options = chosen;
+    d->published_rules = PUBLISHED_ALL;
     d->limit.distance = chosen.min_separation;
     d->limit.tolerance = chosen.tolerance > 0.0 ? chosen.tolerance : 1e-6 * chosen.min_separation;
     status = allocate_parts(d, plan);

@@ -15,11 +15,21 @@ typedef struct result_buffer {
     size_t capacity;
 } result_buffer;
 
+/* What method PUBLISHED does otherwise; benchmarks switch single rules off. */
+enum {
+    PUBLISHED_UNPROVEN = 1,        /* culls also where the start is not known to be embedded */
+    PUBLISHED_STILL = 2,           /* the detector point stays where it is at the start */
+    PUBLISHED_REPRESENTATIVES = 4, /* a feature's first triangle answers for it, whatever the flags */
+    PUBLISHED_ADJACENT = 8,        /* triangles that share a vertex are not tested */
+    PUBLISHED_ALL = 15
+};
+
 struct cscd_detector {
     cscd_context *context;
     const cscd_mesh *mesh;
     cscd_detector_options options;
     separation limit; /* of the options, the default tolerance filled in */
+    uint8_t published_rules;
 
     culling culling;
     start_states starts;

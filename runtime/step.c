@@ -94,6 +94,10 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
 
 /* ---- culling --------------------------------------------------------------------------------------- */
 
+static bool follows(const cscd_detector *d, int rule) {
+    return d->options.method == CSCD_METHOD_PUBLISHED && (d->published_rules & rule) != 0;
+}
+
 /* Which components are culled: those whose start is embedded, for certain. */
 static cscd_status prove_starts(step_work *work) {
     cscd_detector *d = work->detector;
@@ -101,15 +105,15 @@ static cscd_status prove_starts(step_work *work) {
     start_states_begin(&d->starts, work->interval.x0);
     if (!detector_culls(d)) return CSCD_OK;
     if (d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
-    bool published = d->options.method == CSCD_METHOD_PUBLISHED; /* proves nothing */
-    if (d->options.start == CSCD_START_PROVE && !published && start_states_want_check(&d->starts)) {
+    bool unproven = follows(d, PUBLISHED_UNPROVEN);
+    if (d->options.start == CSCD_START_PROVE && !unproven && start_states_want_check(&d->starts)) {
         cscd_status status = static_check_components(d, work->interval.x0);
         if (status != CSCD_OK) return status;
         work->counters.static_checks++;
     }
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         bool embedded = d->mesh->components[c].closed_manifold && d->starts.of[c].state == START_EMBEDDED;
-        d->culled[c] = embedded || published;
+        d->culled[c] = embedded || unproven;
         work->any_culled |= d->culled[c];
     }
     timer_lap(&since, &work->timings.proof_ms);
@@ -118,15 +122,14 @@ static cscd_status prove_starts(step_work *work) {
 
 static void orient(step_work *work) {
     cscd_detector *d = work->detector;
-    bool published = d->options.method == CSCD_METHOD_PUBLISHED;
+    bool still = follows(d, PUBLISHED_STILL);
     double since = timer_now_ms();
-    culling_orient(&d->culling, work->interval.x0, work->interval.x1, d->culled, published);
+    culling_orient(&d->culling, work->interval.x0, work->interval.x1, d->culled, still);
     bvh_mark(&d->tree, d->mesh, regions_of(d), d->culling.orientations, NULL);
     timer_lap(&since, &work->timings.orientation_ms);
     work->counters.plus = d->culling.plus;
     work->counters.minus = d->culling.minus;
-    work->interval.culling = published ? NULL : &d->culling;
-    work->interval.skip_adjacent = published;
+    work->interval.culling = follows(d, PUBLISHED_REPRESENTATIVES) ? NULL : &d->culling;
 }
 
 /* The component that both features belong to; UINT32_MAX: two. */
@@ -195,10 +198,11 @@ static cscd_status find_by_trees(step_work *work) {
     timer_lap(&since, &work->timings.update_ms);
     if (status != CSCD_OK) return status;
     if (detector_seals(d)) return find_unsealed(work);
+    work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
     if (!work->any_culled) return traverse(work, TRAVERSAL_ALL);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || !finishes(d) || work->interval.culling == NULL) return status;
+    if (status != CSCD_OK || !finishes(d) || d->options.method == CSCD_METHOD_PUBLISHED) return status;
     find_touched(d);
     return finish_touched(work);
 }

@@ -102,14 +102,53 @@ static void what_is_wrong_is_said(void **state) {
     assert_int_equal(run.code, 1);
     assert_non_null(strstr(run.error, "no-such-scene.obj"));
     tool_run_free(&run);
-    run = RUN_TOOL("--no-such-option");
-    assert_int_equal(run.code, 2);
-    assert_non_null(strstr(run.error, "usage: methods"));
+    temp_path unwritable = temp_file_path(&folder, "no-such-folder/rows.json");
+    run = RUN_TOOL("tiny", "--data", folder.path, "--cache", folder.path, "--json", unwritable.text);
+    assert_int_equal(run.code, 1);
+    assert_non_null(strstr(run.error, unwritable.text));
+    assert_null(strstr(run.out, "tiny")); /* before anything is computed */
     tool_run_free(&run);
 }
 
+static void wrong_arguments_are_named(void **state) {
+    (void)state;
+    static const char *const wrong[][3] = {{"--no-such-option", NULL, "--no-such-option is no option"},
+                                           {"--json", NULL, "--json wants a value"},
+                                           {"--json", "--quick", "--json wants a value"},
+                                           {"--threads", NULL, "--threads wants a value"},
+                                           {"--threads", "abc", "abc is no number of threads"},
+                                           {"--threads", "2x", "2x is no number of threads"},
+                                           {"--threads", "0", "0 is no number of threads"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        tool_run run = RUN_TOOL(wrong[i][0], wrong[i][1]);
+        assert_int_equal(run.code, 2);
+        assert_non_null(strstr(run.error, wrong[i][2]));
+        assert_non_null(strstr(run.error, "usage: methods"));
+        tool_run_free(&run);
+    }
+}
+
+/* With one seed for all runs the mean of their pairs would be that of the first run. */
+static void kmeans_runs_have_seeds_of_their_own(void **state) {
+    (void)state;
+    temp_path path = temp_file_path(&folder, "seeds.json");
+    EXPECT_TOOL(0, "tiny", "--data", folder.path, "--cache", folder.path, "--json", path.text);
+    json_node *json = json_node_read_file(path.text);
+    const json_node *rows = json_node_member(json, "rows");
+    bool differ = false;
+    for (size_t i = 0; i < rows->count; i++) {
+        const json_node *row = json_node_item(rows, i);
+        double sum = json_node_number(row, "pcp") * (FRAMES - 1);
+        if (strncmp(json_node_string(row, "method"), "kmeans", 6) == 0)
+            differ |= fabs(sum - round(sum)) > 1e-6;
+    }
+    assert_true(differ);
+    json_node_free(json);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows_have_all_columns),
-                                       cmocka_unit_test(what_is_wrong_is_said)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_have_all_columns), cmocka_unit_test(kmeans_runs_have_seeds_of_their_own),
+        cmocka_unit_test(what_is_wrong_is_said), cmocka_unit_test(wrong_arguments_are_named)};
     return cmocka_run_group_tests_name("methods", tests, make_folder, remove_folder);
 }
