@@ -62,7 +62,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery bench bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary
+.PHONY: all tool library packages demo models gallery bench bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
