@@ -28,7 +28,7 @@ WARNINGS += -Werror
 endif
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
-              -pthread -MMD -MP -Iinclude -I. $(CFLAGS)
+              -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
 TOOL_LIBS  := -lpng $(CORE_LIBS)
@@ -36,6 +36,7 @@ TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 
 CORE_SOURCES    := $(filter-out runtime/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c, \
                      $(wildcard src/*.c preprocess/*.c runtime/*.c))
+KERNEL_SOURCES  := $(wildcard runtime/kernels/*.c)
 TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
 CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
@@ -44,7 +45,7 @@ FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
-SOURCES := $(CORE_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES)
 
 # One short line per file; V=1 shows the commands.
@@ -52,8 +53,20 @@ V ?= 0
 Q := $(if $(filter 1,$(V)),,@)
 say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 
+# The inner loops are compiled once per instruction set; the processor decides at run time which are used.
+ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
+LEVELS := scalar avx2 avx512
+CORE_DEFINITIONS := -DCSCD_WITH_AVX
+else
+LEVELS := scalar
+endif
+LEVEL_scalar := -DSIMD_LEVEL=0
+LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
+LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
+
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
-CORE_OBJECTS := $(call objects,$(CORE_SOURCES))
+KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(BUILD)/%.$(level).o,$(KERNEL_SOURCES)))
+CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
 TOOL_OBJECTS := $(call objects,$(TOOL_SOURCES))
 LIBRARY := $(BUILD)/libcscd.a
 TOOL    := $(BUILD)/cscd
@@ -214,6 +227,14 @@ $(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(MODEL_PART_OBJECTS)
 	@rm -f $@
 	$(Q)ar qcs $@ $^
 
+define compile_level
+$$(BUILD)/%.$(1).o: %.c
+	@mkdir -p $$(@D)
+	$$(say) '  CC $$< ($(1))'
+	$$(Q)$$(CC) $$(CFLAGS_ALL) $$(LEVEL_$(1)) -c -o $$@ $$<
+endef
+$(foreach level,$(LEVELS),$(eval $(call compile_level,$(level))))
+
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) '  CC $<'
@@ -230,4 +251,4 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES))
+-include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d)

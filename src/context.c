@@ -1,6 +1,8 @@
 /* What every object shares: the allocator, the threads, the sentence behind the last failure. */
 #include "src/context.h"
 
+#include "src/processor.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +35,8 @@ cscd_context_options cscd_context_defaults(void) {
 
 static bool options_valid(const cscd_context_options *options) {
     bool both = (options->allocator.allocate == NULL) == (options->allocator.release == NULL);
-    return options->struct_size == sizeof *options && both && options->thread_count <= THREAD_COUNT_MAX;
+    return options->struct_size == sizeof *options && both && options->thread_count <= THREAD_COUNT_MAX &&
+           (unsigned)options->simd <= processor_best_simd();
 }
 
 cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out) {
@@ -47,6 +50,7 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     memset(context, 0, sizeof *context);
     context->allocator = chosen.allocator;
     context->bytes = sizeof *context;
+    context->simd = chosen.simd != CSCD_SIMD_AUTO ? chosen.simd : processor_best_simd();
     if (pthread_mutex_init(&context->allocator_lock, NULL) != 0) {
         chosen.allocator.release(chosen.allocator.user, context, sizeof *context);
         return CSCD_SYSTEM_ERROR;
@@ -74,6 +78,10 @@ const char *cscd_context_detail(const cscd_context *context) {
 
 uint32_t cscd_context_thread_count(const cscd_context *context) {
     return parallel_thread_count(context->threads);
+}
+
+cscd_simd cscd_context_simd(const cscd_context *context) {
+    return context->simd;
 }
 
 size_t cscd_context_bytes(const cscd_context *context) {

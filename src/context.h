@@ -12,6 +12,7 @@ struct cscd_context {
     pthread_mutex_t allocator_lock;
     size_t bytes;
     parallel *threads;
+    cscd_simd simd; /* never AUTO */
     char detail[512];
 };
 

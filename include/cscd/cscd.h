@@ -74,9 +74,23 @@ typedef struct cscd_allocator {
     void *user;
 } cscd_allocator;
 
+/* Vector instructions. Results are the same on every level, bit for bit. */
+typedef enum cscd_simd {
+    CSCD_SIMD_AUTO,   /* the best that the processor has */
+    CSCD_SIMD_SCALAR, /* what the compiler takes for granted */
+    CSCD_SIMD_AVX2,
+    CSCD_SIMD_AVX512 /* F, VL, DQ and BW */
+} cscd_simd;
+
+/* "auto", "scalar", "avx2", "avx512"; static storage, never NULL. from_name leaves *out untouched when it
+ * returns false. */
+CSCD_API const char *cscd_simd_name(cscd_simd simd);
+CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);
+
 typedef struct cscd_context_options {
     uint32_t struct_size;     /* set by cscd_context_defaults */
     uint32_t thread_count;    /* 0 = one per processor; default 1; at most 256 */
+    cscd_simd simd;           /* default AUTO; INVALID_ARGUMENT where the processor has it not */
     cscd_allocator allocator; /* default: aligned_alloc and free */
 } cscd_context_options;
 
@@ -88,6 +102,9 @@ CSCD_API void cscd_context_destroy(cscd_context *context);
 CSCD_API const char *cscd_context_detail(const cscd_context *context);
 
 CSCD_API uint32_t cscd_context_thread_count(const cscd_context *context);
+
+/* The level in use, never AUTO. */
+CSCD_API cscd_simd cscd_context_simd(const cscd_context *context);
 
 /* Bytes now held through this context's allocator. */
 CSCD_API size_t cscd_context_bytes(const cscd_context *context);

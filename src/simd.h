@@ -1,0 +1,217 @@
+/* Vectors of eight numbers: the one place that knows processors.
+ *
+ * A source that includes this is compiled once per level (see the Makefile). It does the same IEEE operations
+ * in the same order on each, none of them fused, so results do not depend on the level. Vectors are the
+ * compiler's own (+ - * and [] work on them); what those lack is below. A set of lanes is the low eight bits
+ * of a uint32_t, bit i for lane i; what is not a number is neither below nor above anything. */
+#ifndef CSCD_SIMD_H
+#define CSCD_SIMD_H
+
+#include <stdint.h>
+#include <string.h>
+
+enum { LANES = 8, ALL_LANES = 255 };
+
+#define SIMD_SCALAR 0
+#define SIMD_AVX2   1
+#define SIMD_AVX512 2
+
+#ifndef SIMD_LEVEL
+#define SIMD_LEVEL SIMD_SCALAR
+#endif
+
+/* The name that a function or table has on the level that is compiled. */
+#if SIMD_LEVEL == SIMD_AVX512
+#define SIMD_NAME(name) name##_avx512
+#elif SIMD_LEVEL == SIMD_AVX2
+#define SIMD_NAME(name) name##_avx2
+#else
+#define SIMD_NAME(name) name##_scalar
+#endif
+
+#if SIMD_LEVEL != SIMD_SCALAR
+#include <immintrin.h>
+#endif
+
+typedef float f32x8 __attribute__((vector_size(32)));
+typedef int32_t i32x8 __attribute__((vector_size(32)));
+typedef double f64x4 __attribute__((vector_size(32)));
+typedef double f64x8 __attribute__((vector_size(64)));
+typedef int64_t i64x8 __attribute__((vector_size(64)));
+
+static inline f32x8 f32x8_load(const float *from) {
+    f32x8 v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+static inline void f32x8_store(float *to, f32x8 v) {
+    memcpy(to, &v, sizeof v);
+}
+
+static inline f32x8 f32x8_all(float x) {
+    return (f32x8){x, x, x, x, x, x, x, x};
+}
+
+static inline f64x8 f64x8_all(double x) {
+    return (f64x8){x, x, x, x, x, x, x, x};
+}
+
+static inline f32x8 f32x8_abs(f32x8 v) {
+    return (f32x8)((i32x8)v & INT32_MAX);
+}
+
+static inline f64x8 f64x8_abs(f64x8 v) {
+    return (f64x8)((i64x8)v & INT64_MAX);
+}
+
+/* ---- minimum, maximum, comparison -------------------------------------------------------------------- */
+
+#if SIMD_LEVEL != SIMD_SCALAR
+
+/* b where one of them is not a number, in all of these. */
+static inline f32x8 f32x8_min(f32x8 a, f32x8 b) {
+    return _mm256_min_ps(a, b);
+}
+
+static inline f32x8 f32x8_max(f32x8 a, f32x8 b) {
+    return _mm256_max_ps(a, b);
+}
+
+#else
+
+static inline f32x8 f32x8_min(f32x8 a, f32x8 b) {
+    i32x8 below = a < b;
+    return (f32x8)(((i32x8)a & below) | ((i32x8)b & ~below));
+}
+
+static inline f32x8 f32x8_max(f32x8 a, f32x8 b) {
+    i32x8 above = a > b;
+    return (f32x8)(((i32x8)a & above) | ((i32x8)b & ~above));
+}
+
+#endif
+
+#if SIMD_LEVEL == SIMD_AVX512
+
+static inline f64x8 f64x8_min(f64x8 a, f64x8 b) {
+    return _mm512_min_pd(a, b);
+}
+
+static inline f64x8 f64x8_max(f64x8 a, f64x8 b) {
+    return _mm512_max_pd(a, b);
+}
+
+static inline uint32_t f32x8_below(f32x8 a, f32x8 b) {
+    return _cvtmask8_u32(_mm256_cmp_ps_mask(a, b, _CMP_LT_OQ));
+}
+
+static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
+    return _cvtmask8_u32(_mm512_cmp_pd_mask(a, b, _CMP_LT_OQ));
+}
+
+#else
+
+static inline f64x8 f64x8_min(f64x8 a, f64x8 b) {
+    i64x8 below = a < b;
+    return (f64x8)(((i64x8)a & below) | ((i64x8)b & ~below));
+}
+
+static inline f64x8 f64x8_max(f64x8 a, f64x8 b) {
+    i64x8 above = a > b;
+    return (f64x8)(((i64x8)a & above) | ((i64x8)b & ~above));
+}
+
+#if SIMD_LEVEL == SIMD_AVX2
+
+static inline uint32_t f32x8_below(f32x8 a, f32x8 b) {
+    return (uint32_t)_mm256_movemask_ps((f32x8)(a < b));
+}
+
+static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
+    i64x8 below = a < b;
+    f64x8 signs = (f64x8)below;
+    f64x4 low = __builtin_shufflevector(signs, signs, 0, 1, 2, 3);
+    f64x4 high = __builtin_shufflevector(signs, signs, 4, 5, 6, 7);
+    return (uint32_t)_mm256_movemask_pd(low) | (uint32_t)_mm256_movemask_pd(high) << 4;
+}
+
+#else
+
+static inline uint32_t f32x8_below(f32x8 a, f32x8 b) {
+    uint32_t lanes = 0;
+    for (int i = 0; i < LANES; i++) lanes |= (uint32_t)(a[i] < b[i]) << i;
+    return lanes;
+}
+
+static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
+    uint32_t lanes = 0;
+    for (int i = 0; i < LANES; i++) lanes |= (uint32_t)(a[i] < b[i]) << i;
+    return lanes;
+}
+
+#endif
+#endif
+
+/* ---- across lanes ------------------------------------------------------------------------------------ */
+
+static inline float f32x8_least(f32x8 v) {
+    v = f32x8_min(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+    v = f32x8_min(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+    v = f32x8_min(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+    return v[0];
+}
+
+static inline float f32x8_greatest(f32x8 v) {
+    v = f32x8_max(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+    v = f32x8_max(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+    v = f32x8_max(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+    return v[0];
+}
+
+/* Rows become columns. */
+static inline void f32x8_transpose(f32x8 r[8]) {
+    f32x8 pairs[8], quads[8];
+    for (int i = 0; i < 8; i += 2) {
+        pairs[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        pairs[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4) {
+        quads[i] = __builtin_shufflevector(pairs[i], pairs[i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+        quads[i + 1] = __builtin_shufflevector(pairs[i], pairs[i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+        quads[i + 2] = __builtin_shufflevector(pairs[i + 1], pairs[i + 3], 0, 1, 8, 9, 4, 5, 12, 13);
+        quads[i + 3] = __builtin_shufflevector(pairs[i + 1], pairs[i + 3], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+    for (int i = 0; i < 4; i++) {
+        r[i] = __builtin_shufflevector(quads[i], quads[4 + i], 0, 1, 2, 3, 8, 9, 10, 11);
+        r[4 + i] = __builtin_shufflevector(quads[i], quads[4 + i], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+}
+
+/* x, y, z and anything: reads three doubles. */
+static inline f64x4 f64x4_load_point(const double *from) {
+#if SIMD_LEVEL == SIMD_SCALAR
+    return (f64x4){from[0], from[1], from[2], 0.0};
+#else
+    return _mm256_maskload_pd(from, _mm256_setr_epi64x(-1, -1, -1, 0));
+#endif
+}
+
+/* Coordinate k of eight points of positions (packed x, y, z) in out[k]. */
+static inline void f64x8_load_points(const double *positions, const uint32_t indices[8], f64x8 out[3]) {
+    f64x8 points[4], pairs[4];
+    for (int i = 0; i < 4; i++) {
+        f64x4 a = f64x4_load_point(positions + (size_t)indices[i] * 3);
+        f64x4 b = f64x4_load_point(positions + (size_t)indices[4 + i] * 3);
+        points[i] = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    for (int i = 0; i < 2; i++) { /* x x z z of two points, twice; y y . . */
+        pairs[i] = __builtin_shufflevector(points[2 * i], points[2 * i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        pairs[2 + i] = __builtin_shufflevector(points[2 * i], points[2 * i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    out[0] = __builtin_shufflevector(pairs[0], pairs[1], 0, 1, 8, 9, 4, 5, 12, 13);
+    out[1] = __builtin_shufflevector(pairs[2], pairs[3], 0, 1, 8, 9, 4, 5, 12, 13);
+    out[2] = __builtin_shufflevector(pairs[0], pairs[1], 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+#endif
