@@ -26,6 +26,17 @@ WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-pr
 ifeq ($(WERROR),1)
 WARNINGS += -Werror
 endif
+# The inner loops are compiled once per instruction set; the processor decides at run time which are used.
+ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
+LEVELS := scalar avx2 avx512
+CORE_DEFINITIONS := -DCSCD_WITH_AVX
+else
+LEVELS := scalar
+endif
+LEVEL_scalar := -DSIMD_LEVEL=0
+LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
+LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
+
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
@@ -52,17 +63,6 @@ SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SU
 V ?= 0
 Q := $(if $(filter 1,$(V)),,@)
 say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
-
-# The inner loops are compiled once per instruction set; the processor decides at run time which are used.
-ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
-LEVELS := scalar avx2 avx512
-CORE_DEFINITIONS := -DCSCD_WITH_AVX
-else
-LEVELS := scalar
-endif
-LEVEL_scalar := -DSIMD_LEVEL=0
-LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
-LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(BUILD)/%.$(level).o,$(KERNEL_SOURCES)))

@@ -12,10 +12,8 @@ typedef struct culling {
     uint32_t *triangle_regions;
     double *triangle_weights;      /* as in the plan */
     double (*detector_offsets)[3]; /* as in the plan */
-    moving_point *detector_points; /* of the interval at hand */
     uint8_t *orientations;         /* of the interval at hand; ZERO in components that are not culled */
     uint64_t plus, minus;          /* how many of these are PLUS and MINUS */
-    uint32_t *region_triangles, *region_offsets; /* the triangles of each region, for sums in a fixed order */
 } culling;
 
 /* What the detector needs of a plan, copied; without one, a region per component and the mean of its
@@ -23,9 +21,8 @@ typedef struct culling {
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
-/* Detector points and orientations for positions that move from x0 to x1; culled says per component whether
- * its orientations count. still: detector points stay where they are at x0. */
-void culling_orient(culling *c, const double *x0, const double *x1, const bool *culled, bool still);
+/* Counts what the orientations are. */
+void culling_count(culling *c);
 
 /* All triangles ZERO: nothing is culled. */
 void culling_clear(culling *c);

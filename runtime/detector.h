@@ -39,9 +39,8 @@ struct cscd_detector {
     bool *crossing;             /* per component, at the moment checked last */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches;      /* of the tree, with ICCD */
-    bvh tree;             /* built from the first positions seen */
-    kdop *vertex_volumes; /* of the interval or moment at hand */
+    patches patches; /* of the forest, with ICCD */
+    forest forest;   /* built from the first positions seen; of the interval or moment at hand */
     uint8_t *representatives;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */
@@ -53,17 +52,15 @@ struct cscd_detector {
     cscd_counters counters;
 };
 
-/* Volumes of all vertices over x0 -> x1 (the same array twice for a moment), widened so that those of
- * features that come within distance of each other overlap, and a refitted tree, which is built first when
- * there is none yet. */
-cscd_status detector_update(cscd_detector *detector, const double *x0, const double *x1, double distance);
+/* Builds the forest from positions, if there is none yet. */
+cscd_status detector_build(cscd_detector *detector, const double *positions);
 
 /* Does the method cull pairs by orientation? */
 static inline bool detector_culls(const cscd_detector *d) {
     cscd_method method = d->options.method;
     bool by_orientation = method == CSCD_METHOD_SINGLE || method == CSCD_METHOD_KMEANS ||
                           method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_PUBLISHED;
-    return by_orientation && d->limit.distance == 0.0 && d->culling.region_count < BVH_SEVERAL;
+    return by_orientation && d->limit.distance == 0.0;
 }
 
 /* Does it look for patches that cannot touch themselves? */

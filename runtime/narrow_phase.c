@@ -126,6 +126,15 @@ static bool answers_for_edges(const swept_interval *interval, triangle_pair pair
     return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
 }
 
+static kdop vertex_volume(const swept_interval *interval, uint32_t vertex) {
+    kdop_exact start, end;
+    kdop_point(interval->x0 + (size_t)vertex * 3, &start);
+    kdop_point(interval->x1 + (size_t)vertex * 3, &end);
+    kdop_exact_add(&start, &end);
+    if (interval->limit.distance > 0.0) kdop_exact_widen(&start, interval->limit.distance);
+    return kdop_round(&start);
+}
+
 static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,
                           contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
@@ -134,14 +143,15 @@ static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t 
         if (!answers_for_vertex(interval, of, i, against)) continue;
         if (triangle_contains(mesh->triangles[against], vertex)) continue;
         lane->feature_pairs++;
-        if (kdop_overlap(&interval->vertex_volumes[vertex], face))
-            narrow_phase_test_vf(interval, vertex, against, lane);
+        kdop volume = vertex_volume(interval, vertex);
+        if (kdop_overlap(&volume, face)) narrow_phase_test_vf(interval, vertex, against, lane);
     }
 }
 
 static kdop edge_volume(const swept_interval *interval, uint32_t edge) {
     const uint32_t *ends = interval->mesh->edges[edge];
-    return kdop_union(&interval->vertex_volumes[ends[0]], &interval->vertex_volumes[ends[1]]);
+    kdop a = vertex_volume(interval, ends[0]), b = vertex_volume(interval, ends[1]);
+    return kdop_union(&a, &b);
 }
 
 static void test_edges(const swept_interval *interval, triangle_pair pair, const kdop *face_b,
@@ -165,15 +175,19 @@ static void test_edges(const swept_interval *interval, triangle_pair pair, const
 
 static kdop face_volume(const swept_interval *interval, uint32_t triangle) {
     const uint32_t *v = interval->mesh->triangles[triangle];
-    return kdop_triangle(interval->vertex_volumes, v);
+    kdop corners[3];
+    for (int i = 0; i < 3; i++) corners[i] = vertex_volume(interval, v[i]);
+    return kdop_triangle(corners, (const uint32_t[3]){0, 1, 2});
 }
 
 static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
     return triangle_contains(a, b[0]) || triangle_contains(a, b[1]) || triangle_contains(a, b[2]);
 }
 
-void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane) {
+void narrow_phase_test(const swept_interval *interval, triangle_pair slots, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
+    triangle_pair pair = {forest_triangle(interval->forest, slots.a),
+                          forest_triangle(interval->forest, slots.b)};
     if (interval->skip_adjacent && triangles_share_vertex(mesh->triangles[pair.a], mesh->triangles[pair.b]))
         return;
     kdop face_a = face_volume(interval, pair.a), face_b = face_volume(interval, pair.b);

@@ -13,7 +13,7 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const kdop *vertex_volumes;     /* swept, widened by limit; NULL: pairs are filtered by the caller */
+    const forest *forest;
     const uint8_t *representatives; /* NULL when features are paired by the caller */
     const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
     bool culled_pairs;              /* with culling: the pairs that it culled are those that are reached */
@@ -33,7 +33,7 @@ typedef struct contact_lane {
 
 void contact_lane_reset(contact_lane *lane);
 
-/* Tests all pairs of features that the two triangles represent and that share no vertex. */
+/* Tests all pairs of features that the two triangles, in slots, represent and that share no vertex. */
 void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane);
 
 /* Tests one pair of features without a common vertex, and adds a contact where they touch, or come within the

@@ -49,9 +49,9 @@ static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_
     return count;
 }
 
-static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const bvh *tree, uint32_t node) {
-    const bvh_node *n = &tree->nodes[node];
-    if (bvh_is_leaf(n)) {
+static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const patch_tree *tree, uint32_t node) {
+    const patch_node *n = &tree->nodes[node];
+    if (patch_is_leaf(n)) {
         if (!reserve(l, 3)) return false;
         memcpy(l->edges + l->count, mesh->triangle_edges[n->triangle], 3 * sizeof(uint32_t));
         sort_three(l->edges + l->count);
@@ -75,11 +75,11 @@ typedef struct vertex_visit {
 
 /* Of triangles of one oriented manifold component: one loop through all edges, and the Euler characteristic
  * of a disk; leaves are the patch's triangles. */
-static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const bvh_node *first,
-                    const bvh_node *end, vertex_visit *visits, uint32_t stamp) {
+static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const patch_node *first,
+                    const patch_node *end, vertex_visit *visits, uint32_t stamp) {
     uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
-    for (const bvh_node *n = first; n < end; n++) {
-        if (!bvh_is_leaf(n)) continue;
+    for (const patch_node *n = first; n < end; n++) {
+        if (!patch_is_leaf(n)) continue;
         if (triangles++ == 0) component = mesh->triangle_components[n->triangle];
         if (mesh->triangle_components[n->triangle] != component) return false;
         for (int i = 0; i < 3; i++) {
@@ -111,19 +111,19 @@ static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t siz
 }
 
 /* Oriented manifolds only. In one component a patch of one loop has no closed part beside it. */
-static void find_disks(patches *p, const cscd_mesh *mesh, const bvh *tree, const contour_lists *l,
+static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
                        vertex_visit *visits) {
     uint32_t *ends = p->stack; /* one past the last node of each subtree */
-    for (uint32_t i = p->node_count; i-- > 0;) {
-        const bvh_node *n = &tree->nodes[i];
-        ends[i] = bvh_is_leaf(n) ? i + 1 : ends[n->right];
-        const bvh_node *leaf = n;
-        while (!bvh_is_leaf(leaf)) leaf++;
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        const patch_node *n = &tree->nodes[i];
+        ends[i] = patch_is_leaf(n) ? i + 1 : ends[n->right];
+        const patch_node *leaf = n;
+        while (!patch_is_leaf(leaf)) leaf++;
         const cscd_component *c = &mesh->components[mesh->triangle_components[leaf->triangle]];
         bool oriented =
             c->non_manifold_edges == 0 && c->non_manifold_vertices == 0 && c->inconsistent_edges == 0;
         p->disks[i] = oriented && is_disk(mesh, l->edges + l->begins[i], l->sizes[i], n,
-                                          tree->nodes + ends[i], visits, p->node_count - i);
+                                          tree->nodes + ends[i], visits, p->tree.node_count - i);
     }
 }
 
@@ -143,24 +143,25 @@ static void place_contour(patches *p, const contour_lists *l, uint32_t node, uin
     }
 }
 
-static bool fill(patches *p, const cscd_mesh *mesh, const bvh *tree, contour_lists *l, vertex_visit *visits) {
+static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
+                 vertex_visit *visits) {
     uint32_t longest = 0;
     size_t total = 0;
-    for (uint32_t i = p->node_count; i-- > 0;) {
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
         if (!list_contour(l, mesh, tree, i)) return false;
         if (l->sizes[i] > longest) longest = l->sizes[i];
     }
     p->contour_edges = context_allocate(l->context, l->count + 1, sizeof *p->contour_edges);
     p->scratch = context_allocate(l->context, (size_t)longest + 1, sizeof *p->scratch);
     if (p->contour_edges == NULL || p->scratch == NULL) return false;
-    for (uint32_t i = 0; i < p->node_count; i++) {
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
         p->contour_offsets[i] = total;
         total += l->sizes[i];
     }
-    p->contour_offsets[p->node_count] = total;
-    place_contour(p, l, 0, UINT32_MAX);
-    for (uint32_t i = 0; i < p->node_count; i++) {
-        if (bvh_is_leaf(&tree->nodes[i])) continue;
+    p->contour_offsets[p->tree.node_count] = total;
+    for (uint32_t i = 0; i < tree->root_count; i++) place_contour(p, l, tree->roots[i], UINT32_MAX);
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
+        if (patch_is_leaf(&tree->nodes[i])) continue;
         place_contour(p, l, i + 1, i);
         place_contour(p, l, tree->nodes[i].right, i);
     }
@@ -168,23 +169,45 @@ static bool fill(patches *p, const cscd_mesh *mesh, const bvh *tree, contour_lis
     return true;
 }
 
-cscd_status patches_create(const cscd_mesh *mesh, const bvh *tree, patches *out) {
+static bool allocate_within(forest *f) {
+    cscd_context *context = f->mesh->context;
+    if (f->leaf_within == NULL)
+        f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
+    bool allocated = f->leaf_within != NULL;
+    for (int i = 0; i < f->part_level; i++) {
+        forest_level *level = &f->levels[i];
+        if (level->within == NULL)
+            level->within = context_allocate(context, level->block_count, sizeof *level->within);
+        allocated &= level->within != NULL;
+    }
+    forest_show_all(f);
+    return allocated;
+}
+
+static bool allocate(patches *p, contour_lists *lists) {
+    cscd_context *context = lists->context;
+    size_t count = p->tree.node_count;
+    lists->begins = context_allocate(context, count, sizeof *lists->begins);
+    lists->sizes = context_allocate(context, count, sizeof *lists->sizes);
+    p->contour_offsets = context_allocate(context, count + 1, sizeof *p->contour_offsets);
+    p->inherited = context_allocate(context, count, sizeof *p->inherited);
+    p->disks = context_allocate(context, count, sizeof *p->disks);
+    p->cones = context_allocate(context, count, sizeof *p->cones);
+    p->stack = context_allocate(context, count, sizeof *p->stack);
+    p->parent_tested = context_allocate(context, count, sizeof *p->parent_tested);
+    p->passed = context_allocate(context, count, sizeof *p->passed);
+    return lists->begins != NULL && lists->sizes != NULL && p->contour_offsets != NULL &&
+           p->inherited != NULL && p->disks != NULL && p->cones != NULL && p->stack != NULL &&
+           p->parent_tested != NULL && p->passed != NULL;
+}
+
+cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out) {
     cscd_context *context = mesh->context;
-    size_t count = tree->node_count;
-    patches p = {.node_count = tree->node_count};
+    patches p = {0};
     contour_lists lists = {.context = context};
     vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
-    lists.begins = context_allocate(context, count, sizeof *lists.begins);
-    lists.sizes = context_allocate(context, count, sizeof *lists.sizes);
-    p.contour_offsets = context_allocate(context, count + 1, sizeof *p.contour_offsets);
-    p.inherited = context_allocate(context, count, sizeof *p.inherited);
-    p.disks = context_allocate(context, count, sizeof *p.disks);
-    p.cones = context_allocate(context, count, sizeof *p.cones);
-    p.stack = context_allocate(context, count, sizeof *p.stack);
-    p.parent_tested = context_allocate(context, count, sizeof *p.parent_tested);
-    bool made = visits != NULL && lists.begins != NULL && lists.sizes != NULL && p.contour_offsets != NULL &&
-                p.inherited != NULL && p.disks != NULL && p.cones != NULL && p.stack != NULL &&
-                p.parent_tested != NULL && fill(&p, mesh, tree, &lists, visits);
+    bool made = visits != NULL && allocate_within(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
+                allocate(&p, &lists) && fill(&p, mesh, &p.tree, &lists, visits);
     context_free(context, visits);
     context_free(context, lists.begins);
     context_free(context, lists.sizes);
@@ -198,20 +221,21 @@ cscd_status patches_create(const cscd_mesh *mesh, const bvh *tree, patches *out)
 }
 
 void patches_free(cscd_context *context, patches *p) {
-    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited, p->disks,
-                      p->cones,           p->scratch,       p->stack,     p->parent_tested};
+    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited,     p->disks, p->cones,
+                      p->scratch,         p->stack,         p->parent_tested, p->passed};
+    patch_tree_free(context, &p->tree);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     *p = (patches){0};
 }
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
-static void merge_cones(patches *p, const cscd_mesh *mesh, const bvh *tree, const double *x0,
-                        const double *x1, bool published) {
+static void merge_cones(patches *p, const cscd_mesh *mesh, const double *x0, const double *x1,
+                        bool published) {
     const float pi = 3.14159265f, limit = published ? pi : normal_cone_limit;
-    for (uint32_t i = p->node_count; i-- > 0;) {
-        const bvh_node *n = &tree->nodes[i];
-        if (bvh_is_leaf(n))
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        const patch_node *n = &p->tree.nodes[i];
+        if (patch_is_leaf(n))
             p->cones[i] =
                 (published ? normal_cone_of_ends : normal_cone_of)(mesh->triangles[n->triangle], x0, x1);
         else
@@ -234,21 +258,18 @@ static bool passes(patches *p, const cscd_mesh *mesh, uint32_t node, const doubl
     return contour_stays_simple(&query, p->scratch);
 }
 
-void patches_seal(patches *p, const cscd_mesh *mesh, bvh *tree, const double *x0, const double *x1,
-                  bool published) {
+static void seal_part(patches *p, const cscd_mesh *mesh, uint32_t root, const double *x0, const double *x1,
+                      bool published) {
     uint32_t depth = 0;
-    merge_cones(p, mesh, tree, x0, x1, published);
-    p->contours = p->sealed = 0;
-    p->parent_tested[0] = false;
-    p->stack[depth++] = 0;
+    p->parent_tested[root] = false;
+    p->stack[depth++] = root;
     while (depth > 0) {
         uint32_t node = p->stack[--depth];
-        const bvh_node *n = &tree->nodes[node];
-        tree->marks[node] = 0;
-        if (bvh_is_leaf(n)) continue;
+        const patch_node *n = &p->tree.nodes[node];
+        if (patch_is_leaf(n)) continue;
         bool tested = p->cones[node].angle < INFINITY && (published || p->disks[node]);
         if (tested && passes(p, mesh, node, x0, x1, published)) {
-            tree->marks[node] = 1;
+            p->passed[node] = true;
             p->sealed++;
             continue;
         }
@@ -256,4 +277,13 @@ void patches_seal(patches *p, const cscd_mesh *mesh, bvh *tree, const double *x0
         p->stack[depth++] = n->right;
         p->stack[depth++] = node + 1;
     }
+}
+
+void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
+                  bool published) {
+    merge_cones(p, mesh, x0, x1, published);
+    p->contours = p->sealed = 0;
+    memset(p->passed, 0, p->tree.node_count * sizeof *p->passed);
+    for (uint32_t i = 0; i < p->tree.root_count; i++) seal_part(p, mesh, p->tree.roots[i], x0, x1, published);
+    patch_tree_hide(&p->tree, p->passed, f);
 }

@@ -2,13 +2,13 @@
 #ifndef CSCD_PATCHES_H
 #define CSCD_PATCHES_H
 
-#include "runtime/bvh.h"
 #include "runtime/contour.h"
 #include "runtime/normal_cone.h"
+#include "runtime/patch_tree.h"
 
 /* A patch: the triangles below a node. Contours are fixed, the rest is of the interval at hand. */
 typedef struct patches {
-    uint32_t node_count;
+    patch_tree tree;
     size_t *contour_offsets; /* the contour of node i: contour_edges[offsets[i] .. offsets[i + 1]) */
     uint32_t *contour_edges; /* edges with one triangle in the patch; first those of the parent's contour, */
     uint32_t *inherited;     /* per node so many */
@@ -16,20 +16,21 @@ typedef struct patches {
     normal_cone *cones;
     contour_edge *scratch;
     uint32_t *stack;
-    bool *parent_tested;       /* per node, in the interval at hand */
-    uint64_t contours, sealed; /* tests made, patches that passed */
+    bool *parent_tested, *passed; /* per node, in the interval at hand; none below one that passed */
+    uint64_t contours, sealed;    /* tests made, patches that passed */
 } patches;
 
-/* For a tree that is built; volumes do not matter. On failure there is nothing to free. */
-cscd_status patches_create(const cscd_mesh *mesh, const bvh *tree, patches *out);
+/* For a forest that is built, whose marks `within` are allocated; bounds do not matter. On failure there is
+ * nothing to free. */
+cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out);
 void patches_free(cscd_context *context, patches *p);
 
-/* Marks each node 1 whose triangles cannot touch each other while the vertices move from x0 to x1, or 0; of a
- * marked node's descendants the marks are undefined. See docs/iccd.md for the proof.
+/* Finds the nodes whose triangles cannot touch each other while the vertices move from x0 to x1, and hides
+ * their pairs in the forest. See docs/iccd.md for the proof.
  * published: as in the literature, which loses contacts: cones hold the normals of both ends only and may
  * open up to pi, any set of triangles is a patch, contours are taken to be simple at the start, and pairs of
  * edges that the parent's contour has too are not tested again although the axis is another. */
-void patches_seal(patches *p, const cscd_mesh *mesh, bvh *tree, const double *x0, const double *x1,
+void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
                   bool published);
 
 #endif

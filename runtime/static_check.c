@@ -36,7 +36,8 @@ static void test_batch(void *data, uint32_t index) {
     cscd_detector *d = now->detector;
     const traversal_lane *batch = &d->traversal.lanes[index];
     for (uint32_t i = 0; i < batch->pair_count; i++) {
-        triangle_pair pair = batch->pairs[i];
+        triangle_pair pair = {forest_triangle(&d->forest, batch->pairs[i].a),
+                              forest_triangle(&d->forest, batch->pairs[i].b)};
         if (triangles_intersect(d->mesh->triangles[pair.a], d->mesh->triangles[pair.b], now->positions))
             add_intersection(d->context, &d->intersection_lanes[index], pair.a, pair.b);
     }
@@ -92,7 +93,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    traversal_begin(&d->traversal, &d->tree, TRAVERSAL_ALL);
+    traversal_begin(&d->traversal, &d->forest, TRAVERSAL_KEPT);
     for (bool more = true; more;) {
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;
@@ -127,8 +128,10 @@ static void record_starts(const moment *now) {
 }
 
 static cscd_status check_moment(moment *now) {
-    cscd_status status = detector_update(now->detector, now->positions, now->positions, 0.0);
-    if (status == CSCD_OK) status = find_intersections(now);
+    cscd_status status = detector_build(now->detector, now->positions);
+    if (status != CSCD_OK) return status;
+    forest_move(&now->detector->forest, now->positions, now->positions, 0.0);
+    status = find_intersections(now);
     if (status == CSCD_OK) record_starts(now);
     return status;
 }

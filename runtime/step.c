@@ -6,40 +6,22 @@
 #include "src/positions.h"
 #include "src/timer.h"
 
-/* ---- BVH update ------------------------------------------------------------------------------------ */
-
-typedef struct sweep {
-    cscd_detector *detector;
-    const double *x0, *x1;
-    double distance;
-} sweep;
-
-static void sweep_vertices(void *data, uint32_t index) {
-    const sweep *s = data;
-    size_t count = s->detector->mesh->vertex_count, lanes = s->detector->traversal.lane_count;
-    for (size_t v = count * index / lanes; v < count * (index + 1) / lanes; v++) {
-        kdop_exact start, end;
-        kdop_point(s->x0 + v * 3, &start);
-        kdop_point(s->x1 + v * 3, &end);
-        kdop_exact_add(&start, &end);
-        if (s->distance > 0.0) kdop_exact_widen(&start, s->distance);
-        s->detector->vertex_volumes[v] = kdop_round(&start);
-    }
+/* As published, a patch of ICCD is any set of triangles: then all components are one part. */
+static cscd_status build_of_one_part(cscd_detector *d, const double *positions) {
+    uint32_t *none = context_allocate(d->context, d->mesh->triangle_count, sizeof *none);
+    if (none == NULL) return CSCD_OUT_OF_MEMORY;
+    forest_regions regions = {none, d->culling.triangle_weights, 1};
+    cscd_status status = forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
+    context_free(d->context, none);
+    return status;
 }
 
-static bvh_regions regions_of(const cscd_detector *d) {
-    return (bvh_regions){d->culling.triangle_regions, d->culling.region_count};
-}
-
-cscd_status detector_update(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    if (d->tree.nodes == NULL) {
-        cscd_status status = bvh_build(d->mesh, regions_of(d), x0, &d->tree);
-        if (status != CSCD_OK) return status;
-    }
-    sweep s = {d, x0, x1, distance};
-    parallel_run(d->context->threads, d->traversal.lane_count, sweep_vertices, &s);
-    bvh_refit(&d->tree, d->mesh, d->vertex_volumes);
-    return CSCD_OK;
+cscd_status detector_build(cscd_detector *d, const double *positions) {
+    if (d->forest.mesh != NULL) return CSCD_OK;
+    if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) return build_of_one_part(d, positions);
+    forest_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights,
+                              d->culling.region_count};
+    return forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
 }
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
@@ -77,7 +59,7 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
     cscd_detector *d = work->detector;
     cscd_status status = CSCD_OK;
     double since = timer_now_ms();
-    traversal_begin(&d->traversal, &d->tree, pass);
+    traversal_begin(&d->traversal, &d->forest, pass);
     for (bool more = true; more && status == CSCD_OK;) {
         status = traversal_round(&d->traversal, &more);
         timer_lap(&since, &work->timings.traversal_ms);
@@ -124,8 +106,11 @@ static void orient(step_work *work) {
     cscd_detector *d = work->detector;
     bool still = follows(d, PUBLISHED_STILL);
     double since = timer_now_ms();
-    culling_orient(&d->culling, work->interval.x0, work->interval.x1, d->culled, still);
-    bvh_mark(&d->tree, d->mesh, regions_of(d), d->culling.orientations, NULL);
+    forest_view view = {.culled = d->culled,
+                        .detector_offsets = (const double(*)[3])d->culling.detector_offsets,
+                        .still = still};
+    forest_orient(&d->forest, &view, d->culling.orientations);
+    culling_count(&d->culling);
     timer_lap(&since, &work->timings.orientation_ms);
     work->counters.plus = d->culling.plus;
     work->counters.minus = d->culling.minus;
@@ -168,10 +153,10 @@ static cscd_status finish_touched(step_work *work) {
     }
     if (!any) return CSCD_OK;
     double since = timer_now_ms();
-    bvh_mark(&d->tree, d->mesh, regions_of(d), d->culling.orientations, d->unfinished);
+    forest_mark(&d->forest, d->culling.orientations, d->unfinished);
     timer_lap(&since, &work->timings.orientation_ms);
     work->interval.culled_pairs = true;
-    return traverse(work, TRAVERSAL_CULLED);
+    return traverse(work, TRAVERSAL_FRESH);
 }
 
 /* ICCD needs no embedded start: a pair in a sealed patch never touches. */
@@ -179,27 +164,28 @@ static cscd_status find_unsealed(step_work *work) {
     cscd_detector *d = work->detector;
     bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
     double since = timer_now_ms();
-    if (d->patches.node_count == 0) {
-        cscd_status status = patches_create(d->mesh, &d->tree, &d->patches);
+    if (d->patches.tree.node_count == 0) {
+        cscd_status status = patches_create(d->mesh, &d->forest, &d->patches);
         if (status != CSCD_OK) return status;
     }
-    patches_seal(&d->patches, d->mesh, &d->tree, work->interval.x0, work->interval.x1, published);
+    patches_seal(&d->patches, d->mesh, &d->forest, work->interval.x0, work->interval.x1, published);
     timer_lap(&since, &work->timings.contour_ms);
     work->counters.contours = d->patches.contours;
     work->counters.sealed = d->patches.sealed;
     work->interval.skip_adjacent = published;
-    return traverse(work, TRAVERSAL_UNSEALED);
+    return traverse(work, TRAVERSAL_KEPT);
 }
 
 static cscd_status find_by_trees(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
-    cscd_status status = detector_update(d, work->interval.x0, work->interval.x1, d->limit.distance);
-    timer_lap(&since, &work->timings.update_ms);
+    cscd_status status = detector_build(d, work->interval.x0);
     if (status != CSCD_OK) return status;
+    forest_move(&d->forest, work->interval.x0, work->interval.x1, d->limit.distance);
+    timer_lap(&since, &work->timings.update_ms);
     if (detector_seals(d)) return find_unsealed(work);
     work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
-    if (!work->any_culled) return traverse(work, TRAVERSAL_ALL);
+    if (!work->any_culled) return traverse(work, TRAVERSAL_KEPT);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
     if (status != CSCD_OK || !finishes(d) || d->options.method == CSCD_METHOD_PUBLISHED) return status;
@@ -269,7 +255,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                       .interval = {.mesh = detector->mesh,
                                    .x0 = start,
                                    .x1 = end,
-                                   .vertex_volumes = detector->vertex_volumes,
+                                   .forest = &detector->forest,
                                    .representatives = detector->representatives,
                                    .limit = detector->limit},
                       .timings = {.check_ms = detector->timings.check_ms}};

@@ -1,44 +1,52 @@
-/* Self-traversal of the tree: batches of triangle pairs whose volumes overlap, without recursion. */
+/* Self-traversal of the forest: batches of triangle pairs whose volumes overlap, without recursion. */
 #ifndef CSCD_TRAVERSAL_H
 #define CSCD_TRAVERSAL_H
 
-#include "runtime/bvh.h"
+#include "runtime/forest.h"
 
-/* A potentially colliding pair of different triangles. */
+/* A potentially colliding pair of different triangles, by their slots. */
 typedef struct triangle_pair {
     uint32_t a, b;
 } triangle_pair;
 
-/* Two nodes whose subtrees are still to be compared; the same node twice: with itself. */
-typedef struct node_pair {
-    uint32_t a, b;
-} node_pair;
+/* Two blocks of one level whose children are still to be compared; the same block twice: with itself. Parts
+ * are those of the blocks, below the part level. */
+typedef struct block_pair {
+    uint32_t a, b, part_a, part_b;
+    int32_t level;
+} block_pair;
 
-/* Which pairs of triangles are looked for, of those whose volumes overlap: all; those that the tree's marks
- * leave; those that they cull (the second and the third together are the first); those that do not lie below
- * one node that patches_seal has marked. */
-typedef enum traversal_pass {
-    TRAVERSAL_ALL,
-    TRAVERSAL_KEPT,
-    TRAVERSAL_CULLED,
-    TRAVERSAL_UNSEALED
-} traversal_pass;
+/* Which pairs of triangles are looked for, of those whose volumes overlap: all but those that are marked as
+ * never touching (by flags, or by `within`); or those that the flags of the pass before left out and the
+ * present ones do not. */
+typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH } traversal_pass;
 
-/* What one thread works on: its share of the open node pairs and its batch of results. */
+/* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room. */
+enum { LEAF_CACHE_SIZE = 256, LEAF_VOLUME_FLOATS = KDOP_AXES * 2 * FOREST_LANES };
+
+typedef struct leaf_cache {
+    uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */
+    float (*volumes)[LEAF_VOLUME_FLOATS];
+} leaf_cache;
+
+/* What one thread works on: its share of the open block pairs and its batch of results. */
 typedef struct traversal_lane {
-    _Alignas(CACHE_LINE_SIZE) node_pair *stack;
+    _Alignas(CACHE_LINE_SIZE) block_pair *stack;
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
     uint32_t pair_count;
     uint64_t boxes_tested;
+    leaf_cache cache;
     bool out_of_memory;
 } traversal_lane;
 
-enum { TRAVERSAL_BATCH_SIZE = 1 << 14 };
+/* A visit adds no more: pairs of 64 leaf pairs; 64 pairs of children and 8 children with themselves. */
+enum { TRAVERSAL_PAIRS_PER_VISIT = 64 * 64, TRAVERSAL_PUSHES_PER_VISIT = 72 };
+enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT };
 
 typedef struct traversal {
     cscd_context *context;
-    const bvh *tree;
+    const forest *forest;
     traversal_pass pass;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
@@ -48,8 +56,8 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of tree, which is already refitted, and marked unless the pass is ALL. */
-void traversal_begin(traversal *t, const bvh *tree, traversal_pass pass);
+/* Starts anew at the root of f, which is up to date. */
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
 
 /* Fills each lane's batch with up to TRAVERSAL_BATCH_SIZE pairs; false when all is done and every batch is
  * empty. Between two rounds the caller consumes the batches. The union of all batches, and the sum of

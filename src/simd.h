@@ -65,6 +65,15 @@ static inline f64x8 f64x8_abs(f64x8 v) {
     return (f64x8)((i64x8)v & INT64_MAX);
 }
 
+/* Rounded to nearest. */
+static inline f32x8 f32x8_from(f64x8 v) {
+    return __builtin_convertvector(v, f32x8);
+}
+
+static inline f64x8 f64x8_from(f32x8 v) {
+    return __builtin_convertvector(v, f64x8);
+}
+
 /* ---- minimum, maximum, comparison -------------------------------------------------------------------- */
 
 #if SIMD_LEVEL != SIMD_SCALAR

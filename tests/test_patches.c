@@ -23,28 +23,32 @@ enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };
 static scene s; /* large; one test at a time */
 
 /* A mesh, its tree of one region, and the patches of this. */
-typedef struct forest {
+typedef struct subject {
     cscd_context *context;
     cscd_mesh *mesh;
     uint32_t *regions;
-    bvh tree;
+    double *weights;
+    forest forest;
     patches patches;
-} forest;
+} subject;
 
-static forest forest_create(cscd_mesh_desc desc, const double *positions) {
-    forest f = {0};
+static subject subject_create(cscd_mesh_desc desc, const double *positions) {
+    subject f = {0};
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
     f.regions = calloc(desc.triangle_count, sizeof *f.regions);
-    assert_non_null(f.regions);
-    assert_int_equal(bvh_build(f.mesh, (bvh_regions){f.regions, 1}, positions, &f.tree), CSCD_OK);
-    assert_int_equal(patches_create(f.mesh, &f.tree, &f.patches), CSCD_OK);
+    f.weights = calloc(desc.triangle_count, sizeof *f.weights);
+    assert_true(f.regions != NULL && f.weights != NULL);
+    forest_regions regions = {f.regions, f.weights, 1};
+    assert_int_equal(forest_build(f.mesh, regions, positions, BOX_AXES, &f.forest), CSCD_OK);
+    assert_int_equal(patches_create(f.mesh, &f.forest, &f.patches), CSCD_OK);
     return f;
 }
 
-static void forest_destroy(forest *f) {
+static void subject_destroy(subject *f) {
     patches_free(f->context, &f->patches);
-    bvh_free(f->context, &f->tree);
+    forest_free(&f->forest);
+    free(f->weights);
     free(f->regions);
     cscd_mesh_destroy(f->mesh);
     cscd_context_destroy(f->context);
@@ -64,9 +68,9 @@ static uint32_t root_of(uint32_t *roots, uint32_t v) {
     return v;
 }
 
-static void collect(const bvh *tree, uint32_t node, reference *r) {
-    const bvh_node *n = &tree->nodes[node];
-    if (bvh_is_leaf(n)) {
+static void collect(const patch_tree *tree, uint32_t node, reference *r) {
+    const patch_node *n = &tree->nodes[node];
+    if (patch_is_leaf(n)) {
         r->triangles[r->triangle_count++] = n->triangle;
         return;
     }
@@ -165,11 +169,11 @@ typedef struct tally {
     uint32_t nodes, disks;
 } tally;
 
-static void check_node(const forest *f, reference *r, uint32_t node, uint32_t parent, tally *sum) {
+static void check_node(const subject *f, reference *r, uint32_t node, uint32_t parent, tally *sum) {
     const patches *p = &f->patches;
     size_t begin = p->contour_offsets[node], size = p->contour_offsets[node + 1] - begin;
     r->triangle_count = 0;
-    collect(&f->tree, node, r);
+    collect(&f->patches.tree, node, r);
     int64_t euler = characteristic(r);
     check_contour(p, r, node, parent);
     bool disk = euler == 1 && size > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
@@ -187,9 +191,9 @@ static void check_node(const forest *f, reference *r, uint32_t node, uint32_t pa
 
 static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
     tally sum = {0};
-    forest f = forest_create(desc, positions);
+    subject f = subject_create(desc, positions);
     reference r = {.mesh = f.mesh};
-    uint32_t *parents = calloc(f.tree.node_count, sizeof *parents);
+    uint32_t *parents = calloc(f.patches.tree.node_count, sizeof *parents);
     r.triangles = calloc(desc.triangle_count, sizeof *r.triangles);
     r.edge_counts = calloc(f.mesh->edge_count, sizeof *r.edge_counts);
     r.roots = calloc(desc.vertex_count, sizeof *r.roots);
@@ -197,8 +201,9 @@ static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
     assert_true(parents != NULL && r.triangles != NULL && r.edge_counts != NULL && r.roots != NULL &&
                 r.vertex_seen != NULL);
     parents[0] = UINT32_MAX;
-    for (uint32_t i = 0; i < f.tree.node_count; i++) {
-        if (!bvh_is_leaf(&f.tree.nodes[i])) parents[i + 1] = parents[f.tree.nodes[i].right] = i;
+    for (uint32_t i = 0; i < f.patches.tree.node_count; i++) {
+        if (!patch_is_leaf(&f.patches.tree.nodes[i]))
+            parents[i + 1] = parents[f.patches.tree.nodes[i].right] = i;
         check_node(&f, &r, i, parents[i], &sum);
     }
     free(parents);
@@ -206,7 +211,7 @@ static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
     free(r.edge_counts);
     free(r.roots);
     free(r.vertex_seen);
-    forest_destroy(&f);
+    subject_destroy(&f);
     return sum;
 }
 
@@ -273,10 +278,10 @@ static void patches_of_any_shape(void **state) {
 
 static bool root_is_disk(const shape *given) {
     double positions[3 * 400] = {0};
-    forest f = forest_create(
+    subject f = subject_create(
         (cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
     bool disk = f.patches.disks[0];
-    forest_destroy(&f);
+    subject_destroy(&f);
     return disk;
 }
 

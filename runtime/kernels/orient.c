@@ -1,0 +1,88 @@
+/* Orientations of triangles over an interval, eight at a time.
+ *
+ * s(t) = c . (a x b), with a = p1 - p0, b = p2 - p0 and c = p0 - d moving linearly, is a cubic in t; its
+ * Bernstein coefficients are compared with a bound on their error, the middle two times 3.
+ *
+ * With u = 2^-24 and M the part's reach, a coordinate of a record is off by at most u M (1 + 2^-20); d is
+ * what it is by definition. So components of a and b are off by 2.01 u M + u |a|, those of c by 1.01 u M + u
+ * |c|. Let A, B and C be the largest magnitudes of computed components over both ends, A, B <= 2 M. A
+ * coefficient (times 3 for the middle ones, which are sums of three determinants) is at most a sum of 18
+ * products, each at most A B C. Inputs off by u(2.01 M + A) and so on change a product by at most u (2.01 M B
+ * C + 2.01 M A C + 1.01 M A B + 3 A B C) and terms of u^2, less than one in 2^20 of that; its two
+ * multiplications and at most 6 additions add 8.01 u A B C. With C <= M' = M + |d|: 18 products stay below
+ * u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B), computed with room in
+ * 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B); nothing of this underflows by more than
+ * the 2^-100 that is added. */
+#include "runtime/kernels/this_level.h"
+
+#include "runtime/kernels/corners.h"
+
+static f32x8 largest_component(f32x8 (*v)[3]) {
+    f32x8 largest = f32x8_abs(v[0][0]);
+    for (int i = 1; i < 6; i++) largest = f32x8_max(largest, f32x8_abs(v[i / 3][i % 3]));
+    return largest;
+}
+
+static void cross(const f32x8 a[3], const f32x8 b[3], f32x8 out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static f32x8 dot(const f32x8 a[3], const f32x8 b[3]) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+/* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
+static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+    f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
+    float detector_reach = 0.0f;
+    for (int e = 0; e < 2; e++) {
+        for (int k = 0; k < 3; k++) {
+            a[e][k] = corners[1][e][k] - corners[0][e][k];
+            b[e][k] = corners[2][e][k] - corners[0][e][k];
+            c[e][k] = corners[0][e][k] - f32x8_all(p->detector[e][k]);
+            float d = p->detector[e][k] < 0.0f ? -p->detector[e][k] : p->detector[e][k];
+            detector_reach = d > detector_reach ? d : detector_reach;
+        }
+    }
+    f32x8 size_a = largest_component(a), size_b = largest_component(b), size_c = largest_component(c);
+    f32x8 bound = f32x8_all(0x1p-18f * (p->reach + detector_reach)) *
+                      (size_c * (size_a + size_b) + f32x8_all(4.0f) * size_a * size_b) +
+                  f32x8_all(0x1p-100f);
+    cross(a[0], b[0], start);
+    cross(a[1], b[1], end);
+    cross(a[1], b[0], one);
+    cross(a[0], b[1], other);
+    for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
+    f32x8 s[4] = {dot(start, c[0]), dot(mixed, c[0]) + dot(start, c[1]), dot(mixed, c[1]) + dot(end, c[0]),
+                  dot(end, c[1])};
+    f32x8 least = f32x8_min(f32x8_min(s[0], s[3]), f32x8_min(s[1], s[2]));
+    f32x8 greatest = f32x8_max(f32x8_max(s[0], s[3]), f32x8_max(s[1], s[2]));
+    *plus = f32x8_below(bound, least);
+    *minus = f32x8_below(greatest, -bound);
+}
+
+static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *held,
+                        uint8_t *orientations) {
+    const forest_leaf *l = &f->leaves[index];
+    uint32_t plus, minus, free = f->leaf_flags[index].used;
+    leaf_corners corners;
+    load_corners(f, l, corners);
+    orient(p, corners, &plus, &minus);
+    for (int lane = 0; held != NULL && lane < LANES; lane++) {
+        if ((f->leaf_flags[index].used >> lane & 1) != 0 && held[l->triangles[lane]] != 0)
+            free &= ~(1u << lane);
+    }
+    plus &= free;
+    minus &= free;
+    f->leaf_flags[index].plus = (uint8_t)plus;
+    f->leaf_flags[index].minus = (uint8_t)minus;
+    for (uint32_t lane = 0; lane < LANES && (f->leaf_flags[index].used >> lane & 1) != 0; lane++)
+        orientations[l->triangles[lane]] = (uint8_t)((plus >> lane & 1) != 0    ? ORIENTATION_PLUS
+                                                     : (minus >> lane & 1) != 0 ? ORIENTATION_MINUS
+                                                                                : ORIENTATION_ZERO);
+}
+
+void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
+                       const uint8_t *held, uint8_t *orientations) {
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, held, orientations);
+}

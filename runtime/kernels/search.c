@@ -1,0 +1,217 @@
+/* The visit of the traversal: eight children against eight, then the triangles of leaves that overlap. */
+#include "runtime/kernels/this_level.h"
+
+#include "runtime/kernels/corners.h"
+
+/* Where part b lies relative to part a over the interval, and how far that is rounded, per axis; all 0 for
+ * one part. Volumes of a, moved by -high and -low, are compared with those of b. */
+typedef struct displacement {
+    float low[KDOP_AXES], high[KDOP_AXES];
+} displacement;
+
+static double along(const double v[3], int axis) {
+    static const signed char axes[KDOP_AXES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+                                                   {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    return axes[axis][0] * v[0] + axes[axis][1] * v[1] + axes[axis][2] * v[2];
+}
+
+/* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
+ * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
+static displacement between(const forest *f, const forest_part *a, const forest_part *b) {
+    displacement out;
+    double start[3], end[3], size = (double)a->reach + (double)b->reach;
+    for (int k = 0; k < 3; k++) {
+        start[k] = (b->origin[0][k] - a->origin[0][k]) * f->scale;
+        end[k] = (b->origin[1][k] - a->origin[1][k]) * f->scale;
+        size += (start[k] < 0 ? -start[k] : start[k]) + (end[k] < 0 ? -end[k] : end[k]);
+        for (int e = 0; e < 2; e++) {
+            double from = a->origin[e][k] * f->scale, to = b->origin[e][k] * f->scale;
+            size += 0x1p-30 * ((from < 0 ? -from : from) + (to < 0 ? -to : to));
+        }
+    }
+    for (int axis = 0; axis < KDOP_AXES; axis++) {
+        double x = along(start, axis), y = along(end, axis), slack = size * 0x1p-20;
+        out.low[axis] = (float)((x < y ? x : y) - slack);
+        out.high[axis] = (float)((x < y ? y : x) + slack);
+    }
+    return out;
+}
+
+/* Of lanes, those of b whose volumes do not overlap lane i of a; first: the first axis of those compared. */
+static inline uint32_t apart(const float *a, const float *b, int i, int first, int axis_count,
+                             const displacement *d) {
+    uint32_t lanes = 0;
+    for (int k = first; k < axis_count; k++) {
+        float low = a[2 * k * LANES + i], high = a[(2 * k + 1) * LANES + i];
+        if (d != NULL) {
+            low -= d->high[k];
+            high -= d->low[k];
+        }
+        lanes |= f32x8_below(f32x8_all(high), f32x8_load(b + 2 * k * LANES));
+        lanes |= f32x8_below(f32x8_load(b + (2 * k + 1) * LANES), f32x8_all(low));
+    }
+    return lanes;
+}
+
+/* One pair of blocks or of leaves, whose lanes are compared. */
+typedef struct comparison {
+    lane_flags a, b;
+    lane_flags before_a, before_b; /* leaves in pass FRESH */
+    uint64_t within;
+    bool itself, one_part, leaves;
+    traversal_pass pass;
+} comparison;
+
+static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus_b, uint32_t minus_b, int i) {
+    return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
+}
+
+/* Of b's lanes, those to be compared with lane i of a. */
+static inline uint32_t wanted(const comparison *c, int i) {
+    uint32_t lanes = c->b.used;
+    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & (FOREST_ALL_LANES << (i + 1));
+    if (c->pass == TRAVERSAL_FRESH) {
+        if (!c->one_part) return 0;
+        if ((c->a.fresh >> i & 1) == 0) lanes &= c->b.fresh;
+        if (c->leaves)
+            lanes &= one_sign(c->before_a.plus, c->before_a.minus, c->before_b.plus, c->before_b.minus, i);
+    } else if (c->one_part) {
+        lanes &= ~one_sign(c->a.plus, c->a.minus, c->b.plus, c->b.minus, i);
+    }
+    return lanes;
+}
+
+/* ---- triangles of leaves ------------------------------------------------------------------------------- */
+
+static const float *leaf_volumes_of(const forest *f, leaf_cache *cache, uint32_t index,
+                                    const forest_part *p) {
+    uint32_t place = index % LEAF_CACHE_SIZE;
+    float *out = cache->volumes[place];
+    if (cache->tags[place] == index + 1) return out;
+    leaf_corners corners;
+    leaf_volumes v;
+    load_corners(f, &f->leaves[index], corners);
+    volumes_of(corners, KDOP_AXES, &v);
+    for (int k = 0; k < KDOP_AXES; k++) {
+        float slack = p->slack[k < BOX_AXES ? 0 : 1];
+        f32x8_store(out + 2 * k * LANES, v.low[k] - f32x8_all(slack));
+        f32x8_store(out + (2 * k + 1) * LANES, v.high[k] + f32x8_all(slack));
+    }
+    cache->tags[place] = index + 1;
+    return out;
+}
+
+/* Of a leaf's triangles, those whose boxes overlap lane i of bounds, a block's. */
+static inline uint32_t near_lane(const float *volumes, const float *bounds, int i, const displacement *d) {
+    return ~apart(bounds, volumes, i, 0, BOX_AXES, d) & FOREST_ALL_LANES;
+}
+
+static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
+    while (lanes != 0) {
+        lane->pairs[lane->pair_count++] = (triangle_pair){slot, first + (uint32_t)__builtin_ctz(lanes)};
+        lanes &= lanes - 1;
+    }
+}
+
+typedef struct leaf_pair {
+    uint32_t a, b;
+    const float *volumes_a, *volumes_b;
+    uint32_t rows, columns; /* lanes worth a look */
+} leaf_pair;
+
+static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+                                  bool one_part, const displacement *d) {
+    const forest *f = t->forest;
+    const comparison c = {.a = f->leaf_flags[pair->a],
+                          .b = f->leaf_flags[pair->b],
+                          .before_a = f->flags_before[pair->a],
+                          .before_b = f->flags_before[pair->b],
+                          .within = f->leaf_within != NULL ? f->leaf_within[pair->a] : UINT64_MAX,
+                          .itself = pair->a == pair->b,
+                          .one_part = one_part,
+                          .leaves = true,
+                          .pass = t->pass};
+    for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
+        int i = __builtin_ctz(rows);
+        uint32_t lanes = wanted(&c, i) & pair->columns;
+        if (lanes == 0) continue;
+        lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+        lanes &= ~apart(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        if (lanes == 0) continue;
+        lanes &= ~apart(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
+        add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
+    }
+}
+
+/* ---- blocks -------------------------------------------------------------------------------------------- */
+
+/* Lane i of block a against lanes of block b. */
+static inline void descend(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
+                           uint32_t lanes, const displacement *d) {
+    const forest *f = t->forest;
+    const forest_level *level = &f->levels[at->level];
+    uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        int j = __builtin_ctz(lanes);
+        uint32_t child_b = first_b + (uint32_t)j;
+        if (at->level > 0) {
+            bool parts = at->level == f->part_level;
+            lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, parts ? child_a : at->part_a,
+                                                            parts ? child_b : at->part_b, at->level - 1};
+            continue;
+        }
+        leaf_pair pair = {child_a, child_b, NULL, NULL, FOREST_ALL_LANES, FOREST_ALL_LANES};
+        pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
+        if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
+            memcpy(lane->cache.volumes[LEAF_CACHE_SIZE], pair.volumes_a, sizeof *lane->cache.volumes);
+            pair.volumes_a = lane->cache.volumes[LEAF_CACHE_SIZE];
+        }
+        pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->parts[at->part_b]);
+        if (child_a != child_b) {
+            pair.columns = near_lane(pair.volumes_b, level->bounds + at->a * stride, i, d);
+            if (pair.columns == 0) continue;
+            if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
+        }
+        compare_leaves(t, lane, &pair, at->part_a == at->part_b, d);
+    }
+}
+
+static inline void visit(const traversal *t, traversal_lane *lane, block_pair at) {
+    const forest *f = t->forest;
+    const forest_level *level = &f->levels[at.level];
+    bool below = at.level < f->part_level, crosses = below && at.part_a != at.part_b;
+    displacement between_parts;
+    if (crosses) between_parts = between(f, &f->parts[at.part_a], &f->parts[at.part_b]);
+    const displacement *d = crosses ? &between_parts : NULL;
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
+    const comparison c = {.a = level->flags[at.a],
+                          .b = level->flags[at.b],
+                          .within = level->within != NULL ? level->within[at.a] : UINT64_MAX,
+                          .itself = at.a == at.b,
+                          .one_part = below && !crosses,
+                          .pass = t->pass};
+    for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
+        int i = __builtin_ctz(rows);
+        uint32_t lanes = wanted(&c, i);
+        if (lanes != 0) {
+            lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+            lanes &= ~apart(bounds_a, bounds_b, i, 0, f->axis_count, d);
+        }
+        if (c.itself) {
+            bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
+            if (t->pass == TRAVERSAL_FRESH) own = (c.a.fresh >> i & 1) != 0;
+            if (own) lanes |= 1u << i;
+        }
+        if (lanes != 0) descend(t, lane, &at, i, lanes, d);
+    }
+}
+
+void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max) {
+    while (lane->stack_count > 0 && visits_max-- > 0) {
+        if (lane->pair_count + TRAVERSAL_PAIRS_PER_VISIT > TRAVERSAL_BATCH_SIZE) return;
+        if (lane->stack_count + TRAVERSAL_PUSHES_PER_VISIT > lane->stack_capacity) return;
+        visit(t, lane, lane->stack[--lane->stack_count]);
+    }
+}

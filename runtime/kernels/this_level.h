@@ -1,0 +1,16 @@
+/* The kernels under the names that they have on the level that is compiled. */
+#ifndef CSCD_THIS_LEVEL_H
+#define CSCD_THIS_LEVEL_H
+
+#include "runtime/kernels/kernels.h"
+#include "runtime/traversal.h"
+#include "src/simd.h"
+
+void SIMD_NAME(copy_in)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end, const double *x0,
+                        const double *x1, copied *out);
+void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end);
+void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
+                       const uint8_t *held, uint8_t *orientations);
+void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);
+
+#endif
