@@ -28,7 +28,7 @@ WARNINGS += -Werror
 endif
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
-              -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
+              -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
 TOOL_LIBS  := -lpng $(CORE_LIBS)
@@ -56,7 +56,7 @@ say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 # The inner loops are compiled once per instruction set; the processor decides at run time which are used.
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
 LEVELS := scalar avx2 avx512
-CORE_DEFINITIONS := -DCSCD_WITH_AVX
+CFLAGS_ALL += -DCSCD_WITH_AVX
 else
 LEVELS := scalar
 endif
