@@ -58,6 +58,7 @@ static void test_batch(void *data, uint32_t index) {
     contact_lane *lane = &work->detector->contact_lanes[index];
     for (uint32_t i = 0; i < batch->pair_count && !lane->out_of_memory; i++)
         narrow_phase_test(&work->interval, batch->pairs[i], lane);
+    narrow_phase_finish(&work->interval, lane);
 }
 
 static void test_share(void *data, uint32_t index) {
@@ -210,6 +211,7 @@ static cscd_status find_by_trees(step_work *work) {
 static cscd_status find_by_brute_force(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
+    work->interval.vertex_volumes = NULL;
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, work);
     timer_lap(&since, &work->timings.contact_ms);
     return lanes_status(d);

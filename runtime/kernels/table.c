@@ -1,10 +1,17 @@
 /* The table of one level: compiled once per instruction set. */
 #include "runtime/kernels/kernels.h"
 
+#include "runtime/kernels/feature_kernels.h"
 #include "src/simd.h"
 
 #define NAME_OF_LEVEL(level) (level == SIMD_AVX512 ? "avx512" : level == SIMD_AVX2 ? "avx2" : "scalar")
 
 const kernels SIMD_NAME(kernels) = {
     .name = NAME_OF_LEVEL(SIMD_LEVEL),
+    .keep_near_vf = SIMD_NAME(keep_near_vf),
+    .keep_near_ee = SIMD_NAME(keep_near_ee),
+    .keep_open_vf = SIMD_NAME(keep_open_vf),
+    .keep_open_ee = SIMD_NAME(keep_open_ee),
+    .roots_vf = SIMD_NAME(roots_vf),
+    .roots_ee = SIMD_NAME(roots_ee),
 };
