@@ -7,6 +7,8 @@
 #ifndef CSCD_SIMD_H
 #define CSCD_SIMD_H
 
+#include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -248,6 +250,10 @@ static inline f64w f64w_abs(f64w v) {
     return _mm512_abs_pd(v);
 }
 
+static inline f64w f64w_sqrt(f64w v) {
+    return _mm512_sqrt_pd(v);
+}
+
 /* Coordinate k of WIDTH points of positions (packed x, y, z) in out[k]. */
 static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
     f64x8_load_points(positions, indices, out);
@@ -283,6 +289,10 @@ static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
 
 static inline f64w f64w_abs(f64w v) {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), v);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return _mm256_sqrt_pd(v);
 }
 
 static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
@@ -327,6 +337,10 @@ static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
 
 static inline f64w f64w_abs(f64w v) {
     return (f64w)((i64w)v & INT64_MAX);
+}
+
+static inline f64w f64w_sqrt(f64w v) {
+    return (f64w){sqrt(v[0]), sqrt(v[1])};
 }
 
 static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {

@@ -22,7 +22,7 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* For eight pairs: what the roots say, and for hits the begin of the first root's interval. */
+/* For eight pairs: what a single root says, and for hits the begin of its interval. */
 typedef struct root_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double begin[KERNEL_LANES];
@@ -43,6 +43,10 @@ typedef struct kernels {
     /* The mostly taken way through level two, for pairs from a[0], b[0] to a[7], b[7]. */
     void (*roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
     void (*roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
+
+    /* The lanes of eight such pairs that certainly miss, for cubics that have two roots or none. */
+    uint32_t (*two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+    uint32_t (*two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
 } kernels;
 
 /* Of the context's level. */

@@ -14,4 +14,6 @@ const kernels SIMD_NAME(kernels) = {
     .keep_open_ee = SIMD_NAME(keep_open_ee),
     .roots_vf = SIMD_NAME(roots_vf),
     .roots_ee = SIMD_NAME(roots_ee),
+    .two_roots_vf = SIMD_NAME(two_roots_vf),
+    .two_roots_ee = SIMD_NAME(two_roots_ee),
 };
