@@ -149,9 +149,8 @@ static feature_sets represented(uint8_t a, uint8_t b) {
     return (feature_sets){a & 7u, b & 7u, each * edges_b};
 }
 
-static feature_sets answered(const swept_interval *interval, triangle_pair pair) {
-    if (interval->culling == NULL)
-        return represented(interval->representatives[pair.a], interval->representatives[pair.b]);
+static __attribute__((noinline)) feature_sets answered_after_culling(const swept_interval *interval,
+                                                                     triangle_pair pair) {
     feature_sets sets = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         sets.vertices_a |= (uint32_t)answers_for_vertex(interval, pair.a, i, pair.b) << i;
@@ -162,12 +161,18 @@ static feature_sets answered(const swept_interval *interval, triangle_pair pair)
     return sets;
 }
 
-static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
-    return (a[0] == b[0]) | (a[0] == b[1]) | (a[0] == b[2]) | (a[1] == b[0]) | (a[1] == b[1]) |
-           (a[1] == b[2]) | (a[2] == b[0]) | (a[2] == b[1]) | (a[2] == b[2]);
+static inline feature_sets answered(const swept_interval *interval, triangle_pair pair) {
+    if (interval->culling != NULL) return answered_after_culling(interval, pair);
+    return represented(interval->representatives[pair.a], interval->representatives[pair.b]);
 }
 
-static void leave_out_adjacent(const uint32_t a[3], const uint32_t b[3], feature_sets *sets) {
+static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
+    return triangle_contains(a, b[0]) || triangle_contains(a, b[1]) || triangle_contains(a, b[2]);
+}
+
+/* Out of the way of the common case, as is answered_after_culling. */
+static __attribute__((noinline)) void leave_out_adjacent(const uint32_t a[3], const uint32_t b[3],
+                                                         feature_sets *sets) {
     for (int i = 0; i < 3; i++) {
         if (triangle_contains(b, a[i])) sets->vertices_a &= ~(1u << i);
         if (triangle_contains(a, b[i])) sets->vertices_b &= ~(1u << i);
