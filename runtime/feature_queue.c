@@ -4,7 +4,7 @@
 
 #include "runtime/narrow_phase.h"
 
-static feature_source source_of(const swept_interval *interval) {
+feature_source feature_queue_source(const swept_interval *interval) {
     return (feature_source){interval->x0, interval->x1, interval->vertex_volumes,
                             (const uint32_t(*)[3])interval->mesh->triangles,
                             (const uint32_t(*)[2])interval->mesh->edges};
@@ -122,7 +122,7 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
 static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
                    contact_lane *lane) {
     const kernels *table = kernels_of(interval->mesh->context);
-    feature_source source = source_of(interval);
+    feature_source source = feature_queue_source(interval);
     feature_pairs pairs = {list->a, list->b, list->count};
     if (interval->vertex_volumes != NULL)
         (kind == CSCD_CONTACT_VF ? table->keep_near_vf : table->keep_near_ee)(&source, &pairs);

@@ -2,7 +2,7 @@
 #ifndef CSCD_FEATURE_QUEUE_H
 #define CSCD_FEATURE_QUEUE_H
 
-#include <stdint.h>
+#include "runtime/kernels/kernels.h"
 
 /* Whoever adds up to FEATURE_QUEUE_BURST pairs of a kind asks once whether there is room for them. */
 enum { FEATURE_QUEUE_CAPACITY = 512, FEATURE_QUEUE_BURST = 16 };
@@ -26,12 +26,15 @@ static inline uint32_t feature_list_put(feature_list *list, uint32_t count, uint
     return count + kept;
 }
 
-static inline int feature_list_full(const feature_list *list) {
+static inline bool feature_list_full(const feature_list *list) {
     return list->count + FEATURE_QUEUE_BURST > FEATURE_QUEUE_CAPACITY;
 }
 
 struct swept_interval;
 struct contact_lane;
+
+/* What the kernels read of an interval. */
+feature_source feature_queue_source(const struct swept_interval *interval);
 
 /* Decides all pairs of one list, or of both, and adds contacts and counts to the lane. */
 void feature_queue_decide_vf(const struct swept_interval *interval, struct contact_lane *lane);

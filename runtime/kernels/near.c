@@ -2,6 +2,24 @@
 #include "runtime/kernels/feature_kernels.h"
 #include "runtime/kernels/keep.h"
 
+#if SIMD_LEVEL == SIMD_SCALAR
+
+typedef kdop volume;
+
+static inline volume load_volume(const kdop *from) {
+    return *from;
+}
+
+static inline volume join(volume a, volume b) {
+    return kdop_union(&a, &b);
+}
+
+static inline uint32_t overlap(volume a, volume b) {
+    return kdop_overlap(&a, &b);
+}
+
+#else
+
 /* The bounds of a volume: those below (negated), and those above and another; seven of eight lanes count. */
 typedef struct volume {
     f32x8 low, high;
@@ -24,6 +42,8 @@ static inline uint32_t overlap(volume a, volume b) {
     f32x8 depth = f32x8_min(upper_bounds(a) + b.low, upper_bounds(b) + a.low);
     return (f32x8_below(depth, f32x8_all(0.0f)) & 127) == 0;
 }
+
+#endif
 
 void SIMD_NAME(keep_near_vf)(const feature_source *source, feature_pairs *pairs) {
     const kdop *volumes = source->vertex_volumes;
