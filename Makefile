@@ -124,7 +124,7 @@ fuzz-elementary: packages
 	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/narrow_phase \
 	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
@@ -189,6 +189,10 @@ $(MODELS): $(BUILD)/models/%: $(BUILD)/models/%.o $(MODEL_PART_OBJECTS) $(TOOL_O
 $(BUILD)/benchmarks/queries: $(call objects,benchmarks/queries.c benchmarks/query_file.c) $(CORE_OBJECTS) $(TOOL_OBJECTS)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
+
+$(BUILD)/benchmarks/narrow_phase: $(BUILD)/benchmarks/narrow_phase.o $(CORE_OBJECTS) $(TOOL_OBJECTS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 $(BUILD)/benchmarks/culling: $(BUILD)/benchmarks/culling.o $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'

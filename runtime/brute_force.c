@@ -71,4 +71,5 @@ void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint3
         test_face(interval, t, lane);
     for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count)
         test_edge(interval, e, lane);
+    narrow_phase_finish(interval, lane);
 }

@@ -82,11 +82,13 @@ static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     if (status != CSCD_OK) return status;
+    if (d->limit.distance > 0.0)
+        d->vertex_volumes = context_allocate(context, d->mesh->vertex_count, sizeof *d->vertex_volumes);
     d->representatives = representatives_create(d->mesh);
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
     d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
-    bool allocated = d->representatives != NULL && d->contact_lanes != NULL &&
-                     d->intersection_lanes != NULL && allocate_per_component(d);
+    bool allocated = (d->limit.distance == 0.0 || d->vertex_volumes != NULL) && d->representatives != NULL &&
+                     d->contact_lanes != NULL && d->intersection_lanes != NULL && allocate_per_component(d);
     return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -135,7 +137,8 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     forest_free(&d->forest);
     patches_free(context, &d->patches);
-    void *blocks[] = {d->representatives,
+    void *blocks[] = {d->vertex_volumes,
+                      d->representatives,
                       d->contacts.items,
                       d->contacts.scratch,
                       d->intersections.items,

@@ -39,8 +39,9 @@ struct cscd_detector {
     bool *crossing;             /* per component, at the moment checked last */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches; /* of the forest, with ICCD */
-    forest forest;   /* built from the first positions seen; of the interval or moment at hand */
+    patches patches;      /* of the forest, with ICCD */
+    kdop *vertex_volumes; /* of the interval at hand, with min_separation */
+    forest forest;        /* built from the first positions seen; of the interval or moment at hand */
     uint8_t *representatives;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */

@@ -57,3 +57,18 @@ elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *
 elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit) {
     return decide(query, 2, hit);
 }
+
+elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
+                                          elementary_hit *hit) {
+    point_vectors vectors;
+    point_vectors_from(query, first_count, &vectors);
+    coplanarity f = coplanarity_cubic(&vectors);
+    return decide_at_roots(query, &vectors, first_count, &f, hit);
+}
+
+void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit) {
+    point_vectors vectors;
+    point_vectors_from(query, first_count, &vectors);
+    coplanarity f = coplanarity_cubic(&vectors);
+    contact_frame_describe(query, first_count, &f, toi, hit);
+}

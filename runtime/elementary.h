@@ -35,4 +35,10 @@ typedef struct elementary_verdict {
 elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit);
 elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit);
 
+/* The rest, for callers that have done the first part: the levels after signs, which leave it open; and the
+ * contact, where a root's interval that begins at toi decides for it. first_count: 1 for VF, 2 for EE. */
+elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
+                                          elementary_hit *hit);
+void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit);
+
 #endif

@@ -11,6 +11,7 @@ void contact_lane_reset(contact_lane *lane) {
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
     lane->separations = 0;
     lane->out_of_memory = false;
+    lane->queue.vf.count = lane->queue.ee.count = 0;
 }
 
 static bool make_room(cscd_context *context, contact_lane *lane) {
@@ -27,9 +28,9 @@ static bool make_room(cscd_context *context, contact_lane *lane) {
     return true;
 }
 
-static void add_contact(const swept_interval *interval, contact_lane *lane, cscd_contact_kind kind,
-                        uint32_t a, uint32_t b, const elementary_hit *hit, bool bounded) {
-    if (!make_room(interval->mesh->context, lane)) return;
+void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
+                      uint32_t b, const elementary_hit *hit, bool bounded) {
+    if (!make_room(context, lane)) return;
     cscd_contact *contact = &lane->contacts[lane->count++];
     memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
     contact->kind = kind;
@@ -43,41 +44,48 @@ static void add_contact(const swept_interval *interval, contact_lane *lane, cscd
     contact->bounded = bounded;
 }
 
-static void test_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                      const elementary_query *query, contact_lane *lane) {
-    elementary_hit hit;
-    bool vf = kind == CSCD_CONTACT_VF, found, bounded = false;
-    if (interval->limit.distance > 0.0) {
-        found = (vf ? separation_vf : separation_ee)(query, &interval->limit, &hit, &bounded);
-        lane->separations++;
-    } else {
-        elementary_verdict verdict = (vf ? elementary_vf : elementary_ee)(query, &hit);
-        found = verdict.touching;
-        lane->decided[verdict.level]++;
-    }
-    if (found) add_contact(interval, lane, kind, a, b, &hit, bounded);
-}
-
 static void load_point(const swept_interval *interval, uint32_t vertex, elementary_query *query, int i) {
     memcpy(query->x0[i], interval->x0 + (size_t)vertex * 3, sizeof query->x0[i]);
     memcpy(query->x1[i], interval->x1 + (size_t)vertex * 3, sizeof query->x1[i]);
 }
 
+void narrow_phase_load(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                       elementary_query *query) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (kind == CSCD_CONTACT_VF) {
+        load_point(interval, a, query, 0);
+        for (int i = 0; i < 3; i++) load_point(interval, mesh->triangles[b][i], query, 1 + i);
+    } else {
+        for (int i = 0; i < 4; i++) load_point(interval, mesh->edges[i < 2 ? a : b][i % 2], query, i);
+    }
+}
+
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane) {
-    elementary_query query;
-    load_point(interval, vertex, &query, 0);
-    for (int i = 0; i < 3; i++) load_point(interval, interval->mesh->triangles[triangle][i], &query, i + 1);
-    test_pair(interval, CSCD_CONTACT_VF, vertex, triangle, &query, lane);
+    feature_list *list = &lane->queue.vf;
+    if (feature_list_full(list)) feature_queue_decide_vf(interval, lane);
+    list->count = feature_list_put(list, list->count, vertex, triangle, 1);
+}
+
+static uint32_t smaller_of(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
+}
+
+static uint32_t larger_of(uint32_t a, uint32_t b) {
+    return a < b ? b : a;
 }
 
 /* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
  * its result, never depends on the traversal. */
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    uint32_t edges[2] = {a < b ? a : b, a < b ? b : a};
-    elementary_query query;
-    for (int i = 0; i < 4; i++) load_point(interval, interval->mesh->edges[edges[i / 2]][i % 2], &query, i);
-    test_pair(interval, CSCD_CONTACT_EE, edges[0], edges[1], &query, lane);
+    feature_list *list = &lane->queue.ee;
+    if (feature_list_full(list)) feature_queue_decide_ee(interval, lane);
+    list->count = feature_list_put(list, list->count, smaller_of(a, b), larger_of(a, b), 1);
+}
+
+void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
+    feature_queue_decide_vf(interval, lane);
+    feature_queue_decide_ee(interval, lane);
 }
 
 /* ---- which triangle pair answers for a pair of features --------------------------------------------- */
@@ -126,72 +134,88 @@ static bool answers_for_edges(const swept_interval *interval, triangle_pair pair
     return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
 }
 
-static kdop vertex_volume(const swept_interval *interval, uint32_t vertex) {
-    kdop_exact start, end;
-    kdop_point(interval->x0 + (size_t)vertex * 3, &start);
-    kdop_point(interval->x1 + (size_t)vertex * 3, &end);
-    kdop_exact_add(&start, &end);
-    if (interval->limit.distance > 0.0) kdop_exact_widen(&start, interval->limit.distance);
-    return kdop_round(&start);
+/* ---- from a pair of triangles to the queue ----------------------------------------------------------- */
+
+/* Sets of features: bit i of vertices_a is vertex i of pair.a against the face pair.b, and so on; bit 3 i + j
+ * of edges is edge i of pair.a against edge j of pair.b. */
+typedef struct feature_sets {
+    uint32_t vertices_a, vertices_b, edges;
+} feature_sets;
+
+/* Branches cost more here than what they would save. */
+static feature_sets represented(uint8_t a, uint8_t b) {
+    uint32_t edges_a = a >> 3 & 7u, edges_b = b >> 3 & 7u;
+    uint32_t each = (edges_a & 1u) | (edges_a & 2u) << 2 | (edges_a & 4u) << 4;
+    return (feature_sets){a & 7u, b & 7u, each * edges_b};
 }
 
-static void test_vertices(const swept_interval *interval, uint32_t of, uint32_t against, const kdop *face,
-                          contact_lane *lane) {
-    const cscd_mesh *mesh = interval->mesh;
+static __attribute__((noinline)) feature_sets answered_after_culling(const swept_interval *interval,
+                                                                     triangle_pair pair) {
+    feature_sets sets = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
-        uint32_t vertex = mesh->triangles[of][i];
-        if (!answers_for_vertex(interval, of, i, against)) continue;
-        if (triangle_contains(mesh->triangles[against], vertex)) continue;
-        lane->feature_pairs++;
-        kdop volume = vertex_volume(interval, vertex);
-        if (kdop_overlap(&volume, face)) narrow_phase_test_vf(interval, vertex, against, lane);
+        sets.vertices_a |= (uint32_t)answers_for_vertex(interval, pair.a, i, pair.b) << i;
+        sets.vertices_b |= (uint32_t)answers_for_vertex(interval, pair.b, i, pair.a) << i;
+        for (int j = 0; j < 3; j++)
+            sets.edges |= (uint32_t)answers_for_edges(interval, pair, i, j) << (3 * i + j);
     }
+    return sets;
 }
 
-static kdop edge_volume(const swept_interval *interval, uint32_t edge) {
-    const uint32_t *ends = interval->mesh->edges[edge];
-    kdop a = vertex_volume(interval, ends[0]), b = vertex_volume(interval, ends[1]);
-    return kdop_union(&a, &b);
-}
-
-static void test_edges(const swept_interval *interval, triangle_pair pair, const kdop *face_b,
-                       contact_lane *lane) {
-    const cscd_mesh *mesh = interval->mesh;
-    kdop volumes_b[3];
-    for (int j = 0; j < 3; j++) volumes_b[j] = edge_volume(interval, mesh->triangle_edges[pair.b][j]);
-    for (int i = 0; i < 3; i++) {
-        uint32_t a = mesh->triangle_edges[pair.a][i];
-        kdop volume_a = edge_volume(interval, a);
-        bool near = kdop_overlap(&volume_a, face_b);
-        for (int j = 0; j < 3; j++) {
-            uint32_t b = mesh->triangle_edges[pair.b][j];
-            if (!answers_for_edges(interval, pair, i, j)) continue;
-            if (edges_share_vertex(mesh->edges[a], mesh->edges[b])) continue;
-            lane->feature_pairs++;
-            if (near && kdop_overlap(&volume_a, &volumes_b[j])) narrow_phase_test_ee(interval, a, b, lane);
-        }
-    }
-}
-
-static kdop face_volume(const swept_interval *interval, uint32_t triangle) {
-    const uint32_t *v = interval->mesh->triangles[triangle];
-    kdop corners[3];
-    for (int i = 0; i < 3; i++) corners[i] = vertex_volume(interval, v[i]);
-    return kdop_triangle(corners, (const uint32_t[3]){0, 1, 2});
+static inline feature_sets answered(const swept_interval *interval, triangle_pair pair) {
+    if (interval->culling != NULL) return answered_after_culling(interval, pair);
+    return represented(interval->representatives[pair.a], interval->representatives[pair.b]);
 }
 
 static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
     return triangle_contains(a, b[0]) || triangle_contains(a, b[1]) || triangle_contains(a, b[2]);
 }
 
+/* Out of the way of the common case, as is answered_after_culling. */
+static __attribute__((noinline)) void leave_out_adjacent(const uint32_t a[3], const uint32_t b[3],
+                                                         feature_sets *sets) {
+    for (int i = 0; i < 3; i++) {
+        if (triangle_contains(b, a[i])) sets->vertices_a &= ~(1u << i);
+        if (triangle_contains(a, b[i])) sets->vertices_b &= ~(1u << i);
+        for (int j = 0; j < 3; j++) {
+            const uint32_t edge_a[2] = {a[i], a[(i + 1) % 3]}, edge_b[2] = {b[j], b[(j + 1) % 3]};
+            if (edges_share_vertex(edge_a, edge_b)) sets->edges &= ~(1u << (3 * i + j));
+        }
+    }
+}
+
+/* Counts are kept in registers: in memory each step would wait for the one before. */
+static void add_vertices(feature_list *list, uint32_t vertices, const uint32_t of[3], uint32_t against) {
+    uint32_t count = list->count;
+    for (int i = 0; i < 3; i++) count = feature_list_put(list, count, of[i], against, vertices >> i & 1);
+    list->count = count;
+}
+
+static void add_edges(feature_list *list, uint32_t edges, const uint32_t a[3], const uint32_t b[3]) {
+    uint32_t count = list->count;
+    for (int i = 0; i < 9; i++) {
+        uint32_t first = a[i / 3], second = b[i % 3];
+        count = feature_list_put(list, count, smaller_of(first, second), larger_of(first, second),
+                                 edges >> i & 1);
+    }
+    list->count = count;
+}
+
 void narrow_phase_test(const swept_interval *interval, triangle_pair slots, contact_lane *lane) {
-    const cscd_mesh *mesh = interval->mesh;
     triangle_pair pair = {forest_triangle(interval->forest, slots.a),
                           forest_triangle(interval->forest, slots.b)};
-    if (interval->skip_adjacent && triangles_share_vertex(mesh->triangles[pair.a], mesh->triangles[pair.b]))
-        return;
-    kdop face_a = face_volume(interval, pair.a), face_b = face_volume(interval, pair.b);
-    test_vertices(interval, pair.a, pair.b, &face_b, lane);
-    test_vertices(interval, pair.b, pair.a, &face_a, lane);
-    test_edges(interval, pair, &face_b, lane);
+    const uint32_t *a = interval->mesh->triangles[pair.a], *b = interval->mesh->triangles[pair.b];
+    feature_queue *queue = &lane->queue;
+    bool adjacent = triangles_share_vertex(a, b);
+    if (adjacent && interval->skip_adjacent) return;
+    feature_sets sets = answered(interval, pair);
+    if (adjacent) leave_out_adjacent(a, b, &sets);
+    if (feature_list_full(&queue->vf)) feature_queue_decide_vf(interval, lane);
+    if (feature_list_full(&queue->ee)) feature_queue_decide_ee(interval, lane);
+    uint32_t before = queue->vf.count + queue->ee.count;
+    add_vertices(&queue->vf, sets.vertices_a, a, pair.b);
+    add_vertices(&queue->vf, sets.vertices_b, b, pair.a);
+    if (sets.edges != 0)
+        add_edges(&queue->ee, sets.edges, interval->mesh->triangle_edges[pair.a],
+                  interval->mesh->triangle_edges[pair.b]);
+    lane->feature_pairs += queue->vf.count + queue->ee.count - before;
 }

@@ -4,7 +4,9 @@
 
 #include "runtime/culling.h"
 #include "runtime/elementary.h"
+#include "runtime/feature_queue.h"
 #include "runtime/kdop.h"
+#include "runtime/kernels/kernels.h"
 #include "runtime/separation.h"
 #include "runtime/traversal.h"
 #include "src/mesh.h"
@@ -13,7 +15,8 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const forest *forest;
+    const forest *forest;           /* slots of triangle pairs */
+    const kdop *vertex_volumes;     /* swept, widened by limit: a sieve before the tests; NULL: none */
     const uint8_t *representatives; /* NULL when features are paired by the caller */
     const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
     bool culled_pairs;              /* with culling: the pairs that it culled are those that are reached */
@@ -29,15 +32,25 @@ typedef struct contact_lane {
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by what decided them */
     uint64_t separations;                     /* tests for minimum separation */
     bool out_of_memory;
+    feature_queue queue;
 } contact_lane;
 
 void contact_lane_reset(contact_lane *lane);
+void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
+                      uint32_t b, const elementary_hit *hit, bool bounded);
 
-/* Tests all pairs of features that the two triangles, in slots, represent and that share no vertex. */
+/* The points of vertex a and triangle b, or of the edges a and b. */
+void narrow_phase_load(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                       elementary_query *query);
+
+/* These put pairs in the lane's queue, which is decided when it is full, and by: */
+void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
+
+/* All pairs of features that the two triangles represent and that share no vertex. */
 void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane);
 
-/* Tests one pair of features without a common vertex, and adds a contact where they touch, or come within the
- * limit's distance. */
+/* One pair of features without a common vertex: a contact where they touch, or come within the limit's
+ * distance. */
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane);
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);

@@ -40,6 +40,7 @@ static void test_batch(void *data, uint32_t index) {
     contact_lane *lane = &work->detector->contact_lanes[index];
     for (uint32_t i = 0; i < batch->pair_count && !lane->out_of_memory; i++)
         narrow_phase_test(&work->interval, batch->pairs[i], lane);
+    narrow_phase_finish(&work->interval, lane);
 }
 
 static void test_share(void *data, uint32_t index) {
@@ -176,12 +177,29 @@ static cscd_status find_unsealed(step_work *work) {
     return traverse(work, TRAVERSAL_KEPT);
 }
 
+/* Tests for minimum separation are dear, so pairs whose own volumes stay apart are left out first. */
+static void sweep_vertices(void *data, uint32_t index) {
+    const step_work *work = data;
+    const cscd_detector *d = work->detector;
+    size_t count = d->mesh->vertex_count, lanes = d->traversal.lane_count;
+    for (size_t v = count * index / lanes; v < count * (index + 1) / lanes; v++) {
+        kdop_exact start, end;
+        kdop_point(work->interval.x0 + v * 3, &start);
+        kdop_point(work->interval.x1 + v * 3, &end);
+        kdop_exact_add(&start, &end);
+        kdop_exact_widen(&start, d->limit.distance);
+        d->vertex_volumes[v] = kdop_round(&start);
+    }
+}
+
 static cscd_status find_by_trees(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
     cscd_status status = detector_build(d, work->interval.x0);
     if (status != CSCD_OK) return status;
     forest_move(&d->forest, work->interval.x0, work->interval.x1, d->limit.distance);
+    if (d->limit.distance > 0.0)
+        parallel_run(d->context->threads, d->traversal.lane_count, sweep_vertices, work);
     timer_lap(&since, &work->timings.update_ms);
     if (detector_seals(d)) return find_unsealed(work);
     work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
@@ -196,6 +214,7 @@ static cscd_status find_by_trees(step_work *work) {
 static cscd_status find_by_brute_force(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
+    work->interval.vertex_volumes = NULL;
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, work);
     timer_lap(&since, &work->timings.contact_ms);
     return lanes_status(d);
@@ -256,6 +275,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                                    .x0 = start,
                                    .x1 = end,
                                    .forest = &detector->forest,
+                                   .vertex_volumes = detector->vertex_volumes,
                                    .representatives = detector->representatives,
                                    .limit = detector->limit},
                       .timings = {.check_ms = detector->timings.check_ms}};

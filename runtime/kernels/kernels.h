@@ -3,6 +3,7 @@
 #ifndef CSCD_KERNELS_H
 #define CSCD_KERNELS_H
 
+#include "runtime/kdop.h"
 #include "src/context.h"
 
 struct forest;
@@ -15,6 +16,27 @@ struct traversal_lane;
 typedef struct copied {
     double reach, weighted[2][3];
 } copied;
+enum { KERNEL_LANES = 8 };
+
+/* Where pairs of features and their points are found. */
+typedef struct feature_source {
+    const double *x0, *x1; /* three per vertex */
+    const kdop *vertex_volumes;
+    const uint32_t (*triangles)[3], (*edges)[2];
+} feature_source;
+
+/* Pairs of features: vertex a[i] and triangle b[i], or edges a[i] and b[i]. Kernels take eight at a time, so
+ * the arrays go on for seven more readable and writable places after the last pair. */
+typedef struct feature_pairs {
+    uint32_t *a, *b;
+    uint32_t count;
+} feature_pairs;
+
+/* For eight pairs: what a single root says, and for hits the begin of its interval. */
+typedef struct root_outcomes {
+    uint32_t misses, hits; /* sets of lanes */
+    double begin[KERNEL_LANES];
+} root_outcomes;
 
 typedef struct kernels {
     const char *name;
@@ -34,6 +56,22 @@ typedef struct kernels {
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
+    /* Keeps the pairs whose volumes overlap, in their order, as kdop_overlap of kdop_union says. */
+    void (*keep_near_vf)(const feature_source *source, feature_pairs *pairs);
+    void (*keep_near_ee)(const feature_source *source, feature_pairs *pairs);
+
+    /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
+     * coplanarity_excluded, so the same verdicts. */
+    void (*keep_open_vf)(const feature_source *source, feature_pairs *pairs);
+    void (*keep_open_ee)(const feature_source *source, feature_pairs *pairs);
+
+    /* The mostly taken way through level two, for pairs from a[0], b[0] to a[7], b[7]. */
+    void (*roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
+    void (*roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
+
+    /* The lanes of eight such pairs that certainly miss, for cubics that have two roots or none. */
+    uint32_t (*two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+    uint32_t (*two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
 } kernels;
 
 /* Of the context's level. */

@@ -1,6 +1,8 @@
 /* The table of one level: compiled once per instruction set. */
 #include "runtime/kernels/this_level.h"
 
+#include "runtime/kernels/feature_kernels.h"
+
 #define NAME_OF_LEVEL(level) (level == SIMD_AVX512 ? "avx512" : level == SIMD_AVX2 ? "avx2" : "scalar")
 
 const kernels SIMD_NAME(kernels) = {
@@ -9,4 +11,12 @@ const kernels SIMD_NAME(kernels) = {
     .refit = SIMD_NAME(refit),
     .orient = SIMD_NAME(orient),
     .search = SIMD_NAME(search),
+    .keep_near_vf = SIMD_NAME(keep_near_vf),
+    .keep_near_ee = SIMD_NAME(keep_near_ee),
+    .keep_open_vf = SIMD_NAME(keep_open_vf),
+    .keep_open_ee = SIMD_NAME(keep_open_ee),
+    .roots_vf = SIMD_NAME(roots_vf),
+    .roots_ee = SIMD_NAME(roots_ee),
+    .two_roots_vf = SIMD_NAME(two_roots_vf),
+    .two_roots_ee = SIMD_NAME(two_roots_ee),
 };

@@ -1,0 +1,245 @@
+/* Nanoseconds per pair of features: one by one, and in batches on each level of vector instructions. */
+#include "runtime/detector.h"
+#include "src/io/mesh_file.h"
+#include "src/timer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: narrow_phase START END\n"
+    "\n"
+    "Records all pairs of features of the mesh START (OBJ, PLY, OFF) whose triangles' volumes overlap on "
+    "the\n"
+    "way to END, the same mesh at other positions, and times the narrow phase on them (one thread, least of\n"
+    "5).\n";
+
+enum { REPEATS = 5, CHUNK = 480 };
+
+typedef struct recorded_pairs {
+    uint32_t *a, *b;
+    size_t count, capacity;
+} recorded_pairs;
+
+typedef struct recording {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+    mesh_file start, end;
+    swept_interval interval;
+    recorded_pairs of_kind[2];
+    contact_lane *lane;
+} recording;
+
+/* ---- recording --------------------------------------------------------------------------------------- */
+
+static bool record_list(recorded_pairs *to, feature_list *list) {
+    if (to->count + list->count > to->capacity) {
+        to->capacity = 2 * (to->count + list->count);
+        to->a = realloc(to->a, to->capacity * sizeof *to->a);
+        to->b = realloc(to->b, to->capacity * sizeof *to->b);
+        if (to->a == NULL || to->b == NULL) return false;
+    }
+    memcpy(to->a + to->count, list->a, list->count * sizeof *list->a);
+    memcpy(to->b + to->count, list->b, list->count * sizeof *list->b);
+    to->count += list->count;
+    list->count = 0;
+    return true;
+}
+
+/* Takes the pairs out of the queue before it is full. */
+static bool record_pairs(recording *r) {
+    traversal *t = &r->detector->traversal;
+    bool good = true, more = true;
+    traversal_begin(t, &r->detector->tree, TRAVERSAL_ALL);
+    while (good && more) {
+        good = traversal_round(t, &more) == CSCD_OK;
+        for (uint32_t i = 0; good && i < t->lanes[0].pair_count; i++) {
+            narrow_phase_test(&r->interval, t->lanes[0].pairs[i], r->lane);
+            good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue.vf) &&
+                   record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue.ee);
+        }
+    }
+    return good;
+}
+
+static bool open_recording(recording *r, io_error *error) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_NONE;
+    cscd_mesh_desc desc = {r->start.vertex_count, r->start.triangle_count, r->start.triangles};
+    if (r->start.vertex_count != r->end.vertex_count) return io_fail(error, "different numbers of vertices");
+    if (cscd_context_create(NULL, &r->context) != CSCD_OK) return io_fail(error, "no context");
+    if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
+        cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
+        detector_update(r->detector, r->start.positions, r->end.positions, 0.0) != CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(r->context));
+    r->lane = &r->detector->contact_lanes[0];
+    r->interval = (swept_interval){.mesh = r->mesh,
+                                   .x0 = r->start.positions,
+                                   .x1 = r->end.positions,
+                                   .vertex_volumes = r->detector->vertex_volumes,
+                                   .representatives = r->detector->representatives,
+                                   .limit = r->detector->limit};
+    contact_lane_reset(r->lane);
+    return record_pairs(r) || io_fail(error, "out of memory");
+}
+
+static void close_recording(recording *r) {
+    cscd_detector_destroy(r->detector);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+    mesh_file_free(&r->start);
+    mesh_file_free(&r->end);
+    for (int i = 0; i < 2; i++) {
+        free(r->of_kind[i].a);
+        free(r->of_kind[i].b);
+    }
+}
+
+/* ---- one by one -------------------------------------------------------------------------------------- */
+
+static kdop edge_volume(const recording *r, uint32_t edge) {
+    const uint32_t *ends = r->mesh->edges[edge];
+    return kdop_union(&r->interval.vertex_volumes[ends[0]], &r->interval.vertex_volumes[ends[1]]);
+}
+
+static bool volumes_overlap(const recording *r, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const kdop *volumes = r->interval.vertex_volumes;
+    bool vf = kind == CSCD_CONTACT_VF;
+    kdop first = vf ? volumes[a] : edge_volume(r, a);
+    kdop second = vf ? kdop_triangle(volumes, r->mesh->triangles[b]) : edge_volume(r, b);
+    return kdop_overlap(&first, &second);
+}
+
+static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
+    const recorded_pairs *pairs = &r->of_kind[kind];
+    for (size_t i = 0; i < pairs->count; i++) {
+        elementary_query query;
+        elementary_hit hit;
+        if (!volumes_overlap(r, kind, pairs->a[i], pairs->b[i])) continue;
+        narrow_phase_load(&r->interval, kind, pairs->a[i], pairs->b[i], &query);
+        elementary_verdict verdict = (kind == CSCD_CONTACT_VF ? elementary_vf : elementary_ee)(&query, &hit);
+        r->lane->decided[verdict.level]++;
+        if (verdict.touching)
+            contact_lane_add(r->context, r->lane, kind, pairs->a[i], pairs->b[i], &hit, false);
+    }
+}
+
+/* ---- in batches -------------------------------------------------------------------------------------- */
+
+static void decide_in_batches(recording *r, cscd_contact_kind kind) {
+    const recorded_pairs *pairs = &r->of_kind[kind];
+    bool vf = kind == CSCD_CONTACT_VF;
+    feature_list *list = vf ? &r->lane->queue.vf : &r->lane->queue.ee;
+    for (size_t i = 0; i < pairs->count; i += CHUNK) {
+        size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;
+        memcpy(list->a, pairs->a + i, count * sizeof *list->a);
+        memcpy(list->b, pairs->b + i, count * sizeof *list->b);
+        list->count = (uint32_t)count;
+        (vf ? feature_queue_decide_vf : feature_queue_decide_ee)(&r->interval, r->lane);
+    }
+}
+
+/* How many of the tests are left after the kernels of volumes and of signs, and those of roots. */
+typedef struct stage {
+    double near_ms, signs_ms;
+    size_t near, open;
+} stage;
+
+static stage time_stages(recording *r, cscd_contact_kind kind) {
+    const recorded_pairs *pairs = &r->of_kind[kind];
+    const kernels *table = kernels_of(r->context);
+    bool vf = kind == CSCD_CONTACT_VF;
+    feature_list *list = vf ? &r->lane->queue.vf : &r->lane->queue.ee;
+    feature_source source = feature_queue_source(&r->interval);
+    stage out = {0};
+    for (size_t i = 0; i < pairs->count; i += CHUNK) {
+        size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;
+        feature_pairs some = {list->a, list->b, (uint32_t)count};
+        memcpy(list->a, pairs->a + i, count * sizeof *list->a);
+        memcpy(list->b, pairs->b + i, count * sizeof *list->b);
+        double since = timer_now_ms();
+        (vf ? table->keep_near_vf : table->keep_near_ee)(&source, &some);
+        timer_lap(&since, &out.near_ms);
+        out.near += some.count;
+        (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &some);
+        timer_lap(&since, &out.signs_ms);
+        out.open += some.count;
+    }
+    return out;
+}
+
+/* ---- the table --------------------------------------------------------------------------------------- */
+
+static double time_pairs(recording *r, cscd_contact_kind kind,
+                         void (*decide)(recording *, cscd_contact_kind)) {
+    double least = 1e300;
+    for (int i = 0; i < REPEATS; i++) {
+        contact_lane_reset(r->lane);
+        double start = timer_now_ms();
+        decide(r, kind);
+        double ms = timer_now_ms() - start;
+        least = ms < least ? ms : least;
+    }
+    return least;
+}
+
+static double ns_each(double ms, size_t count) {
+    return count > 0 ? ms * 1e6 / (double)count : 0.0;
+}
+
+static void print_batches(recording *r, cscd_contact_kind kind) {
+    size_t count = r->of_kind[kind].count;
+    for (cscd_simd level = CSCD_SIMD_SCALAR; level <= CSCD_SIMD_AVX512; level++) {
+        if (level > cscd_context_simd(r->context)) break;
+        cscd_simd best = r->context->simd;
+        r->context->simd = level;
+        stage least = time_stages(r, kind);
+        for (int i = 1; i < REPEATS; i++) {
+            stage s = time_stages(r, kind);
+            if (s.near_ms < least.near_ms) least.near_ms = s.near_ms;
+            if (s.signs_ms < least.signs_ms) least.signs_ms = s.signs_ms;
+        }
+        double ms = time_pairs(r, kind, decide_in_batches);
+        r->context->simd = best;
+        printf("%-3s %-8s %9zu %8.1f %8.1f | volumes %5.1f ns a pair, signs %5.1f ns a test\n",
+               cscd_contact_kind_name(kind), cscd_simd_name(level), count, ns_each(ms, count),
+               ns_each(ms, least.near), ns_each(least.near_ms, count), ns_each(least.signs_ms, least.near));
+        if (level != best) continue;
+        printf("    of the pairs %.1f %% are tested, of the tests %.2f %% left open by signs\n",
+               100.0 * (double)least.near / (double)(count > 0 ? count : 1),
+               100.0 * (double)least.open / (double)(least.near > 0 ? least.near : 1));
+    }
+}
+
+static void print_kind(recording *r, cscd_contact_kind kind) {
+    size_t count = r->of_kind[kind].count;
+    double ms = time_pairs(r, kind, decide_one_by_one);
+    const uint64_t *decided = r->lane->decided;
+    size_t tests =
+        (size_t)(decided[ELEMENTARY_SIGNS] + decided[ELEMENTARY_ROOTS] + decided[ELEMENTARY_EXACT]);
+    printf("%-3s %-8s %9zu %8.1f %8.1f | %zu tests, %zu contacts\n", cscd_contact_kind_name(kind), "each",
+           count, ns_each(ms, count), ns_each(ms, tests), tests, r->lane->count);
+    print_batches(r, kind);
+}
+
+int main(int argument_count, char **arguments) {
+    recording r = {0};
+    io_error error = {""};
+    if (argument_count != 3) {
+        fputs(help, stderr);
+        return 2;
+    }
+    bool good = mesh_file_read(arguments[1], &r.start, &error) &&
+                mesh_file_read(arguments[2], &r.end, &error) && open_recording(&r, &error);
+    if (good) {
+        printf("%-3s %-8s %9s %8s %8s\n", "", "way", "pairs", "ns/pair", "ns/test");
+        print_kind(&r, CSCD_CONTACT_VF);
+        print_kind(&r, CSCD_CONTACT_EE);
+    } else {
+        fprintf(stderr, "narrow_phase: %s\n", error.text);
+    }
+    close_recording(&r);
+    return good ? 0 : 1;
+}

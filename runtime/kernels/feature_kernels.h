@@ -1,0 +1,19 @@
+/* The kernels of this level for pairs of features, for the table. */
+#ifndef CSCD_FEATURE_KERNELS_H
+#define CSCD_FEATURE_KERNELS_H
+
+#include "runtime/kernels/kernels.h"
+#include "src/simd.h"
+
+void SIMD_NAME(keep_near_vf)(const feature_source *source, feature_pairs *pairs);
+void SIMD_NAME(keep_near_ee)(const feature_source *source, feature_pairs *pairs);
+void SIMD_NAME(keep_open_vf)(const feature_source *source, feature_pairs *pairs);
+void SIMD_NAME(keep_open_ee)(const feature_source *source, feature_pairs *pairs);
+void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out);
+void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out);
+uint32_t SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+uint32_t SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+
+#endif

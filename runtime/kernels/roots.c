@@ -1,0 +1,62 @@
+/* Level two of the elementary tests on many pairs at a time, where the cubic certainly has one root: the
+ * same intervals and verdicts as cubic.c and inside.c have. */
+#include "runtime/kernels/feature_kernels.h"
+#include "runtime/kernels/wide_roots.h"
+
+/* A root interval must be as narrow for its begin to be the TOI. */
+static const double narrow = 0x1p-31;
+
+/* Lanes in which the coefficients certainly change sign once: from positive to negative, and back. */
+static inline void single_changes(const wide_cubics *f, uint32_t *falling, uint32_t *rising) {
+    uint32_t above[4], below[4];
+    for (int i = 0; i < 4; i++) {
+        above[i] = f64w_below(f->error, f->b[i]);
+        below[i] = f64w_below(f->b[i], -f->error);
+    }
+    *falling = above[0] & below[3] & (above[1] | below[2]);
+    *rising = below[0] & above[3] & (below[1] | above[2]);
+}
+
+/* Lanes in which exactly one root is certainly in the interval, and none outside of it. */
+static inline uint32_t isolate(const wide_cubics *f, wide_intervals *out) {
+    uint32_t falling, rising;
+    single_changes(f, &falling, &rising);
+    f64w root = f->b[0] / (f->b[0] - f->b[3]);
+    f64w change = f64w_select(falling, f64w_all(1.0), f64w_all(-1.0));
+    return isolate_between(f->b, f->error, falling | rising, f64w_all(0.0), f64w_all(1.0), change, root, out);
+}
+
+/* Pairs i to i + WIDTH - 1 of the eight. */
+static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
+    wide_vectors vectors;
+    wide_cubics f;
+    wide_intervals interval;
+    vectors_between(points, first_count, &vectors);
+    cubics_of(&vectors, &f);
+    uint32_t isolated = isolate(&f, &interval);
+    sign_lanes touching = inside(&vectors, first_count, &interval);
+    uint32_t fine = f64w_at_most(interval.end - interval.begin, f64w_all(narrow));
+    out->misses |= (isolated & touching.wrong) << i;
+    out->hits |= (isolated & touching.right & fine) << i;
+    memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
+}
+
+static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                                int first_count, root_outcomes *out) {
+    out->misses = out->hits = 0;
+    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
+        wide_points points;
+        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
+        decide(&points, first_count, i, out);
+    }
+}
+
+void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out) {
+    decide_eight(source, a, b, 1, out);
+}
+
+void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out) {
+    decide_eight(source, a, b, 2, out);
+}
