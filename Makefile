@@ -125,7 +125,7 @@ fuzz-elementary: packages
 
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
-	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules
+	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(BUILD)/benchmarks/scaling
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
@@ -208,6 +208,15 @@ $(BUILD)/benchmarks/published_rules: $(call objects,$(RULES_SOURCES)) $(MODEL_PA
 METHODS_SOURCES := benchmarks/methods.c benchmarks/methods_report.c benchmarks/contest.c benchmarks/scene_files.c \
                    benchmarks/thesis_numbers.c src/cli/provenance.c src/timer.c
 $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+# Programs on bodies that deform, of any size; the public API alone.
+DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c src/cli/provenance.c \
+                     src/cli/progress.c src/timer.c
+DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth)
+$(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
+              $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
