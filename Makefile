@@ -125,7 +125,8 @@ fuzz-elementary: packages
 
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
-	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(BUILD)/benchmarks/scaling
+	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(DEFORMING) \
+	    $(BUILD)/benchmarks/machine
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
@@ -212,13 +213,20 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # Programs on bodies that deform, of any size; the public API alone.
-DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c src/cli/provenance.c \
-                     src/cli/progress.c src/timer.c
+DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
+                     src/cli/provenance.c src/cli/progress.c src/timer.c
 DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth)
 $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
               $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+MACHINE_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/benchmarks/machine_kernels.$(level).o)
+$(BUILD)/benchmarks/machine.o: CFLAGS_ALL += $(CORE_DEFINITIONS)
+$(MACHINE_LEVELS): CFLAGS_ALL += $(CORE_DEFINITIONS) -fno-tree-vectorize -fno-tree-slp-vectorize
+$(BUILD)/benchmarks/machine: $(call objects,benchmarks/machine.c models/shapes/body.c src/timer.c) $(MACHINE_LEVELS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ -lm
 
 # Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
 # must be smaller than the tool).
@@ -260,4 +268,4 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d)
+-include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char bench_options_help[] =
+static const char options_help[] =
     "  --sizes N,N,...  triangles\n"
     "  --quick          small sizes, fewer intervals\n"
     "  --intervals N    measured intervals of each size (default: from 15, small, to 5, large)\n"
@@ -58,7 +58,7 @@ static bool parse_value(const char *name, const char *value, bench_options *o, b
     return true;
 }
 
-bool bench_options_parse(const char *program, int count, char **arguments, bench_options *o) {
+static bool parse(const char *program, int count, char **arguments, bench_options *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : "";
         bool known, *flag = strcmp(name, "--quick") == 0      ? &o->quick
@@ -77,45 +77,52 @@ bool bench_options_parse(const char *program, int count, char **arguments, bench
     return true;
 }
 
-void bench_default_sizes(bench_options *o, const uint32_t *sizes, uint32_t count) {
-    if (o->size_count > 0) return;
-    memcpy(o->sizes, sizes, count * sizeof *sizes);
-    o->size_count = count;
-}
-
 uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count) {
     if (o->interval_count > 0) return o->interval_count;
     if (o->quick) return 5;
     return triangle_count <= 30000 ? 15 : triangle_count <= 150000 ? 9 : 5;
 }
 
-bool bench_json_open(const bench_options *o, int argument_count, char **arguments, bench_json *out,
-                     io_error *error) {
-    *out = (bench_json){
-        .argument_count = argument_count, .arguments = arguments, .thread_count = o->thread_count};
+/* ---- programs ---------------------------------------------------------------------------------------- */
+
+static bool open_rows(const bench_options *o, json *out, io_error *error) {
+    *out = (json){.file = NULL};
     if (o->json_path == NULL) return true;
-    out->out.file = fopen(o->json_path, "w");
-    if (out->out.file == NULL) return io_fail(error, "%s: %s", o->json_path, strerror(errno));
-    json_begin_object(&out->out, NULL);
-    json_begin_array(&out->out, "rows");
+    out->file = fopen(o->json_path, "w");
+    if (out->file == NULL) return io_fail(error, "%s: %s", o->json_path, strerror(errno));
+    json_begin_object(out, NULL);
+    json_begin_array(out, "rows");
     return true;
 }
 
-bool bench_json_close(bench_json *j, io_error *error) {
-    FILE *file = j->out.file;
-    if (file == NULL) return true;
-    json_end_array(&j->out);
-    json_begin_object(&j->out, "provenance");
-    provenance_write(&j->out, j->argument_count, j->arguments, j->thread_count);
-    json_end_object(&j->out);
-    json_end_object(&j->out);
-    fputc('\n', file);
-    bool written = !ferror(file);
-    j->out.file = NULL;
-    return (fclose(file) == 0 && written) || io_fail(error, "the JSON could not be written");
+static bool close_rows(const bench_options *o, int argument_count, char **arguments, json *out,
+                       io_error *error) {
+    if (out->file == NULL) return true;
+    json_end_array(out);
+    json_begin_object(out, "provenance");
+    provenance_write(out, argument_count, arguments, o->thread_count);
+    json_end_object(out);
+    json_end_object(out);
+    fputc('\n', out->file);
+    bool written = !ferror(out->file);
+    return (fclose(out->file) == 0 && written) || io_fail(error, "%s could not be written", o->json_path);
 }
 
-bool bench_fail(const char *program, const io_error *error) {
-    fprintf(stderr, "%s: %s\n", program, error->text);
-    return false;
+int bench_main(const bench_program *program, int argument_count, char **arguments) {
+    bench_options o = {.thread_count = 1, .kind = BODY_PAWN, .data = "../shared/data/frames"};
+    json out;
+    io_error error;
+    if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
+        printf("%s%s", program->help, options_help);
+        return 0;
+    }
+    if (!parse(program->name, argument_count, arguments, &o)) return 2;
+    if (o.size_count == 0) {
+        o.size_count = o.quick ? program->quick_size_count : program->size_count;
+        for (uint32_t i = 0; i < o.size_count; i++) o.sizes[i] = program->sizes[i];
+    }
+    bool good = open_rows(&o, &out, &error) && program->run(&o, &out, &error) &&
+                close_rows(&o, argument_count, arguments, &out, &error);
+    if (!good) fprintf(stderr, "%s: %s\n", program->name, error.text);
+    return good ? 0 : 1;
 }

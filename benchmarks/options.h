@@ -19,31 +19,19 @@ typedef struct bench_options {
     const char *data, *json_path;
 } bench_options;
 
-/* What all of them share; to be printed behind a program's own help. */
-extern const char bench_options_help[];
-
-/* False: what is wrong has been said on stderr. Starts from *o, so the caller sets its defaults there. */
-bool bench_options_parse(const char *program, int count, char **arguments, bench_options *o);
-
-/* The first `count` of sizes, where none are given. */
-void bench_default_sizes(bench_options *o, const uint32_t *sizes, uint32_t count);
-
 /* Measured intervals of a size. */
 uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count);
 
-/* The rows as JSON, with where they come from; file is NULL, and nothing is written, without --json. */
-typedef struct bench_json {
-    json out;
-    int argument_count;
-    char **arguments;
-    uint32_t thread_count;
-} bench_json;
+typedef struct bench_program {
+    const char *name, *help;               /* the options are told behind the help */
+    const uint32_t *sizes;                 /* where none are asked for, */
+    uint32_t size_count, quick_size_count; /* the first ones with --quick */
+    /* Prints its tables and, where out->file is not NULL, writes a row of JSON for each of theirs. */
+    bool (*run)(const bench_options *o, json *out, io_error *error);
+} bench_program;
 
-bool bench_json_open(const bench_options *o, int argument_count, char **arguments, bench_json *out,
-                     io_error *error);
-bool bench_json_close(bench_json *j, io_error *error);
-
-/* False after saying it on stderr. */
-bool bench_fail(const char *program, const io_error *error);
+/* Of a whole program, its exit status: parses, runs, says what went wrong, and gives the rows of --json the
+ * frame that tells where they come from. */
+int bench_main(const bench_program *program, int argument_count, char **arguments);
 
 #endif

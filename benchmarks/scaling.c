@@ -1,9 +1,9 @@
 /* What each stage costs per triangle, from small meshes to large ones, where nothing touches. */
+#include "benchmarks/fixed_arithmetic.h"
 #include "benchmarks/options.h"
 #include "benchmarks/stages.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { ROWS_MAX = SIZES_MAX * 8, CHARGE_TRIANGLES_MAX = 6000, COMPARED_SIZE = 20000 };
 
@@ -12,7 +12,8 @@ static const char help[] =
     "\n"
     "Milliseconds per interval and stage, and nanoseconds per triangle, of bodies that deform by about one\n"
     "edge length an interval and never touch themselves: medians over consecutive intervals, the first,\n"
-    "which builds trees, left out. Peak: bytes per triangle of all that the library held.\n"
+    "which builds trees, left out. Loop: what a fixed loop of arithmetic took meanwhile, which is how fast\n"
+    "the machine was. Peak: bytes per triangle of all that the library held.\n"
     "\n";
 
 typedef struct row {
@@ -20,6 +21,7 @@ typedef struct row {
     cscd_method method;
     cscd_mode mode;
     double ms[STAGE_COUNT], boxes, pcp, tests, contacts, peak; /* per interval; peak in bytes */
+    double loop;                                               /* ms */
 } row;
 
 typedef struct table {
@@ -29,15 +31,18 @@ typedef struct table {
 
 /* ---- measuring --------------------------------------------------------------------------------------- */
 
-static bool replay(const deforming_body *b, subject *s, uint32_t intervals, io_error *error) {
+static bool replay(const deforming_body *b, subject *s, uint32_t intervals, double *loop, io_error *error) {
+    double loops[INTERVALS_MAX + 1];
     size_t size = (size_t)b->vertex_count * 3;
     double *ends = body_allocate(2 * size, sizeof *ends);
     bool good = true;
     for (uint32_t i = 0; good && i <= intervals; i++) {
         cscd_contacts found;
         deforming_body_interval(b, i, 0.0, ends, ends + size);
+        loops[i] = fixed_arithmetic_ms();
         good = subject_step(s, ends, ends + size, i > 0, &found, error);
     }
+    *loop = median(loops, intervals);
     free(ends);
     return good;
 }
@@ -46,10 +51,12 @@ static bool measure(const deforming_body *b, const subject_options *options, uin
                     io_error *error) {
     subject *s = subject_make(b, options, error);
     if (s == NULL) return false;
-    bool good = replay(b, s, intervals, error);
+    double loop;
+    bool good = replay(b, s, intervals, &loop, error);
     row r = {.triangles = b->triangle_count,
              .method = options->method,
              .mode = options->mode,
+             .loop = loop,
              .peak = (double)s->peak,
              .boxes = s->samples.boxes / intervals,
              .pcp = s->samples.pcp / intervals,
@@ -76,8 +83,8 @@ static void print_stages(const row *r, double scale) {
 static void print_row(const row *r) {
     double n = r->triangles;
     print_stages(r, 1.0);
-    printf(" %8.1f %10.0f %10.0f %10.0f %8.0f %8.0f\n", r->ms[STAGE_TOTAL] * 1e6 / n, r->boxes, r->pcp,
-           r->tests, r->contacts, r->peak / n);
+    printf(" %8.1f %10.0f %10.0f %10.0f %8.0f %8.0f %6.2f\n", r->ms[STAGE_TOTAL] * 1e6 / n, r->boxes, r->pcp,
+           r->tests, r->contacts, r->peak / n, r->loop);
     fflush(stdout);
 }
 
@@ -117,7 +124,7 @@ static void print_growth(const table *t) {
             if (k != STAGE_PROOF && small->ms[k] > 0.0)
                 printf(" %s %.2f", stage_names[k], r->ms[k] / small->ms[k] * scale);
         }
-        putchar('\n');
+        printf(" (loop %.2f)\n", r->loop / small->loop);
     }
 }
 
@@ -140,6 +147,7 @@ static void write_row(json *out, const row *r, const bench_options *o) {
     json_number(out, "tests", r->tests);
     json_number(out, "contacts", r->contacts);
     json_number(out, "peak_bytes", r->peak);
+    json_number(out, "loop_ms", r->loop);
     json_end_object(out);
 }
 
@@ -175,7 +183,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
     return good;
 }
 
-static bool run(const bench_options *o, bench_json *j, io_error *error) {
+static bool run(const bench_options *o, json *out, io_error *error) {
     static table t;
     progress shown;
     double contacts = 0.0;
@@ -183,10 +191,11 @@ static bool run(const bench_options *o, bench_json *j, io_error *error) {
     printf("%s, %u thread%s, simd %s\n", body_kind_name(o->kind), o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd));
     print_title("milliseconds per interval");
-    printf(" %8s %10s %10s %10s %8s %8s\n", "ns/tri", "boxes", "#PCPs", "tests", "contacts", "peak B/t");
+    printf(" %8s %10s %10s %10s %8s %8s %6s\n", "ns/tri", "boxes", "#PCPs", "tests", "contacts", "peak B/t",
+           "loop");
     bool good = true;
     for (uint32_t i = 0; good && i < o->size_count; i++)
-        good = run_size(o, o->sizes[i], &t, &j->out, &shown, error);
+        good = run_size(o, o->sizes[i], &t, out, &shown, error);
     progress_end(&shown);
     if (!good) return false;
     for (uint32_t i = 0; i < t.count; i++) contacts += t.rows[i].contacts;
@@ -201,16 +210,6 @@ static bool run(const bench_options *o, bench_json *j, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {2000, 5000, 20000, 100000, 300000, 1300000};
-    bench_options o = {.thread_count = 1, .kind = BODY_PAWN};
-    bench_json j;
-    io_error error;
-    if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
-        printf("%s%s", help, bench_options_help);
-        return 0;
-    }
-    if (!bench_options_parse("scaling", argument_count, arguments, &o)) return 2;
-    bench_default_sizes(&o, sizes, o.quick ? 3 : 6);
-    bool good = bench_json_open(&o, argument_count, arguments, &j, &error) && run(&o, &j, &error);
-    good = good && bench_json_close(&j, &error);
-    return good || bench_fail("scaling", &error) ? 0 : 1;
+    static const bench_program program = {"scaling", help, sizes, 6, 3, run};
+    return bench_main(&program, argument_count, arguments);
 }
