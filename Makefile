@@ -75,7 +75,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery bench bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library packages demo models gallery bench bench-embree bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -136,6 +136,12 @@ bench: packages
 	@$(BUILD)/benchmarks/methods $(BENCH)
 	@$(BUILD)/benchmarks/experiments
 	@$(BUILD)/benchmarks/published_rules
+
+# The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
+bench-embree:
+	@GSL=$(GSL) .ci/packages embree
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
+	@$(BUILD)/benchmarks/embree $(EMBREE)
 
 # The charts of docs/benchmarks.md, from the last make bench.
 bench-plot:
@@ -220,6 +226,11 @@ $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DE
               $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+$(BUILD)/benchmarks/embree: $(call objects,benchmarks/embree.c $(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) \
+                            $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lembree3
 
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/benchmarks/machine_kernels.$(level).o)
 $(BUILD)/benchmarks/machine.o: CFLAGS_ALL += $(CORE_DEFINITIONS)
