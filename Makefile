@@ -75,7 +75,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery bench bench-embree bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -137,6 +137,12 @@ bench: packages
 	@$(BUILD)/benchmarks/experiments
 	@$(BUILD)/benchmarks/published_rules
 
+# The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
+performance: packages
+	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
+	@for program in machine scaling threads motion cloth; do \
+	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
+
 # The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
 bench-embree:
 	@GSL=$(GSL) .ci/packages embree
@@ -167,7 +173,9 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'
+	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
+	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
+	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'

@@ -3,15 +3,18 @@
 
 #include "src/timer.h"
 
-enum { STEPS = 400000, CHAINS = 4 };
+enum { STEPS = 100000, CHAINS = 24 };
 
-/* Four chains, so that it is bound by arithmetic and not by waiting for one result. */
+/* Enough chains to keep all units busy: then it shows, too, when another processor shares them (with few
+ * chains it waits for results, and takes the same time whatever the neighbour does). */
 double fixed_arithmetic(void) {
-    double x[CHAINS] = {1.0, 2.0, 3.0, 4.0};
+    double x[CHAINS], sum = 0.0;
+    for (int k = 0; k < CHAINS; k++) x[k] = k;
     for (int i = 0; i < STEPS; i++) {
         for (int k = 0; k < CHAINS; k++) x[k] = x[k] * 0.999 + 0.001;
     }
-    return x[0] + x[1] + x[2] + x[3];
+    for (int k = 0; k < CHAINS; k++) sum += x[k];
+    return sum;
 }
 
 static volatile double result; /* wanted, as far as the compiler knows */

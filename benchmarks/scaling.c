@@ -20,8 +20,8 @@ typedef struct row {
     uint32_t triangles;
     cscd_method method;
     cscd_mode mode;
-    double ms[STAGE_COUNT], boxes, pcp, tests, contacts, peak; /* per interval; peak in bytes */
-    double loop;                                               /* ms */
+    double ms[STAGE_COUNT], boxes, pcp, features, tests, contacts, peak; /* per interval; peak in bytes */
+    double loop;                                                         /* ms */
 } row;
 
 typedef struct table {
@@ -60,6 +60,7 @@ static bool measure(const deforming_body *b, const subject_options *options, uin
              .peak = (double)s->peak,
              .boxes = s->samples.boxes / intervals,
              .pcp = s->samples.pcp / intervals,
+             .features = s->samples.features / intervals,
              .tests = s->samples.tests / intervals,
              .contacts = s->samples.contacts / intervals};
     for (int i = 0; i < STAGE_COUNT; i++) r.ms[i] = stage_median(&s->samples, (stage)i);
@@ -83,8 +84,8 @@ static void print_stages(const row *r, double scale) {
 static void print_row(const row *r) {
     double n = r->triangles;
     print_stages(r, 1.0);
-    printf(" %8.1f %10.0f %10.0f %10.0f %8.0f %8.0f %6.2f\n", r->ms[STAGE_TOTAL] * 1e6 / n, r->boxes, r->pcp,
-           r->tests, r->contacts, r->peak / n, r->loop);
+    printf(" %8.1f %9.0f %9.0f %9.0f %9.0f %8.0f %8.0f %6.2f\n", r->ms[STAGE_TOTAL] * 1e6 / n, r->boxes,
+           r->pcp, r->features, r->tests, r->contacts, r->peak / n, r->loop);
     fflush(stdout);
 }
 
@@ -144,6 +145,7 @@ static void write_row(json *out, const row *r, const bench_options *o) {
     json_number(out, "ns_per_triangle", r->ms[STAGE_TOTAL] * 1e6 / r->triangles);
     json_number(out, "boxes", r->boxes);
     json_number(out, "pcp", r->pcp);
+    json_number(out, "feature_pairs", r->features);
     json_number(out, "tests", r->tests);
     json_number(out, "contacts", r->contacts);
     json_number(out, "peak_bytes", r->peak);
@@ -191,8 +193,8 @@ static bool run(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s\n", body_kind_name(o->kind), o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd));
     print_title("milliseconds per interval");
-    printf(" %8s %10s %10s %10s %8s %8s %6s\n", "ns/tri", "boxes", "#PCPs", "tests", "contacts", "peak B/t",
-           "loop");
+    printf(" %8s %9s %9s %9s %9s %8s %8s %6s\n", "ns/tri", "boxes", "#PCPs", "features", "tests", "contacts",
+           "peak B/t", "loop");
     bool good = true;
     for (uint32_t i = 0; good && i < o->size_count; i++)
         good = run_size(o, o->sizes[i], &t, out, &shown, error);

@@ -103,6 +103,7 @@ static void add_sample(stage_samples *s, const cscd_detector *detector, size_t c
     s->count++;
     s->boxes += (double)n.boxes_tested;
     s->pcp += (double)n.pcp;
+    s->features += (double)n.feature_pairs;
     s->tests += (double)n.tests;
     s->contacts += (double)contacts;
 }

@@ -26,7 +26,7 @@ enum { SAMPLES_MAX = 64 };
 typedef struct stage_samples {
     uint32_t count;
     double ms[STAGE_COUNT][SAMPLES_MAX];
-    double boxes, pcp, tests, contacts;
+    double boxes, pcp, features, tests, contacts;
 } stage_samples;
 
 double stage_median(const stage_samples *s, stage which);
