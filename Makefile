@@ -75,7 +75,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery bench bench-plot test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -124,8 +124,9 @@ fuzz-elementary: packages
 	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/narrow_phase \
-	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
+	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(DEFORMING) \
+	    $(BUILD)/benchmarks/machine $(BUILD)/benchmarks/narrow_phase
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
@@ -135,6 +136,18 @@ bench: packages
 	@$(BUILD)/benchmarks/methods $(BENCH)
 	@$(BUILD)/benchmarks/experiments
 	@$(BUILD)/benchmarks/published_rules
+
+# The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
+performance: packages
+	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
+	@for program in machine scaling threads motion cloth; do \
+	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
+
+# The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
+bench-embree:
+	@GSL=$(GSL) .ci/packages embree
+	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
+	@$(BUILD)/benchmarks/embree $(EMBREE)
 
 # The charts of docs/benchmarks.md, from the last make bench.
 bench-plot:
@@ -160,7 +173,9 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make benchmarks   build the programs that print the tables of docs/measurements.md'
+	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
+	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
+	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
@@ -215,6 +230,27 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
+# Programs on bodies that deform, of any size; the public API alone.
+DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
+                     src/cli/provenance.c src/cli/progress.c src/timer.c
+DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth)
+$(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
+              $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+$(BUILD)/benchmarks/embree: $(call objects,benchmarks/embree.c $(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) \
+                            $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lembree3
+
+MACHINE_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/benchmarks/machine_kernels.$(level).o)
+$(BUILD)/benchmarks/machine.o: CFLAGS_ALL += $(CORE_DEFINITIONS)
+$(MACHINE_LEVELS): CFLAGS_ALL += $(CORE_DEFINITIONS) -fno-tree-vectorize -fno-tree-slp-vectorize
+$(BUILD)/benchmarks/machine: $(call objects,benchmarks/machine.c models/shapes/body.c src/timer.c) $(MACHINE_LEVELS)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ -lm
+
 # Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
 # must be smaller than the tool).
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/tests/inside.a
@@ -255,4 +291,4 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d)
+-include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d)

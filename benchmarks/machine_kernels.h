@@ -1,0 +1,29 @@
+/* The loops of benchmarks/machine, compiled once per instruction set. */
+#ifndef CSCD_BENCHMARK_MACHINE_KERNELS_H
+#define CSCD_BENCHMARK_MACHINE_KERNELS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Sizes are in bytes, multiples of 1,024. Results are returned so that nothing is optimised away. */
+typedef struct machine_kernels {
+    const char *name;
+    uint32_t f32_lanes, f64_lanes; /* of the widest vector */
+    uint64_t (*read)(const void *from, size_t size);
+    void (*write)(void *to, size_t size, uint64_t value);
+    void (*copy)(void *to, const void *from, size_t size);
+    /* `steps` times a multiplication and an addition in each of MACHINE_CHAINS accumulators. */
+    double (*f32_one)(uint32_t steps), (*f64_one)(uint32_t steps);       /* one number each, */
+    double (*f32_vector)(uint32_t steps), (*f64_vector)(uint32_t steps); /* one vector each */
+    /* Pairs of boxes of six floats, eight against one a time, as in traversal: pairs that overlap. */
+    uint64_t (*boxes)(uint32_t steps);
+} machine_kernels;
+
+enum { MACHINE_CHAINS = 12, MACHINE_BOXES = 64 };
+
+extern const machine_kernels machine_scalar;
+#ifdef CSCD_WITH_AVX
+extern const machine_kernels machine_avx2, machine_avx512;
+#endif
+
+#endif

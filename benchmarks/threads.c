@@ -1,0 +1,150 @@
+/* What a second thread gains, beside what it gains on this machine for arithmetic that shares nothing. */
+#include "benchmarks/fixed_arithmetic.h"
+#include "benchmarks/options.h"
+#include "benchmarks/stages.h"
+#include "src/timer.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+static const char help[] =
+    "usage: threads [options]\n"
+    "\n"
+    "The same intervals on one thread and on two, in turn, and between them a fixed loop of multiplications\n"
+    "and additions on one thread and on two at once, which is what the machine gives. Speedup: median of "
+    "one\n"
+    "thread over that of two. Efficiency: the speedup over the machine's own. --threads means nothing here.\n"
+    "\n";
+
+/* ---- the machine's own factor ------------------------------------------------------------------------ */
+
+static atomic_uint waiting;
+
+typedef struct worker {
+    double begin, end, result;
+} worker;
+
+/* Starts when the last of all has come. */
+static void *work(void *data) {
+    worker *w = data;
+    atomic_fetch_sub(&waiting, 1);
+    while (atomic_load(&waiting) > 0) {
+    }
+    w->begin = timer_now_ms();
+    w->result = fixed_arithmetic();
+    w->end = timer_now_ms();
+    return NULL;
+}
+
+/* Twice the work on two threads, how many times as fast as one after the other; 0: the system refused. */
+static double machine_factor(void) {
+    worker w[3] = {{0.0, 0.0, 0.0}};
+    pthread_t other;
+    atomic_store(&waiting, 1);
+    work(&w[0]);
+    atomic_store(&waiting, 2);
+    if (pthread_create(&other, NULL, work, &w[1]) != 0) return 0.0;
+    work(&w[2]);
+    pthread_join(other, NULL);
+    double begin = w[1].begin < w[2].begin ? w[1].begin : w[2].begin;
+    double end = w[1].end > w[2].end ? w[1].end : w[2].end;
+    return 2.0 * (w[0].end - w[0].begin) / (end - begin);
+}
+
+/* ---- measuring --------------------------------------------------------------------------------------- */
+
+typedef struct duel {
+    subject *subjects[2]; /* on one thread and on two */
+    double factors[SAMPLES_MAX];
+    uint32_t factor_count;
+} duel;
+
+static bool run_interval(const deforming_body *b, duel *d, uint32_t i, double *ends, io_error *error) {
+    size_t size = (size_t)b->vertex_count * 3;
+    bool good = true;
+    deforming_body_interval(b, i, 0.0, ends, ends + size);
+    for (uint32_t k = 0; good && k < 2; k++) {
+        cscd_contacts found;
+        good = subject_step(d->subjects[(k + i) % 2], ends, ends + size, i > 0, &found, error);
+    }
+    if (i > 0 && d->factor_count < SAMPLES_MAX) d->factors[d->factor_count++] = machine_factor();
+    return good;
+}
+
+static void print_row(const deforming_body *b, const subject_options *options, const duel *d, json *out) {
+    const stage_samples *one = &d->subjects[0]->samples, *two = &d->subjects[1]->samples;
+    double machine = median(d->factors, d->factor_count);
+    double speedup = stage_median(one, STAGE_TOTAL) / stage_median(two, STAGE_TOTAL);
+    printf("  %9u %-7s", b->triangle_count, cscd_method_name(options->method));
+    for (int i = 0; i < STAGE_COUNT; i++) {
+        double ms = stage_median(one, (stage)i);
+        if (i == STAGE_PROOF) continue;
+        if (ms >= 0.001)
+            printf(" %8.2f", ms / stage_median(two, (stage)i));
+        else
+            printf(" %8s", "-");
+    }
+    printf(" %9.3f %9.3f %8.2f %10.2f\n", stage_median(one, STAGE_TOTAL), stage_median(two, STAGE_TOTAL),
+           machine, speedup / machine);
+    fflush(stdout);
+    if (out->file == NULL) return;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_integer(out, "triangles", b->triangle_count);
+    json_string(out, "method", cscd_method_name(options->method));
+    for (int k = 0; k < 2; k++) {
+        json_begin_object(out, k == 0 ? "one_ms" : "two_ms");
+        for (int i = 0; i < STAGE_COUNT; i++)
+            json_number(out, stage_names[i], stage_median(k == 0 ? one : two, (stage)i));
+        json_end_object(out);
+    }
+    json_number(out, "machine", machine);
+    json_number(out, "efficiency", speedup / machine);
+    json_end_object(out);
+}
+
+static bool run_method(const deforming_body *b, const bench_options *o, cscd_method method, json *out,
+                       io_error *error) {
+    duel d = {{NULL, NULL}, {0.0}, 0};
+    subject_options options[2] = {{method, CSCD_MODE_ALL, 1, o->simd}, {method, CSCD_MODE_ALL, 2, o->simd}};
+    double *ends = body_allocate((size_t)b->vertex_count * 6, sizeof *ends);
+    uint32_t intervals = bench_intervals(o, b->triangle_count);
+    bool good = true;
+    for (int k = 0; good && k < 2; k++) {
+        d.subjects[k] = subject_make(b, &options[k], error);
+        good = d.subjects[k] != NULL;
+    }
+    for (uint32_t i = 0; good && i <= intervals; i++) good = run_interval(b, &d, i, ends, error);
+    if (good) print_row(b, &options[0], &d, out);
+    subject_destroy(d.subjects[0]);
+    subject_destroy(d.subjects[1]);
+    free(ends);
+    return good;
+}
+
+/* ---- the program ------------------------------------------------------------------------------------- */
+
+static bool run(const bench_options *o, json *out, io_error *error) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE};
+    printf("%s, mode all, simd %s; speedup by a second thread\n  %9s %-7s", body_kind_name(o->kind),
+           cscd_simd_name(o->simd), "triangles", "method");
+    for (int i = 0; i < STAGE_COUNT; i++) {
+        if (i != STAGE_PROOF) printf(" %8s", stage_names[i]);
+    }
+    printf(" %9s %9s %8s %10s\n", "ms on 1", "ms on 2", "machine", "efficiency");
+    bool good = true;
+    for (uint32_t i = 0; good && i < o->size_count; i++) {
+        deforming_body b;
+        if (!deforming_body_make(o->kind, o->sizes[i], DEFORM_WAVE, o->shuffled, &b, error)) return false;
+        for (int k = 0; good && k < 3; k++) good = run_method(&b, o, methods[k], out, error);
+        deforming_body_free(&b);
+    }
+    return good;
+}
+
+int main(int argument_count, char **arguments) {
+    static const uint32_t sizes[] = {2000, 5000, 20000, 100000};
+    static const bench_program program = {"threads", help, sizes, 4, 3, run};
+    return bench_main(&program, argument_count, arguments);
+}
