@@ -179,18 +179,42 @@ void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes) {
     }
 }
 
-void bvh_mark(bvh *tree, const cscd_mesh *mesh, bvh_regions regions, const uint8_t *orientations,
-              const bool *included) {
+/* Gives inner nodes the region that their children have in common, and their flags or'ed. */
+static void join_marks(bvh *tree) {
+    static const uint32_t flags = (1 << BVH_FLAG_BITS) - 1;
     for (uint32_t i = tree->node_count; i-- > 0;) {
         const bvh_node *node = &tree->nodes[i];
-        if (bvh_is_leaf(node)) {
-            uint32_t t = node->triangle;
-            bool counts = included == NULL || included[mesh->triangle_components[t]];
-            tree->marks[i] = regions.of_triangle[t] << BVH_FLAG_BITS | (counts ? orientations[t] : 0);
-        } else {
-            uint32_t left = tree->marks[i + 1], right = tree->marks[node->right];
-            uint32_t region = (left ^ right) >> BVH_FLAG_BITS == 0 ? left >> BVH_FLAG_BITS : BVH_SEVERAL;
-            tree->marks[i] = region << BVH_FLAG_BITS | bvh_mark_orientation(left | right);
-        }
+        if (bvh_is_leaf(node)) continue;
+        uint32_t left = tree->marks[i + 1], right = tree->marks[node->right];
+        uint32_t region = (left ^ right) >> BVH_FLAG_BITS == 0 ? left >> BVH_FLAG_BITS : BVH_SEVERAL;
+        tree->marks[i] = region << BVH_FLAG_BITS | ((left | right) & flags);
+    }
+}
+
+void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations) {
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        uint32_t t = tree->nodes[i].triangle;
+        if (bvh_is_leaf(&tree->nodes[i]))
+            tree->marks[i] = regions.of_triangle[t] << BVH_FLAG_BITS | orientations[t];
+    }
+    join_marks(tree);
+}
+
+void bvh_mark_fresh(bvh *tree, bvh_regions regions, const uint8_t *earlier, const uint8_t *orientations) {
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        uint32_t t = tree->nodes[i].triangle;
+        if (!bvh_is_leaf(&tree->nodes[i])) continue;
+        uint32_t before = earlier[t] == ORIENTATION_ZERO ? 0 : earlier[t];
+        uint32_t fresh = orientations[t] == ORIENTATION_ZERO ? before : 0;
+        tree->marks[i] = regions.of_triangle[t] << BVH_FLAG_BITS | fresh << BVH_ORIENTATION_BITS | before;
+    }
+    join_marks(tree);
+}
+
+void bvh_mark_suspects(bvh *tree, const bool *suspects) {
+    for (uint32_t i = tree->node_count; i-- > 0;) {
+        const bvh_node *node = &tree->nodes[i];
+        tree->marks[i] =
+            bvh_is_leaf(node) ? suspects[node->triangle] : tree->marks[i + 1] | tree->marks[node->right];
     }
 }

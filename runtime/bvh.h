@@ -38,16 +38,25 @@ static inline bool bvh_is_leaf(const bvh_node *node) {
 /* vertex_volumes: swept 14-DOP of every vertex. Refits bottom-up. */
 void bvh_refit(bvh *tree, const cscd_mesh *mesh, const kdop *vertex_volumes);
 
-/* A mark holds a node's region and, in the two lowest bits, the orientations of its triangles or'ed. Nodes of
- * several regions have BVH_SEVERAL for a region. included: per component, NULL for all; triangles of others
- * have no orientation. */
-void bvh_mark(bvh *tree, const cscd_mesh *mesh, bvh_regions regions, const uint8_t *orientations,
-              const bool *included);
+/* A mark holds a node's region and the orientations of its triangles or'ed, in the two lowest bits. Nodes of
+ * several regions have BVH_SEVERAL for a region. */
+void bvh_mark(bvh *tree, bvh_regions regions, const uint8_t *orientations);
 
-enum { BVH_FLAG_BITS = 2, BVH_SEVERAL = (1 << 30) - 1 };
+/* The same for a look at the pairs that have come to be kept: earlier are the orientations before, ZERO left
+ * out, and two more bits are the earlier orientations of those triangles only that are ZERO by now. */
+void bvh_mark_fresh(bvh *tree, bvh_regions regions, const uint8_t *earlier, const uint8_t *orientations);
+
+/* 1 for nodes with suspects among their triangles, 0 for others. */
+void bvh_mark_suspects(bvh *tree, const bool *suspects);
+
+enum { BVH_ORIENTATION_BITS = 2, BVH_FLAG_BITS = 4, BVH_SEVERAL = (1 << 28) - 1 };
 
 static inline uint8_t bvh_mark_orientation(uint32_t mark) {
     return (uint8_t)(mark & 3);
+}
+
+static inline uint8_t bvh_mark_fresh_orientation(uint32_t mark) {
+    return (uint8_t)(mark >> BVH_ORIENTATION_BITS & 3);
 }
 
 /* Two subtrees cannot be the first to touch when they lie in one region and all their triangles have one
@@ -57,11 +66,13 @@ static inline bool bvh_marks_cull(uint32_t a, uint32_t b) {
            !orientations_may_touch(bvh_mark_orientation(a), bvh_mark_orientation(b));
 }
 
-/* May two subtrees hold a pair of triangles that is culled? For two triangles: is it, itself? */
-static inline bool bvh_marks_hold_culled(uint32_t a, uint32_t b) {
+/* Marked by bvh_mark_fresh: may two subtrees hold a pair of triangles that was culled and is kept now? For
+ * two triangles: is it, itself? */
+static inline bool bvh_marks_hold_fresh(uint32_t a, uint32_t b) {
     bool one_region = (a ^ b) >> BVH_FLAG_BITS == 0 || a >> BVH_FLAG_BITS == BVH_SEVERAL ||
                       b >> BVH_FLAG_BITS == BVH_SEVERAL;
-    return one_region && (bvh_mark_orientation(a) & bvh_mark_orientation(b)) != 0;
+    return one_region && ((bvh_mark_orientation(a) & bvh_mark_fresh_orientation(b)) |
+                          (bvh_mark_fresh_orientation(a) & bvh_mark_orientation(b))) != 0;
 }
 
 #endif

@@ -10,12 +10,14 @@ static bool allocate(culling *c) {
     c->triangle_weights = context_allocate(context, triangles, sizeof *c->triangle_weights);
     c->detector_offsets = context_allocate(context, regions, sizeof *c->detector_offsets);
     c->detector_points = context_allocate(context, regions, sizeof *c->detector_points);
+    c->facing = context_allocate(context, triangles, sizeof *c->facing);
     c->orientations = context_allocate(context, triangles, sizeof *c->orientations);
+    c->earlier = context_allocate(context, triangles, sizeof *c->earlier);
     c->region_triangles = context_allocate(context, triangles, sizeof *c->region_triangles);
     c->region_offsets = context_allocate(context, regions + 1, sizeof *c->region_offsets);
     return c->triangle_regions != NULL && c->triangle_weights != NULL && c->detector_offsets != NULL &&
-           c->detector_points != NULL && c->orientations != NULL && c->region_triangles != NULL &&
-           c->region_offsets != NULL;
+           c->detector_points != NULL && c->facing != NULL && c->orientations != NULL && c->earlier != NULL &&
+           c->region_triangles != NULL && c->region_offsets != NULL;
 }
 
 /* Triangles sorted by region. */
@@ -53,13 +55,15 @@ cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling
 }
 
 void culling_destroy(culling *c) {
-    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets, c->detector_points,
-                      c->orientations,     c->region_triangles, c->region_offsets};
+    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets,
+                      c->detector_points,  c->facing,           c->orientations,
+                      c->earlier,          c->region_triangles, c->region_offsets};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(c->context, blocks[i]);
     *c = (culling){0};
 }
 
 void culling_clear(culling *c) {
+    memset(c->facing, ORIENTATION_ZERO, c->mesh->triangle_count);
     memset(c->orientations, ORIENTATION_ZERO, c->mesh->triangle_count);
     c->plus = c->minus = 0;
 }
@@ -69,7 +73,7 @@ void culling_clear(culling *c) {
 typedef struct orienting {
     culling *culling;
     const double *x0, *x1;
-    const bool *culled;
+    culled_set culled;
 } orienting;
 
 /* The mean of the region's triangles, by their weights at rest, and the offset: any point is sound, so
@@ -92,15 +96,17 @@ static void orient_share(void *data, uint32_t index) {
     culling *c = o->culling;
     size_t count = c->mesh->triangle_count, lanes = parallel_thread_count(c->context->threads);
     for (size_t t = count * index / lanes; t < count * (index + 1) / lanes; t++) {
-        if (o->culled[c->mesh->triangle_components[t]])
-            c->orientations[t] = orientation_of(c->mesh->triangles[t], o->x0, o->x1,
-                                                &c->detector_points[c->triangle_regions[t]]);
+        bool clean = o->culled.states == NULL || o->culled.states[t] == TRIANGLE_CLEAN;
+        if (clean && o->culled.components[c->mesh->triangle_components[t]])
+            c->facing[t] = orientation_of(c->mesh->triangles[t], o->x0, o->x1,
+                                          &c->detector_points[c->triangle_regions[t]]);
         else
-            c->orientations[t] = ORIENTATION_ZERO;
+            c->facing[t] = ORIENTATION_ZERO;
+        c->orientations[t] = c->facing[t];
     }
 }
 
-void culling_orient(culling *c, const double *x0, const double *x1, const bool *culled, bool still) {
+void culling_orient(culling *c, const double *x0, const double *x1, culled_set culled, bool still) {
     orienting o = {c, x0, x1, culled};
     for (uint32_t r = 0; r < c->region_count; r++) {
         place_detector_point(c, r, x0, c->detector_points[r].start);
@@ -109,7 +115,11 @@ void culling_orient(culling *c, const double *x0, const double *x1, const bool *
     parallel_run(c->context->threads, parallel_thread_count(c->context->threads), orient_share, &o);
     c->plus = c->minus = 0;
     for (uint32_t t = 0; t < c->mesh->triangle_count; t++) {
-        c->plus += c->orientations[t] == ORIENTATION_PLUS;
-        c->minus += c->orientations[t] == ORIENTATION_MINUS;
+        c->plus += c->facing[t] == ORIENTATION_PLUS;
+        c->minus += c->facing[t] == ORIENTATION_MINUS;
     }
+}
+
+void culling_pass_done(culling *c) {
+    memcpy(c->earlier, c->orientations, c->mesh->triangle_count);
 }

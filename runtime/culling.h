@@ -3,6 +3,7 @@
 #define CSCD_CULLING_H
 
 #include "runtime/orientation.h"
+#include "runtime/start_state.h"
 #include "src/plan.h"
 
 typedef struct culling {
@@ -13,8 +14,10 @@ typedef struct culling {
     double *triangle_weights;      /* as in the plan */
     double (*detector_offsets)[3]; /* as in the plan */
     moving_point *detector_points; /* of the interval at hand */
-    uint8_t *orientations;         /* of the interval at hand; ZERO in components that are not culled */
-    uint64_t plus, minus;          /* how many of these are PLUS and MINUS */
+    uint8_t *facing;               /* of the interval at hand; ZERO where a triangle was not clean */
+    uint8_t *orientations;         /* the same, but ZERO also where contacts have tainted a triangle since */
+    uint8_t *earlier;              /* the orientations of the passes before the one at hand */
+    uint64_t plus, minus;          /* how many are facing PLUS and MINUS */
     uint32_t *region_triangles, *region_offsets; /* the triangles of each region, for sums in a fixed order */
 } culling;
 
@@ -23,9 +26,25 @@ typedef struct culling {
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
-/* Detector points and orientations for positions that move from x0 to x1; culled says per component whether
- * its orientations count. still: detector points stay where they are at x0. */
-void culling_orient(culling *c, const double *x0, const double *x1, const bool *culled, bool still);
+/* Which triangles have an orientation: of components that are culled, the clean ones (states NULL: all). */
+typedef struct culled_set {
+    const bool *components;
+    const uint8_t *states; /* triangle_state */
+} culled_set;
+
+/* Detector points and orientations for positions that move from x0 to x1. still: detector points stay where
+ * they are at x0. */
+void culling_orient(culling *c, const double *x0, const double *x1, culled_set culled, bool still);
+
+/* All pairs of triangles that the flags keep have been tested. */
+void culling_pass_done(culling *c);
+
+/* From now on all pairs of this triangle are kept. False: they were already. */
+static inline bool culling_taint(culling *c, uint32_t triangle) {
+    bool fresh = c->orientations[triangle] != ORIENTATION_ZERO;
+    c->orientations[triangle] = ORIENTATION_ZERO;
+    return fresh;
+}
 
 /* All triangles ZERO: nothing is culled. */
 void culling_clear(culling *c);
@@ -34,6 +53,12 @@ void culling_clear(culling *c);
 static inline bool culling_keeps(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->orientations[a], c->orientations[b]);
+}
+
+/* Did they in the passes before? */
+static inline bool culling_kept(const culling *c, uint32_t a, uint32_t b) {
+    return c->triangle_regions[a] != c->triangle_regions[b] ||
+           orientations_may_touch(c->earlier[a], c->earlier[b]);
 }
 
 #endif

@@ -35,8 +35,9 @@ struct cscd_detector {
     start_states starts;
     bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
     bool *touched;              /* it has a contact with itself, */
-    bool *unfinished;           /* both, and the contacts are to be completed */
-    bool *crossing;             /* per component, at the moment checked last */
+    bool *finished;             /* it is culled, and all its contacts are wanted */
+    bool *suspects, *crossing;  /* per triangle, at the moment checked last */
+    size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
     patches patches;      /* of the tree, with ICCD */

@@ -16,7 +16,7 @@ typedef struct swept_interval {
     const kdop *vertex_volumes;     /* swept, widened by limit; NULL: pairs are filtered by the caller */
     const uint8_t *representatives; /* NULL when features are paired by the caller */
     const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
-    bool culled_pairs;              /* with culling: the pairs that it culled are those that are reached */
+    bool closing;                   /* with culling: the pairs reached are those that it culled before */
     bool skip_adjacent;             /* triangles that share a vertex are not tested: as published */
     separation limit;               /* distance 0: a contact is touching */
 } swept_interval;

@@ -76,7 +76,8 @@ static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
     const bvh_node *nodes = t->tree->nodes;
     const uint32_t *marks = t->tree->marks;
     if (t->pass == TRAVERSAL_KEPT && bvh_marks_cull(marks[pair.a], marks[pair.b])) return;
-    if (t->pass == TRAVERSAL_CULLED && !bvh_marks_hold_culled(marks[pair.a], marks[pair.b])) return;
+    if (t->pass == TRAVERSAL_FRESH && !bvh_marks_hold_fresh(marks[pair.a], marks[pair.b])) return;
+    if (t->pass == TRAVERSAL_SUSPECTS && (marks[pair.a] & marks[pair.b]) == 0) return;
     if (pair.a == pair.b) {
         if (t->pass == TRAVERSAL_UNSEALED && marks[pair.a] != 0) return;
         split_self(nodes, lane, pair.a);
@@ -87,7 +88,7 @@ static void visit(const traversal *t, traversal_lane *lane, node_pair pair) {
     if (!kdop_overlap(&a->volume, &b->volume)) return;
     if (!bvh_is_leaf(a) || !bvh_is_leaf(b))
         split_pair(nodes, lane, pair.a, pair.b);
-    else if (t->pass != TRAVERSAL_CULLED || bvh_marks_cull(marks[pair.a], marks[pair.b]))
+    else
         lane->pairs[lane->pair_count++] = (triangle_pair){a->triangle, b->triangle};
 }
 

@@ -14,13 +14,14 @@ typedef struct node_pair {
     uint32_t a, b;
 } node_pair;
 
-/* Which pairs of triangles are looked for, of those whose volumes overlap: all; those that the tree's marks
- * leave; those that they cull (the second and the third together are the first); those that do not lie below
- * one node that patches_seal has marked. */
+/* Which pairs of triangles are looked for, of those whose volumes overlap: all; those that bvh_mark's marks
+ * leave; those that were culled before, and are not by bvh_mark_fresh's; those of two suspects, by
+ * bvh_mark_suspects; those that do not lie below one node that patches_seal has marked. */
 typedef enum traversal_pass {
     TRAVERSAL_ALL,
     TRAVERSAL_KEPT,
-    TRAVERSAL_CULLED,
+    TRAVERSAL_FRESH,
+    TRAVERSAL_SUSPECTS,
     TRAVERSAL_UNSEALED
 } traversal_pass;
 

@@ -382,7 +382,9 @@ typedef struct cscd_timings { /* of the last step; the seed of each is a stage o
 } cscd_timings;
 
 typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
-    uint64_t static_checks;    /* of the start, within the step */
+    uint64_t static_checks;    /* of the start, within the step: of the triangles not known to be clean */
+    uint64_t clean;            /* triangles clean at the start: only these are culled */
+    uint64_t passes;           /* further traversals, for pairs that contacts have uncovered */
     uint64_t plus, minus;      /* triangles that are S+ and S- */
     uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
