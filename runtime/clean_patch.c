@@ -65,7 +65,8 @@ static void gather_patches(start_states *s) {
         s->triangles[t] = TRIANGLE_GATHERED;
         s->queue[end] = t;
         end = spread(s, TRIANGLE_GATHERED, begin, begin + 1);
-        if (end - begin > s->largest[component].count) s->largest[component] = (free_patch){begin, end - begin};
+        if (end - begin > s->largest[component].count)
+            s->largest[component] = (free_patch){begin, end - begin};
     }
 }
 

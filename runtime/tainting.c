@@ -24,7 +24,8 @@ static uint32_t taint_vertex(cscd_detector *d, uint32_t vertex) {
 }
 
 static uint32_t taint_edge(cscd_detector *d, uint32_t edge) {
-    return taint_star(d, d->mesh->edge_stars + d->mesh->edge_star_offsets[edge], edge_star_size(d->mesh, edge));
+    return taint_star(d, d->mesh->edge_stars + d->mesh->edge_star_offsets[edge],
+                      edge_star_size(d->mesh, edge));
 }
 
 /* The component that both features belong to; UINT32_MAX: two. */
