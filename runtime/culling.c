@@ -9,9 +9,11 @@ static bool allocate(culling *c) {
     c->triangle_regions = context_allocate(context, triangles, sizeof *c->triangle_regions);
     c->triangle_weights = context_allocate(context, triangles, sizeof *c->triangle_weights);
     c->detector_offsets = context_allocate(context, regions, sizeof *c->detector_offsets);
+    c->facing = context_allocate(context, triangles, sizeof *c->facing);
     c->orientations = context_allocate(context, triangles, sizeof *c->orientations);
+    c->earlier = context_allocate(context, triangles, sizeof *c->earlier);
     return c->triangle_regions != NULL && c->triangle_weights != NULL && c->detector_offsets != NULL &&
-           c->orientations != NULL;
+           c->facing != NULL && c->orientations != NULL && c->earlier != NULL;
 }
 
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out) {
@@ -35,20 +37,27 @@ cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling
 }
 
 void culling_destroy(culling *c) {
-    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets, c->orientations};
+    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets,
+                      c->facing,           c->orientations,     c->earlier};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(c->context, blocks[i]);
     *c = (culling){0};
 }
 
 void culling_clear(culling *c) {
+    memset(c->facing, ORIENTATION_ZERO, c->mesh->triangle_count);
     memset(c->orientations, ORIENTATION_ZERO, c->mesh->triangle_count);
     c->plus = c->minus = 0;
 }
 
-void culling_count(culling *c) {
+void culling_begin(culling *c) {
+    memcpy(c->orientations, c->facing, c->mesh->triangle_count);
     c->plus = c->minus = 0;
     for (uint32_t t = 0; t < c->mesh->triangle_count; t++) {
-        c->plus += c->orientations[t] == ORIENTATION_PLUS;
-        c->minus += c->orientations[t] == ORIENTATION_MINUS;
+        c->plus += c->facing[t] == ORIENTATION_PLUS;
+        c->minus += c->facing[t] == ORIENTATION_MINUS;
     }
+}
+
+void culling_pass_done(culling *c) {
+    memcpy(c->earlier, c->orientations, c->mesh->triangle_count);
 }

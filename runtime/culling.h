@@ -12,8 +12,10 @@ typedef struct culling {
     uint32_t *triangle_regions;
     double *triangle_weights;      /* as in the plan */
     double (*detector_offsets)[3]; /* as in the plan */
-    uint8_t *orientations;         /* of the interval at hand; ZERO in components that are not culled */
-    uint64_t plus, minus;          /* how many of these are PLUS and MINUS */
+    uint8_t *facing;               /* of the interval at hand; ZERO where a triangle was not clean */
+    uint8_t *orientations;         /* the same, but ZERO also where contacts have tainted a triangle since */
+    uint8_t *earlier;              /* the orientations of the passes before the one at hand */
+    uint64_t plus, minus;          /* how many are facing PLUS and MINUS */
 } culling;
 
 /* What the detector needs of a plan, copied; without one, a region per component and the mean of its
@@ -21,8 +23,18 @@ typedef struct culling {
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
-/* Counts what the orientations are. */
-void culling_count(culling *c);
+/* What is facing has been filled in: the orientations are these, and counted. */
+void culling_begin(culling *c);
+
+/* All pairs of triangles that the flags keep have been tested. */
+void culling_pass_done(culling *c);
+
+/* From now on all pairs of this triangle are kept. False: they were already. */
+static inline bool culling_taint(culling *c, uint32_t triangle) {
+    bool fresh = c->orientations[triangle] != ORIENTATION_ZERO;
+    c->orientations[triangle] = ORIENTATION_ZERO;
+    return fresh;
+}
 
 /* All triangles ZERO: nothing is culled. */
 void culling_clear(culling *c);
@@ -31,6 +43,12 @@ void culling_clear(culling *c);
 static inline bool culling_keeps(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->orientations[a], c->orientations[b]);
+}
+
+/* Did they in the passes before? */
+static inline bool culling_kept(const culling *c, uint32_t a, uint32_t b) {
+    return c->triangle_regions[a] != c->triangle_regions[b] ||
+           orientations_may_touch(c->earlier[a], c->earlier[b]);
 }
 
 #endif

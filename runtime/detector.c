@@ -67,11 +67,15 @@ static bool allocate_per_component(cscd_detector *d) {
     size_t count = d->mesh->component_count;
     d->culled = context_allocate(d->context, count, sizeof *d->culled);
     d->touched = context_allocate(d->context, count, sizeof *d->touched);
-    d->unfinished = context_allocate(d->context, count, sizeof *d->unfinished);
-    d->crossing = context_allocate(d->context, count, sizeof *d->crossing);
+    d->finished = context_allocate(d->context, count, sizeof *d->finished);
     d->guarantees = context_allocate(d->context, count, sizeof *d->guarantees);
-    return d->culled != NULL && d->touched != NULL && d->unfinished != NULL && d->crossing != NULL &&
-           d->guarantees != NULL;
+    return d->culled != NULL && d->touched != NULL && d->finished != NULL && d->guarantees != NULL;
+}
+
+static bool allocate_per_triangle(cscd_detector *d) {
+    d->suspects = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->suspects);
+    d->crossing = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->crossing);
+    return d->suspects != NULL && d->crossing != NULL;
 }
 
 static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
@@ -82,13 +86,13 @@ static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     if (status != CSCD_OK) return status;
-    if (d->limit.distance > 0.0)
-        d->vertex_volumes = context_allocate(context, d->mesh->vertex_count, sizeof *d->vertex_volumes);
     d->representatives = representatives_create(d->mesh);
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
     d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
-    bool allocated = (d->limit.distance == 0.0 || d->vertex_volumes != NULL) && d->representatives != NULL &&
-                     d->contact_lanes != NULL && d->intersection_lanes != NULL && allocate_per_component(d);
+    d->contacts_seen = context_allocate(context, d->traversal.lane_count, sizeof *d->contacts_seen);
+    bool allocated = d->representatives != NULL && d->contact_lanes != NULL &&
+                     d->intersection_lanes != NULL && d->contacts_seen != NULL && allocate_per_component(d) &&
+                     allocate_per_triangle(d);
     return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -137,16 +141,17 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     forest_free(&d->forest);
     patches_free(context, &d->patches);
-    void *blocks[] = {d->vertex_volumes,
-                      d->representatives,
+    void *blocks[] = {d->representatives,
                       d->contacts.items,
                       d->contacts.scratch,
                       d->intersections.items,
                       d->intersections.scratch,
                       d->culled,
                       d->touched,
-                      d->unfinished,
+                      d->finished,
+                      d->suspects,
                       d->crossing,
+                      d->contacts_seen,
                       d->guarantees,
                       d};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
@@ -181,6 +186,6 @@ cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t c
 }
 
 int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle) {
-    uint8_t flag = detector->culling.orientations[triangle];
+    uint8_t flag = detector->culling.facing[triangle];
     return flag == ORIENTATION_PLUS ? 1 : flag == ORIENTATION_MINUS ? -1 : 0;
 }

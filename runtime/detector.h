@@ -35,13 +35,13 @@ struct cscd_detector {
     start_states starts;
     bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
     bool *touched;              /* it has a contact with itself, */
-    bool *unfinished;           /* both, and the contacts are to be completed */
-    bool *crossing;             /* per component, at the moment checked last */
+    bool *finished;             /* it is culled, and all its contacts are wanted */
+    bool *suspects, *crossing;  /* per triangle, at the moment checked last */
+    size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches;      /* of the forest, with ICCD */
-    kdop *vertex_volumes; /* of the interval at hand, with min_separation */
-    forest forest;        /* built from the first positions seen; of the interval or moment at hand */
+    patches patches; /* of the forest, with ICCD */
+    forest forest;   /* built from the first positions seen; of the interval or moment at hand */
     uint8_t *representatives;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */

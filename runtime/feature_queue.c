@@ -5,8 +5,7 @@
 #include "runtime/narrow_phase.h"
 
 feature_source feature_queue_source(const swept_interval *interval) {
-    return (feature_source){interval->x0, interval->x1, interval->vertex_volumes,
-                            (const uint32_t(*)[3])interval->mesh->triangles,
+    return (feature_source){interval->x0, interval->x1, (const uint32_t(*)[3])interval->mesh->triangles,
                             (const uint32_t(*)[2])interval->mesh->edges};
 }
 
@@ -121,11 +120,8 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
 
 static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
                    contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
     feature_source source = feature_queue_source(interval);
     feature_pairs pairs = {list->a, list->b, list->count};
-    if (interval->vertex_volumes != NULL)
-        (kind == CSCD_CONTACT_VF ? table->keep_near_vf : table->keep_near_ee)(&source, &pairs);
     if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else

@@ -64,10 +64,10 @@ typedef struct forest {
     forest_leaf *leaves;
     lane_flags *leaf_flags; /* of triangles */
     lane_flags *flags_before;
-    uint64_t *leaf_within;     /* as in a level, of triangles; NULL: all */
-    uint32_t *block_parts;     /* of the blocks of level 0 */
-    uint32_t *record_vertices; /* the mesh's vertex of a record */
-    float *record_weights;     /* in the detector point */
+    uint64_t *leaf_within;              /* as in a level, of triangles; NULL: all */
+    uint32_t *block_parts, *leaf_parts; /* of the blocks of level 0, and of leaves */
+    uint32_t *record_vertices;          /* the mesh's vertex of a record */
+    float *record_weights;              /* in the detector point */
     record_chunk *chunks;
     uint32_t chunk_count;
     float (*records)[8]; /* x y z . at the start, x y z . at the end, scaled, in the part's frame */
@@ -106,7 +106,7 @@ void forest_show_all(forest *f);
 /* Which orientations count, and whence triangles are seen. */
 typedef struct forest_view {
     const bool *culled;                  /* per component: do its triangles' orientations count? */
-    const uint8_t *held;                 /* per triangle: not 0: ZERO, whatever it is; NULL: none is */
+    const uint8_t *states;               /* triangle_state of each: only of clean ones; NULL: of all */
     const double (*detector_offsets)[3]; /* per region: from the weighted mean to the detector point */
     bool still;                          /* detector points stay where they are at the start */
 } forest_view;
@@ -115,8 +115,11 @@ typedef struct forest_view {
  * where they count. */
 void forest_orient(forest *f, const forest_view *view, uint8_t *orientations);
 
-/* Flags of leaves and blocks anew from orientations, but ZERO in components that are `cleared`; what has lost
- * its flag is marked as fresh. */
-void forest_mark(forest *f, const uint8_t *orientations, const bool *cleared);
+/* Flags of leaves and blocks anew, from orientations per triangle before and now: fresh is what has lost
+ * its. */
+void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now);
+
+/* Fresh are these triangles, and there are no other flags. */
+void forest_mark_suspects(forest *f, const bool *suspects);
 
 #endif

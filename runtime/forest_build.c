@@ -147,6 +147,7 @@ static void fill_leaf(builder *b, forest *f, const forest_part *p, const uint32_
                       uint32_t count) {
     uint32_t index = f->leaf_count++;
     forest_leaf *out = &f->leaves[index];
+    f->leaf_parts[index] = (uint32_t)(p - f->parts);
     f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
     for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
         uint32_t t = triangles[lane < count ? lane : 0];
@@ -309,14 +310,15 @@ static bool allocate_forest(const builder *b, forest *f) {
     f->leaves = context_allocate(context, leaf_count, sizeof *f->leaves);
     f->leaf_flags = context_allocate(context, leaf_count, sizeof *f->leaf_flags);
     f->flags_before = context_allocate(context, leaf_count, sizeof *f->flags_before);
+    f->leaf_parts = context_allocate(context, leaf_count, sizeof *f->leaf_parts);
     f->record_vertices = context_allocate(context, record_count, sizeof *f->record_vertices);
     f->record_weights = context_allocate(context, record_count, sizeof *f->record_weights);
     f->records = context_allocate(context, record_count, sizeof *f->records);
     f->chunks = context_allocate(context, record_count / CHUNK_RECORDS + f->part_count, sizeof *f->chunks);
     f->slots = context_allocate(context, f->mesh->triangle_count, sizeof *f->slots);
     return f->parts != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
-           f->record_vertices != NULL && f->record_weights != NULL && f->records != NULL &&
-           f->chunks != NULL && f->slots != NULL;
+           f->leaf_parts != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
+           f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
 /* The power of two that brings the positions' extent near 1. */
@@ -366,7 +368,7 @@ void forest_free(forest *f) {
     cscd_context *context = f->mesh->context;
     void *blocks[] = {f->parts,       f->leaves,      f->leaf_flags,      f->flags_before,
                       f->leaf_within, f->block_parts, f->record_vertices, f->record_weights,
-                      f->records,     f->slots,       f->chunks};
+                      f->records,     f->slots,       f->chunks,          f->leaf_parts};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     for (int i = 0; i < FOREST_LEVEL_MAX; i++) {
         context_free(context, f->levels[i].first_children);

@@ -48,7 +48,7 @@ static void orient_task(void *data, uint32_t index) {
         if (!now->view->culled[component_of(f, p)]) continue;
         uint32_t stop = p->first_leaf + p->leaf_count;
         f->kernels->orient(f, p, begin > p->first_leaf ? begin : p->first_leaf, end < stop ? end : stop,
-                           now->view->held, now->orientations);
+                           now->view->states, now->orientations);
     }
 }
 
@@ -75,18 +75,32 @@ static void mark_blocks(const forest *f) {
     for (int i = 0; i < f->level_count; i++) mark_level(f, i);
 }
 
-void forest_mark(forest *f, const uint8_t *orientations, const bool *cleared) {
+static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orientations) {
+    lane_flags flags = {.used = f->leaf_flags[index].used};
+    for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++) {
+        uint8_t flag = orientations[f->leaves[index].triangles[lane]];
+        flags.plus |= (uint8_t)((flag == ORIENTATION_PLUS) << lane);
+        flags.minus |= (uint8_t)((flag == ORIENTATION_MINUS) << lane);
+    }
+    return flags;
+}
+
+void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now) {
     for (uint32_t i = 0; i < f->leaf_count; i++) {
-        lane_flags before = f->leaf_flags[i], now = {.used = before.used};
-        for (uint32_t lane = 0; lane < FOREST_LANES && (before.used >> lane & 1) != 0; lane++) {
-            uint32_t t = f->leaves[i].triangles[lane];
-            uint8_t flag = cleared[f->mesh->triangle_components[t]] ? ORIENTATION_ZERO : orientations[t];
-            now.plus |= (uint8_t)((flag == ORIENTATION_PLUS) << lane);
-            now.minus |= (uint8_t)((flag == ORIENTATION_MINUS) << lane);
-        }
-        now.fresh = (uint8_t)((before.plus | before.minus) & ~(now.plus | now.minus));
-        f->flags_before[i] = before;
-        f->leaf_flags[i] = now;
+        lane_flags earlier = flags_of(f, i, before), flags = flags_of(f, i, now);
+        flags.fresh = (uint8_t)((earlier.plus | earlier.minus) & ~(flags.plus | flags.minus));
+        f->flags_before[i] = earlier;
+        f->leaf_flags[i] = flags;
+    }
+    mark_blocks(f);
+}
+
+void forest_mark_suspects(forest *f, const bool *suspects) {
+    for (uint32_t i = 0; i < f->leaf_count; i++) {
+        lane_flags flags = {.used = f->leaf_flags[i].used};
+        for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++)
+            flags.fresh |= (uint8_t)(suspects[f->leaves[i].triangles[lane]] << lane);
+        f->leaf_flags[i] = flags;
     }
     mark_blocks(f);
 }

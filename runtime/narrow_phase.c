@@ -1,9 +1,12 @@
 /* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
 #include "runtime/narrow_phase.h"
 
+#include "runtime/answering.h"
 #include "runtime/representatives.h"
 
 #include <string.h>
+
+enum { PAIRS_AT_ONCE = 256 };
 
 void contact_lane_reset(contact_lane *lane) {
     lane->count = 0;
@@ -88,134 +91,73 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
     feature_queue_decide_ee(interval, lane);
 }
 
-/* ---- which triangle pair answers for a pair of features --------------------------------------------- */
+/* ---- triangle pairs ---------------------------------------------------------------------------------- */
 
-/* Without culling: that of the first triangles of both stars. With it: the first pair, in the order of the
- * stars, that the flags leave (then it is reached, for its volumes contain the features'); and among the
- * culled pairs that of the first triangles, where the flags leave none. */
-static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
-                              uint32_t against) {
-    const cscd_mesh *mesh = interval->mesh;
-    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
-    for (uint32_t i = begin; i < end; i++) {
-        if (culling_keeps(interval->culling, mesh->vertex_stars[i], against))
-            return !interval->culled_pairs && mesh->vertex_stars[i] == of;
-    }
-    return interval->culled_pairs && mesh->vertex_stars[begin] == of;
-}
+/* ---- from pairs of triangles to the queue ------------------------------------------------------------ */
 
-static bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
-    if (interval->culling == NULL) return represents_vertex(interval->representatives[of], i);
-    return first_kept_vertex(interval, of, interval->mesh->triangles[of][i], against);
-}
-
-/* pair.a contains the edge of the smaller number. */
-static bool first_kept_edges(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
-    const cscd_mesh *mesh = interval->mesh;
-    uint32_t begin_a = mesh->edge_star_offsets[a], end_a = mesh->edge_star_offsets[a + 1];
-    uint32_t begin_b = mesh->edge_star_offsets[b], end_b = mesh->edge_star_offsets[b + 1];
-    for (uint32_t i = begin_a; i < end_a; i++) {
-        for (uint32_t j = begin_b; j < end_b; j++) {
-            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
-            if (culling_keeps(interval->culling, s, t))
-                return !interval->culled_pairs && s == pair.a && t == pair.b;
-        }
-    }
-    return interval->culled_pairs && mesh->edge_stars[begin_a] == pair.a &&
-           mesh->edge_stars[begin_b] == pair.b;
-}
-
-static bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j) {
-    if (interval->culling == NULL)
-        return represents_edge(interval->representatives[pair.a], i) &&
-               represents_edge(interval->representatives[pair.b], j);
-    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
-    if (a < b) return first_kept_edges(interval, pair, a, b);
-    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
-}
-
-/* ---- from a pair of triangles to the queue ----------------------------------------------------------- */
-
-/* Sets of features: bit i of vertices_a is vertex i of pair.a against the face pair.b, and so on; bit 3 i + j
- * of edges is edge i of pair.a against edge j of pair.b. */
-typedef struct feature_sets {
-    uint32_t vertices_a, vertices_b, edges;
-} feature_sets;
-
-/* Branches cost more here than what they would save. */
-static feature_sets represented(uint8_t a, uint8_t b) {
+/* Features of two triangles that each represents, for all the pairs of a culled interval, or none: bits as in
+ * kernels.h. Branches cost more here than what they would save. */
+static uint32_t represented(uint8_t a, uint8_t b) {
     uint32_t edges_a = a >> 3 & 7u, edges_b = b >> 3 & 7u;
     uint32_t each = (edges_a & 1u) | (edges_a & 2u) << 2 | (edges_a & 4u) << 4;
-    return (feature_sets){a & 7u, b & 7u, each * edges_b};
+    return (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (each * edges_b) << FEATURE_EDGES;
 }
 
-static __attribute__((noinline)) feature_sets answered_after_culling(const swept_interval *interval,
-                                                                     triangle_pair pair) {
-    feature_sets sets = {0, 0, 0};
-    for (int i = 0; i < 3; i++) {
-        sets.vertices_a |= (uint32_t)answers_for_vertex(interval, pair.a, i, pair.b) << i;
-        sets.vertices_b |= (uint32_t)answers_for_vertex(interval, pair.b, i, pair.a) << i;
-        for (int j = 0; j < 3; j++)
-            sets.edges |= (uint32_t)answers_for_edges(interval, pair, i, j) << (3 * i + j);
+/* Of near features, those that this pair of triangles answers for. */
+static uint32_t answered(const swept_interval *interval, triangle_pair pair, uint32_t features) {
+    uint32_t kept = 0;
+    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
+        int bit = __builtin_ctz(rest), edges = bit - FEATURE_EDGES;
+        bool answers = edges >= 0 ? answers_for_edges(interval, pair, edges / 3, edges % 3)
+                       : bit >= FEATURE_VERTEX_B
+                           ? answers_for_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a)
+                           : answers_for_vertex(interval, pair.a, bit, pair.b);
+        kept |= (uint32_t)answers << bit;
     }
-    return sets;
+    return kept;
 }
 
-static inline feature_sets answered(const swept_interval *interval, triangle_pair pair) {
-    if (interval->culling != NULL) return answered_after_culling(interval, pair);
-    return represented(interval->representatives[pair.a], interval->representatives[pair.b]);
-}
-
-static bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[3]) {
-    return triangle_contains(a, b[0]) || triangle_contains(a, b[1]) || triangle_contains(a, b[2]);
-}
-
-/* Out of the way of the common case, as is answered_after_culling. */
-static __attribute__((noinline)) void leave_out_adjacent(const uint32_t a[3], const uint32_t b[3],
-                                                         feature_sets *sets) {
-    for (int i = 0; i < 3; i++) {
-        if (triangle_contains(b, a[i])) sets->vertices_a &= ~(1u << i);
-        if (triangle_contains(a, b[i])) sets->vertices_b &= ~(1u << i);
-        for (int j = 0; j < 3; j++) {
-            const uint32_t edge_a[2] = {a[i], a[(i + 1) % 3]}, edge_b[2] = {b[j], b[(j + 1) % 3]};
-            if (edges_share_vertex(edge_a, edge_b)) sets->edges &= ~(1u << (3 * i + j));
+static void put(const swept_interval *interval, triangle_pair pair, uint32_t features, contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    feature_list *vf = &lane->queue.vf, *ee = &lane->queue.ee;
+    if (feature_list_full(vf)) feature_queue_decide_vf(interval, lane);
+    if (feature_list_full(ee)) feature_queue_decide_ee(interval, lane);
+    for (; features != 0; features &= features - 1) {
+        int bit = __builtin_ctz(features), edges = bit - FEATURE_EDGES;
+        if (edges >= 0) {
+            uint32_t a = mesh->triangle_edges[pair.a][edges / 3], b = mesh->triangle_edges[pair.b][edges % 3];
+            ee->count = feature_list_put(ee, ee->count, smaller_of(a, b), larger_of(a, b), 1);
+        } else if (bit >= FEATURE_VERTEX_B) {
+            vf->count =
+                feature_list_put(vf, vf->count, mesh->triangles[pair.b][bit - FEATURE_VERTEX_B], pair.a, 1);
+        } else {
+            vf->count = feature_list_put(vf, vf->count, mesh->triangles[pair.a][bit], pair.b, 1);
         }
     }
 }
 
-/* Counts are kept in registers: in memory each step would wait for the one before. */
-static void add_vertices(feature_list *list, uint32_t vertices, const uint32_t of[3], uint32_t against) {
-    uint32_t count = list->count;
-    for (int i = 0; i < 3; i++) count = feature_list_put(list, count, of[i], against, vertices >> i & 1);
-    list->count = count;
-}
-
-static void add_edges(feature_list *list, uint32_t edges, const uint32_t a[3], const uint32_t b[3]) {
-    uint32_t count = list->count;
-    for (int i = 0; i < 9; i++) {
-        uint32_t first = a[i / 3], second = b[i % 3];
-        count = feature_list_put(list, count, smaller_of(first, second), larger_of(first, second),
-                                 edges >> i & 1);
+static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
+                      contact_lane *lane) {
+    const forest *f = interval->forest;
+    uint16_t wanted[PAIRS_AT_ONCE], features[PAIRS_AT_ONCE];
+    triangle_pair pairs[PAIRS_AT_ONCE];
+    for (uint32_t i = 0; i < count; i++) {
+        pairs[i] = (triangle_pair){forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
+        wanted[i] = interval->culling != NULL ? FEATURE_ALL
+                                              : (uint16_t)represented(interval->representatives[pairs[i].a],
+                                                                      interval->representatives[pairs[i].b]);
     }
-    list->count = count;
+    f->kernels->sieve(f, slots, count, interval->limit.distance, !interval->skip_adjacent, wanted, features);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t kept = features[i];
+        if (interval->culling != NULL) kept = answered(interval, pairs[i], kept);
+        lane->feature_pairs += (uint32_t)__builtin_popcount(kept);
+        put(interval, pairs[i], kept, lane);
+    }
 }
 
-void narrow_phase_test(const swept_interval *interval, triangle_pair slots, contact_lane *lane) {
-    triangle_pair pair = {forest_triangle(interval->forest, slots.a),
-                          forest_triangle(interval->forest, slots.b)};
-    const uint32_t *a = interval->mesh->triangles[pair.a], *b = interval->mesh->triangles[pair.b];
-    feature_queue *queue = &lane->queue;
-    bool adjacent = triangles_share_vertex(a, b);
-    if (adjacent && interval->skip_adjacent) return;
-    feature_sets sets = answered(interval, pair);
-    if (adjacent) leave_out_adjacent(a, b, &sets);
-    if (feature_list_full(&queue->vf)) feature_queue_decide_vf(interval, lane);
-    if (feature_list_full(&queue->ee)) feature_queue_decide_ee(interval, lane);
-    uint32_t before = queue->vf.count + queue->ee.count;
-    add_vertices(&queue->vf, sets.vertices_a, a, pair.b);
-    add_vertices(&queue->vf, sets.vertices_b, b, pair.a);
-    if (sets.edges != 0)
-        add_edges(&queue->ee, sets.edges, interval->mesh->triangle_edges[pair.a],
-                  interval->mesh->triangle_edges[pair.b]);
-    lane->feature_pairs += queue->vf.count + queue->ee.count - before;
+void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                       contact_lane *lane) {
+    for (uint32_t i = 0; i < count && !lane->out_of_memory; i += PAIRS_AT_ONCE)
+        test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, lane);
 }

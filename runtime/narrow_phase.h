@@ -5,7 +5,6 @@
 #include "runtime/culling.h"
 #include "runtime/elementary.h"
 #include "runtime/feature_queue.h"
-#include "runtime/kdop.h"
 #include "runtime/kernels/kernels.h"
 #include "runtime/separation.h"
 #include "runtime/traversal.h"
@@ -16,10 +15,9 @@ typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
     const forest *forest;           /* slots of triangle pairs */
-    const kdop *vertex_volumes;     /* swept, widened by limit: a sieve before the tests; NULL: none */
     const uint8_t *representatives; /* NULL when features are paired by the caller */
     const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
-    bool culled_pairs;              /* with culling: the pairs that it culled are those that are reached */
+    bool closing;                   /* with culling: the pairs reached are those that it culled before */
     bool skip_adjacent;             /* triangles that share a vertex are not tested: as published */
     separation limit;               /* distance 0: a contact is touching */
 } swept_interval;
@@ -46,8 +44,10 @@ void narrow_phase_load(const swept_interval *interval, cscd_contact_kind kind, u
 /* These put pairs in the lane's queue, which is decided when it is full, and by: */
 void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
 
-/* All pairs of features that the two triangles represent and that share no vertex. */
-void narrow_phase_test(const swept_interval *interval, triangle_pair pair, contact_lane *lane);
+/* All pairs of features that pairs of triangles, given by their slots, answer for, that share no vertex and
+ * that may touch by their volumes. */
+void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                       contact_lane *lane);
 
 /* One pair of features without a common vertex: a contact where they touch, or come within the limit's
  * distance. */

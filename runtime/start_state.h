@@ -1,20 +1,30 @@
-/* Is the start of an interval embedded? What is known of each component, and from where. */
+/* What is known of the triangles at the start of an interval: which are clean, and from where. */
 #ifndef CSCD_START_STATE_H
 #define CSCD_START_STATE_H
 
 #include "src/mesh.h"
 
-typedef enum start_state {
-    START_UNKNOWN,  /* nothing is known */
-    START_EMBEDDED, /* no two of its features without a common vertex touch: proven */
-    START_CROSSING  /* some do */
-} start_state;
+/* Of a triangle at one moment. Free: nothing of its component meets it but its neighbours in shared features,
+ * and it has an area. Clean: free, and of those free triangles of its component that, as far as is proven,
+ * have one winding number on their outer sides (docs/culling.md). A component is embedded when all are clean.
+ */
+typedef enum triangle_state {
+    TRIANGLE_UNKNOWN,
+    TRIANGLE_CROSSING,
+    TRIANGLE_FREE,
+    TRIANGLE_CLEAN
+} triangle_state;
 
-/* What is known of one component, and how long the next check of it waits. */
+/* What is known of one component at the start of the interval at hand, and how long its next check waits. */
 typedef struct component_start {
-    start_state state;
+    uint32_t unknown, crossing, clean; /* triangles in these states */
     uint32_t waiting, patience;
 } component_start;
+
+/* A run of start_states.queue: free triangles that are connected over edges. */
+typedef struct free_patch {
+    uint32_t begin, count;
+} free_patch;
 
 /* States at the positions seen last: the end of the last interval, or those of a static check. */
 typedef struct start_states {
@@ -22,29 +32,43 @@ typedef struct start_states {
     const cscd_mesh *mesh;
     double *positions;
     bool known;          /* positions holds something */
+    bool vouched;        /* clean is, of some triangles, the caller's word */
     bool *moved;         /* scratch, per component */
-    component_start *of; /* per component */
+    uint8_t *triangles;  /* triangle_state, of each */
+    component_start *of; /* per component; up to date after start_states_count */
+    uint32_t *queue;     /* scratch, per triangle */
+    free_patch *largest; /* scratch, per component */
 } start_states;
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);
 
-/* An interval begins at x: components whose vertices are not where they were seen last become UNKNOWN. */
+/* An interval begins at x: triangles of components whose vertices are not where they were seen last become
+ * UNKNOWN. */
 void start_states_begin(start_states *s, const double *x);
 
-/* Of a component that could be culled, is UNKNOWN, and waits no longer: does any want a static check? Those
- * that wait do so for one interval less. After a check that finds a component crossing, the next one waits 1
- * interval, then 2, 4, 8 and 16: a check costs about half of what culling saves. */
-bool start_states_want_check(start_states *s);
+/* Marks the triangles that a static check has to compare with one another, and returns how many: those not
+ * known to be free, of closed manifold components that hold unknown ones and wait no longer; those that wait
+ * do so for one interval less. After a check that leaves less than half of a component clean, its next one
+ * waits 1 interval, then 2, 4, 8 and 16. */
+uint32_t start_states_suspect(start_states *s, bool *suspects);
 
-/* A static check at x: crossing per component. */
-void start_states_checked(start_states *s, const double *x, const bool *crossing);
+/* The suspects were compared with one another: crossing says which meet another one, or have no area. */
+void start_states_checked(start_states *s, const bool *suspects, const bool *crossing);
 
 /* The caller says that all components are embedded; what a check of these positions found stands. */
 void start_states_vouch(start_states *s);
 
-/* The interval ends at x; touched: components with a contact with themselves, NULL: that is not known. What
- * was embedded and did not touch itself still is; all else is UNKNOWN. */
-void start_states_end(start_states *s, const double *x, const bool *touched);
+/* Fills in the numbers of triangles per component. */
+void start_states_count(start_states *s);
+
+/* A feature of the triangle's closure takes part in a contact with its component. */
+static inline void start_states_taint(start_states *s, uint32_t triangle) {
+    s->triangles[triangle] = TRIANGLE_UNKNOWN;
+}
+
+/* The interval ends at x, and all triangles in contact were tainted, but for components that are lost: what
+ * becomes of those is UNKNOWN. All others that were free or clean still are. */
+void start_states_end(start_states *s, const double *x, const bool *lost);
 
 #endif

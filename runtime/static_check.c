@@ -14,6 +14,7 @@
 typedef struct moment {
     cscd_detector *detector;
     const double *positions;
+    traversal_pass pass; /* KEPT: every pair; SUSPECTS: those of the detector's suspects within a component */
 } moment;
 
 static void add_intersection(cscd_context *context, intersection_lane *lane, uint32_t a, uint32_t b) {
@@ -35,24 +36,33 @@ static void test_batch(void *data, uint32_t index) {
     const moment *now = data;
     cscd_detector *d = now->detector;
     const traversal_lane *batch = &d->traversal.lanes[index];
+    const uint32_t *components = d->mesh->triangle_components;
     for (uint32_t i = 0; i < batch->pair_count; i++) {
         triangle_pair pair = {forest_triangle(&d->forest, batch->pairs[i].a),
                               forest_triangle(&d->forest, batch->pairs[i].b)};
+        if (now->pass == TRAVERSAL_SUSPECTS && components[pair.a] != components[pair.b]) continue;
         if (triangles_intersect(d->mesh->triangles[pair.a], d->mesh->triangles[pair.b], now->positions))
             add_intersection(d->context, &d->intersection_lanes[index], pair.a, pair.b);
     }
 }
 
+static bool has_no_area(const moment *now, uint32_t triangle) {
+    const double *corners[3];
+    for (int i = 0; i < 3; i++)
+        corners[i] = now->positions + (size_t)now->detector->mesh->triangles[triangle][i] * 3;
+    return collinear(corners[0], corners[1], corners[2]);
+}
+
+/* Of the suspects. */
 static void count_zero_area(void *data, uint32_t index) {
     const moment *now = data;
     const cscd_mesh *mesh = now->detector->mesh;
     intersection_lane *lane = &now->detector->intersection_lanes[index];
     *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
     for (uint32_t t = index; t < mesh->triangle_count; t += now->detector->traversal.lane_count) {
-        const double *corners[3];
-        for (int i = 0; i < 3; i++) corners[i] = now->positions + (size_t)mesh->triangles[t][i] * 3;
-        if (collinear(corners[0], corners[1], corners[2]) && lane->zero_area_triangles++ == 0)
-            lane->first_zero_area = t;
+        if (!now->detector->suspects[t] || !has_no_area(now, t)) continue;
+        now->detector->crossing[t] = true;
+        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = t;
     }
 }
 
@@ -92,8 +102,9 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
+    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->crossing[t] = false;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    traversal_begin(&d->traversal, &d->forest, TRAVERSAL_KEPT);
+    traversal_begin(&d->traversal, &d->forest, now->pass);
     for (bool more = true; more;) {
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;
@@ -105,40 +116,39 @@ static cscd_status find_intersections(moment *now) {
     return CSCD_OK;
 }
 
-/* What the lanes hold, ignored pairs among it, is what components are judged by. */
+/* What the lanes hold, ignored pairs among it, is what triangles are judged by. */
 static void record_starts(const moment *now) {
     cscd_detector *d = now->detector;
-    const cscd_mesh *mesh = d->mesh;
-    bool zero_areas = false;
-    for (uint32_t c = 0; c < mesh->component_count; c++) d->crossing[c] = false;
+    const uint32_t *components = d->mesh->triangle_components;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
         const intersection_lane *lane = &d->intersection_lanes[i];
-        zero_areas |= lane->zero_area_triangles > 0;
         for (size_t j = 0; j < lane->count; j++) {
-            uint32_t a = mesh->triangle_components[lane->items[j].a];
-            if (a == mesh->triangle_components[lane->items[j].b]) d->crossing[a] = true;
+            cscd_intersection pair = lane->items[j];
+            if (components[pair.a] == components[pair.b]) d->crossing[pair.a] = d->crossing[pair.b] = true;
         }
     }
-    for (uint32_t t = 0; zero_areas && t < mesh->triangle_count; t++) {
-        const double *corners[3];
-        for (int i = 0; i < 3; i++) corners[i] = now->positions + (size_t)mesh->triangles[t][i] * 3;
-        if (collinear(corners[0], corners[1], corners[2])) d->crossing[mesh->triangle_components[t]] = true;
-    }
-    start_states_checked(&d->starts, now->positions, d->crossing);
+    start_states_checked(&d->starts, d->suspects, d->crossing);
 }
 
-static cscd_status check_moment(moment *now) {
-    cscd_status status = detector_build(now->detector, now->positions);
-    if (status != CSCD_OK) return status;
-    forest_move(&now->detector->forest, now->positions, now->positions, 0.0);
-    status = find_intersections(now);
-    if (status == CSCD_OK) record_starts(now);
+cscd_status static_check_suspects(cscd_detector *detector, const double *positions) {
+    moment now = {detector, positions, TRAVERSAL_SUSPECTS};
+    forest_mark_suspects(&detector->forest, detector->suspects);
+    cscd_status status = find_intersections(&now);
+    if (status == CSCD_OK) record_starts(&now);
     return status;
 }
 
-cscd_status static_check_components(cscd_detector *detector, const double *positions) {
-    moment now = {detector, positions};
-    return check_moment(&now);
+static cscd_status check_moment(moment *now) {
+    cscd_detector *d = now->detector;
+    cscd_status status = detector_build(d, now->positions);
+    if (status != CSCD_OK) return status;
+    forest_move(&d->forest, now->positions, now->positions, 0.0);
+    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->suspects[t] = true;
+    status = find_intersections(now);
+    if (status != CSCD_OK) return status;
+    start_states_begin(&d->starts, now->positions);
+    record_starts(now);
+    return CSCD_OK;
 }
 
 cscd_status cscd_detector_check(cscd_detector *detector, const double *positions, cscd_intersections *out) {
@@ -149,7 +159,7 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
     cscd_status status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
 
-    moment now = {detector, positions};
+    moment now = {detector, positions, TRAVERSAL_KEPT};
     cscd_intersections result;
     status = check_moment(&now);
     if (status == CSCD_OK) status = collect(detector, &result);

@@ -12,8 +12,9 @@ typedef struct intersection_lane {
     bool out_of_memory;
 } intersection_lane;
 
-/* Finds out which components meet themselves at one moment, or have triangles of zero area, and tells the
- * detector's start states. */
-cscd_status static_check_components(cscd_detector *detector, const double *positions);
+/* Compares the triangles that detector->suspects marks with one another, as they are at positions, in the
+ * component that they share, and tells the detector's start states. The tree's volumes contain the triangles
+ * at that moment: of the moment, or of an interval that it is part of. */
+cscd_status static_check_suspects(cscd_detector *detector, const double *positions);
 
 #endif

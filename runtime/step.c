@@ -3,6 +3,7 @@
 
 #include "runtime/brute_force.h"
 #include "runtime/contact_list.h"
+#include "runtime/tainting.h"
 #include "src/positions.h"
 #include "src/timer.h"
 
@@ -24,6 +25,13 @@ cscd_status detector_build(cscd_detector *d, const double *positions) {
     return forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
 }
 
+/* The forest of the interval from x0 to x1, or of a moment. */
+static cscd_status move_forest(cscd_detector *d, const double *x0, const double *x1, double distance) {
+    cscd_status status = detector_build(d, x0);
+    if (status == CSCD_OK) forest_move(&d->forest, x0, x1, distance);
+    return status;
+}
+
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
 typedef struct step_work {
@@ -38,8 +46,7 @@ static void test_batch(void *data, uint32_t index) {
     step_work *work = data;
     const traversal_lane *batch = &work->detector->traversal.lanes[index];
     contact_lane *lane = &work->detector->contact_lanes[index];
-    for (uint32_t i = 0; i < batch->pair_count && !lane->out_of_memory; i++)
-        narrow_phase_test(&work->interval, batch->pairs[i], lane);
+    narrow_phase_test(&work->interval, batch->pairs, batch->pair_count, lane);
     narrow_phase_finish(&work->interval, lane);
 }
 
@@ -81,62 +88,33 @@ static bool follows(const cscd_detector *d, int rule) {
     return d->options.method == CSCD_METHOD_PUBLISHED && (d->published_rules & rule) != 0;
 }
 
-/* Which components are culled: those whose start is embedded, for certain. */
+static bool culls_unproven(const cscd_detector *d) {
+    return follows(d, PUBLISHED_UNPROVEN) && detector_culls(d);
+}
+
+/* Suspects beyond this share are worth volumes of their moment; fewer are found by those of the interval. */
+enum { SUSPECTS_SHARE = 16 };
+
+/* Finds out which triangles are clean at the start, and updates the tree for the interval. */
 static cscd_status prove_starts(step_work *work) {
     cscd_detector *d = work->detector;
+    const double *start = work->interval.x0;
+    bool proves = detector_culls(d) && d->options.start == CSCD_START_PROVE && !culls_unproven(d);
     double since = timer_now_ms();
-    start_states_begin(&d->starts, work->interval.x0);
-    if (!detector_culls(d)) return CSCD_OK;
-    if (d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
-    bool unproven = follows(d, PUBLISHED_UNPROVEN);
-    if (d->options.start == CSCD_START_PROVE && !unproven && start_states_want_check(&d->starts)) {
-        cscd_status status = static_check_components(d, work->interval.x0);
-        if (status != CSCD_OK) return status;
-        work->counters.static_checks++;
-    }
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
-        bool embedded = d->mesh->components[c].closed_manifold && d->starts.of[c].state == START_EMBEDDED;
-        d->culled[c] = embedded || unproven;
-        work->any_culled |= d->culled[c];
+    uint32_t suspects = proves ? start_states_suspect(&d->starts, d->suspects) : 0;
+    bool at_once = suspects > d->mesh->triangle_count / SUSPECTS_SHARE;
+    cscd_status status = CSCD_OK;
+    if (at_once) {
+        status = move_forest(d, start, start, 0.0);
+        if (status == CSCD_OK) status = static_check_suspects(d, start);
     }
     timer_lap(&since, &work->timings.proof_ms);
-    return CSCD_OK;
-}
-
-static void orient(step_work *work) {
-    cscd_detector *d = work->detector;
-    bool still = follows(d, PUBLISHED_STILL);
-    double since = timer_now_ms();
-    forest_view view = {.culled = d->culled,
-                        .detector_offsets = (const double(*)[3])d->culling.detector_offsets,
-                        .still = still};
-    forest_orient(&d->forest, &view, d->culling.orientations);
-    culling_count(&d->culling);
-    timer_lap(&since, &work->timings.orientation_ms);
-    work->counters.plus = d->culling.plus;
-    work->counters.minus = d->culling.minus;
-    work->interval.culling = follows(d, PUBLISHED_REPRESENTATIVES) ? NULL : &d->culling;
-}
-
-/* The component that both features belong to; UINT32_MAX: two. */
-static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *contact) {
-    bool vf = contact->kind == CSCD_CONTACT_VF;
-    uint32_t first = vf ? mesh->vertex_stars[mesh->vertex_star_offsets[contact->a]]
-                        : mesh->edge_stars[mesh->edge_star_offsets[contact->a]];
-    uint32_t second = vf ? contact->b : mesh->edge_stars[mesh->edge_star_offsets[contact->b]];
-    uint32_t a = mesh->triangle_components[first], b = mesh->triangle_components[second];
-    return a == b ? a : UINT32_MAX;
-}
-
-/* Components with a contact with themselves, ignored pairs among them. */
-static void find_touched(const cscd_detector *d) {
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->touched[c] = false;
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        for (size_t j = 0; j < d->contact_lanes[i].count; j++) {
-            uint32_t component = common_component(d->mesh, &d->contact_lanes[i].contacts[j]);
-            if (component != UINT32_MAX) d->touched[component] = true;
-        }
-    }
+    if (status == CSCD_OK) status = move_forest(d, start, work->interval.x1, d->limit.distance);
+    timer_lap(&since, &work->timings.update_ms);
+    if (status == CSCD_OK && suspects > 0 && !at_once) status = static_check_suspects(d, start);
+    timer_lap(&since, &work->timings.proof_ms);
+    work->counters.static_checks = suspects > 0;
+    return status;
 }
 
 /* A first contact that is to be left out may hide the one to report: then mode EARLIEST finishes, too. */
@@ -144,20 +122,53 @@ static bool finishes(const cscd_detector *d) {
     return d->options.mode == CSCD_MODE_ALL || d->options.ignore != NULL;
 }
 
-/* The pairs that were culled in components that did touch themselves. */
-static cscd_status finish_touched(step_work *work) {
+/* Which components are culled: closed ones with clean triangles. Those that are not all clean are finished in
+ * either mode. As published: embedded ones, or all, and none is finished. */
+static void choose_culled(step_work *work) {
     cscd_detector *d = work->detector;
-    bool any = false;
+    bool published = d->options.method == CSCD_METHOD_PUBLISHED;
+    start_states_count(&d->starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
-        d->unfinished[c] = d->culled[c] && d->touched[c];
-        any |= d->unfinished[c];
+        const cscd_component *component = &d->mesh->components[c];
+        uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
+        bool embedded = clean == component->triangle_count;
+        d->culled[c] =
+            published ? embedded || follows(d, PUBLISHED_UNPROVEN) : detector_culls(d) && clean > 0;
+        d->finished[c] = d->culled[c] && !published && (finishes(d) || !embedded);
+        work->any_culled |= d->culled[c];
+        work->counters.clean += clean;
     }
-    if (!any) return CSCD_OK;
+}
+
+static void orient(step_work *work) {
+    cscd_detector *d = work->detector;
+    bool still = follows(d, PUBLISHED_STILL);
     double since = timer_now_ms();
-    forest_mark(&d->forest, d->culling.orientations, d->unfinished);
+    forest_view view = {d->culled, follows(d, PUBLISHED_UNPROVEN) ? NULL : d->starts.triangles,
+                        (const double(*)[3])d->culling.detector_offsets, still};
+    forest_orient(&d->forest, &view, d->culling.facing);
+    culling_begin(&d->culling);
     timer_lap(&since, &work->timings.orientation_ms);
-    work->interval.culled_pairs = true;
-    return traverse(work, TRAVERSAL_FRESH);
+    work->counters.plus = d->culling.plus;
+    work->counters.minus = d->culling.minus;
+    work->interval.culling = follows(d, PUBLISHED_REPRESENTATIVES) ? NULL : &d->culling;
+}
+
+/* Tests the pairs that contacts have uncovered, until these bring no more: then all contacts of the
+ * components to be finished are found (docs/culling.md). */
+static cscd_status close_contacts(step_work *work) {
+    cscd_detector *d = work->detector;
+    work->interval.closing = true;
+    for (;;) {
+        double since = timer_now_ms();
+        culling_pass_done(&d->culling);
+        if (tainting_look(d) == 0) return CSCD_OK;
+        forest_mark_fresh(&d->forest, d->culling.earlier, d->culling.orientations);
+        timer_lap(&since, &work->timings.orientation_ms);
+        cscd_status status = traverse(work, TRAVERSAL_FRESH);
+        if (status != CSCD_OK) return status;
+        work->counters.passes++;
+    }
 }
 
 /* ICCD needs no embedded start: a pair in a sealed patch never touches. */
@@ -177,52 +188,31 @@ static cscd_status find_unsealed(step_work *work) {
     return traverse(work, TRAVERSAL_KEPT);
 }
 
-/* Tests for minimum separation are dear, so pairs whose own volumes stay apart are left out first. */
-static void sweep_vertices(void *data, uint32_t index) {
-    const step_work *work = data;
-    const cscd_detector *d = work->detector;
-    size_t count = d->mesh->vertex_count, lanes = d->traversal.lane_count;
-    for (size_t v = count * index / lanes; v < count * (index + 1) / lanes; v++) {
-        kdop_exact start, end;
-        kdop_point(work->interval.x0 + v * 3, &start);
-        kdop_point(work->interval.x1 + v * 3, &end);
-        kdop_exact_add(&start, &end);
-        kdop_exact_widen(&start, d->limit.distance);
-        d->vertex_volumes[v] = kdop_round(&start);
-    }
-}
-
 static cscd_status find_by_trees(step_work *work) {
     cscd_detector *d = work->detector;
-    double since = timer_now_ms();
-    cscd_status status = detector_build(d, work->interval.x0);
+    cscd_status status = prove_starts(work);
     if (status != CSCD_OK) return status;
-    forest_move(&d->forest, work->interval.x0, work->interval.x1, d->limit.distance);
-    if (d->limit.distance > 0.0)
-        parallel_run(d->context->threads, d->traversal.lane_count, sweep_vertices, work);
-    timer_lap(&since, &work->timings.update_ms);
     if (detector_seals(d)) return find_unsealed(work);
+    choose_culled(work);
     work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
     if (!work->any_culled) return traverse(work, TRAVERSAL_KEPT);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || !finishes(d) || d->options.method == CSCD_METHOD_PUBLISHED) return status;
-    find_touched(d);
-    return finish_touched(work);
+    return status == CSCD_OK && d->options.method != CSCD_METHOD_PUBLISHED ? close_contacts(work) : status;
 }
 
 static cscd_status find_by_brute_force(step_work *work) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms();
-    work->interval.vertex_volumes = NULL;
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, work);
     timer_lap(&since, &work->timings.contact_ms);
     return lanes_status(d);
 }
 
 static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
-    start_state start = d->starts.of[component].state;
-    cscd_guarantee g = {true, start == START_EMBEDDED, CSCD_REASON_METHOD};
+    const component_start *start = &d->starts.of[component];
+    bool embedded = start->clean == d->mesh->components[component].triangle_count;
+    cscd_guarantee g = {true, embedded, CSCD_REASON_METHOD};
     if (detector_seals(d)) {
         bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
         g.reason = published ? CSCD_REASON_PUBLISHED : CSCD_REASON_CONTOUR;
@@ -234,8 +224,8 @@ static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
         g.reason = CSCD_REASON_PUBLISHED;
     else if (!d->mesh->components[component].closed_manifold)
         g.reason = CSCD_REASON_SURFACE;
-    else if (start != START_EMBEDDED)
-        g.reason = start == START_CROSSING ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
+    else if (!embedded)
+        g.reason = start->crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
     else if (!d->touched[component])
         g.reason = CSCD_REASON_CLEAN;
     else
@@ -244,15 +234,29 @@ static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     return g;
 }
 
+/* The states of the triangles go on to the end, but where contacts may be missing. */
+static void hand_on_states(cscd_detector *d, const double *end) {
+    bool *lost = d->culled;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) {
+        const cscd_guarantee *g = &d->guarantees[c];
+        lost[c] = !g->complete;
+    }
+    start_states_end(&d->starts, end, lost);
+}
+
 static cscd_status step(step_work *work, cscd_contacts *contacts) {
     cscd_detector *d = work->detector;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) contact_lane_reset(&d->contact_lanes[i]);
     culling_clear(&d->culling);
-    cscd_status status = prove_starts(work);
-    if (status == CSCD_OK)
-        status = d->options.method == CSCD_METHOD_BRUTE ? find_by_brute_force(work) : find_by_trees(work);
+    tainting_begin(d);
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->finished[c] = false;
+    start_states_begin(&d->starts, work->interval.x0);
+    if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
+    start_states_count(&d->starts);
+    bool brute = d->options.method == CSCD_METHOD_BRUTE;
+    cscd_status status = brute ? find_by_brute_force(work) : find_by_trees(work);
     if (status != CSCD_OK) return status;
-    find_touched(d);
+    tainting_look(d);
     double since = timer_now_ms();
     status = contact_list_collect(d, &work->counters, contacts);
     timer_lap(&since, &work->timings.contact_ms);
@@ -275,7 +279,6 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                                    .x0 = start,
                                    .x1 = end,
                                    .forest = &detector->forest,
-                                   .vertex_volumes = detector->vertex_volumes,
                                    .representatives = detector->representatives,
                                    .limit = detector->limit},
                       .timings = {.check_ms = detector->timings.check_ms}};
@@ -283,9 +286,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     if (status != CSCD_OK) return context_out_of_memory(context);
     for (uint32_t c = 0; c < detector->mesh->component_count; c++)
         detector->guarantees[c] = guarantee_of(detector, c);
-    bool lossy = detector->options.method == CSCD_METHOD_PUBLISHED ||
-                 detector->options.method == CSCD_METHOD_ICCD_PUBLISHED;
-    start_states_end(&detector->starts, end, lossy ? NULL : detector->touched);
+    hand_on_states(detector, end);
     timer_lap(&since, &work.timings.total_ms);
     detector->timings = work.timings;
     detector->counters = work.counters;

@@ -17,9 +17,9 @@ typedef struct block_pair {
 } block_pair;
 
 /* Which pairs of triangles are looked for, of those whose volumes overlap: all but those that are marked as
- * never touching (by flags, or by `within`); or those that the flags of the pass before left out and the
- * present ones do not. */
-typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH } traversal_pass;
+ * never touching (by flags, or by `within`); those that the flags before left out and the present ones do
+ * not; those of two suspects. */
+typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECTS } traversal_pass;
 
 /* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room. */
 enum { LEAF_CACHE_SIZE = 256, LEAF_VOLUME_FLOATS = KDOP_AXES * 2 * FOREST_LANES };

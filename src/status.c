@@ -49,8 +49,8 @@ static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EAR
 static const char *const reasons[] = {
     [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
     [CSCD_REASON_SURFACE] = "open, non-manifold or inconsistently oriented",
-    [CSCD_REASON_CROSSING] = "crosses or touches itself at the start",
-    [CSCD_REASON_UNPROVEN] = "not known to be free of self-contact at the start",
+    [CSCD_REASON_CROSSING] = "crosses or touches itself at the start; culled where it does not",
+    [CSCD_REASON_UNPROVEN] = "not known to be free of self-contact at the start; culled where it is",
     [CSCD_REASON_CLEAN] = "embedded at the start, and no contact",
     [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
     [CSCD_REASON_PUBLISHED] = "culled as published, which loses contacts",

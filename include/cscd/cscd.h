@@ -247,17 +247,22 @@ typedef enum cscd_mode {
                     * for published methods, and starts vouched for wrongly) */
     CSCD_MODE_EARLIEST /* of a component whose start is proven embedded, at least one contact with itself at
                         * its earliest time; so none is a proof that there is none. All other contacts as in
-                        * ALL, and all with pairs to leave out. See cscd_detector_guarantee */
+                        * ALL, and all with pairs to leave out. What such an interval with contact leaves
+                        * behind is not known, and the next start checked as a whole: where every frame is
+                        * stepped through, ALL costs less. See cscd_detector_guarantee */
 } cscd_mode;
 
 CSCD_API const char *cscd_mode_name(cscd_mode mode);
 CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
 
-/* What is done to prove that a component's start is embedded, so that culling by orientation is sound. */
+/* What is done to prove that triangles are clean at the start, so that culling by orientation is sound:
+ * nothing of their component meets them but their neighbours, and they lie on its surface as most others do.
+ * A component is embedded when all are. From the end of an interval to an equal start of the next what is
+ * clean and takes no part in a contact stays clean, whatever happens elsewhere. */
 typedef enum cscd_start {
-    CSCD_START_PROVE,   /* the static check, when the start is not the end of a clean interval */
+    CSCD_START_PROVE,   /* the static check of the triangles not known to be clean */
     CSCD_START_VOUCHED, /* nothing: the caller knows that every start is embedded */
-    CSCD_START_UNKNOWN  /* nothing: components are culled only after a cscd_detector_check of the start */
+    CSCD_START_UNKNOWN  /* nothing: triangles are culled only after a cscd_detector_check of the start */
 } cscd_start;
 
 typedef struct cscd_detector_options {
@@ -342,12 +347,13 @@ CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *
 
 /* Why a component's contacts with itself in the last step are what they are. */
 typedef enum cscd_reason {
-    CSCD_REASON_METHOD,    /* complete: the method does not cull, or not with min_separation */
-    CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so never culled */
-    CSCD_REASON_CROSSING,  /* complete: the start is known to cross or touch itself */
-    CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded */
-    CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
-    CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
+    CSCD_REASON_METHOD,   /* complete: the method does not cull, or not with min_separation */
+    CSCD_REASON_SURFACE,  /* complete: open, non-manifold or inconsistently oriented, so never culled */
+    CSCD_REASON_CROSSING, /* complete: the start is known to cross or touch itself; clean triangles are culled
+                           */
+    CSCD_REASON_UNPROVEN, /* complete: the start is not known to be embedded; clean triangles are culled */
+    CSCD_REASON_CLEAN,    /* complete: the start is embedded, and there is no contact */
+    CSCD_REASON_FINISHED, /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED or ICCD_PUBLISHED */
     CSCD_REASON_CONTOUR,   /* complete: ICCD needs no embedded start */
     CSCD_REASON_EARLIEST   /* the start is embedded, and mode EARLIEST promises the first contacts only */
@@ -367,7 +373,7 @@ typedef struct cscd_guarantee {
 CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 
 /* How a triangle faced its region's detector point during the last step: 1 (S+), -1 (S-), or 0: neither
- * throughout, or its component was not culled. Undefined after a step that failed. */
+ * throughout, or it was not clean at the start. Undefined after a step that failed. */
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
 
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
@@ -382,7 +388,9 @@ typedef struct cscd_timings { /* of the last step; the seed of each is a stage o
 } cscd_timings;
 
 typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
-    uint64_t static_checks;    /* of the start, within the step */
+    uint64_t static_checks;    /* of the start, within the step: of the triangles not known to be free */
+    uint64_t clean;            /* triangles clean at the start: only these are culled */
+    uint64_t passes;           /* further traversals, for pairs that contacts have uncovered */
     uint64_t plus, minus;      /* triangles that are S+ and S- */
     uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */

@@ -5,8 +5,6 @@
 #include "runtime/kernels/kernels.h"
 #include "src/simd.h"
 
-void SIMD_NAME(keep_near_vf)(const feature_source *source, feature_pairs *pairs);
-void SIMD_NAME(keep_near_ee)(const feature_source *source, feature_pairs *pairs);
 void SIMD_NAME(keep_open_vf)(const feature_source *source, feature_pairs *pairs);
 void SIMD_NAME(keep_open_ee)(const feature_source *source, feature_pairs *pairs);
 void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,

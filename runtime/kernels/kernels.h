@@ -3,13 +3,13 @@
 #ifndef CSCD_KERNELS_H
 #define CSCD_KERNELS_H
 
-#include "runtime/kdop.h"
 #include "src/context.h"
 
 struct forest;
 struct forest_part;
 struct traversal;
 struct traversal_lane;
+struct triangle_pair;
 
 /* Of the records that were copied: the largest magnitude of a coordinate, and the sums by record_weights of
  * those at the start and at the end. */
@@ -18,10 +18,14 @@ typedef struct copied {
 } copied;
 enum { KERNEL_LANES = 8 };
 
+/* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
+ * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j
+ * of b. */
+enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
+
 /* Where pairs of features and their points are found. */
 typedef struct feature_source {
     const double *x0, *x1; /* three per vertex */
-    const kdop *vertex_volumes;
     const uint32_t (*triangles)[3], (*edges)[2];
 } feature_source;
 
@@ -48,17 +52,19 @@ typedef struct kernels {
     /* Bounds of the children of blocks begin to end - 1 of any level but the part level. */
     void (*refit)(const struct forest *f, int level, uint32_t begin, uint32_t end);
 
-    /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; held: per triangle of
-     * the mesh, those that are ZERO whatever their orientation; NULL: none. */
+    /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; states: triangle_state
+     * of each triangle of the mesh, of which only the clean ones have an orientation; NULL: all. */
     void (*orient)(const struct forest *f, const struct forest_part *p, uint32_t begin, uint32_t end,
-                   const uint8_t *held, uint8_t *orientations);
+                   const uint8_t *states, uint8_t *orientations);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
-    /* Keeps the pairs whose volumes overlap, in their order, as kdop_overlap of kdop_union says. */
-    void (*keep_near_vf)(const feature_source *source, feature_pairs *pairs);
-    void (*keep_near_ee)(const feature_source *source, feature_pairs *pairs);
+    /* Of the pairs of features of two triangles, in slots, those of `wanted` that may touch, or come within
+     * distance, by their volumes, and that share no vertex; without `adjacent` none of triangles that share
+     * one. */
+    void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
+                  bool adjacent, const uint16_t *wanted, uint16_t *features);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */

@@ -16,6 +16,7 @@
 #include "runtime/kernels/this_level.h"
 
 #include "runtime/kernels/corners.h"
+#include "runtime/start_state.h"
 
 static f32x8 largest_component(f32x8 (*v)[3]) {
     f32x8 largest = f32x8_abs(v[0][0]);
@@ -61,15 +62,15 @@ static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus,
     *minus = f32x8_below(greatest, -bound);
 }
 
-static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *held,
+static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *states,
                         uint8_t *orientations) {
     const forest_leaf *l = &f->leaves[index];
     uint32_t plus, minus, free = f->leaf_flags[index].used;
     leaf_corners corners;
     load_corners(f, l, corners);
     orient(p, corners, &plus, &minus);
-    for (int lane = 0; held != NULL && lane < LANES; lane++) {
-        if ((f->leaf_flags[index].used >> lane & 1) != 0 && held[l->triangles[lane]] != 0)
+    for (int lane = 0; states != NULL && lane < LANES; lane++) {
+        if ((f->leaf_flags[index].used >> lane & 1) != 0 && states[l->triangles[lane]] != TRIANGLE_CLEAN)
             free &= ~(1u << lane);
     }
     plus &= free;
@@ -83,6 +84,6 @@ static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, c
 }
 
 void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
-                       const uint8_t *held, uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, held, orientations);
+                       const uint8_t *states, uint8_t *orientations) {
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, states, orientations);
 }

@@ -70,6 +70,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
     if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & (FOREST_ALL_LANES << (i + 1));
+    if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
     if (c->pass == TRAVERSAL_FRESH) {
         if (!c->one_part) return 0;
         if ((c->a.fresh >> i & 1) == 0) lanes &= c->b.fresh;
@@ -201,7 +202,7 @@ static inline void visit(const traversal *t, traversal_lane *lane, block_pair at
         }
         if (c.itself) {
             bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
-            if (t->pass == TRAVERSAL_FRESH) own = (c.a.fresh >> i & 1) != 0;
+            if (t->pass != TRAVERSAL_KEPT) own = (c.a.fresh >> i & 1) != 0;
             if (own) lanes |= 1u << i;
         }
         if (lanes != 0) descend(t, lane, &at, i, lanes, d);

@@ -10,7 +10,10 @@ void SIMD_NAME(copy_in)(const forest *f, const forest_part *p, uint32_t begin, u
                         const double *x1, copied *out);
 void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end);
 void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
-                       const uint8_t *held, uint8_t *orientations);
+                       const uint8_t *states, uint8_t *orientations);
 void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);
+
+void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
+                      bool adjacent, const uint16_t *wanted, uint16_t *features);
 
 #endif

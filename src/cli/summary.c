@@ -95,6 +95,8 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json_integer(out, "plus", result->counters.plus);
     json_integer(out, "minus", result->counters.minus);
     json_integer(out, "static_checks", result->counters.static_checks);
+    json_integer(out, "clean_triangles", result->counters.clean);
+    json_integer(out, "passes", result->counters.passes);
     json_string(out, "state", interval_state_name(result->state));
     write_guarantees(w, result->detector);
     write_times(out, &result->timings);
@@ -192,6 +194,8 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     write_column(out, "tests", &t->tests, t->intervals);
     write_column(out, "plus", &t->plus, t->intervals);
     write_column(out, "minus", &t->minus, t->intervals);
+    write_column(out, "clean_triangles", &t->clean, t->intervals);
+    write_column(out, "passes", &t->passes, t->intervals);
     json_end_object(out);
 }
 

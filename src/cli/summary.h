@@ -38,7 +38,8 @@ typedef struct totals {
     uint32_t contradictions;     /* clean intervals that end crossing: contacts that were lost */
     uint32_t intervals_complete; /* every component's contacts are complete */
     uint64_t vf, ee, bounded, static_checks;
-    column update, orientation, contour, traversal, contact, proof, check, total, pcp, tests, plus, minus;
+    column update, orientation, contour, traversal, contact, proof, check, total, pcp, tests, plus, minus,
+        clean, passes;
 } totals;
 
 void totals_add(totals *t, const interval_result *result, const cscd_mesh *mesh);

@@ -37,6 +37,8 @@ void totals_add(totals *t, const interval_result *r, const cscd_mesh *mesh) {
     add(&t->tests, (double)r->counters.tests);
     add(&t->plus, (double)r->counters.plus);
     add(&t->minus, (double)r->counters.minus);
+    add(&t->clean, (double)r->counters.clean);
+    add(&t->passes, (double)r->counters.passes);
 }
 
 static double mean(const column *c, uint32_t count) {

@@ -1,0 +1,57 @@
+/* Which triangle pair answers for a pair of features. */
+#include "runtime/answering.h"
+
+#include "runtime/representatives.h"
+
+/* Without culling: that of the first triangles of both stars. With it: the first pair, in the order of the
+ * stars, that the flags leave (then it is reached, for its volumes contain the features'); in a closing pass
+ * none, if the earlier flags left one: then these features are tested already. */
+static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
+                              uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
+    uint32_t first = UINT32_MAX;
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (first == UINT32_MAX && culling_keeps(interval->culling, s, against)) {
+            first = s;
+            if (first != of || !interval->closing) break;
+        }
+        if (interval->closing && culling_kept(interval->culling, s, against)) return false;
+    }
+    return first == of;
+}
+
+bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
+    if (interval->culling == NULL) return represents_vertex(interval->representatives[of], i);
+    return first_kept_vertex(interval, of, interval->mesh->triangles[of][i], against);
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_kept_edges(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin_a = mesh->edge_star_offsets[a], end_a = mesh->edge_star_offsets[a + 1];
+    uint32_t begin_b = mesh->edge_star_offsets[b], end_b = mesh->edge_star_offsets[b + 1];
+    bool found = false;
+    for (uint32_t i = begin_a; i < end_a; i++) {
+        for (uint32_t j = begin_b; j < end_b; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (!found && culling_keeps(interval->culling, s, t)) {
+                if (s != pair.a || t != pair.b) return false;
+                if (!interval->closing) return true;
+                found = true;
+            }
+            if (interval->closing && culling_kept(interval->culling, s, t)) return false;
+        }
+    }
+    return found;
+}
+
+bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j) {
+    if (interval->culling == NULL)
+        return represents_edge(interval->representatives[pair.a], i) &&
+               represents_edge(interval->representatives[pair.b], j);
+    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
+    if (a < b) return first_kept_edges(interval, pair, a, b);
+    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
+}

@@ -1,0 +1,13 @@
+/* Which of the free triangles are clean: have one winding number in common on their outer sides. */
+#ifndef CSCD_CLEAN_PATCH_H
+#define CSCD_CLEAN_PATCH_H
+
+#include "runtime/start_state.h"
+
+/* Free triangles become clean where they are connected, over edges and through free triangles, to clean ones.
+ * Where less than half of a component is clean then, and its largest patch of other free triangles is larger,
+ * that becomes the clean one instead. Of a component without crossing and unknown triangles all are. Leaves
+ * the numbers per component up to date. Takes linear time. */
+void clean_patches_find(start_states *s);
+
+#endif
