@@ -1,19 +1,20 @@
 /* Nanoseconds per pair of features: one by one, and in batches on each level of vector instructions. */
 #include "runtime/detector.h"
 #include "src/io/mesh_file.h"
-#include "src/timer.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static const char help[] =
     "usage: narrow_phase START END\n"
     "\n"
     "Records all pairs of features of the mesh START (OBJ, PLY, OFF) whose triangles' volumes overlap on "
     "the\n"
-    "way to END, the same mesh at other positions, and times the narrow phase on them (one thread, least of\n"
-    "5).\n";
+    "way to END, the same mesh at other positions, and times the narrow phase on them (one thread's "
+    "processor\n"
+    "time, least of 5).\n";
 
 enum { REPEATS = 5, CHUNK = 480 };
 
@@ -30,6 +31,7 @@ typedef struct recording {
     swept_interval interval;
     recorded_pairs of_kind[2];
     contact_lane *lane;
+    size_t left; /* after what was timed last */
 } recording;
 
 /* ---- recording --------------------------------------------------------------------------------------- */
@@ -128,100 +130,92 @@ static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
 
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
-static void decide_in_batches(recording *r, cscd_contact_kind kind) {
-    const recorded_pairs *pairs = &r->of_kind[kind];
+typedef enum batch_stage { VOLUMES, SIGNS, ALL_STAGES } batch_stage;
+
+static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, batch_stage last) {
+    const kernels *table = kernels_of(r->context);
+    feature_source source = feature_queue_source(&r->interval);
+    feature_pairs pairs = {list->a, list->b, list->count};
     bool vf = kind == CSCD_CONTACT_VF;
-    feature_list *list = vf ? &r->lane->queue.vf : &r->lane->queue.ee;
+    if (last == ALL_STAGES) {
+        (vf ? feature_queue_decide_vf : feature_queue_decide_ee)(&r->interval, r->lane);
+        return;
+    }
+    (vf ? table->keep_near_vf : table->keep_near_ee)(&source, &pairs);
+    if (last == SIGNS) (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &pairs);
+    r->left += pairs.count;
+}
+
+static void decide_in_batches(recording *r, cscd_contact_kind kind, batch_stage last) {
+    const recorded_pairs *pairs = &r->of_kind[kind];
+    feature_list *list = kind == CSCD_CONTACT_VF ? &r->lane->queue.vf : &r->lane->queue.ee;
+    r->left = 0;
     for (size_t i = 0; i < pairs->count; i += CHUNK) {
         size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;
         memcpy(list->a, pairs->a + i, count * sizeof *list->a);
         memcpy(list->b, pairs->b + i, count * sizeof *list->b);
         list->count = (uint32_t)count;
-        (vf ? feature_queue_decide_vf : feature_queue_decide_ee)(&r->interval, r->lane);
+        decide_list(r, kind, list, last);
     }
 }
 
-/* How many of the tests are left after the kernels of volumes and of signs, and those of roots. */
-typedef struct stage {
-    double near_ms, signs_ms;
-    size_t near, open;
-} stage;
+static void by_volumes(recording *r, cscd_contact_kind kind) {
+    decide_in_batches(r, kind, VOLUMES);
+}
 
-static stage time_stages(recording *r, cscd_contact_kind kind) {
-    const recorded_pairs *pairs = &r->of_kind[kind];
-    const kernels *table = kernels_of(r->context);
-    bool vf = kind == CSCD_CONTACT_VF;
-    feature_list *list = vf ? &r->lane->queue.vf : &r->lane->queue.ee;
-    feature_source source = feature_queue_source(&r->interval);
-    stage out = {0};
-    for (size_t i = 0; i < pairs->count; i += CHUNK) {
-        size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;
-        feature_pairs some = {list->a, list->b, (uint32_t)count};
-        memcpy(list->a, pairs->a + i, count * sizeof *list->a);
-        memcpy(list->b, pairs->b + i, count * sizeof *list->b);
-        double since = timer_now_ms();
-        (vf ? table->keep_near_vf : table->keep_near_ee)(&source, &some);
-        timer_lap(&since, &out.near_ms);
-        out.near += some.count;
-        (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &some);
-        timer_lap(&since, &out.signs_ms);
-        out.open += some.count;
-    }
-    return out;
+static void by_signs(recording *r, cscd_contact_kind kind) {
+    decide_in_batches(r, kind, SIGNS);
+}
+
+static void by_all(recording *r, cscd_contact_kind kind) {
+    decide_in_batches(r, kind, ALL_STAGES);
 }
 
 /* ---- the table --------------------------------------------------------------------------------------- */
 
+static double processor_ns(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e9 + (double)now.tv_nsec;
+}
+
+/* Per pair. */
 static double time_pairs(recording *r, cscd_contact_kind kind,
                          void (*decide)(recording *, cscd_contact_kind)) {
-    double least = 1e300;
+    double least = 1e300, count = (double)r->of_kind[kind].count;
     for (int i = 0; i < REPEATS; i++) {
         contact_lane_reset(r->lane);
-        double start = timer_now_ms();
+        double start = processor_ns();
         decide(r, kind);
-        double ms = timer_now_ms() - start;
-        least = ms < least ? ms : least;
+        double ns = (processor_ns() - start) / (count > 0.0 ? count : 1.0);
+        least = ns < least ? ns : least;
     }
     return least;
 }
 
-static double ns_each(double ms, size_t count) {
-    return count > 0 ? ms * 1e6 / (double)count : 0.0;
-}
-
-static void print_batches(recording *r, cscd_contact_kind kind) {
-    size_t count = r->of_kind[kind].count;
-    for (cscd_simd level = CSCD_SIMD_SCALAR; level <= CSCD_SIMD_AVX512; level++) {
-        if (level > cscd_context_simd(r->context)) break;
-        cscd_simd best = r->context->simd;
-        r->context->simd = level;
-        stage least = time_stages(r, kind);
-        for (int i = 1; i < REPEATS; i++) {
-            stage s = time_stages(r, kind);
-            if (s.near_ms < least.near_ms) least.near_ms = s.near_ms;
-            if (s.signs_ms < least.signs_ms) least.signs_ms = s.signs_ms;
-        }
-        double ms = time_pairs(r, kind, decide_in_batches);
-        r->context->simd = best;
-        printf("%-3s %-8s %9zu %8.1f %8.1f | volumes %5.1f ns a pair, signs %5.1f ns a test\n",
-               cscd_contact_kind_name(kind), cscd_simd_name(level), count, ns_each(ms, count),
-               ns_each(ms, least.near), ns_each(least.near_ms, count), ns_each(least.signs_ms, least.near));
-        if (level != best) continue;
-        printf("    of the pairs %.1f %% are tested, of the tests %.2f %% left open by signs\n",
-               100.0 * (double)least.near / (double)(count > 0 ? count : 1),
-               100.0 * (double)least.open / (double)(least.near > 0 ? least.near : 1));
-    }
+static double percent(uint64_t part, size_t whole) {
+    return whole > 0 ? 100.0 * (double)part / (double)whole : 0.0;
 }
 
 static void print_kind(recording *r, cscd_contact_kind kind) {
-    size_t count = r->of_kind[kind].count;
-    double ms = time_pairs(r, kind, decide_one_by_one);
+    size_t pairs = r->of_kind[kind].count, near = 0, open = 0;
+    const char *name = cscd_contact_kind_name(kind);
+    cscd_simd best = r->context->simd;
+    printf("%-3s %-10s %9zu %8s %8s %8.1f\n", name, "one by one", pairs, "", "",
+           time_pairs(r, kind, decide_one_by_one));
+    for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
+        r->context->simd = (cscd_simd)level;
+        double volumes = time_pairs(r, kind, by_volumes);
+        near = r->left;
+        double signs = time_pairs(r, kind, by_signs);
+        open = r->left;
+        printf("%-3s %-10s %9zu %8.1f %8.1f %8.1f\n", name, cscd_simd_name((cscd_simd)level), pairs, volumes,
+               signs, time_pairs(r, kind, by_all));
+    }
     const uint64_t *decided = r->lane->decided;
-    size_t tests =
-        (size_t)(decided[ELEMENTARY_SIGNS] + decided[ELEMENTARY_ROOTS] + decided[ELEMENTARY_EXACT]);
-    printf("%-3s %-8s %9zu %8.1f %8.1f | %zu tests, %zu contacts\n", cscd_contact_kind_name(kind), "each",
-           count, ns_each(ms, count), ns_each(ms, tests), tests, r->lane->count);
-    print_batches(r, kind);
+    printf("    volumes leave %.1f %%, signs %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n",
+           percent(near, pairs), percent(open, pairs), percent(r->lane->count, pairs),
+           percent(decided[ELEMENTARY_EXACT], pairs));
 }
 
 int main(int argument_count, char **arguments) {
@@ -234,7 +228,7 @@ int main(int argument_count, char **arguments) {
     bool good = mesh_file_read(arguments[1], &r.start, &error) &&
                 mesh_file_read(arguments[2], &r.end, &error) && open_recording(&r, &error);
     if (good) {
-        printf("%-3s %-8s %9s %8s %8s\n", "", "way", "pairs", "ns/pair", "ns/test");
+        puts("ns per pair       pairs   volumes  + signs      all");
         print_kind(&r, CSCD_CONTACT_VF);
         print_kind(&r, CSCD_CONTACT_EE);
     } else {
