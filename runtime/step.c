@@ -108,11 +108,11 @@ static cscd_status prove_starts(step_work *work) {
         status = move_forest(d, start, start, 0.0);
         if (status == CSCD_OK) status = static_check_suspects(d, start);
     }
-    timer_lap(&since, &work->timings.proof_ms);
+    if (proves) timer_lap(&since, &work->timings.proof_ms);
     if (status == CSCD_OK) status = move_forest(d, start, work->interval.x1, d->limit.distance);
     timer_lap(&since, &work->timings.update_ms);
     if (status == CSCD_OK && suspects > 0 && !at_once) status = static_check_suspects(d, start);
-    timer_lap(&since, &work->timings.proof_ms);
+    if (proves) timer_lap(&since, &work->timings.proof_ms);
     work->counters.static_checks = suspects > 0;
     return status;
 }
@@ -236,7 +236,7 @@ static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
 
 /* The states of the triangles go on to the end, but where contacts may be missing. */
 static void hand_on_states(cscd_detector *d, const double *end) {
-    bool *lost = d->culled;
+    bool *lost = d->culled; /* which nobody asks for any more */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
         lost[c] = !g->complete;

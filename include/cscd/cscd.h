@@ -247,18 +247,16 @@ typedef enum cscd_mode {
                     * for published methods, and starts vouched for wrongly) */
     CSCD_MODE_EARLIEST /* of a component whose start is proven embedded, at least one contact with itself at
                         * its earliest time; so none is a proof that there is none. All other contacts as in
-                        * ALL, and all with pairs to leave out. What such an interval with contact leaves
-                        * behind is not known, and the next start checked as a whole: where every frame is
-                        * stepped through, ALL costs less. See cscd_detector_guarantee */
+                        * ALL, and all with pairs to leave out. After such a contact the whole next start is
+                        * checked, so over a recording ALL costs less. See cscd_detector_guarantee */
 } cscd_mode;
 
 CSCD_API const char *cscd_mode_name(cscd_mode mode);
 CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
 
 /* What is done to prove that triangles are clean at the start, so that culling by orientation is sound:
- * nothing of their component meets them but their neighbours, and they lie on its surface as most others do.
- * A component is embedded when all are. From the end of an interval to an equal start of the next what is
- * clean and takes no part in a contact stays clean, whatever happens elsewhere. */
+ * nothing of their component meets them, and no contact cuts them off from most of it. A component is
+ * embedded when all are. What is clean and takes no part in a contact is clean at the next start. */
 typedef enum cscd_start {
     CSCD_START_PROVE,   /* the static check of the triangles not known to be clean */
     CSCD_START_VOUCHED, /* nothing: the caller knows that every start is embedded */
@@ -347,13 +345,12 @@ CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *
 
 /* Why a component's contacts with itself in the last step are what they are. */
 typedef enum cscd_reason {
-    CSCD_REASON_METHOD,   /* complete: the method does not cull, or not with min_separation */
-    CSCD_REASON_SURFACE,  /* complete: open, non-manifold or inconsistently oriented, so never culled */
-    CSCD_REASON_CROSSING, /* complete: the start is known to cross or touch itself; clean triangles are culled
-                           */
-    CSCD_REASON_UNPROVEN, /* complete: the start is not known to be embedded; clean triangles are culled */
-    CSCD_REASON_CLEAN,    /* complete: the start is embedded, and there is no contact */
-    CSCD_REASON_FINISHED, /* complete: the start is embedded, there are contacts, and mode ALL found all */
+    CSCD_REASON_METHOD,    /* complete: the method does not cull, or not with min_separation */
+    CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so never culled */
+    CSCD_REASON_CROSSING,  /* complete: the start crosses or touches itself; culled where it does not */
+    CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded; culled where it is */
+    CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
+    CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED or ICCD_PUBLISHED */
     CSCD_REASON_CONTOUR,   /* complete: ICCD needs no embedded start */
     CSCD_REASON_EARLIEST   /* the start is embedded, and mode EARLIEST promises the first contacts only */
