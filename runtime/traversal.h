@@ -21,8 +21,9 @@ typedef struct block_pair {
  * not; those of two suspects. */
 typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECTS } traversal_pass;
 
-/* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room. */
-enum { LEAF_CACHE_SIZE = 256, LEAF_VOLUME_FLOATS = KDOP_AXES * 2 * FOREST_LANES };
+/* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
+ * They are the kernels' own (leaf_volumes); here is only how large they are. */
+enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * FOREST_LANES };
 
 typedef struct leaf_cache {
     uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */

@@ -28,12 +28,12 @@ static void store_boxes(f32x8 low[8], f32x8 high[8], float slack, float *bounds)
 }
 
 /* Bounds of one child along the diagonals. */
-static void store_diagonals(leaf_corners corners, float slack, int lane, float *bounds) {
+static void store_diagonals(leaf_corners corners, const float slack[2], int lane, float *bounds) {
     leaf_volumes v;
-    volumes_of(corners, KDOP_AXES, &v);
-    for (int k = 3; k < KDOP_AXES; k++) {
-        bounds[2 * k * LANES + lane] = f32x8_least(v.low[k]) - slack;
-        bounds[(2 * k + 1) * LANES + lane] = f32x8_greatest(v.high[k]) + slack;
+    volumes_of(corners, slack, &v);
+    for (int k = BOX_AXES; k < KDOP_AXES; k++) {
+        bounds[2 * k * LANES + lane] = f32x8_least(f32x8_min(v.low[0][k], v.low[1][k]));
+        bounds[(2 * k + 1) * LANES + lane] = f32x8_greatest(f32x8_max(v.high[0][k], v.high[1][k]));
     }
 }
 
@@ -58,7 +58,7 @@ static void enclose_leaves(const forest *f, uint32_t block) {
         if (f->axis_count == BOX_AXES) continue;
         leaf_corners corners;
         load_corners(f, &f->leaves[index], corners);
-        store_diagonals(corners, p->slack[1], (int)lane, bounds);
+        store_diagonals(corners, p->slack, (int)lane, bounds);
     }
     store_boxes(low, high, p->slack[0], bounds);
 }

@@ -3,10 +3,10 @@
 
 #include "runtime/kernels/corners.h"
 
-/* Where part b lies relative to part a over the interval, and how far that is rounded, per axis; all 0 for
- * one part. Volumes of a, moved by -high and -low, are compared with those of b. */
+/* Where part b lies relative to part a, per axis at each end of the interval, and how far that is rounded;
+ * low and high hold it throughout. Volumes of a, moved by as much back, are compared with those of b. */
 typedef struct displacement {
-    float low[KDOP_AXES], high[KDOP_AXES];
+    float at[2][KDOP_AXES], slack, low[KDOP_AXES], high[KDOP_AXES];
 } displacement;
 
 static double along(const double v[3], int axis) {
@@ -29,19 +29,21 @@ static displacement between(const forest *f, const forest_part *a, const forest_
             size += 0x1p-30 * ((from < 0 ? -from : from) + (to < 0 ? -to : to));
         }
     }
+    out.slack = (float)(size * 0x1p-20);
     for (int axis = 0; axis < KDOP_AXES; axis++) {
-        double x = along(start, axis), y = along(end, axis), slack = size * 0x1p-20;
-        out.low[axis] = (float)((x < y ? x : y) - slack);
-        out.high[axis] = (float)((x < y ? y : x) + slack);
+        out.at[0][axis] = (float)along(start, axis);
+        out.at[1][axis] = (float)along(end, axis);
+        bool forward = out.at[0][axis] < out.at[1][axis];
+        out.low[axis] = out.at[forward ? 0 : 1][axis] - out.slack;
+        out.high[axis] = out.at[forward ? 1 : 0][axis] + out.slack;
     }
     return out;
 }
 
-/* Of lanes, those of b whose volumes do not overlap lane i of a; first: the first axis of those compared. */
-static inline uint32_t apart(const float *a, const float *b, int i, int first, int axis_count,
-                             const displacement *d) {
+/* Of lanes, those of b whose volumes over the interval do not overlap lane i of a. */
+static inline uint32_t apart(const float *a, const float *b, int i, int axis_count, const displacement *d) {
     uint32_t lanes = 0;
-    for (int k = first; k < axis_count; k++) {
+    for (int k = 0; k < axis_count; k++) {
         float low = a[2 * k * LANES + i], high = a[(2 * k + 1) * LANES + i];
         if (d != NULL) {
             low -= d->high[k];
@@ -49,6 +51,27 @@ static inline uint32_t apart(const float *a, const float *b, int i, int first, i
         }
         lanes |= f32x8_below(f32x8_all(high), f32x8_load(b + 2 * k * LANES));
         lanes |= f32x8_below(f32x8_load(b + (2 * k + 1) * LANES), f32x8_all(low));
+    }
+    return lanes;
+}
+
+/* Of lanes, those of b that lie on one side of lane i of a at both ends, along one of the axes from first on:
+ * then they do so throughout, for points move linearly. */
+static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *b, int i, int first,
+                                     int axis_end, const displacement *d) {
+    uint32_t lanes = 0;
+    for (int k = first; k < axis_end; k++) {
+        uint32_t before = ALL_LANES, behind = ALL_LANES;
+        for (int e = 0; e < 2; e++) {
+            float low = a->low[e][k][i], high = a->high[e][k][i];
+            if (d != NULL) {
+                low -= d->at[e][k] + d->slack;
+                high -= d->at[e][k] - d->slack;
+            }
+            before &= f32x8_below(f32x8_all(high), b->low[e][k]);
+            behind &= f32x8_below(b->high[e][k], f32x8_all(low));
+        }
+        lanes |= before | behind;
     }
     return lanes;
 }
@@ -84,27 +107,25 @@ static inline uint32_t wanted(const comparison *c, int i) {
 
 /* ---- triangles of leaves ------------------------------------------------------------------------------- */
 
-static const float *leaf_volumes_of(const forest *f, leaf_cache *cache, uint32_t index,
-                                    const forest_part *p) {
+_Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
+               "traversal.h makes room for these");
+
+static const leaf_volumes *leaf_volumes_of(const forest *f, leaf_cache *cache, uint32_t index,
+                                           const forest_part *p) {
     uint32_t place = index % LEAF_CACHE_SIZE;
-    float *out = cache->volumes[place];
+    leaf_volumes *out = (leaf_volumes *)cache->volumes + place;
     if (cache->tags[place] == index + 1) return out;
     leaf_corners corners;
-    leaf_volumes v;
     load_corners(f, &f->leaves[index], corners);
-    volumes_of(corners, KDOP_AXES, &v);
-    for (int k = 0; k < KDOP_AXES; k++) {
-        float slack = p->slack[k < BOX_AXES ? 0 : 1];
-        f32x8_store(out + 2 * k * LANES, v.low[k] - f32x8_all(slack));
-        f32x8_store(out + (2 * k + 1) * LANES, v.high[k] + f32x8_all(slack));
-    }
+    volumes_of(corners, p->slack, out);
     cache->tags[place] = index + 1;
     return out;
 }
 
 /* Of a leaf's triangles, those whose boxes overlap lane i of bounds, a block's. */
-static inline uint32_t near_lane(const float *volumes, const float *bounds, int i, const displacement *d) {
-    return ~apart(bounds, volumes, i, 0, BOX_AXES, d) & FOREST_ALL_LANES;
+static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bounds, int i,
+                                 const displacement *d) {
+    return ~apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
 }
 
 static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
@@ -116,7 +137,7 @@ static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first
 
 typedef struct leaf_pair {
     uint32_t a, b;
-    const float *volumes_a, *volumes_b;
+    const leaf_volumes *volumes_a, *volumes_b;
     uint32_t rows, columns; /* lanes worth a look */
 } leaf_pair;
 
@@ -137,9 +158,9 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         uint32_t lanes = wanted(&c, i) & pair->columns;
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
-        lanes &= ~apart(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
         if (lanes == 0) continue;
-        lanes &= ~apart(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
         add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
     }
 }
@@ -165,8 +186,9 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
         leaf_pair pair = {child_a, child_b, NULL, NULL, FOREST_ALL_LANES, FOREST_ALL_LANES};
         pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
-            memcpy(lane->cache.volumes[LEAF_CACHE_SIZE], pair.volumes_a, sizeof *lane->cache.volumes);
-            pair.volumes_a = lane->cache.volumes[LEAF_CACHE_SIZE];
+            leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
+            *copy = *pair.volumes_a;
+            pair.volumes_a = copy;
         }
         pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->parts[at->part_b]);
         if (child_a != child_b) {
@@ -198,7 +220,7 @@ static inline void visit(const traversal *t, traversal_lane *lane, block_pair at
         uint32_t lanes = wanted(&c, i);
         if (lanes != 0) {
             lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
-            lanes &= ~apart(bounds_a, bounds_b, i, 0, f->axis_count, d);
+            lanes &= ~apart(bounds_a, bounds_b, i, f->axis_count, d);
         }
         if (c.itself) {
             bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
