@@ -41,6 +41,8 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
     if ((unsigned)options->start > CSCD_START_UNKNOWN)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown start %d", (int)options->start);
+    if ((unsigned)options->volume > CSCD_VOLUME_KDOP14)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown volume %d", (int)options->volume);
     return check_separation(context, options);
 }
 

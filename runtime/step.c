@@ -7,12 +7,16 @@
 #include "src/positions.h"
 #include "src/timer.h"
 
+static int volume_axes(const cscd_detector *d) {
+    return d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
+}
+
 /* As published, a patch of ICCD is any set of triangles: then all components are one part. */
 static cscd_status build_of_one_part(cscd_detector *d, const double *positions) {
     uint32_t *none = context_allocate(d->context, d->mesh->triangle_count, sizeof *none);
     if (none == NULL) return CSCD_OUT_OF_MEMORY;
     forest_regions regions = {none, d->culling.triangle_weights, 1};
-    cscd_status status = forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
+    cscd_status status = forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
     context_free(d->context, none);
     return status;
 }
@@ -22,7 +26,7 @@ cscd_status detector_build(cscd_detector *d, const double *positions) {
     if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) return build_of_one_part(d, positions);
     forest_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights,
                               d->culling.region_count};
-    return forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
+    return forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
 }
 
 /* The forest of the interval from x0 to x1, or of a moment. */
