@@ -1,11 +1,33 @@
 /* Which triangle pair answers for a pair of features. */
 #include "runtime/answering.h"
 
-#include "runtime/representatives.h"
+#include "runtime/orphan_sets.h"
 
-/* Without culling: that of the first triangles of both stars. With it: the first pair, in the order of the
- * stars, that the flags leave (then it is reached, for its volumes contain the features'); in a closing pass
- * none, if the earlier flags left one: then these features are tested already. */
+/* Where pairs of adjacent triangles are left out: the first pair of the stars that is not one. */
+
+static bool first_stranger_at_vertex(const cscd_mesh *mesh, uint32_t of, uint32_t vertex, uint32_t against) {
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[against])) return s == of;
+    }
+    return false;
+}
+
+static bool first_strangers_at_edges(const cscd_mesh *mesh, triangle_pair pair, uint32_t a, uint32_t b) {
+    for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
+        for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[t]))
+                return s == pair.a && t == pair.b;
+        }
+    }
+    return false;
+}
+
+/* With culling: the first pair, in the order of the stars, that the flags leave (then it is reached, for its
+ * volumes contain the features'); in a closing pass none, if the earlier flags left one: then these features
+ * are tested already. */
+
 static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
                               uint32_t against) {
     const cscd_mesh *mesh = interval->mesh;
@@ -23,8 +45,9 @@ static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint3
 }
 
 bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
-    if (interval->culling == NULL) return represents_vertex(interval->representatives[of], i);
-    return first_kept_vertex(interval, of, interval->mesh->triangles[of][i], against);
+    uint32_t vertex = interval->mesh->triangles[of][i];
+    if (interval->culling == NULL) return first_stranger_at_vertex(interval->mesh, of, vertex, against);
+    return first_kept_vertex(interval, of, vertex, against);
 }
 
 /* pair.a contains the edge of the smaller number. */
@@ -47,11 +70,13 @@ static bool first_kept_edges(const swept_interval *interval, triangle_pair pair,
     return found;
 }
 
+static bool first_pair(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
+    return interval->culling == NULL ? first_strangers_at_edges(interval->mesh, pair, a, b)
+                                     : first_kept_edges(interval, pair, a, b);
+}
+
 bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j) {
-    if (interval->culling == NULL)
-        return represents_edge(interval->representatives[pair.a], i) &&
-               represents_edge(interval->representatives[pair.b], j);
     uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
-    if (a < b) return first_kept_edges(interval, pair, a, b);
-    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
+    if (a < b) return first_pair(interval, pair, a, b);
+    return first_pair(interval, (triangle_pair){pair.b, pair.a}, b, a);
 }

@@ -142,6 +142,8 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     forest_free(&d->forest);
+    near_leaves_free(context, &d->near);
+    orphan_sets_free(context, &d->orphans);
     patches_free(context, &d->patches);
     void *blocks[] = {d->representatives,
                       d->contacts.items,

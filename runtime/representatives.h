@@ -9,12 +9,4 @@
  * triangle pair is reached: the representatives' volumes contain the features'. NULL when out of memory. */
 uint8_t *representatives_create(const cscd_mesh *mesh);
 
-static inline bool represents_vertex(uint8_t owned, int i) {
-    return (owned >> i & 1) != 0;
-}
-
-static inline bool represents_edge(uint8_t owned, int i) {
-    return (owned >> (3 + i) & 1) != 0;
-}
-
 #endif

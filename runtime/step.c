@@ -43,7 +43,7 @@ typedef struct step_work {
     swept_interval interval;
     cscd_timings timings;
     cscd_counters counters;
-    bool any_culled;
+    bool any_culled, skip_adjacent;
 } step_work;
 
 static void test_batch(void *data, uint32_t index) {
@@ -71,7 +71,7 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
     cscd_detector *d = work->detector;
     cscd_status status = CSCD_OK;
     double since = timer_now_ms();
-    traversal_begin(&d->traversal, &d->forest, pass);
+    traversal_begin(&d->traversal, &d->forest, pass, work->skip_adjacent);
     for (bool more = true; more && status == CSCD_OK;) {
         status = traversal_round(&d->traversal, &more);
         timer_lap(&since, &work->timings.traversal_ms);
@@ -84,6 +84,37 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
     }
     work->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
     return status;
+}
+
+static void test_orphans(void *data, uint32_t index) {
+    step_work *work = data;
+    contact_lane *lane = &work->detector->contact_lanes[index];
+    narrow_phase_test_orphans(&work->interval, &work->detector->orphans, index,
+                              work->detector->traversal.lane_count, lane);
+    narrow_phase_finish(&work->interval, lane);
+}
+
+/* Every pair of triangles is reached, so those that share a vertex, most of all pairs, need not be: other
+ * pairs answer for their features, and there are orphans. */
+static cscd_status find_without_adjacent(step_work *work) {
+    cscd_detector *d = work->detector;
+    if (!d->near_known) {
+        bool too_many;
+        cscd_status status = orphan_sets_create(d->mesh, &d->orphans, &too_many);
+        if (status == CSCD_OK && !too_many) status = near_leaves_create(&d->forest, &d->near, &too_many);
+        if (status != CSCD_OK || too_many) orphan_sets_free(d->context, &d->orphans);
+        if (status != CSCD_OK) return status;
+        d->near_known = true;
+        d->near_usable = !too_many;
+    }
+    work->skip_adjacent = d->near_usable;
+    work->interval.near = d->near_usable ? &d->near : NULL;
+    cscd_status status = traverse(work, TRAVERSAL_KEPT);
+    if (status != CSCD_OK || !d->near_usable) return status;
+    double since = timer_now_ms();
+    parallel_run(d->context->threads, d->traversal.lane_count, test_orphans, work);
+    timer_lap(&since, &work->timings.contact_ms);
+    return lanes_status(d);
 }
 
 /* ---- culling --------------------------------------------------------------------------------------- */
@@ -188,8 +219,8 @@ static cscd_status find_unsealed(step_work *work) {
     timer_lap(&since, &work->timings.contour_ms);
     work->counters.contours = d->patches.contours;
     work->counters.sealed = d->patches.sealed;
-    work->interval.skip_adjacent = published;
-    return traverse(work, TRAVERSAL_KEPT);
+    work->skip_adjacent = published;
+    return published ? traverse(work, TRAVERSAL_KEPT) : find_without_adjacent(work);
 }
 
 static cscd_status find_by_trees(step_work *work) {
@@ -198,8 +229,8 @@ static cscd_status find_by_trees(step_work *work) {
     if (status != CSCD_OK) return status;
     if (detector_seals(d)) return find_unsealed(work);
     choose_culled(work);
-    work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
-    if (!work->any_culled) return traverse(work, TRAVERSAL_KEPT);
+    if (!work->any_culled) return find_without_adjacent(work);
+    work->skip_adjacent = follows(d, PUBLISHED_ADJACENT);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
     return status == CSCD_OK && d->options.method != CSCD_METHOD_PUBLISHED ? close_contacts(work) : status;

@@ -61,10 +61,9 @@ typedef struct kernels {
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
     /* Of the pairs of features of two triangles, in slots, those of `wanted` that may touch, or come within
-     * distance, by their volumes, and that share no vertex; without `adjacent` none of triangles that share
-     * one. */
+     * distance, by their volumes, and that share no vertex. */
     void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
-                  bool adjacent, const uint16_t *wanted, uint16_t *features);
+                  const uint16_t *wanted, uint16_t *features);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */

@@ -125,7 +125,7 @@ static inline void load_rows(const forest *f, triangle_pair pair, const part_pai
 }
 
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                      bool adjacent, const uint16_t *wanted, uint16_t *features) {
+                      const uint16_t *wanted, uint16_t *features) {
     part_pair parts = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p++) {
         uint32_t a = f->leaf_parts[pairs[p].a / LANES], b = f->leaf_parts[pairs[p].b / LANES];
@@ -138,7 +138,7 @@ void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t coun
             for (int i = 0; i < 6; i++) records[i / 3][i % 3] = f->record_vertices[records[i / 3][i % 3]];
         }
         uint32_t shared = shared_vertices(records[0], records[1]);
-        if (shared != 0) kept = adjacent ? kept & ~sharing(shared) : 0;
+        if (shared != 0) kept &= ~sharing(shared);
         extents_of(rows, &e);
         kept = keep_near(&e, parts.gap, kept);
         if (kept != 0) {
