@@ -21,8 +21,7 @@ static bool add(finder *f, uint32_t leaf) {
     cscd_context *context = f->forest->mesh->context;
     if (f->count == f->capacity) {
         size_t capacity = f->capacity * 2;
-        uint32_t *grown =
-            context_grow(context, f->out->leaves, f->count, capacity, sizeof *f->out->leaves);
+        uint32_t *grown = context_grow(context, f->out->leaves, f->count, capacity, sizeof *f->out->leaves);
         if (grown == NULL) return false;
         f->out->leaves = grown;
         f->capacity = capacity;
