@@ -3,22 +3,35 @@
 
 #include "runtime/orphan_sets.h"
 
-/* Where pairs of adjacent triangles are left out: the first pair of the stars that is not one. */
+/* Where pairs of adjacent triangles are left out: the first pair of the stars that is not one. Mostly it is
+ * that of the representatives, for which this has been asked before. */
 
-static bool first_stranger_at_vertex(const cscd_mesh *mesh, uint32_t of, uint32_t vertex, uint32_t against) {
+static bool first_stranger_at_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
+                                     uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *others = interval->representatives->others[vertex], *face = mesh->triangles[against];
+    if (!triangle_contains(face, others[0]) && !triangle_contains(face, others[1])) return false;
     for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
         uint32_t s = mesh->vertex_stars[i];
-        if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[against])) return s == of;
+        if (s == of) return true;
+        if (!triangles_share_vertex(mesh->triangles[s], face)) return false;
     }
     return false;
 }
 
-static bool first_strangers_at_edges(const cscd_mesh *mesh, triangle_pair pair, uint32_t a, uint32_t b) {
+static bool first_strangers_at_edges(const swept_interval *interval, triangle_pair pair, uint32_t a,
+                                     uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *ends_a = mesh->edges[a], *ends_b = mesh->edges[b];
+    uint32_t over_a = interval->representatives->opposite[a], over_b = interval->representatives->opposite[b];
+    if (over_a != over_b && over_a != ends_b[0] && over_a != ends_b[1] && over_b != ends_a[0] &&
+        over_b != ends_a[1])
+        return false;
     for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
         for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
             uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
-            if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[t]))
-                return s == pair.a && t == pair.b;
+            if (s == pair.a && t == pair.b) return true;
+            if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[t])) return false;
         }
     }
     return false;
@@ -46,7 +59,7 @@ static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint3
 
 bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
     uint32_t vertex = interval->mesh->triangles[of][i];
-    if (interval->culling == NULL) return first_stranger_at_vertex(interval->mesh, of, vertex, against);
+    if (interval->culling == NULL) return first_stranger_at_vertex(interval, of, vertex, against);
     return first_kept_vertex(interval, of, vertex, against);
 }
 
@@ -71,7 +84,7 @@ static bool first_kept_edges(const swept_interval *interval, triangle_pair pair,
 }
 
 static bool first_pair(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
-    return interval->culling == NULL ? first_strangers_at_edges(interval->mesh, pair, a, b)
+    return interval->culling == NULL ? first_strangers_at_edges(interval, pair, a, b)
                                      : first_kept_edges(interval, pair, a, b);
 }
 

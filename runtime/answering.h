@@ -4,10 +4,12 @@
 
 #include "runtime/narrow_phase.h"
 
-/* Does the pair (of, against) answer for corner i of the one and the face of the other? */
+/* Where there is culling, or pairs of adjacent triangles are left out: does the pair (of, against) answer for
+ * corner i of the one and the face of the other? Without culling, of pairs of representatives it always does,
+ * and is not asked. */
 bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against);
 
-/* Does the pair answer for edge i of its a and edge j of its b? */
+/* The same for edge i of its a and edge j of its b. */
 bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j);
 
 #endif

@@ -104,8 +104,10 @@ static uint32_t represented(uint8_t a, uint8_t b) {
 
 /* Of near features, those that this pair of triangles answers for. */
 static uint32_t answered(const swept_interval *interval, triangle_pair pair, uint32_t features) {
-    uint32_t kept = 0;
-    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
+    const uint8_t *owned = interval->representatives->owned;
+    uint32_t kept = interval->culling != NULL ? 0 : features & represented(owned[pair.a], owned[pair.b]);
+    if (interval->culling == NULL && !interval->strangers) return kept;
+    for (uint32_t rest = features & ~kept; rest != 0; rest &= rest - 1) {
         int bit = __builtin_ctz(rest), edges = bit - FEATURE_EDGES;
         bool answers = edges >= 0 ? answers_for_edges(interval, pair, edges / 3, edges % 3)
                        : bit >= FEATURE_VERTEX_B
@@ -135,34 +137,17 @@ static void put(const swept_interval *interval, triangle_pair pair, uint32_t fea
     }
 }
 
-/* What there is to ask about pairs of triangles, before any of their points is looked at. Returns whether
- * all that is left is theirs to answer for. */
-static bool want(const swept_interval *interval, triangle_pair slots, triangle_pair pair, uint16_t *wanted) {
-    bool near = interval->near != NULL &&
-                near_leaves_hold(interval->near, slots.a / FOREST_LANES, slots.b / FOREST_LANES);
-    bool settled = interval->culling == NULL && !near;
-    *wanted =
-        settled ? (uint16_t)represented(interval->representatives[pair.a], interval->representatives[pair.b])
-                : FEATURE_ALL;
-    return settled;
-}
-
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
     const forest *f = interval->forest;
-    uint16_t wanted[PAIRS_AT_ONCE], features[PAIRS_AT_ONCE];
-    triangle_pair pairs[PAIRS_AT_ONCE];
-    bool settled[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE];
+    f->kernels->sieve(f, slots, count, interval->limit.distance, features);
     for (uint32_t i = 0; i < count; i++) {
-        pairs[i] = (triangle_pair){forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
-        settled[i] = want(interval, slots[i], pairs[i], &wanted[i]);
-    }
-    f->kernels->sieve(f, slots, count, interval->limit.distance, wanted, features);
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t kept = features[i];
-        if (kept != 0 && !settled[i]) kept = answered(interval, pairs[i], kept);
+        if (features[i] == 0) continue;
+        triangle_pair pair = {forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
+        uint32_t kept = answered(interval, pair, features[i]);
         lane->feature_pairs += (uint32_t)__builtin_popcount(kept);
-        put(interval, pairs[i], kept, lane);
+        put(interval, pair, kept, lane);
     }
 }
 

@@ -6,8 +6,8 @@
 #include "runtime/elementary.h"
 #include "runtime/feature_queue.h"
 #include "runtime/kernels/kernels.h"
-#include "runtime/near_leaves.h"
 #include "runtime/orphan_sets.h"
+#include "runtime/representatives.h"
 #include "runtime/separation.h"
 #include "runtime/traversal.h"
 #include "src/mesh.h"
@@ -16,13 +16,13 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const forest *forest;           /* slots of triangle pairs */
-    const uint8_t *representatives; /* NULL when features are paired by the caller */
-    const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
-    bool closing;                   /* with culling: the pairs reached are those that it culled before */
-    const near_leaves *near;        /* not NULL: no pair of triangles shares a vertex; other pairs, found by
-                                     * this, answer for theirs, and orphans are tested apart */
-    separation limit;               /* distance 0: a contact is touching */
+    const forest *forest; /* slots of triangle pairs */
+    const representatives *representatives;
+    const culling *culling; /* NULL: the representatives answer, or: */
+    bool strangers;         /* pairs of adjacent triangles are not reached; others answer for theirs, and
+                             * orphans are tested apart */
+    bool closing;           /* with culling: the pairs reached are those that it culled before */
+    separation limit;       /* distance 0: a contact is touching */
 } swept_interval;
 
 /* What one thread finds. */

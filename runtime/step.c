@@ -98,19 +98,16 @@ static void test_orphans(void *data, uint32_t index) {
  * pairs answer for their features, and there are orphans. */
 static cscd_status find_without_adjacent(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!d->near_known) {
+    if (!d->orphans_known) {
         bool too_many;
         cscd_status status = orphan_sets_create(d->mesh, &d->orphans, &too_many);
-        if (status == CSCD_OK && !too_many) status = near_leaves_create(&d->forest, &d->near, &too_many);
-        if (status != CSCD_OK || too_many) orphan_sets_free(d->context, &d->orphans);
         if (status != CSCD_OK) return status;
-        d->near_known = true;
-        d->near_usable = !too_many;
+        d->orphans_known = true;
+        d->orphans_usable = !too_many;
     }
-    work->skip_adjacent = d->near_usable;
-    work->interval.near = d->near_usable ? &d->near : NULL;
+    work->skip_adjacent = work->interval.strangers = d->orphans_usable;
     cscd_status status = traverse(work, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || !d->near_usable) return status;
+    if (status != CSCD_OK || !d->orphans_usable) return status;
     double since = timer_now_ms();
     parallel_run(d->context->threads, d->traversal.lane_count, test_orphans, work);
     timer_lap(&since, &work->timings.contact_ms);
@@ -314,7 +311,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                                    .x0 = start,
                                    .x1 = end,
                                    .forest = &detector->forest,
-                                   .representatives = detector->representatives,
+                                   .representatives = &detector->representatives,
                                    .limit = detector->limit},
                       .timings = {.check_ms = detector->timings.check_ms}};
     status = step(&work, &contacts);

@@ -60,10 +60,10 @@ typedef struct kernels {
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
-    /* Of the pairs of features of two triangles, in slots, those of `wanted` that may touch, or come within
-     * distance, by their volumes, and that share no vertex. */
+    /* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
+     * their volumes, and that share no vertex. */
     void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
-                  const uint16_t *wanted, uint16_t *features);
+                  uint16_t *features);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */

@@ -179,16 +179,13 @@ static inline bool any(i32x8 features) {
 }
 
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                      const uint16_t *wanted, uint16_t *features) {
+                      uint16_t *features) {
     part_pair parts = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         octet o;
-        i32x8 kept = {0};
         load(f, pairs + p, lanes, distance, &parts, &o);
-        for (uint32_t i = 0; i < lanes; i++) kept[i] = wanted[p + i];
-        kept &= ~sharing(&o);
-        kept = near_along_axes(&o, kept);
+        i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
         if (any(kept)) kept = near_along_diagonals(&o, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
     }
