@@ -1,16 +1,20 @@
-/* Which triangle pair answers for a pair of features. */
+/* Which triangle pair answers for a pair of features, so that each is tested once. */
 #include "runtime/answering.h"
 
-#include "runtime/orphan_sets.h"
+/* Features of two triangles that each represents. Branches cost more here than what they would save. */
+static uint32_t represented(uint8_t a, uint8_t b) {
+    uint32_t edges_a = a >> 3 & 7u, edges_b = b >> 3 & 7u;
+    uint32_t each = (edges_a & 1u) | (edges_a & 2u) << 2 | (edges_a & 4u) << 4;
+    return (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (each * edges_b) << FEATURE_EDGES;
+}
 
-/* Where pairs of adjacent triangles are left out: the first pair of the stars that is not one. Mostly it is
- * that of the representatives, for which this has been asked before. */
+/* ---- pairs of adjacent triangles are left out -------------------------------------------------------- */
 
-static bool first_stranger_at_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
-                                     uint32_t against) {
-    const cscd_mesh *mesh = interval->mesh;
-    const uint32_t *others = interval->representatives->others[vertex], *face = mesh->triangles[against];
-    if (!triangle_contains(face, others[0]) && !triangle_contains(face, others[1])) return false;
+/* The first pair of the stars that is not adjacent answers: that of the representatives, or, where these are
+ * adjacent, one of the next. */
+
+/* Whether no triangle before `of` in the star is a stranger to the face. */
+static bool first_at_vertex(const cscd_mesh *mesh, uint32_t of, uint32_t vertex, const uint32_t face[3]) {
     for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
         uint32_t s = mesh->vertex_stars[i];
         if (s == of) return true;
@@ -19,14 +23,8 @@ static bool first_stranger_at_vertex(const swept_interval *interval, uint32_t of
     return false;
 }
 
-static bool first_strangers_at_edges(const swept_interval *interval, triangle_pair pair, uint32_t a,
-                                     uint32_t b) {
-    const cscd_mesh *mesh = interval->mesh;
-    const uint32_t *ends_a = mesh->edges[a], *ends_b = mesh->edges[b];
-    uint32_t over_a = interval->representatives->opposite[a], over_b = interval->representatives->opposite[b];
-    if (over_a != over_b && over_a != ends_b[0] && over_a != ends_b[1] && over_b != ends_a[0] &&
-        over_b != ends_a[1])
-        return false;
+/* pair.a contains the edge of the smaller number. */
+static bool first_at_edges(const cscd_mesh *mesh, triangle_pair pair, uint32_t a, uint32_t b) {
     for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
         for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
             uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
@@ -37,16 +35,62 @@ static bool first_strangers_at_edges(const swept_interval *interval, triangle_pa
     return false;
 }
 
-/* With culling: the first pair, in the order of the stars, that the flags leave (then it is reached, for its
+static bool first_stranger(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t vertex = mesh->triangles[of][i];
+    const uint32_t *others = interval->representatives->others[vertex], *face = mesh->triangles[against];
+    bool adjacent = triangle_contains(face, others[0]) || triangle_contains(face, others[1]);
+    return adjacent && first_at_vertex(mesh, of, vertex, face);
+}
+
+/* Vertices of the representatives of a triangle's edges that are not the edges'. */
+static void opposite_vertices(const swept_interval *interval, uint32_t triangle, uint32_t out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = interval->representatives->opposite[interval->mesh->triangle_edges[triangle][i]];
+}
+
+/* Of the pairs of edges, bits from 0 on, without a common vertex. */
+static uint32_t first_stranger_edges(const swept_interval *interval, triangle_pair pair, uint32_t edges) {
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *corners_a = mesh->triangles[pair.a], *corners_b = mesh->triangles[pair.b];
+    uint32_t over_a[3], over_b[3], kept = 0;
+    opposite_vertices(interval, pair.a, over_a);
+    opposite_vertices(interval, pair.b, over_b);
+    for (; edges != 0; edges &= edges - 1) {
+        int bit = __builtin_ctz(edges), i = bit / 3, j = bit % 3, i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+        uint32_t p = over_a[i], q = over_b[j];
+        bool adjacent = (p == q) | (p == corners_b[j]) | (p == corners_b[j1]) | (q == corners_a[i]) |
+                        (q == corners_a[i1]);
+        if (!adjacent) continue;
+        uint32_t a = mesh->triangle_edges[pair.a][i], b = mesh->triangle_edges[pair.b][j];
+        bool first = a < b ? first_at_edges(mesh, pair, a, b)
+                           : first_at_edges(mesh, (triangle_pair){pair.b, pair.a}, b, a);
+        kept |= (uint32_t)first << bit;
+    }
+    return kept;
+}
+
+/* Of features of which not both triangles are the representatives. */
+static uint32_t first_strangers(const swept_interval *interval, triangle_pair pair, uint32_t features) {
+    uint32_t kept = 0, edges = features >> FEATURE_EDGES;
+    for (uint32_t rest = features & ((1u << FEATURE_EDGES) - 1); rest != 0; rest &= rest - 1) {
+        int bit = __builtin_ctz(rest), i = bit - FEATURE_VERTEX_B;
+        bool first = i >= 0 ? first_stranger(interval, pair.b, i, pair.a)
+                            : first_stranger(interval, pair.a, bit, pair.b);
+        kept |= (uint32_t)first << bit;
+    }
+    return edges == 0 ? kept : kept | first_stranger_edges(interval, pair, edges) << FEATURE_EDGES;
+}
+
+/* ---- with culling -------------------------------------------------------------------------------------- */
+
+/* The first pair, in the order of the stars, that the flags leave answers (then it is reached, for its
  * volumes contain the features'); in a closing pass none, if the earlier flags left one: then these features
  * are tested already. */
-
-static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint32_t vertex,
-                              uint32_t against) {
+static bool first_kept_vertex(const swept_interval *interval, uint32_t of, int corner, uint32_t against) {
     const cscd_mesh *mesh = interval->mesh;
-    uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];
-    uint32_t first = UINT32_MAX;
-    for (uint32_t i = begin; i < end; i++) {
+    uint32_t vertex = mesh->triangles[of][corner], first = UINT32_MAX;
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
         uint32_t s = mesh->vertex_stars[i];
         if (first == UINT32_MAX && culling_keeps(interval->culling, s, against)) {
             first = s;
@@ -55,12 +99,6 @@ static bool first_kept_vertex(const swept_interval *interval, uint32_t of, uint3
         if (interval->closing && culling_kept(interval->culling, s, against)) return false;
     }
     return first == of;
-}
-
-bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against) {
-    uint32_t vertex = interval->mesh->triangles[of][i];
-    if (interval->culling == NULL) return first_stranger_at_vertex(interval, of, vertex, against);
-    return first_kept_vertex(interval, of, vertex, against);
 }
 
 /* pair.a contains the edge of the smaller number. */
@@ -83,13 +121,29 @@ static bool first_kept_edges(const swept_interval *interval, triangle_pair pair,
     return found;
 }
 
-static bool first_pair(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
-    return interval->culling == NULL ? first_strangers_at_edges(interval, pair, a, b)
-                                     : first_kept_edges(interval, pair, a, b);
+static bool first_kept(const swept_interval *interval, triangle_pair pair, int bit) {
+    if (bit < FEATURE_VERTEX_B) return first_kept_vertex(interval, pair.a, bit, pair.b);
+    if (bit < FEATURE_EDGES) return first_kept_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a);
+    int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
+    if (a < b) return first_kept_edges(interval, pair, a, b);
+    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
 }
 
-bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j) {
-    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
-    if (a < b) return first_pair(interval, pair, a, b);
-    return first_pair(interval, (triangle_pair){pair.b, pair.a}, b, a);
+/* ---- all of them --------------------------------------------------------------------------------------- */
+
+uint32_t answering_select(const swept_interval *interval, triangle_pair pair, uint32_t features) {
+    uint32_t kept = 0;
+    if (interval->culling != NULL) {
+        for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
+            int bit = __builtin_ctz(rest);
+            kept |= (uint32_t)first_kept(interval, pair, bit) << bit;
+        }
+        return kept;
+    }
+    const uint8_t *owned = interval->representatives->owned;
+    uint32_t both = represented(owned[pair.a], owned[pair.b]);
+    kept = features & both;
+    if (!interval->strangers || kept == features) return kept;
+    return kept | first_strangers(interval, pair, features & ~both);
 }

@@ -4,12 +4,7 @@
 
 #include "runtime/narrow_phase.h"
 
-/* Where there is culling, or pairs of adjacent triangles are left out: does the pair (of, against) answer for
- * corner i of the one and the face of the other? Without culling, of pairs of representatives it always does,
- * and is not asked. */
-bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against);
-
-/* The same for edge i of its a and edge j of its b. */
-bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j);
+/* Of pairs of features of two triangles, bits as in kernels.h, those that the pair answers for. */
+uint32_t answering_select(const swept_interval *interval, triangle_pair pair, uint32_t features);
 
 #endif

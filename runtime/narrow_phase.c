@@ -94,36 +94,13 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
 
 /* ---- from pairs of triangles to the queue ------------------------------------------------------------ */
 
-/* Features of two triangles that each represents, for all the pairs of a culled interval, or none: bits as in
- * kernels.h. Branches cost more here than what they would save. */
-static uint32_t represented(uint8_t a, uint8_t b) {
-    uint32_t edges_a = a >> 3 & 7u, edges_b = b >> 3 & 7u;
-    uint32_t each = (edges_a & 1u) | (edges_a & 2u) << 2 | (edges_a & 4u) << 4;
-    return (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (each * edges_b) << FEATURE_EDGES;
-}
-
-/* Of near features, those that this pair of triangles answers for. */
-static uint32_t answered(const swept_interval *interval, triangle_pair pair, uint32_t features) {
-    const uint8_t *owned = interval->representatives->owned;
-    uint32_t kept = interval->culling != NULL ? 0 : features & represented(owned[pair.a], owned[pair.b]);
-    if (interval->culling == NULL && !interval->strangers) return kept;
-    for (uint32_t rest = features & ~kept; rest != 0; rest &= rest - 1) {
-        int bit = __builtin_ctz(rest), edges = bit - FEATURE_EDGES;
-        bool answers = edges >= 0 ? answers_for_edges(interval, pair, edges / 3, edges % 3)
-                       : bit >= FEATURE_VERTEX_B
-                           ? answers_for_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a)
-                           : answers_for_vertex(interval, pair.a, bit, pair.b);
-        kept |= (uint32_t)answers << bit;
-    }
-    return kept;
-}
-
 static void put(const swept_interval *interval, triangle_pair pair, uint32_t features, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     feature_list *vf = &lane->queue.vf, *ee = &lane->queue.ee;
     if (feature_list_full(vf)) feature_queue_decide_vf(interval, lane);
     if (feature_list_full(ee)) feature_queue_decide_ee(interval, lane);
     for (; features != 0; features &= features - 1) {
+        lane->feature_pairs++;
         int bit = __builtin_ctz(features), edges = bit - FEATURE_EDGES;
         if (edges >= 0) {
             uint32_t a = mesh->triangle_edges[pair.a][edges / 3], b = mesh->triangle_edges[pair.b][edges % 3];
@@ -145,9 +122,7 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
     for (uint32_t i = 0; i < count; i++) {
         if (features[i] == 0) continue;
         triangle_pair pair = {forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
-        uint32_t kept = answered(interval, pair, features[i]);
-        lane->feature_pairs += (uint32_t)__builtin_popcount(kept);
-        put(interval, pair, kept, lane);
+        put(interval, pair, answering_select(interval, pair, features[i]), lane);
     }
 }
 

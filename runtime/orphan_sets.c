@@ -3,11 +3,16 @@
 
 enum { ORPHANS_PER_TRIANGLE = 8 };
 
-/* Two runs over the mesh: the first counts, the second, with room, writes. */
+typedef struct pair_list {
+    uint32_t (*items)[2];
+    size_t count, capacity;
+} pair_list;
+
 typedef struct finder {
     const cscd_mesh *mesh;
-    uint32_t (*vf)[2], (*ee)[2];
-    size_t vf_count, ee_count, most;
+    pair_list vf, ee;
+    size_t most;
+    bool out_of_memory;
 } finder;
 
 /* Has every triangle at vertex v a vertex in common with triangle f? */
@@ -29,20 +34,18 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return true;
 }
 
-static void add_vertex(finder *f, uint32_t vertex, uint32_t triangle) {
-    if (f->vf != NULL) {
-        f->vf[f->vf_count][0] = vertex;
-        f->vf[f->vf_count][1] = triangle;
+static void add(finder *f, pair_list *list, uint32_t a, uint32_t b) {
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity * 2 + 64;
+        uint32_t(*grown)[2] =
+            context_grow(f->mesh->context, list->items, list->count, capacity, sizeof *list->items);
+        f->out_of_memory |= grown == NULL;
+        if (grown == NULL) return;
+        list->items = grown;
+        list->capacity = capacity;
     }
-    f->vf_count++;
-}
-
-static void add_edges(finder *f, uint32_t a, uint32_t b) {
-    if (f->ee != NULL) {
-        f->ee[f->ee_count][0] = a < b ? a : b;
-        f->ee[f->ee_count][1] = a < b ? b : a;
-    }
-    f->ee_count++;
+    list->items[list->count][0] = a;
+    list->items[list->count++][1] = b;
 }
 
 /* Features that t is the first triangle of, with features of triangle u, for edges also the first: so that
@@ -53,7 +56,7 @@ static void find_between(finder *f, uint32_t t, uint32_t u) {
         uint32_t v = mesh->triangles[t][i];
         bool first = mesh->vertex_stars[mesh->vertex_star_offsets[v]] == t;
         if (first && !triangle_contains(mesh->triangles[u], v) && is_orphan_vertex(mesh, v, u))
-            add_vertex(f, v, u);
+            add(f, &f->vf, v, u);
     }
     for (int i = 0; t < u && i < 3; i++) {
         uint32_t a = mesh->triangle_edges[t][i];
@@ -62,12 +65,12 @@ static void find_between(finder *f, uint32_t t, uint32_t u) {
             uint32_t b = mesh->triangle_edges[u][j];
             if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u) continue;
             if (!edges_share_vertex(mesh->edges[a], mesh->edges[b]) && are_orphan_edges(mesh, a, b))
-                add_edges(f, a, b);
+                add(f, &f->ee, a < b ? a : b, a < b ? b : a);
         }
     }
 }
 
-/* False: there are too many. */
+/* False: there are too many, or no memory. */
 static bool find(finder *f) {
     const cscd_mesh *mesh = f->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
@@ -82,7 +85,7 @@ static bool find(finder *f) {
                             (i > 1 && triangle_contains(other, corners[1]));
                 if (u != t && !seen) find_between(f, t, u);
             }
-            if (f->vf_count + f->ee_count > f->most) return false;
+            if (f->out_of_memory || f->vf.count + f->ee.count > f->most) return false;
         }
     }
     return true;
@@ -90,22 +93,11 @@ static bool find(finder *f) {
 
 cscd_status orphan_sets_create(const cscd_mesh *mesh, orphan_sets *out, bool *too_many) {
     finder f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE};
-    *out = (orphan_sets){.vf_count = 0};
-    *too_many = !find(&f);
-    if (*too_many) return CSCD_OK;
-    if (f.vf_count > 0) out->vf = context_allocate(mesh->context, f.vf_count, sizeof *out->vf);
-    if (f.ee_count > 0) out->ee = context_allocate(mesh->context, f.ee_count, sizeof *out->ee);
-    if ((f.vf_count > 0 && out->vf == NULL) || (f.ee_count > 0 && out->ee == NULL)) {
-        orphan_sets_free(mesh->context, out);
-        return CSCD_OUT_OF_MEMORY;
-    }
-    f.vf = out->vf;
-    f.ee = out->ee;
-    f.vf_count = f.ee_count = 0;
-    if (f.vf != NULL || f.ee != NULL) find(&f);
-    out->vf_count = f.vf_count;
-    out->ee_count = f.ee_count;
-    return CSCD_OK;
+    bool all = find(&f);
+    *out = (orphan_sets){f.vf.items, f.ee.items, f.vf.count, f.ee.count};
+    *too_many = !all && !f.out_of_memory;
+    if (!all) orphan_sets_free(mesh->context, out);
+    return f.out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
 }
 
 void orphan_sets_free(cscd_context *context, orphan_sets *sets) {
