@@ -36,11 +36,14 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* For eight pairs: what a single root says, and for hits the begin of its interval. */
+/* For eight pairs: what the roots say, and for hits the begin of the interval of the first that touches. */
 typedef struct root_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double begin[KERNEL_LANES];
 } root_outcomes;
+
+typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out);
 
 typedef struct kernels {
     const char *name;
@@ -70,13 +73,11 @@ typedef struct kernels {
     void (*keep_open_vf)(const feature_source *source, feature_pairs *pairs);
     void (*keep_open_ee)(const feature_source *source, feature_pairs *pairs);
 
-    /* The mostly taken way through level two, for pairs from a[0], b[0] to a[7], b[7]. */
-    void (*roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
-    void (*roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
+    /* Level two for pairs from a[0], b[0] to a[7], b[7]: where the cubic has one root for certain, */
+    root_kernel *roots_vf, *roots_ee;
 
-    /* The lanes of eight such pairs that certainly miss, for cubics that have two roots or none. */
-    uint32_t (*two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
-    uint32_t (*two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+    /* and where it has two, or none. */
+    root_kernel *two_roots_vf, *two_roots_ee;
 } kernels;
 
 /* Of the context's level. */
