@@ -49,20 +49,37 @@ static void opposite_vertices(const swept_interval *interval, uint32_t triangle,
         out[i] = interval->representatives->opposite[interval->mesh->triangle_edges[triangle][i]];
 }
 
-/* Of the pairs of edges, bits from 0 on, without a common vertex. */
+/* Of a triangle's edges, those that contain one of a set of its corners. */
+static uint32_t edges_at(uint32_t corners) {
+    return corners | corners >> 1 | (corners & 1u) << 2;
+}
+
+static uint32_t equal_to(uint32_t x, const uint32_t of[3]) {
+    return (uint32_t)(x == of[0]) | (uint32_t)(x == of[1]) << 1 | (uint32_t)(x == of[2]) << 2;
+}
+
+/* The pairs of edges, bits from 0 on, whose representatives share a vertex, if the edges share none. All nine
+ * at once: branches cost more here than what they would save. */
+static uint32_t adjacent_edges(const uint32_t over_a[3], const uint32_t over_b[3],
+                               const uint32_t corners_a[3], const uint32_t corners_b[3]) {
+    uint32_t pairs = 0;
+    for (int i = 0; i < 3; i++) {
+        uint32_t of_b = edges_at(equal_to(over_a[i], corners_b)) | equal_to(over_a[i], over_b);
+        uint32_t of_a = edges_at(equal_to(over_b[i], corners_a));
+        pairs |= of_b << (3 * i) | ((of_a & 1u) | (of_a & 2u) << 2 | (of_a & 4u) << 4) << i;
+    }
+    return pairs;
+}
+
 static uint32_t first_stranger_edges(const swept_interval *interval, triangle_pair pair, uint32_t edges) {
     const cscd_mesh *mesh = interval->mesh;
-    const uint32_t *corners_a = mesh->triangles[pair.a], *corners_b = mesh->triangles[pair.b];
     uint32_t over_a[3], over_b[3], kept = 0;
     opposite_vertices(interval, pair.a, over_a);
     opposite_vertices(interval, pair.b, over_b);
+    edges &= adjacent_edges(over_a, over_b, mesh->triangles[pair.a], mesh->triangles[pair.b]);
     for (; edges != 0; edges &= edges - 1) {
-        int bit = __builtin_ctz(edges), i = bit / 3, j = bit % 3, i1 = (i + 1) % 3, j1 = (j + 1) % 3;
-        uint32_t p = over_a[i], q = over_b[j];
-        bool adjacent = (p == q) | (p == corners_b[j]) | (p == corners_b[j1]) | (q == corners_a[i]) |
-                        (q == corners_a[i1]);
-        if (!adjacent) continue;
-        uint32_t a = mesh->triangle_edges[pair.a][i], b = mesh->triangle_edges[pair.b][j];
+        int bit = __builtin_ctz(edges);
+        uint32_t a = mesh->triangle_edges[pair.a][bit / 3], b = mesh->triangle_edges[pair.b][bit % 3];
         bool first = a < b ? first_at_edges(mesh, pair, a, b)
                            : first_at_edges(mesh, (triangle_pair){pair.b, pair.a}, b, a);
         kept |= (uint32_t)first << bit;
