@@ -5,8 +5,10 @@
 
 #include "src/context.h"
 
+struct cscd_mesh;
 struct forest;
 struct forest_part;
+struct representatives;
 struct traversal;
 struct traversal_lane;
 struct triangle_pair;
@@ -67,6 +69,11 @@ typedef struct kernels {
      * their volumes, and that share no vertex. */
     void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
                   uint16_t *features);
+
+    /* Of features of pairs of triangles, those that these represent; open: those whose representatives share
+     * a vertex, where the features share none. */
+    void (*represent)(const struct cscd_mesh *mesh, const struct representatives *r,
+                      const struct triangle_pair *pairs, uint32_t count, uint16_t *features, uint16_t *open);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */

@@ -12,6 +12,7 @@ const kernels SIMD_NAME(kernels) = {
     .orient = SIMD_NAME(orient),
     .search = SIMD_NAME(search),
     .sieve = SIMD_NAME(sieve),
+    .represent = SIMD_NAME(represent),
     .keep_open_vf = SIMD_NAME(keep_open_vf),
     .keep_open_ee = SIMD_NAME(keep_open_ee),
     .roots_vf = SIMD_NAME(roots_vf),
