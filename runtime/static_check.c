@@ -32,16 +32,32 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
     lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
 }
 
+/* The batch, which is consumed, becomes one of triangles, those of different components left out where these
+ * do not count. */
+static void name_triangles(const moment *now, traversal_lane *batch) {
+    const forest *f = &now->detector->forest;
+    const uint32_t *components = now->detector->mesh->triangle_components;
+    bool within = now->pass == TRAVERSAL_SUSPECTS;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < batch->pair_count; i++) {
+        triangle_pair pair = {forest_triangle(f, batch->pairs[i].a), forest_triangle(f, batch->pairs[i].b)};
+        batch->pairs[kept] = pair;
+        kept += !within || components[pair.a] == components[pair.b];
+    }
+    batch->pair_count = kept;
+}
+
 static void test_batch(void *data, uint32_t index) {
     const moment *now = data;
     cscd_detector *d = now->detector;
-    const traversal_lane *batch = &d->traversal.lanes[index];
-    const uint32_t *components = d->mesh->triangle_components;
-    for (uint32_t i = 0; i < batch->pair_count; i++) {
-        triangle_pair pair = {forest_triangle(&d->forest, batch->pairs[i].a),
-                              forest_triangle(&d->forest, batch->pairs[i].b)};
-        if (now->pass == TRAVERSAL_SUSPECTS && components[pair.a] != components[pair.b]) continue;
-        if (triangles_intersect(d->mesh->triangles[pair.a], d->mesh->triangles[pair.b], now->positions))
+    traversal_lane *batch = &d->traversal.lanes[index];
+    const uint32_t(*triangles)[3] = (const uint32_t(*)[3])d->mesh->triangles;
+    name_triangles(now, batch);
+    uint32_t open =
+        d->forest.kernels->keep_meeting(triangles, now->positions, batch->pairs, batch->pair_count);
+    for (uint32_t i = 0; i < open; i++) {
+        triangle_pair pair = batch->pairs[i];
+        if (triangles_intersect(triangles[pair.a], triangles[pair.b], now->positions))
             add_intersection(d->context, &d->intersection_lanes[index], pair.a, pair.b);
     }
 }
@@ -53,17 +69,36 @@ static bool has_no_area(const moment *now, uint32_t triangle) {
     return collinear(corners[0], corners[1], corners[2]);
 }
 
-/* Of the suspects. */
+enum { AREA_BATCH = 512 };
+
+/* Of the suspects among triangles begin to end - 1, at most AREA_BATCH. */
+static void mark_zero_area(const moment *now, intersection_lane *lane, uint32_t begin, uint32_t end) {
+    cscd_detector *d = now->detector;
+    uint32_t list[AREA_BATCH], count = 0;
+    for (uint32_t t = begin; t < end; t++) {
+        list[count] = t;
+        count += d->suspects[t];
+    }
+    memset(d->crossing + begin, false, (end - begin) * sizeof *d->crossing);
+    count =
+        d->forest.kernels->keep_thin((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!has_no_area(now, list[i])) continue;
+        d->crossing[list[i]] = true;
+        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = list[i];
+    }
+}
+
+/* Of a lane's share of the triangles. */
 static void count_zero_area(void *data, uint32_t index) {
     const moment *now = data;
-    const cscd_mesh *mesh = now->detector->mesh;
-    intersection_lane *lane = &now->detector->intersection_lanes[index];
+    cscd_detector *d = now->detector;
+    intersection_lane *lane = &d->intersection_lanes[index];
+    uint64_t count = d->mesh->triangle_count, lanes = d->traversal.lane_count;
+    uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
     *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
-    for (uint32_t t = index; t < mesh->triangle_count; t += now->detector->traversal.lane_count) {
-        if (!now->detector->suspects[t] || !has_no_area(now, t)) continue;
-        now->detector->crossing[t] = true;
-        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = t;
-    }
+    for (uint32_t t = begin; t < end; t += AREA_BATCH)
+        mark_zero_area(now, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
 static int compare_intersections(const void *left, const void *right) {
@@ -102,7 +137,6 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
-    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->crossing[t] = false;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
     traversal_begin(&d->traversal, &d->forest, now->pass);
     for (bool more = true; more;) {

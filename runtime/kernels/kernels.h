@@ -78,6 +78,16 @@ typedef struct kernels {
     /* The lanes of eight such pairs that certainly miss, for cubics that have two roots or none. */
     uint32_t (*two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
     uint32_t (*two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+
+    /* Of pairs of different triangles, in place and in any order, keeps those that may meet (see
+     * runtime/triangle_intersection.h) at positions, which are as positions_check wants them; returns how
+     * many. */
+    uint32_t (*keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                             struct triangle_pair *pairs, uint32_t count);
+
+    /* Of triangles, in place, keeps those that may be without area. */
+    uint32_t (*keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                          uint32_t count);
 } kernels;
 
 /* Of the context's level. */

@@ -16,4 +16,9 @@ void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_m
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
                       bool adjacent, const uint16_t *wanted, uint16_t *features);
 
+uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                                 triangle_pair *pairs, uint32_t count);
+uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                              uint32_t count);
+
 #endif
