@@ -5,7 +5,6 @@
 #include "runtime/triangle_intersection.h"
 #include "src/positions.h"
 #include "src/predicates.h"
-#include "src/sort.h"
 #include "src/timer.h"
 
 #include <string.h>
@@ -101,10 +100,34 @@ static void count_zero_area(void *data, uint32_t index) {
         mark_zero_area(now, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
-static int compare_intersections(const void *left, const void *right) {
-    const cscd_intersection *l = left, *r = right;
-    if (l->a != r->a) return l->a < r->a ? -1 : 1;
-    return l->b < r->b ? -1 : l->b > r->b;
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+
+/* By one digit of b, or of a, stable. */
+static void sort_by_digit(const cscd_intersection *items, cscd_intersection *out, size_t count, bool by_a,
+                          uint32_t shift) {
+    size_t places[DIGITS] = {0}, place = 0;
+    for (size_t i = 0; i < count; i++) places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++;
+    for (uint32_t digit = 0; digit < DIGITS; digit++) {
+        size_t next = place + places[digit];
+        places[digit] = place;
+        place = next;
+    }
+    for (size_t i = 0; i < count; i++)
+        out[places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++] = items[i];
+}
+
+/* By a, then by b, all below limit; as many digits of the one as of the other, so it ends where it began. */
+static void sort_intersections(cscd_intersection *items, cscd_intersection *scratch, size_t count,
+                               uint32_t limit) {
+    cscd_intersection *from = items, *to = scratch;
+    for (int by_a = 0; by_a < 2 && count > 1; by_a++) {
+        for (uint32_t shift = 0; shift < 32 && (limit - 1) >> shift > 0; shift += DIGIT_BITS) {
+            sort_by_digit(from, to, count, by_a, shift);
+            cscd_intersection *swapped = from;
+            from = to;
+            to = swapped;
+        }
+    }
 }
 
 static bool ignored(const cscd_detector_options *options, cscd_intersection pair) {
@@ -129,7 +152,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
-    sort_items(items, d->intersections.scratch, kept, sizeof *items, compare_intersections);
+    sort_intersections(items, d->intersections.scratch, kept, d->mesh->triangle_count);
     result.count = kept;
     *out = result;
     return CSCD_OK;
@@ -177,7 +200,7 @@ static cscd_status check_moment(moment *now) {
     cscd_status status = detector_build(d, now->positions);
     if (status != CSCD_OK) return status;
     forest_move(&d->forest, now->positions, now->positions, 0.0);
-    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->suspects[t] = true;
+    memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
     if (status != CSCD_OK) return status;
     start_states_begin(&d->starts, now->positions);
