@@ -12,8 +12,8 @@
  *
  * Two shared vertices, (p, q, c) and (p, q, d): they do not meet when d is off the plane of pqc; nor when, in
  * a projection along an axis, c and d lie on different sides of the line pq. For then either triangle lies
- * on its side but for points of pq, c is in no point of the other, and pc and qd leave the line from
- * different ends.
+ * on its side but for pq, so neither holds the other's apex, and pc and qd leave the line from different
+ * ends.
  *
  * One, (w, a, b) and (w, c, d): ab against (w, c, d) and cd against (w, a, b) count. Either triangle is part
  * of the cone from w that its other corners span. With a, b, c, d taken from w, and [abc] = (a x b) . c: if c
@@ -24,7 +24,10 @@
  * cones reach it on different sides of w when [abd] and [acd] have different signs. Nor do they meet when, in
  * a projection along an axis, the line of one spanning vector e has the other vector of e's cone strictly on
  * one side and both of the other cone strictly on the other: of its own cone the line holds points of the ray
- * e alone, of the other w alone, and w is on neither ab nor cd.
+ * e alone, of the other w alone, and w is on neither ab nor cd. Nor when a and b lie strictly on one side of
+ * a plane through w, and c and d on the other. Its normal g may be any, so g is exact; a product with g
+ * carries one difference, three products and two sums, each term four roundings, less than 2^-50 of its
+ * magnitude.
  *
  * None: edges against faces count. Boxes that do not overlap, or all corners of one strictly on one side of
  * the other's plane, say that nothing meets. An edge misses a face if its ends are strictly on one side of
