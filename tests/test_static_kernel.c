@@ -153,8 +153,8 @@ static void degenerate_pairs(void **state) {
     (void)state;
     for (int shared = -1; shared < 4; shared++) {
         check_family(GRID, shared, 1.0);
-        check_family(FLAT, shared, 60.0);
-        check_family(WIDE, shared, 100.0);
+        check_family(FLAT, shared, 75.0);
+        check_family(WIDE, shared, 60.0);
     }
 }
 
