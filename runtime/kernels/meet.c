@@ -33,10 +33,9 @@ static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pa
     }
     memcpy(a, vertices, sizeof a);
     memcpy(b, vertices + 3, sizeof b);
-    for (int i = 0; i < 3; i++) {
-        sets |= ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2])) & 1 << i;
-        sets |= ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i])) & 8 << i;
-    }
+    /* What is true is -1. */
+    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i]));
+    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]));
     memcpy(shared, &sets, sizeof sets);
 }
 

@@ -139,6 +139,7 @@ static inline uint32_t fan_is_open(const wide_vector corners[6]) {
     cones_of(corners, cones);
     normal_of(cones[0][0], cones[0][1], &ab);
     wide_sign abc = side_of(&ab, cones[1][0]), abd = side_of(&ab, cones[1][1]);
+    if (same(abc, abd) == ALL_WIDTH) return 0;
     normal_of(cones[1][0], cones[1][1], &cd);
     wide_sign acd = side_of(&cd, cones[0][0]), bcd = side_of(&cd, cones[0][1]);
     uint32_t across = opposite(abc, abd) & opposite(acd, bcd) & opposite(abd, acd);
