@@ -280,11 +280,15 @@ static inline uint32_t parted_by_edge_of(const wide_vector a[3], const wide_vect
     return apart;
 }
 
+/* Where all corners are certainly off the plane, the edges have been asked already. */
 static inline uint32_t flat_free_is_open(const wide_vector corners[6]) {
-    uint32_t apart = 0;
-    for (int k = 0; k < 3 && apart != ALL_WIDTH; k++)
+    wide_sign sides[3];
+    uint32_t apart = 0, flat = 0;
+    sides_of(corners, corners + 3, sides);
+    for (int i = 0; i < 3; i++) flat |= ALL_WIDTH & ~(sides[i].plus | sides[i].minus);
+    for (int k = 0; k < 3 && (flat & ~apart) != 0; k++)
         apart |= parted_by_edge_of(corners, corners + 3, k) | parted_by_edge_of(corners + 3, corners, k);
-    return ALL_WIDTH & ~apart;
+    return ALL_WIDTH & ~(flat & apart);
 }
 
 #endif
