@@ -41,7 +41,8 @@ static inline i32x8 adjacent_corners(const octet *o, int t, int first_bit) {
 /* Pairs of edges whose representatives share a vertex, if the edges share none. */
 static inline i32x8 adjacent_edges(const octet *o) {
     i32x8 features = {0};
-    lane_set corners[2], over[2], at[2][3]; /* at[t][i]: of t's corners, what is opposite edge i of the other */
+    lane_set corners[2], over[2],
+        at[2][3]; /* at[t][i]: of t's corners, what is opposite edge i of the other */
     for (int i = 0; i < 6; i++) {
         corners[i / 3][i % 3] = i32x8_load(o->corners[i / 3][i % 3]);
         over[i / 3][i % 3] = i32x8_load(o->opposite[i / 3][i % 3]);
@@ -74,9 +75,11 @@ void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const
             uint32_t a = r->owned[pair.a], b = r->owned[pair.b];
             load_triangle(mesh, r, pair.a, 0, i, &o);
             load_triangle(mesh, r, pair.b, 1, i, &o);
-            o.represented[i] = (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (spread(a >> 3) * (b >> 3)) << FEATURE_EDGES;
+            o.represented[i] =
+                (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (spread(a >> 3) * (b >> 3)) << FEATURE_EDGES;
         }
-        i32x8 adjacent = adjacent_corners(&o, 0, 0) | adjacent_corners(&o, 1, FEATURE_VERTEX_B) | adjacent_edges(&o);
+        i32x8 adjacent =
+            adjacent_corners(&o, 0, 0) | adjacent_corners(&o, 1, FEATURE_VERTEX_B) | adjacent_edges(&o);
         for (uint32_t i = 0; i < lanes; i++) {
             uint32_t all = features[p + i], own = all & o.represented[i];
             features[p + i] = (uint16_t)own;

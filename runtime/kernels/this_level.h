@@ -19,4 +19,9 @@ void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t coun
 void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
                           uint32_t count, uint16_t *features, uint16_t *open);
 
+uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                                 triangle_pair *pairs, uint32_t count);
+uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                              uint32_t count);
+
 #endif
