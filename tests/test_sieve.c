@@ -1,7 +1,7 @@
 /* The sieve against exact gaps: which pairs of features of two triangles it keeps. */
 #include "runtime/traversal.h"
 #include "tests/support/forest_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/touching.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -162,6 +162,25 @@ static void keeps_what_may_touch_in_flight(void **state) {
     check_families(60, far, 0, 0.0);
 }
 
+/* What overlaps by nothing but rounding. */
+static void keeps_what_just_touches(void **state) {
+    random_stream random = stream_start(55);
+    (void)state;
+    for (uint32_t i = 0; i < 24; i++) {
+        make_touching_pairs(&random, 100, i % 2 == 0 ? 2.0 : 300.0, &shape);
+        open_levels(i / 2 % 4, 0.0);
+        uint32_t count = shape.triangle_count / 2;
+        for (uint32_t p = 0; p < count; p++) {
+            const uint32_t *slots = levels[0].forest.slots;
+            pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
+            wanted[p] = FEATURE_ALL;
+        }
+        levels[0].forest.kernels->sieve(&levels[0].forest, pairs, count, 0.0, true, wanted, features[0]);
+        for (uint32_t p = 0; p < count; p++) check_features(p, 0.0, true);
+        close_levels();
+    }
+}
+
 static void keeps_what_comes_within_the_distance(void **state) {
     (void)state;
     check_families(70, nowhere, 0, 0.1);
@@ -175,9 +194,8 @@ static void keeps_at_any_scale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_what_may_touch),
-        cmocka_unit_test(keeps_what_may_touch_in_flight),
-        cmocka_unit_test(keeps_what_comes_within_the_distance),
+        cmocka_unit_test(keeps_what_may_touch),    cmocka_unit_test(keeps_what_may_touch_in_flight),
+        cmocka_unit_test(keeps_what_just_touches), cmocka_unit_test(keeps_what_comes_within_the_distance),
         cmocka_unit_test(keeps_at_any_scale),
     };
     return cmocka_run_group_tests_name("sieve", tests, NULL, NULL);

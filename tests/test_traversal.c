@@ -1,7 +1,7 @@
 /* The traversal against all pairs: what it must find, what it may find, and that nothing else matters. */
 #include "runtime/traversal.h"
 #include "tests/support/forest_rig.h"
-#include "tests/support/random_stream.h"
+#include "tests/support/touching.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-enum { TRIANGLES_MAX = 700 };
+enum { TRIANGLES_MAX = 1600 };
 
 /* Of pairs a < b. */
 typedef struct pair_table {
@@ -103,6 +103,35 @@ static void finds_what_may_touch_in_flight(void **state) {
         memcpy(shape.x1, shape.x0, (size_t)shape.vertex_count / 2 * sizeof(double[3]));
         check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
     }
+}
+
+/* What overlaps by nothing but rounding. */
+static void finds_what_just_touches(void **state) {
+    random_stream random = stream_start(26);
+    (void)state;
+    for (uint32_t i = 0; i < 16; i++) {
+        make_touching_pairs(&random, 90, i % 2 == 0 ? 3.0 : 300.0, &shape);
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 1, i % 4 < 2 ? BOX_AXES : KDOP_AXES, i / 4}, 0.0);
+    }
+}
+
+/* More leaves than the cache of their volumes has places, all over one another. */
+static void finds_what_may_touch_in_a_crowd(void **state) {
+    random_stream random = stream_start(27);
+    (void)state;
+    scene_clear(&shape);
+    shape.vertex_count = 300;
+    shape.triangle_count = TRIANGLES_MAX;
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) {
+        shape.x0[i] = stream_between(&random, 0.0, 1.0);
+        shape.x1[i] = shape.x0[i] + stream_between(&random, -0.1, 0.1);
+    }
+    for (uint32_t t = 0; t < TRIANGLES_MAX; t++) {
+        uint32_t first = stream_below(&random, shape.vertex_count - 2);
+        for (uint32_t i = 0; i < 3; i++) shape.triangles[t * 3 + i] = first + i;
+    }
+    for (uint32_t region_count = 1; region_count < 5; region_count += 2)
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, 0.0);
 }
 
 /* ---- threads, levels, rounds -----------------------------------------------------------------------------
@@ -230,6 +259,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_what_may_touch),
         cmocka_unit_test(finds_what_may_touch_in_flight),
+        cmocka_unit_test(finds_what_just_touches),
+        cmocka_unit_test(finds_what_may_touch_in_a_crowd),
         cmocka_unit_test(same_pairs_on_all_levels_and_threads),
         cmocka_unit_test(many_rounds),
         cmocka_unit_test(passes_are_what_flags_say),
