@@ -8,7 +8,6 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
@@ -46,7 +45,7 @@ static void step(const scene *s, cscd_method method, cscd_mode mode, contact_set
     assert_true(contacts.count <= CONTACTS_MAX);
     out->count = contacts.count;
     out->counters = cscd_detector_counters(r.detector);
-    memcpy(out->items, contacts.items, contacts.count * sizeof *contacts.items);
+    for (size_t i = 0; i < contacts.count; i++) out->items[i] = contacts.items[i];
     qsort(out->items, out->count, sizeof *out->items, compare_pairs);
     rig_destroy(&r);
 }
