@@ -50,7 +50,7 @@ static void print_row(const char *name, const deforming_body *b, const subject *
 
 static bool measure(const cloth_pair *p, const deforming_body *b, const bench_options *o, json *out,
                     io_error *error) {
-    subject_options options = {CSCD_METHOD_AUTO, CSCD_MODE_ALL, o->thread_count, o->simd};
+    subject_options options = {CSCD_METHOD_AUTO, CSCD_MODE_ALL, o->thread_count, o->simd, o->volume};
     subject *s = subject_make(b, &options, error);
     if (s == NULL) return false;
     size_t size = (size_t)b->vertex_count * 3, vf = 0, ee = 0;

@@ -164,6 +164,7 @@ static bool make_detector(const truth *t, const entrant *e, cscd_detector **out,
     cscd_status status = CSCD_OK;
     options.method = e->method;
     options.mode = e->mode;
+    options.volume = e->volume;
     if (e->method == CSCD_METHOD_KMEANS) {
         cscd_plan_options plan_options = cscd_plan_defaults();
         plan_options.method = CSCD_METHOD_KMEANS;

@@ -22,6 +22,7 @@ typedef struct entrant {
     cscd_method method;
     cscd_mode mode;
     uint32_t k, seed; /* k-means; repeat i has seed + i */
+    cscd_volume volume;
 } entrant;
 
 /* Sums over intervals; ms. */

@@ -70,7 +70,7 @@ void report_write(const report *r, json *out, uint32_t thread_count) {
         json_string(out, "scene", r->truth->recording->name);
         json_string(out, "method", e->name);
         json_string(out, "mode", cscd_mode_name(e->mode));
-        json_string(out, "volume", "14-dop");
+        json_string(out, "volume", cscd_volume_name(e->volume));
         json_integer(out, "threads", thread_count);
         json_integer(out, "triangles", r->truth->recording->model.triangle_count);
         json_number(out, "ttcd_ms", s.total);

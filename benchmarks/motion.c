@@ -112,7 +112,7 @@ static void print_rows(const char *name, const deforming_body *b, const subject_
 static bool run_method(const char *name, const deforming_body *b, const bench_options *o, cscd_method method,
                        json *out, io_error *error) {
     contest c = {{NULL}, {0.0}, {0.0}};
-    subject_options options = {method, CSCD_MODE_ALL, o->thread_count, o->simd};
+    subject_options options = {method, CSCD_MODE_ALL, o->thread_count, o->simd, o->volume};
     double *ends = body_allocate((size_t)b->vertex_count * 6, sizeof *ends);
     uint32_t intervals = bench_intervals(o, b->triangle_count) / 2 + 1;
     bool good = true;

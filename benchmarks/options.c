@@ -15,6 +15,7 @@ static const char options_help[] =
     "  --shuffled       vertices and triangles in random order; default: the model's\n"
     "  --threads N      default 1\n"
     "  --simd LEVEL     auto (default), scalar, avx2, avx512\n"
+    "  --volume NAME    box (default), kdop14\n"
     "  --data FOLDER    with cloth_ball92.ply and so on (default ../shared/data/frames)\n"
     "  --json OUT.json  the rows, and where they come from\n";
 
@@ -49,6 +50,7 @@ static bool parse_value(const char *name, const char *value, bench_options *o, b
     if (strcmp(name, "--intervals") == 0) return parse_number(value, INTERVALS_MAX, &o->interval_count);
     if (strcmp(name, "--threads") == 0) return parse_number(value, 256, &o->thread_count);
     if (strcmp(name, "--simd") == 0) return cscd_simd_from_name(value, &o->simd);
+    if (strcmp(name, "--volume") == 0) return cscd_volume_from_name(value, &o->volume);
     if (strcmp(name, "--body") == 0) return body_kind_from_name(value, &o->kind);
     const char **text = strcmp(name, "--data") == 0   ? &o->data
                         : strcmp(name, "--json") == 0 ? &o->json_path

@@ -14,6 +14,7 @@ typedef struct bench_options {
     uint32_t interval_count;               /* 0: fewer with size */
     uint32_t thread_count;
     cscd_simd simd;
+    cscd_volume volume;
     body_kind kind;
     bool quick, shuffled;
     const char *data, *json_path;

@@ -138,6 +138,7 @@ static void write_row(json *out, const row *r, const bench_options *o) {
     json_string(out, "method", cscd_method_name(r->method));
     json_string(out, "mode", cscd_mode_name(r->mode));
     json_string(out, "simd", cscd_simd_name(o->simd));
+    json_string(out, "volume", cscd_volume_name(o->volume));
     json_integer(out, "threads", o->thread_count);
     json_begin_object(out, "ms");
     for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_names[i], r->ms[i]);
@@ -168,7 +169,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
         char text[96];
         row *r = &t->rows[t->count];
         subject_options options = {methods[i / 2], i % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST,
-                                   o->thread_count, o->simd};
+                                   o->thread_count, o->simd, o->volume};
         snprintf(text, sizeof text, "%u triangles, %s", b.triangle_count, cscd_method_name(options.method));
         progress_say(shown, text);
         good = measure(&b, &options, intervals, r, error);
@@ -190,8 +191,8 @@ static bool run(const bench_options *o, json *out, io_error *error) {
     progress shown;
     double contacts = 0.0;
     progress_begin(&shown, false);
-    printf("%s, %u thread%s, simd %s\n", body_kind_name(o->kind), o->thread_count,
-           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd));
+    printf("%s, %u thread%s, simd %s, volume %s\n", body_kind_name(o->kind), o->thread_count,
+           o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), cscd_volume_name(o->volume));
     print_title("milliseconds per interval");
     printf(" %8s %9s %9s %9s %9s %8s %8s %6s\n", "ns/tri", "boxes", "#PCPs", "features", "tests", "contacts",
            "peak B/t", "loop");

@@ -61,6 +61,7 @@ static cscd_status make_parts(const deforming_body *b, subject *s) {
     cscd_detector_options detector = cscd_detector_defaults();
     detector.method = s->options.method;
     detector.mode = s->options.mode;
+    detector.volume = s->options.volume;
     return status == CSCD_OK ? cscd_detector_create(s->mesh, s->plan, &detector, &s->detector) : status;
 }
 

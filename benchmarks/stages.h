@@ -37,6 +37,7 @@ typedef struct subject_options {
     cscd_mode mode;
     uint32_t thread_count;
     cscd_simd simd;
+    cscd_volume volume;
 } subject_options;
 
 /* Does not move: the context knows where its bytes are counted. */

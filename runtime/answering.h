@@ -4,10 +4,7 @@
 
 #include "runtime/narrow_phase.h"
 
-/* Does the pair (of, against) answer for corner i of the one and the face of the other? */
-bool answers_for_vertex(const swept_interval *interval, uint32_t of, int i, uint32_t against);
-
-/* Does the pair answer for edge i of its a and edge j of its b? */
-bool answers_for_edges(const swept_interval *interval, triangle_pair pair, int i, int j);
+/* Of pairs of features of two triangles, bits as in kernels.h, those that the pair answers for. */
+uint32_t answering_select(const swept_interval *interval, triangle_pair pair, uint32_t features);
 
 #endif

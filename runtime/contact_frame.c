@@ -42,9 +42,8 @@ static moment_vectors vectors_at(const point_vectors *v, double t) {
 /* The power of two that brings the largest component to [1/2, 1), so that squares neither over- nor
  * underflow; returns the exponent that is taken out. */
 static int scale_to_one(const double v[3], double out[3]) {
-    int exponent = 0;
-    frexp(vector_largest(v), &exponent);
-    double factor = ldexp(1.0, -exponent);
+    int exponent = exponent_of(vector_largest(v));
+    double factor = power_of_two(-exponent);
     for (int k = 0; k < 3; k++) out[k] = factor * v[k];
     return exponent;
 }
@@ -64,7 +63,7 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
     if (!(slope > 8.0 * f->error)) return toi;
     moment_vectors m = vectors_at(vectors, toi);
     scaled_cross(&m, cross, &exponent);
-    double speed = ldexp(slope, -exponent) / sqrt(vector_dot(cross, cross));
+    double speed = slope * power_of_two(-exponent) / sqrt(vector_dot(cross, cross));
     return larger(toi - smaller(gap_left * coordinate / speed, earlier_at_most), 0.0);
 }
 
@@ -73,9 +72,8 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
 static void find_parameters(const moment_vectors *m, int first_count, elementary_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     double a[3], b[3], c[3], end[3];
-    int exponent = 0;
-    frexp(larger(vector_largest(m->a), larger(vector_largest(m->b), vector_largest(m->c))), &exponent);
-    double factor = ldexp(1.0, -exponent);
+    double largest = larger(vector_largest(m->a), larger(vector_largest(m->b), vector_largest(m->c)));
+    double factor = power_of_two(-exponent_of(largest));
     for (int k = 0; k < 3; k++) {
         a[k] = factor * m->a[k];
         b[k] = factor * m->b[k];

@@ -126,17 +126,50 @@ static int single_change(const coplanarity *f) {
     return 0;
 }
 
-/* The mostly taken way to the one root. */
-static bool isolate_single(const coplanarity *f, int change, root_interval *out) {
-    double root = f->b[0] / (f->b[0] - f->b[3]);
-    if (!polish(f->b, 0.0, 1.0, &root) || !interval_about(f, root, out)) return false;
+/* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
+ * between which it has exactly one root. */
+static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
+                            root_interval *out) {
+    if (!polish(f->b, low, high, &root) || !interval_about(f, root, out)) return false;
+    out->begin = larger(out->begin, low);
+    out->end = smaller(out->end, high);
     polar begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
     return change * blend(begin.low, begin.high, out->begin) > f->error &&
            change * blend(end.low, end.high, out->end) < -f->error;
 }
 
+/* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
+ * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
+static double lowest_at(const double b[4]) {
+    double d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
+    double half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
+    double root = sqrt(half * half + square);
+    return half >= 0.0 ? 1.0 / (half + root) : (root - half) / square;
+}
+
+/* The same certain sign at both ends: two roots, or none, if the coefficients of the parts before and after
+ * the place where the cubic is nearest to 0 say so for certain. */
+static int isolate_two(const coplanarity *f, root_interval out[ROOTS_MAX]) {
+    double sign = f->b[0] > 0.0 ? 1.0 : -1.0, error = f->error;
+    coplanarity g = {.error = error};
+    for (int i = 0; i < 4; i++) g.b[i] = sign * f->b[i];
+    const double *b = g.b;
+    double t = lowest_at(b);
+    if (!(b[0] > error && b[3] > error && t > 0.0 && t < 1.0)) return ROOTS_UNCERTAIN;
+    polar p = polar_at(b, t);
+    double first = blend(b[0], b[1], t), last = blend(b[2], b[3], t), value = blend(p.low, p.high, t);
+    if (first > error && p.low > error && value > error && p.high > error && last > error) return 0;
+    if (!(value < -error && (first > error || p.low < -error) && (last > error || p.high < -error)))
+        return ROOTS_UNCERTAIN;
+    double left = t * (b[0] / (b[0] - value)), right = 1.0 - (1.0 - t) * (b[3] / (b[3] - value));
+    bool both =
+        isolate_between(&g, 0.0, t, 1.0, left, &out[0]) && isolate_between(&g, t, 1.0, -1.0, right, &out[1]);
+    return both ? 2 : ROOTS_UNCERTAIN;
+}
+
 int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]) {
-    int change = single_change(f);
-    if (change != 0 && isolate_single(f, change, out)) return 1;
+    int change = single_change(f), two;
+    if (change != 0 && isolate_between(f, 0.0, 1.0, change, f->b[0] / (f->b[0] - f->b[3]), out)) return 1;
+    if (change == 0 && (two = isolate_two(f, out)) != ROOTS_UNCERTAIN) return two;
     return isolate_by_guesses(f, out);
 }

@@ -41,6 +41,8 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
     if ((unsigned)options->start > CSCD_START_UNKNOWN)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown start %d", (int)options->start);
+    if ((unsigned)options->volume > CSCD_VOLUME_KDOP14)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown volume %d", (int)options->volume);
     return check_separation(context, options);
 }
 
@@ -85,14 +87,13 @@ static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     cscd_status status = traversal_create(context, &d->traversal);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
+    if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
     if (status != CSCD_OK) return status;
-    d->representatives = representatives_create(d->mesh);
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
     d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
     d->contacts_seen = context_allocate(context, d->traversal.lane_count, sizeof *d->contacts_seen);
-    bool allocated = d->representatives != NULL && d->contact_lanes != NULL &&
-                     d->intersection_lanes != NULL && d->contacts_seen != NULL && allocate_per_component(d) &&
-                     allocate_per_triangle(d);
+    bool allocated = d->contact_lanes != NULL && d->intersection_lanes != NULL && d->contacts_seen != NULL &&
+                     allocate_per_component(d) && allocate_per_triangle(d);
     return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -140,9 +141,10 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     forest_free(&d->forest);
+    representatives_free(context, &d->representatives);
+    orphan_sets_free(context, &d->orphans);
     patches_free(context, &d->patches);
-    void *blocks[] = {d->representatives,
-                      d->contacts.items,
+    void *blocks[] = {d->contacts.items,
                       d->contacts.scratch,
                       d->intersections.items,
                       d->intersections.scratch,

@@ -42,7 +42,9 @@ struct cscd_detector {
 
     patches patches; /* of the forest, with ICCD */
     forest forest;   /* built from the first positions seen; of the interval or moment at hand */
-    uint8_t *representatives;
+    representatives representatives;
+    orphan_sets orphans; /* once an interval without culling has come, unless there are too many */
+    bool orphans_known, orphans_usable;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */
     intersection_lane *intersection_lanes;

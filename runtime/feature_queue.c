@@ -49,33 +49,18 @@ static void describe_hits(const swept_interval *interval, cscd_contact_kind kind
     }
 }
 
-/* Eight at a time; keeps the pairs whose roots leave them open. */
-static void decide_single_roots(const swept_interval *interval, cscd_contact_kind kind,
-                                const feature_source *source, feature_pairs *pairs, contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
+/* Eight at a time; keeps the pairs that a kernel leaves open. */
+static void decide_by_roots(const swept_interval *interval, cscd_contact_kind kind, root_kernel *kernel,
+                            feature_pairs *pairs, contact_lane *lane) {
+    feature_source source = feature_queue_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
         root_outcomes roots;
         uint32_t real = lanes_from(pairs, i);
-        (kind == CSCD_CONTACT_VF ? table->roots_vf : table->roots_ee)(source, pairs->a + i, pairs->b + i,
-                                                                      &roots);
+        kernel(&source, pairs->a + i, pairs->b + i, &roots);
         describe_hits(interval, kind, pairs, i, &roots, real & roots.hits, lane);
         kept = keep_lanes(pairs, i, real & ~roots.hits & ~roots.misses, kept);
-    }
-    lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
-    pairs->count = kept;
-}
-
-static void reject_two_roots(const swept_interval *interval, cscd_contact_kind kind,
-                             const feature_source *source, feature_pairs *pairs, contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
-    uint32_t kept = 0;
-    if (pairs->count > 0) repeat_last(pairs);
-    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
-        uint32_t misses = (kind == CSCD_CONTACT_VF ? table->two_roots_vf
-                                                   : table->two_roots_ee)(source, pairs->a + i, pairs->b + i);
-        kept = keep_lanes(pairs, i, lanes_from(pairs, i) & ~misses, kept);
     }
     lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
     pairs->count = kept;
@@ -93,14 +78,16 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
     }
 }
 
-static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind,
-                             const feature_source *source, feature_pairs *pairs, contact_lane *lane) {
+static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                             contact_lane *lane) {
     const kernels *table = kernels_of(interval->mesh->context);
+    feature_source source = feature_queue_source(interval);
     uint32_t tests = pairs->count;
-    (kind == CSCD_CONTACT_VF ? table->keep_open_vf : table->keep_open_ee)(source, pairs);
+    (kind == CSCD_CONTACT_VF ? table->keep_open_vf : table->keep_open_ee)(&source, pairs);
     lane->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
-    decide_single_roots(interval, kind, source, pairs, lane);
-    reject_two_roots(interval, kind, source, pairs, lane);
+    bool vf = kind == CSCD_CONTACT_VF;
+    decide_by_roots(interval, kind, vf ? table->roots_vf : table->roots_ee, pairs, lane);
+    decide_by_roots(interval, kind, vf ? table->two_roots_vf : table->two_roots_ee, pairs, lane);
     decide_one_by_one(interval, kind, pairs, lane);
 }
 
@@ -120,12 +107,11 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
 
 static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
                    contact_lane *lane) {
-    feature_source source = feature_queue_source(interval);
     feature_pairs pairs = {list->a, list->b, list->count};
     if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else
-        decide_by_levels(interval, kind, &source, &pairs, lane);
+        decide_by_levels(interval, kind, &pairs, lane);
     list->count = 0;
 }
 

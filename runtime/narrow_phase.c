@@ -4,6 +4,7 @@
 #include "runtime/answering.h"
 #include "runtime/representatives.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { PAIRS_AT_ONCE = 256 };
@@ -91,31 +92,7 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
     feature_queue_decide_ee(interval, lane);
 }
 
-/* ---- triangle pairs ---------------------------------------------------------------------------------- */
-
 /* ---- from pairs of triangles to the queue ------------------------------------------------------------ */
-
-/* Features of two triangles that each represents, for all the pairs of a culled interval, or none: bits as in
- * kernels.h. Branches cost more here than what they would save. */
-static uint32_t represented(uint8_t a, uint8_t b) {
-    uint32_t edges_a = a >> 3 & 7u, edges_b = b >> 3 & 7u;
-    uint32_t each = (edges_a & 1u) | (edges_a & 2u) << 2 | (edges_a & 4u) << 4;
-    return (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (each * edges_b) << FEATURE_EDGES;
-}
-
-/* Of near features, those that this pair of triangles answers for. */
-static uint32_t answered(const swept_interval *interval, triangle_pair pair, uint32_t features) {
-    uint32_t kept = 0;
-    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
-        int bit = __builtin_ctz(rest), edges = bit - FEATURE_EDGES;
-        bool answers = edges >= 0 ? answers_for_edges(interval, pair, edges / 3, edges % 3)
-                       : bit >= FEATURE_VERTEX_B
-                           ? answers_for_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a)
-                           : answers_for_vertex(interval, pair.a, bit, pair.b);
-        kept |= (uint32_t)answers << bit;
-    }
-    return kept;
-}
 
 static void put(const swept_interval *interval, triangle_pair pair, uint32_t features, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
@@ -123,6 +100,7 @@ static void put(const swept_interval *interval, triangle_pair pair, uint32_t fea
     if (feature_list_full(vf)) feature_queue_decide_vf(interval, lane);
     if (feature_list_full(ee)) feature_queue_decide_ee(interval, lane);
     for (; features != 0; features &= features - 1) {
+        lane->feature_pairs++;
         int bit = __builtin_ctz(features), edges = bit - FEATURE_EDGES;
         if (edges >= 0) {
             uint32_t a = mesh->triangle_edges[pair.a][edges / 3], b = mesh->triangle_edges[pair.b][edges % 3];
@@ -139,20 +117,12 @@ static void put(const swept_interval *interval, triangle_pair pair, uint32_t fea
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
     const forest *f = interval->forest;
-    uint16_t wanted[PAIRS_AT_ONCE], features[PAIRS_AT_ONCE];
-    triangle_pair pairs[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE];
+    f->kernels->sieve(f, slots, count, interval->limit.distance, features);
     for (uint32_t i = 0; i < count; i++) {
-        pairs[i] = (triangle_pair){forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
-        wanted[i] = interval->culling != NULL ? FEATURE_ALL
-                                              : (uint16_t)represented(interval->representatives[pairs[i].a],
-                                                                      interval->representatives[pairs[i].b]);
-    }
-    f->kernels->sieve(f, slots, count, interval->limit.distance, !interval->skip_adjacent, wanted, features);
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t kept = features[i];
-        if (interval->culling != NULL) kept = answered(interval, pairs[i], kept);
-        lane->feature_pairs += (uint32_t)__builtin_popcount(kept);
-        put(interval, pairs[i], kept, lane);
+        if (features[i] == 0) continue;
+        triangle_pair pair = {forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
+        put(interval, pair, answering_select(interval, pair, features[i]), lane);
     }
 }
 
@@ -160,4 +130,52 @@ void narrow_phase_test(const swept_interval *interval, const triangle_pair *pair
                        contact_lane *lane) {
     for (uint32_t i = 0; i < count && !lane->out_of_memory; i += PAIRS_AT_ONCE)
         test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, lane);
+}
+
+/* ---- orphans ----------------------------------------------------------------------------------------- */
+
+/* The least and the greatest coordinate of some points. */
+typedef struct span {
+    double low, high;
+} span;
+
+static span span_of(const double *positions, const uint32_t *vertices, int count, int axis) {
+    span s = {INFINITY, -INFINITY};
+    for (int i = 0; i < count; i++) {
+        double x = (positions + (size_t)vertices[i] * 3)[axis];
+        s.low = x < s.low ? x : s.low;
+        s.high = x > s.high ? x : s.high;
+    }
+    return s;
+}
+
+/* The first points stay on one side of the others, farther than the limit's distance. A rounded difference
+ * above a number is so exactly. */
+static bool stay_apart(const swept_interval *interval, const uint32_t *a, int count_a, const uint32_t *b,
+                       int count_b) {
+    double distance = interval->limit.distance;
+    for (int axis = 0; axis < 3; axis++) {
+        span a0 = span_of(interval->x0, a, count_a, axis), b0 = span_of(interval->x0, b, count_b, axis);
+        span a1 = span_of(interval->x1, a, count_a, axis), b1 = span_of(interval->x1, b, count_b, axis);
+        if (b0.low - a0.high > distance && b1.low - a1.high > distance) return true;
+        if (a0.low - b0.high > distance && a1.low - b1.high > distance) return true;
+    }
+    return false;
+}
+
+void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets *orphans, uint32_t index,
+                               uint32_t stride, contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    for (size_t i = index; i < orphans->vf_count; i += stride) {
+        uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
+        if (stay_apart(interval, &vertex, 1, mesh->triangles[triangle], 3)) continue;
+        lane->feature_pairs++;
+        narrow_phase_test_vf(interval, vertex, triangle, lane);
+    }
+    for (size_t i = index; i < orphans->ee_count; i += stride) {
+        uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
+        if (stay_apart(interval, mesh->edges[a], 2, mesh->edges[b], 2)) continue;
+        lane->feature_pairs++;
+        narrow_phase_test_ee(interval, a, b, lane);
+    }
 }

@@ -6,6 +6,8 @@
 #include "runtime/elementary.h"
 #include "runtime/feature_queue.h"
 #include "runtime/kernels/kernels.h"
+#include "runtime/orphan_sets.h"
+#include "runtime/representatives.h"
 #include "runtime/separation.h"
 #include "runtime/traversal.h"
 #include "src/mesh.h"
@@ -14,12 +16,13 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const forest *forest;           /* slots of triangle pairs */
-    const uint8_t *representatives; /* NULL when features are paired by the caller */
-    const culling *culling;         /* NULL: nothing is culled, every pair of triangles is reached */
-    bool closing;                   /* with culling: the pairs reached are those that it culled before */
-    bool skip_adjacent;             /* triangles that share a vertex are not tested: as published */
-    separation limit;               /* distance 0: a contact is touching */
+    const forest *forest; /* slots of triangle pairs */
+    const representatives *representatives;
+    const culling *culling; /* NULL: the representatives answer, or: */
+    bool strangers;         /* pairs of adjacent triangles are not reached; others answer for theirs, and
+                             * orphans are tested apart */
+    bool closing;           /* with culling: the pairs reached are those that it culled before */
+    separation limit;       /* distance 0: a contact is touching */
 } swept_interval;
 
 /* What one thread finds. */
@@ -48,6 +51,10 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
  * that may touch by their volumes. */
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                        contact_lane *lane);
+
+/* Those of the orphans of index, index + stride, and so on that may touch by their boxes. */
+void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets *orphans, uint32_t index,
+                               uint32_t stride, contact_lane *lane);
 
 /* One pair of features without a common vertex: a contact where they touch, or come within the limit's
  * distance. */

@@ -4,17 +4,16 @@
 
 #include "src/mesh.h"
 
-/* One byte per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i. A feature's
- * representative is the first triangle of its star (Tang et al. 2009). Complete as long as every overlapping
- * triangle pair is reached: the representatives' volumes contain the features'. NULL when out of memory. */
-uint8_t *representatives_create(const cscd_mesh *mesh);
+/* A feature's representative is the first triangle of its star (Tang et al. 2009). Complete as long as every
+ * overlapping triangle pair is reached: the representatives' volumes contain the features'. */
+typedef struct representatives {
+    uint8_t *owned; /* per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i */
+    uint32_t (*others)[2]; /* per vertex: the other vertices of its representative */
+    uint32_t *opposite;    /* per edge: the vertex of its representative that is not the edge's */
+} representatives;
 
-static inline bool represents_vertex(uint8_t owned, int i) {
-    return (owned >> i & 1) != 0;
-}
-
-static inline bool represents_edge(uint8_t owned, int i) {
-    return (owned >> (3 + i) & 1) != 0;
-}
+/* On failure *out holds nothing. */
+cscd_status representatives_create(const cscd_mesh *mesh, representatives *out);
+void representatives_free(cscd_context *context, representatives *r);
 
 #endif

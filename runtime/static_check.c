@@ -104,7 +104,7 @@ static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
     for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->crossing[t] = false;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    traversal_begin(&d->traversal, &d->forest, now->pass);
+    traversal_begin(&d->traversal, &d->forest, now->pass, false);
     for (bool more = true; more;) {
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;

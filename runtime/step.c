@@ -7,12 +7,16 @@
 #include "src/positions.h"
 #include "src/timer.h"
 
+static int volume_axes(const cscd_detector *d) {
+    return d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
+}
+
 /* As published, a patch of ICCD is any set of triangles: then all components are one part. */
 static cscd_status build_of_one_part(cscd_detector *d, const double *positions) {
     uint32_t *none = context_allocate(d->context, d->mesh->triangle_count, sizeof *none);
     if (none == NULL) return CSCD_OUT_OF_MEMORY;
     forest_regions regions = {none, d->culling.triangle_weights, 1};
-    cscd_status status = forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
+    cscd_status status = forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
     context_free(d->context, none);
     return status;
 }
@@ -22,7 +26,7 @@ cscd_status detector_build(cscd_detector *d, const double *positions) {
     if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) return build_of_one_part(d, positions);
     forest_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights,
                               d->culling.region_count};
-    return forest_build(d->mesh, regions, positions, BOX_AXES, &d->forest);
+    return forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
 }
 
 /* The forest of the interval from x0 to x1, or of a moment. */
@@ -39,7 +43,7 @@ typedef struct step_work {
     swept_interval interval;
     cscd_timings timings;
     cscd_counters counters;
-    bool any_culled;
+    bool any_culled, skip_adjacent;
 } step_work;
 
 static void test_batch(void *data, uint32_t index) {
@@ -67,7 +71,7 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
     cscd_detector *d = work->detector;
     cscd_status status = CSCD_OK;
     double since = timer_now_ms();
-    traversal_begin(&d->traversal, &d->forest, pass);
+    traversal_begin(&d->traversal, &d->forest, pass, work->skip_adjacent);
     for (bool more = true; more && status == CSCD_OK;) {
         status = traversal_round(&d->traversal, &more);
         timer_lap(&since, &work->timings.traversal_ms);
@@ -80,6 +84,34 @@ static cscd_status traverse(step_work *work, traversal_pass pass) {
     }
     work->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
     return status;
+}
+
+static void test_orphans(void *data, uint32_t index) {
+    step_work *work = data;
+    contact_lane *lane = &work->detector->contact_lanes[index];
+    narrow_phase_test_orphans(&work->interval, &work->detector->orphans, index,
+                              work->detector->traversal.lane_count, lane);
+    narrow_phase_finish(&work->interval, lane);
+}
+
+/* Every pair of triangles is reached, so those that share a vertex, most of all pairs, need not be: other
+ * pairs answer for their features, and there are orphans. */
+static cscd_status find_without_adjacent(step_work *work) {
+    cscd_detector *d = work->detector;
+    if (!d->orphans_known) {
+        bool too_many;
+        cscd_status status = orphan_sets_create(d->mesh, &d->orphans, &too_many);
+        if (status != CSCD_OK) return status;
+        d->orphans_known = true;
+        d->orphans_usable = !too_many;
+    }
+    work->skip_adjacent = work->interval.strangers = d->orphans_usable;
+    cscd_status status = traverse(work, TRAVERSAL_KEPT);
+    if (status != CSCD_OK || !d->orphans_usable) return status;
+    double since = timer_now_ms();
+    parallel_run(d->context->threads, d->traversal.lane_count, test_orphans, work);
+    timer_lap(&since, &work->timings.contact_ms);
+    return lanes_status(d);
 }
 
 /* ---- culling --------------------------------------------------------------------------------------- */
@@ -184,8 +216,8 @@ static cscd_status find_unsealed(step_work *work) {
     timer_lap(&since, &work->timings.contour_ms);
     work->counters.contours = d->patches.contours;
     work->counters.sealed = d->patches.sealed;
-    work->interval.skip_adjacent = published;
-    return traverse(work, TRAVERSAL_KEPT);
+    work->skip_adjacent = published;
+    return published ? traverse(work, TRAVERSAL_KEPT) : find_without_adjacent(work);
 }
 
 static cscd_status find_by_trees(step_work *work) {
@@ -194,8 +226,8 @@ static cscd_status find_by_trees(step_work *work) {
     if (status != CSCD_OK) return status;
     if (detector_seals(d)) return find_unsealed(work);
     choose_culled(work);
-    work->interval.skip_adjacent = follows(d, PUBLISHED_ADJACENT);
-    if (!work->any_culled) return traverse(work, TRAVERSAL_KEPT);
+    if (!work->any_culled) return find_without_adjacent(work);
+    work->skip_adjacent = follows(d, PUBLISHED_ADJACENT);
     orient(work);
     status = traverse(work, TRAVERSAL_KEPT);
     return status == CSCD_OK && d->options.method != CSCD_METHOD_PUBLISHED ? close_contacts(work) : status;
@@ -279,7 +311,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                                    .x0 = start,
                                    .x1 = end,
                                    .forest = &detector->forest,
-                                   .representatives = detector->representatives,
+                                   .representatives = &detector->representatives,
                                    .limit = detector->limit},
                       .timings = {.check_ms = detector->timings.check_ms}};
     status = step(&work, &contacts);

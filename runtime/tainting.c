@@ -40,6 +40,7 @@ static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *cont
 
 uint32_t tainting_look(cscd_detector *d) {
     uint32_t fresh = 0;
+    if (!detector_culls(d)) return 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
         const contact_lane *lane = &d->contact_lanes[i];
         for (size_t j = d->contacts_seen[i]; j < lane->count; j++) {

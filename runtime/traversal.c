@@ -36,9 +36,10 @@ void traversal_destroy(traversal *t) {
     *t = (traversal){0};
 }
 
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass) {
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent) {
     t->forest = f;
     t->pass = pass;
+    t->skip_adjacent = skip_adjacent;
     for (uint32_t i = 0; i < t->lane_count; i++) {
         traversal_lane *lane = &t->lanes[i];
         lane->stack_count = lane->pair_count = 0;

@@ -49,6 +49,7 @@ typedef struct traversal {
     cscd_context *context;
     const forest *forest;
     traversal_pass pass;
+    bool skip_adjacent;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
 } traversal;
@@ -57,8 +58,9 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of f, which is up to date. */
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
+/* Starts anew at the root of f, which is up to date. skip_adjacent: pairs of triangles that share a vertex
+ * are left out. */
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent);
 
 /* Fills each lane's batch with up to TRAVERSAL_BATCH_SIZE pairs; false when all is done and every batch is
  * empty. Between two rounds the caller consumes the batches. The union of all batches, and the sum of

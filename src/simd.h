@@ -47,6 +47,12 @@ static inline f32x8 f32x8_load(const float *from) {
     return v;
 }
 
+static inline i32x8 i32x8_load(const uint32_t *from) {
+    i32x8 v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
 static inline void f32x8_store(float *to, f32x8 v) {
     memcpy(to, &v, sizeof v);
 }
@@ -121,6 +127,10 @@ static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
     return _cvtmask8_u32(_mm512_cmp_pd_mask(a, b, _CMP_LT_OQ));
 }
 
+static inline uint32_t i32x8_negative(i32x8 v) {
+    return _cvtmask8_u32(_mm256_movepi32_mask((__m256i)v));
+}
+
 #else
 
 static inline f64x8 f64x8_min(f64x8 a, f64x8 b) {
@@ -139,6 +149,10 @@ static inline uint32_t f32x8_below(f32x8 a, f32x8 b) {
     return (uint32_t)_mm256_movemask_ps((f32x8)(a < b));
 }
 
+static inline uint32_t i32x8_negative(i32x8 v) {
+    return (uint32_t)_mm256_movemask_ps((f32x8)v);
+}
+
 static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
     i64x8 below = a < b;
     f64x8 signs = (f64x8)below;
@@ -152,6 +166,12 @@ static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
 static inline uint32_t f32x8_below(f32x8 a, f32x8 b) {
     uint32_t lanes = 0;
     for (int i = 0; i < LANES; i++) lanes |= (uint32_t)(a[i] < b[i]) << i;
+    return lanes;
+}
+
+static inline uint32_t i32x8_negative(i32x8 v) {
+    uint32_t lanes = 0;
+    for (int i = 0; i < LANES; i++) lanes |= (uint32_t)(v[i] < 0) << i;
     return lanes;
 }
 

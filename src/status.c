@@ -45,6 +45,7 @@ static const char *const method_names[] = {[CSCD_METHOD_AUTO] = "auto",
                                            [CSCD_METHOD_PUBLISHED] = "published",
                                            [CSCD_METHOD_ICCD] = "iccd",
                                            [CSCD_METHOD_ICCD_PUBLISHED] = "iccd-published"};
+static const char *const volume_names[] = {[CSCD_VOLUME_BOX] = "box", [CSCD_VOLUME_KDOP14] = "kdop14"};
 static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EARLIEST] = "earliest"};
 static const char *const reasons[] = {
     [CSCD_REASON_METHOD] = "every pair of features whose volumes overlap is tested",
@@ -78,6 +79,17 @@ bool cscd_method_from_name(const char *name, cscd_method *out) {
     size_t i = find_name(method_names, COUNT(method_names), name);
     if (i == COUNT(method_names)) return false;
     *out = (cscd_method)i;
+    return true;
+}
+
+const char *cscd_volume_name(cscd_volume volume) {
+    return name_at(volume_names, COUNT(volume_names), (size_t)volume);
+}
+
+bool cscd_volume_from_name(const char *name, cscd_volume *out) {
+    size_t i = find_name(volume_names, COUNT(volume_names), name);
+    if (i == COUNT(volume_names)) return false;
+    *out = (cscd_volume)i;
     return true;
 }
 

@@ -11,7 +11,9 @@ void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const 
                          root_outcomes *out);
 void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
-uint32_t SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
-uint32_t SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out);
+void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out);
 
 #endif

@@ -36,11 +36,14 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* For eight pairs: what a single root says, and for hits the begin of its interval. */
+/* For eight pairs: what the roots say, and for hits the begin of the interval of the first that touches. */
 typedef struct root_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double begin[KERNEL_LANES];
 } root_outcomes;
+
+typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out);
 
 typedef struct kernels {
     const char *name;
@@ -60,24 +63,21 @@ typedef struct kernels {
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
-    /* Of the pairs of features of two triangles, in slots, those of `wanted` that may touch, or come within
-     * distance, by their volumes, and that share no vertex; without `adjacent` none of triangles that share
-     * one. */
+    /* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
+     * their volumes, and that share no vertex. */
     void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
-                  bool adjacent, const uint16_t *wanted, uint16_t *features);
+                  uint16_t *features);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */
     void (*keep_open_vf)(const feature_source *source, feature_pairs *pairs);
     void (*keep_open_ee)(const feature_source *source, feature_pairs *pairs);
 
-    /* The mostly taken way through level two, for pairs from a[0], b[0] to a[7], b[7]. */
-    void (*roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
-    void (*roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, root_outcomes *out);
+    /* Level two for pairs from a[0], b[0] to a[7], b[7]: where the cubic has one root for certain, */
+    root_kernel *roots_vf, *roots_ee;
 
-    /* The lanes of eight such pairs that certainly miss, for cubics that have two roots or none. */
-    uint32_t (*two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b);
-    uint32_t (*two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b);
+    /* and where it has two, or none. */
+    root_kernel *two_roots_vf, *two_roots_ee;
 } kernels;
 
 /* Of the context's level. */

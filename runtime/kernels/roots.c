@@ -3,9 +3,6 @@
 #include "runtime/kernels/feature_kernels.h"
 #include "runtime/kernels/wide_roots.h"
 
-/* A root interval must be as narrow for its begin to be the TOI. */
-static const double narrow = 0x1p-31;
-
 /* Lanes in which the coefficients certainly change sign once: from positive to negative, and back. */
 static inline void single_changes(const wide_cubics *f, uint32_t *falling, uint32_t *rising) {
     uint32_t above[4], below[4];
@@ -35,9 +32,8 @@ static inline void decide(const wide_points *points, int first_count, int i, roo
     cubics_of(&vectors, &f);
     uint32_t isolated = isolate(&f, &interval);
     sign_lanes touching = inside(&vectors, first_count, &interval);
-    uint32_t fine = f64w_at_most(interval.end - interval.begin, f64w_all(narrow));
     out->misses |= (isolated & touching.wrong) << i;
-    out->hits |= (isolated & touching.right & fine) << i;
+    out->hits |= (isolated & touching.right & narrow_enough(&interval)) << i;
     memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
 }
 

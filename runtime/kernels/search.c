@@ -141,6 +141,29 @@ typedef struct leaf_pair {
     uint32_t rows, columns; /* lanes worth a look */
 } leaf_pair;
 
+/* Of lanes, those of b whose triangles share no vertex with triangle i of a. */
+static inline uint32_t strangers(const forest *f, const leaf_pair *pair, int i, uint32_t lanes,
+                                 bool one_part) {
+    const forest_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
+    if (one_part) {
+        i32x8 shared = {0};
+        for (int j = 0; j < 3; j++) {
+            i32x8 corner = i32x8_load(b->corners[j]);
+            for (int k = 0; k < 3; k++) shared |= corner == (int32_t)a->corners[k][i];
+        }
+        return lanes & ~i32x8_negative(shared);
+    }
+    uint32_t kept = lanes;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        int lane = __builtin_ctz(rest);
+        bool shared = false;
+        for (int j = 0; j < 9; j++)
+            shared |= f->record_vertices[a->corners[j / 3][i]] == f->record_vertices[b->corners[j % 3][lane]];
+        kept ^= (uint32_t)shared << lane;
+    }
+    return kept;
+}
+
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
                                   bool one_part, const displacement *d) {
     const forest *f = t->forest;
@@ -159,6 +182,7 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        if (lanes != 0 && t->skip_adjacent) lanes = strangers(f, pair, i, lanes, one_part);
         if (lanes == 0) continue;
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
         add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);

@@ -2,7 +2,7 @@
  *
  * Two features of which all points of one lie beyond all points of the other, along one direction and at both
  * ends of the interval, stay apart throughout, since their points move linearly. The directions are those of
- * 14-DOPs; a record holds both ends, so one comparison takes three directions at both.
+ * 14-DOPs. A lane is a pair of triangles, so that all fifteen are decided for eight at once.
  *
  * With u = 2^-24, and M the sum of both parts' reaches and of what lies between the parts, a coordinate of a
  * record is off by u M at most, moved into the other part's frame by 3 u M; a gap is a difference of two
@@ -11,90 +11,126 @@
  * 8 u M and 48 u M on. */
 #include "runtime/kernels/this_level.h"
 
-/* One direction's bit for the start, the same one's for the end four lanes on. */
-static inline bool at_both_ends(uint32_t lanes) {
-    return (lanes & (lanes >> 4) & 15) != 0;
-}
+#include "src/simd.h"
 
-typedef struct extent {
+enum { FEATURE_COUNT = 15 };
+
+/* The corners of triangles a, then those of b, along one direction at both ends. */
+typedef f32x8 coordinates[2][6];
+
+/* Of eight pairs of triangles. */
+typedef struct octet {
+    f32x8 points[6][8]; /* of corners of a, then of b: x y z . at the start, x y z . at the end */
+    uint32_t vertices[6][LANES];
+    float gap[LANES], wide[LANES]; /* beyond rounding and distance, along axes and diagonals */
+} octet;
+
+typedef struct range {
     f32x8 low, high;
-} extent;
+} range;
 
-static inline extent join(extent a, extent b) {
-    return (extent){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
+static inline range join(range a, range b) {
+    return (range){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
 }
 
-static inline bool stay_apart(extent a, extent b, f32x8 gap) {
-    return at_both_ends(f32x8_below(gap, a.low - b.high)) || at_both_ends(f32x8_below(gap, b.low - a.high));
+/* How far a and b, both given at both ends, are apart at both, on the same side; negative where they are not.
+ */
+static inline f32x8 gap_between(range a0, range b0, range a1, range b1) {
+    f32x8 before = f32x8_min(b0.low - a0.high, b1.low - a1.high);
+    f32x8 behind = f32x8_min(a0.low - b0.high, a1.low - b1.high);
+    return f32x8_max(before, behind);
 }
 
-/* Vertices, edges i to i + 1, faces of both. */
-typedef struct extents {
-    extent vertices[2][3], edges[2][3], faces[2];
-} extents;
+/* Vertices, edges i to i + 1, faces of a and b. */
+typedef struct ranges {
+    range vertices[2][3], edges[2][3], faces[2];
+} ranges;
 
-static inline void extents_of(f32x8 (*rows)[3], extents *out) {
+static inline void ranges_of(const f32x8 points[6], ranges *out) {
     for (int t = 0; t < 2; t++) {
-        for (int i = 0; i < 3; i++) out->vertices[t][i] = (extent){rows[t][i], rows[t][i]};
+        for (int i = 0; i < 3; i++) out->vertices[t][i] = (range){points[3 * t + i], points[3 * t + i]};
         for (int i = 0; i < 3; i++)
             out->edges[t][i] = join(out->vertices[t][i], out->vertices[t][(i + 1) % 3]);
         out->faces[t] = join(out->edges[t][0], out->vertices[t][2]);
     }
 }
 
-static inline uint32_t keep_near(const extents *e, f32x8 gap, uint32_t features) {
-    uint32_t kept = features;
-    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
-        int bit = __builtin_ctz(rest), i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
-        bool apart = bit >= FEATURE_EDGES ? stay_apart(e->edges[0][i], e->edges[1][j], gap)
-                     : bit >= FEATURE_VERTEX_B
-                         ? stay_apart(e->vertices[1][bit - FEATURE_VERTEX_B], e->faces[0], gap)
-                         : stay_apart(e->vertices[0][bit], e->faces[1], gap);
-        kept ^= (uint32_t)apart << bit;
-    }
-    return kept;
-}
-
-/* x+y+z, x+y-z, x-y+z, -x+y+z at both ends. */
-static inline f32x8 diagonals(f32x8 row) {
-    const i32x8 second = {0, 0, INT32_MIN, 0, 0, 0, INT32_MIN, 0};
-    const i32x8 third = {0, INT32_MIN, 0, INT32_MIN, 0, INT32_MIN, 0, INT32_MIN};
-    f32x8 a = __builtin_shufflevector(row, row, 0, 0, 0, 1, 4, 4, 4, 5);
-    f32x8 b = __builtin_shufflevector(row, row, 1, 1, 1, 2, 5, 5, 5, 6);
-    f32x8 c = __builtin_shufflevector(row, row, 2, 2, 2, 0, 6, 6, 6, 4);
-    return (a + (f32x8)((i32x8)b ^ second)) + (f32x8)((i32x8)c ^ third);
-}
-
-/* Of which features of a and b a vertex is the same one; shared: bit 3 i + j: vertex i of a is vertex j of b.
- */
-static uint32_t sharing(uint32_t shared) {
-    uint32_t features = 0;
-    for (uint32_t i = 0; i < 3; i++) {
-        uint32_t row = shared >> (3 * i) & 7, next = shared >> (3 * ((i + 1) % 3)) & 7;
-        uint32_t both = row | next;
-        features |= (uint32_t)(row != 0) << i;
-        for (uint32_t j = 0; j < 3; j++) {
-            features |= (row >> j & 1) << (FEATURE_VERTEX_B + j);
-            features |= (both >> j & 1) << (FEATURE_EDGES + 3 * i + j) |
-                        (both >> j & 1) << (FEATURE_EDGES + 3 * i + (j + 2) % 3);
+/* gaps: the widest along the directions so far. */
+static inline void widen(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
+    ranges r[2];
+    for (int e = 0; e < 2; e++) ranges_of(at[e], &r[e]);
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < 3; i++) {
+            f32x8 gap =
+                gap_between(r[0].vertices[t][i], r[0].faces[1 - t], r[1].vertices[t][i], r[1].faces[1 - t]);
+            gaps[3 * t + i] = f32x8_max(gaps[3 * t + i], gap);
         }
     }
+    for (int i = 0; i < 9; i++) {
+        f32x8 gap = gap_between(r[0].edges[0][i / 3], r[0].edges[1][i % 3], r[1].edges[0][i / 3],
+                                r[1].edges[1][i % 3]);
+        gaps[FEATURE_EDGES + i] = f32x8_max(gaps[FEATURE_EDGES + i], gap);
+    }
+}
+
+/* Of features, those whose gaps do not exceed `least`. */
+static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x8 features) {
+    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & (1 << i));
     return features;
 }
 
-static inline uint32_t shared_vertices(const uint32_t a[3], const uint32_t b[3]) {
-    uint32_t shared = 0;
-    for (uint32_t i = 0; i < 3; i++) {
-        for (uint32_t j = 0; j < 3; j++) shared |= (uint32_t)(a[i] == b[j]) << (3 * i + j);
+static inline i32x8 near_along_axes(const octet *o, i32x8 features) {
+    f32x8 gaps[FEATURE_COUNT];
+    for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
+    for (int k = 0; k < 3; k++) {
+        coordinates at;
+        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = o->points[i % 6][i / 6 * 4 + k];
+        widen((const f32x8(*)[6])at, gaps);
     }
-    return shared;
+    return keep_near(gaps, f32x8_load(o->gap), features);
+}
+
+/* x+y+z, x+y-z, x-y+z, -x+y+z. */
+static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
+    return k == 0   ? p[0] + p[1] + p[2]
+           : k == 1 ? p[0] + p[1] - p[2]
+           : k == 2 ? p[0] - p[1] + p[2]
+                    : p[1] - p[0] + p[2];
+}
+
+static inline i32x8 near_along_diagonals(const octet *o, i32x8 features) {
+    f32x8 gaps[FEATURE_COUNT];
+    for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
+    for (int k = 0; k < 4; k++) {
+        coordinates at;
+        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
+        widen((const f32x8(*)[6])at, gaps);
+    }
+    return keep_near(gaps, f32x8_load(o->wide), features);
+}
+
+/* Features of a and b of which a vertex is the same one. */
+static inline i32x8 sharing(const octet *o) {
+    i32x8 corners[6], same[3][3], features = {0};
+    for (int i = 0; i < 6; i++) corners[i] = i32x8_load(o->vertices[i]);
+    for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
+    for (int i = 0; i < 3; i++) {
+        i32x8 of_a = same[i][0] | same[i][1] | same[i][2], of_b = same[0][i] | same[1][i] | same[2][i];
+        features |= (of_a & (1 << i)) | (of_b & (1 << (FEATURE_VERTEX_B + i)));
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+            i32x8 any = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
+            features |= any & (1 << (FEATURE_EDGES + 3 * i + j));
+        }
+    }
+    return features;
 }
 
 /* What is known of two parts, whichever. */
 typedef struct part_pair {
     uint32_t a, b;
     f32x8 between;   /* what is to be added to a record of b */
-    f32x8 gap, wide; /* beyond rounding and distance, along axes and diagonals */
+    float gap, wide; /* as in an octet */
 } part_pair;
 
 static void relate(const forest *f, uint32_t a, uint32_t b, double distance, part_pair *out) {
@@ -109,43 +145,48 @@ static void relate(const forest *f, uint32_t a, uint32_t b, double distance, par
     out->a = a;
     out->b = b;
     out->between = f32x8_load(between);
-    out->gap = f32x8_all((float)(size * 0x1p-21 + d) * (1.0f + 0x1p-20f));
-    out->wide = f32x8_all((float)(size * 0x1.8p-19 + 1.7320508076 * d) * (1.0f + 0x1p-20f));
+    out->gap = (float)(size * 0x1p-21 + d) * (1.0f + 0x1p-20f);
+    out->wide = (float)(size * 0x1.8p-19 + 1.7320508076 * d) * (1.0f + 0x1p-20f);
 }
 
-static inline void load_rows(const forest *f, triangle_pair pair, const part_pair *parts, f32x8 rows[2][3],
-                             uint32_t records[2][3]) {
-    const forest_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
-    for (int i = 0; i < 3; i++) {
-        records[0][i] = a->corners[i][pair.a % LANES];
-        records[1][i] = b->corners[i][pair.b % LANES];
-        rows[0][i] = f32x8_load(f->records[records[0][i]]);
-        rows[1][i] = f32x8_load(f->records[records[1][i]]) + parts->between;
+/* The places of the last pair are filled up with itself. */
+static inline void load(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
+                        part_pair *parts, octet *out) {
+    f32x8 rows[6][LANES];
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        triangle_pair pair = pairs[lane < count ? lane : count - 1];
+        const forest_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
+        uint32_t part_a = f->leaf_parts[pair.a / LANES], part_b = f->leaf_parts[pair.b / LANES];
+        if (part_a != parts->a || part_b != parts->b) relate(f, part_a, part_b, distance, parts);
+        for (int i = 0; i < 3; i++) {
+            uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
+            rows[i][lane] = f32x8_load(f->records[record_a]);
+            rows[3 + i][lane] = f32x8_load(f->records[record_b]) + parts->between;
+            out->vertices[i][lane] = part_a == part_b ? record_a : f->record_vertices[record_a];
+            out->vertices[3 + i][lane] = part_a == part_b ? record_b : f->record_vertices[record_b];
+        }
+        out->gap[lane] = parts->gap;
+        out->wide[lane] = parts->wide;
+    }
+    for (int i = 0; i < 6; i++) {
+        f32x8_transpose(rows[i]);
+        for (int k = 0; k < 8; k++) out->points[i][k] = rows[i][k];
     }
 }
 
+static inline bool any(i32x8 features) {
+    return i32x8_negative(-features) != 0;
+}
+
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                      bool adjacent, const uint16_t *wanted, uint16_t *features) {
+                      uint16_t *features) {
     part_pair parts = {.a = UINT32_MAX};
-    for (uint32_t p = 0; p < count; p++) {
-        uint32_t a = f->leaf_parts[pairs[p].a / LANES], b = f->leaf_parts[pairs[p].b / LANES];
-        if (a != parts.a || b != parts.b) relate(f, a, b, distance, &parts);
-        f32x8 rows[2][3];
-        uint32_t records[2][3], kept = wanted[p];
-        extents e;
-        load_rows(f, pairs[p], &parts, rows, records);
-        if (a != b) {
-            for (int i = 0; i < 6; i++) records[i / 3][i % 3] = f->record_vertices[records[i / 3][i % 3]];
-        }
-        uint32_t shared = shared_vertices(records[0], records[1]);
-        if (shared != 0) kept = adjacent ? kept & ~sharing(shared) : 0;
-        extents_of(rows, &e);
-        kept = keep_near(&e, parts.gap, kept);
-        if (kept != 0) {
-            for (int i = 0; i < 6; i++) rows[i / 3][i % 3] = diagonals(rows[i / 3][i % 3]);
-            extents_of(rows, &e);
-            kept = keep_near(&e, parts.wide, kept);
-        }
-        features[p] = (uint16_t)kept;
+    for (uint32_t p = 0; p < count; p += LANES) {
+        uint32_t lanes = count - p < LANES ? count - p : LANES;
+        octet o;
+        load(f, pairs + p, lanes, distance, &parts, &o);
+        i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
+        if (any(kept)) kept = near_along_diagonals(&o, kept);
+        for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
     }
 }

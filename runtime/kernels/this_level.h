@@ -14,6 +14,6 @@ void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, ui
 void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);
 
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                      bool adjacent, const uint16_t *wanted, uint16_t *features);
+                      uint16_t *features);
 
 #endif

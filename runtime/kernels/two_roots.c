@@ -1,5 +1,5 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic has the same sign at both ends:
- * no root, or two. Misses only; hits go on to the scalar code, which alone says when. */
+ * no root, or two. The same intervals and verdicts as cubic.c and inside.c have. */
 #include "runtime/kernels/feature_kernels.h"
 #include "runtime/kernels/wide_roots.h"
 
@@ -10,12 +10,13 @@ typedef struct cut_cubics {
 } cut_cubics;
 
 /* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
- * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess. */
+ * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
 static inline f64w lowest_at(const f64w b[4]) {
     f64w d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
-    f64w half = d1 - d0, square = (d2 - d1) - half, root = f64w_sqrt(half * half - square * d0);
+    f64w half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
+    f64w root = f64w_sqrt(half * half + square);
     uint32_t growing = f64w_at_most(f64w_all(0.0), half);
-    return f64w_select(growing, -d0 / (half + root), (root - half) / square);
+    return f64w_select(growing, 1.0 / (half + root), (root - half) / square);
 }
 
 /* Returns the lanes that are above their errors at both ends, and cut within. */
@@ -46,47 +47,58 @@ static inline uint32_t with_two_roots(const cut_cubics *c, f64w error) {
     return left & right & f64w_below(c->value, -error);
 }
 
-/* Of the lanes, those in which the features are apart at both roots. */
-static inline uint32_t apart_at_both(const cut_cubics *c, f64w error, const wide_vectors *vectors,
-                                     int first_count, uint32_t lanes) {
-    wide_intervals interval;
+/* The two roots, one after the other, in the lanes in which both are isolated. */
+static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t lanes,
+                                    wide_intervals roots[2]) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w left = c->t * (c->b[0] / (c->b[0] - c->value));
-    lanes = isolate_between(c->b, error, lanes, zero, c->t, one, left, &interval);
-    lanes &= inside(vectors, first_count, &interval).wrong;
-    if (lanes == 0) return 0;
     f64w right = one - (one - c->t) * (c->b[3] / (c->b[3] - c->value));
-    lanes = isolate_between(c->b, error, lanes, c->t, one, -one, right, &interval);
-    return lanes & inside(vectors, first_count, &interval).wrong;
+    lanes = isolate_between(c->b, error, lanes, zero, c->t, one, left, &roots[0]);
+    return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
 }
 
-static inline uint32_t misses(const wide_points *points, int first_count) {
+/* Pairs i to i + WIDTH - 1 of the eight. */
+static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
     wide_vectors vectors;
     wide_cubics f;
     cut_cubics parts;
+    wide_intervals roots[2];
     vectors_between(points, first_count, &vectors);
     cubics_of(&vectors, &f);
-    uint32_t lanes = cut(&f, &parts), none = lanes & rootless(&parts, f.error);
+    uint32_t lanes = cut(&f, &parts);
+    out->misses |= (lanes & rootless(&parts, f.error)) << i;
     lanes &= with_two_roots(&parts, f.error);
-    if (lanes == 0) return none;
-    return none | apart_at_both(&parts, f.error, &vectors, first_count, lanes);
+    if (lanes == 0) return;
+    lanes = isolate_both(&parts, f.error, lanes, roots);
+    if (lanes == 0) return;
+    sign_lanes first = inside(&vectors, first_count, &roots[0]);
+    uint32_t hits = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
+    if (later != 0) {
+        sign_lanes second = inside(&vectors, first_count, &roots[1]);
+        out->misses |= (later & second.wrong) << i;
+        later &= second.right & narrow_enough(&roots[1]);
+    }
+    f64w begin = f64w_select(hits, roots[0].begin, roots[1].begin);
+    memcpy(out->begin + i, &begin, sizeof begin);
+    out->hits |= (hits | later) << i;
 }
 
-static inline uint32_t misses_of_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                                       int first_count) {
-    uint32_t lanes = 0;
+static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                                int first_count, root_outcomes *out) {
+    out->misses = out->hits = 0;
     for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
         wide_points points;
         (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
-        lanes |= misses(&points, first_count) << i;
+        decide(&points, first_count, i, out);
     }
-    return lanes;
 }
 
-uint32_t SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b) {
-    return misses_of_eight(source, a, b, 1);
+void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out) {
+    decide_eight(source, a, b, 1, out);
 }
 
-uint32_t SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b) {
-    return misses_of_eight(source, a, b, 2);
+void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out) {
+    decide_eight(source, a, b, 2, out);
 }

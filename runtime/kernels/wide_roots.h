@@ -47,6 +47,11 @@ typedef struct wide_intervals {
     f64w begin, end;
 } wide_intervals;
 
+/* A root interval must be as narrow for its begin to be the TOI. */
+static inline uint32_t narrow_enough(const wide_intervals *interval) {
+    return f64w_at_most(interval->end - interval->begin, f64w_all(0x1p-31));
+}
+
 /* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
  * between which it has exactly one root: the lanes in which that is certainly in the interval. */
 static inline uint32_t isolate_between(const f64w b[4], f64w error, uint32_t lanes, f64w low, f64w high,

@@ -30,10 +30,14 @@ static bool read_file_positions(recording *r, uint32_t frame, io_error *error) {
 static bool create_mesh(const recording_options *options, recording *r, io_error *error) {
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = options->thread_count;
+    context_options.simd = options->simd;
     cscd_status status = cscd_context_create(&context_options, &r->context);
     if (status == CSCD_SYSTEM_ERROR)
         return io_fail(error, "the system refused to start %u threads; give --threads a smaller number",
                        options->thread_count);
+    if (status == CSCD_INVALID_ARGUMENT)
+        return io_fail(error, "this processor does not have %s; leave --simd at auto",
+                       cscd_simd_name(options->simd));
     if (status != CSCD_OK) return io_fail(error, "%s", cscd_status_string(status));
     cscd_mesh_desc desc = {r->file.vertex_count, r->file.triangle_count, r->file.triangles};
     if (r->welded) desc = (cscd_mesh_desc){r->weld.vertex_count, r->weld.triangle_count, r->weld.triangles};

@@ -15,6 +15,7 @@ typedef struct recording_options {
     bool weld;
     double weld_epsilon;
     uint32_t thread_count;
+    cscd_simd simd;
 } recording_options;
 
 typedef struct recording {

@@ -72,6 +72,7 @@ static bool prepare_detector(replay *r, io_error *error) {
     options.method = r->plan.method;
     options.mode = r->options->mode;
     options.start = r->options->start;
+    options.volume = r->options->volume;
     options.min_separation = r->options->min_separation;
     if (r->options->ignore_path != NULL || r->options->ignore_rest) {
         options.ignore = ignore_pairs_contain;
@@ -101,7 +102,8 @@ static bool open_outputs(replay *r, io_error *error) {
 static bool begin(replay *r, io_error *error) {
     const replay_options *o = r->options;
     recording_options source = {o->model_path, o->frame_paths,  o->frame_path_count,
-                                o->weld,       o->weld_epsilon, o->thread_count};
+                                o->weld,       o->weld_epsilon, o->thread_count,
+                                o->simd};
     return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
            prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
            prepare_detector(r, error) && open_outputs(r, error);
@@ -240,6 +242,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
                              .recording = &r->recording,
                              .plan = &r->plan,
                              .mode = cscd_mode_name(o->mode),
+                             .volume = o->volume,
                              .min_separation = o->min_separation,
                              .model_path = o->model_path,
                              .frame_paths = o->frame_paths,

@@ -40,6 +40,9 @@ static const char help[] =
     "  --ignore LIST                 leave out the pairs of a file: lines 'A B' (triangles) or 'components A "
     "B'\n"
     "  --threads N                   default 1; 0: one per processor\n"
+    "  --volume box|kdop14           bounding volumes of the trees (default box); the contacts are the same\n"
+    "  --simd auto|scalar|avx2|avx512  vector instructions (default: the best here); the contacts are the "
+    "same\n"
     "  --fail-on-contact             exit with 3 when there was a contact\n"
     "  --quiet                       no progress, no warnings, no table\n";
 
@@ -57,6 +60,8 @@ enum option_id {
     OPTION_IGNORE_REST,
     OPTION_IGNORE,
     OPTION_THREADS,
+    OPTION_VOLUME,
+    OPTION_SIMD,
     OPTION_FAIL,
     OPTION_QUIET,
     OPTION_HELP
@@ -76,6 +81,8 @@ static const struct option long_options[] = {
     {"ignore-rest", no_argument, NULL, OPTION_IGNORE_REST},
     {"ignore", required_argument, NULL, OPTION_IGNORE},
     {"threads", required_argument, NULL, OPTION_THREADS},
+    {"volume", required_argument, NULL, OPTION_VOLUME},
+    {"simd", required_argument, NULL, OPTION_SIMD},
     {"fail-on-contact", no_argument, NULL, OPTION_FAIL},
     {"quiet", no_argument, NULL, OPTION_QUIET},
     {"help", no_argument, NULL, OPTION_HELP},
@@ -149,6 +156,10 @@ static bool set_option(int id, const char *value, replay_options *o) {
         return true;
     case OPTION_THREADS:
         return parse_unsigned(value, &o->thread_count) && o->thread_count <= 256;
+    case OPTION_VOLUME:
+        return cscd_volume_from_name(value, &o->volume);
+    case OPTION_SIMD:
+        return cscd_simd_from_name(value, &o->simd);
     case OPTION_FAIL:
         return o->fail_on_contact = true;
     case OPTION_QUIET:

@@ -16,6 +16,8 @@ typedef struct replay_options {
     uint32_t k; /* of method KMEANS; 0: not given */
     cscd_mode mode;
     cscd_start start;
+    cscd_volume volume;
+    cscd_simd simd;
     frame_range frames;
     uint32_t thread_count;
     bool weld;

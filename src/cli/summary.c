@@ -162,6 +162,8 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
     json_string(out, "method", cscd_method_name(e->plan->method));
     json_string(out, "mode", e->mode);
+    json_string(out, "volume", cscd_volume_name(e->volume));
+    json_string(out, "simd", cscd_simd_name(cscd_context_simd(e->recording->context)));
     json_number(out, "min_separation", e->min_separation);
     write_plan(out, e->plan);
     json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));

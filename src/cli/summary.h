@@ -58,6 +58,7 @@ typedef struct summary_ending {
     const recording *recording;
     const plan_choice *plan;
     const char *mode, *model_path;
+    cscd_volume volume;
     const char *const *frame_paths;
     size_t frame_path_count;
     int argument_count;

@@ -1,0 +1,57 @@
+/* A mesh: connectivity that never changes. Part of cscd/cscd.h, which says what holds for every function. */
+#ifndef CSCD_MESH_API_H
+#define CSCD_MESH_API_H
+
+#include <cscd/context.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cscd_mesh cscd_mesh;
+
+typedef struct cscd_mesh_desc {
+    uint32_t vertex_count;     /* 1 or more, below 2^32 - 1 */
+    uint32_t triangle_count;   /* 1 or more, at most (2^32 - 1) / 3 */
+    const uint32_t *triangles; /* triangle_count * 3 vertex indices, counter-clockwise from outside */
+} cscd_mesh_desc;
+
+/* Vertices without a triangle are allowed and take no part in collisions. Open, non-manifold and
+ * inconsistently oriented meshes are allowed: see cscd_component. INVALID_MESH names the triangle. */
+CSCD_API cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out);
+CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
+
+CSCD_API uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh);
+CSCD_API uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh);
+
+/* The triangle's three vertices as given; triangle < triangle_count. */
+CSCD_API void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]);
+
+/* Edges are numbered by (smaller vertex, larger vertex), each once; edge < edge_count. */
+CSCD_API uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh);
+CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
+
+/* A component: triangles connected through shared vertices. Numbered by their first triangle. */
+typedef struct cscd_component {
+    uint32_t vertex_count, edge_count, triangle_count;
+    uint32_t open_edges;            /* in one triangle only */
+    uint32_t non_manifold_edges;    /* in three triangles or more */
+    uint32_t non_manifold_vertices; /* their triangles do not form one fan (bow-tie) */
+    uint32_t inconsistent_edges;    /* traversed in the same direction by their two triangles */
+    uint32_t first_open_edge;       /* an example of each, UINT32_MAX if there is none */
+    uint32_t first_non_manifold_edge;
+    uint32_t first_non_manifold_vertex;
+    uint32_t first_inconsistent_edge;
+    int64_t euler_characteristic; /* V - E + F; a closed oriented component has genus 1 - euler / 2 */
+    bool closed_manifold;         /* closed, manifold and consistently oriented */
+} cscd_component;
+
+CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
+CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
+CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
