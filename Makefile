@@ -257,6 +257,10 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/tests/ins
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
 
+# What tests compile once per instruction set themselves.
+TEST_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/tests/levels/simd_operations.$(level).o)
+$(BUILD)/tests/test_simd: $(TEST_LEVELS)
+
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
 	@rm -f $@
 	$(Q)ar rcs $@ $^
@@ -291,4 +295,4 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d)
+-include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)

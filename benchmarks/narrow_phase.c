@@ -1,4 +1,5 @@
-/* Nanoseconds per pair of features: one by one, and in batches on each level of vector instructions. */
+/* Nanoseconds per pair of triangles for the sieve, and per pair of features for signs and roots: on each
+ * level of vector instructions, and one by one. */
 #include "runtime/detector.h"
 #include "src/io/mesh_file.h"
 
@@ -10,18 +11,22 @@
 static const char help[] =
     "usage: narrow_phase START END\n"
     "\n"
-    "Records all pairs of features of the mesh START (OBJ, PLY, OFF) whose triangles' volumes overlap on "
-    "the\n"
-    "way to END, the same mesh at other positions, and times the narrow phase on them (one thread's "
-    "processor\n"
-    "time, least of 5).\n";
+    "Records all pairs of triangles of the mesh START (OBJ, PLY, OFF) whose volumes overlap on the way to\n"
+    "END, the same mesh at other positions, and all pairs of features that their sieve leaves, and times\n"
+    "the narrow phase on them (one thread's processor time, least of 5).\n";
 
-enum { REPEATS = 5, CHUNK = 480 };
+/* The features of so many pairs of triangles never fill the queue. */
+enum { REPEATS = 5, CHUNK = 480, TRIANGLE_CHUNK = 32 };
 
 typedef struct recorded_pairs {
     uint32_t *a, *b;
     size_t count, capacity;
 } recorded_pairs;
+
+typedef struct recorded_triangles {
+    triangle_pair *pairs; /* of slots */
+    size_t count, capacity;
+} recorded_triangles;
 
 typedef struct recording {
     cscd_context *context;
@@ -29,6 +34,7 @@ typedef struct recording {
     cscd_detector *detector;
     mesh_file start, end;
     swept_interval interval;
+    recorded_triangles triangles;
     recorded_pairs of_kind[2];
     contact_lane *lane;
     size_t left; /* after what was timed last */
@@ -50,18 +56,35 @@ static bool record_list(recorded_pairs *to, feature_list *list) {
     return true;
 }
 
+static bool record_triangles(recorded_triangles *to, const traversal_lane *batch) {
+    if (to->count + batch->pair_count > to->capacity) {
+        to->capacity = 2 * (to->count + batch->pair_count);
+        to->pairs = realloc(to->pairs, to->capacity * sizeof *to->pairs);
+        if (to->pairs == NULL) return false;
+    }
+    memcpy(to->pairs + to->count, batch->pairs, batch->pair_count * sizeof *batch->pairs);
+    to->count += batch->pair_count;
+    return true;
+}
+
+static uint32_t triangle_chunk(const recording *r, size_t i) {
+    return (uint32_t)(r->triangles.count - i < TRIANGLE_CHUNK ? r->triangles.count - i : TRIANGLE_CHUNK);
+}
+
 /* Takes the pairs out of the queue before it is full. */
 static bool record_pairs(recording *r) {
     traversal *t = &r->detector->traversal;
     bool good = true, more = true;
-    traversal_begin(t, &r->detector->tree, TRAVERSAL_ALL);
+    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
-        for (uint32_t i = 0; good && i < t->lanes[0].pair_count; i++) {
-            narrow_phase_test(&r->interval, t->lanes[0].pairs[i], r->lane);
-            good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue.vf) &&
-                   record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue.ee);
-        }
+        for (uint32_t i = 0; good && i < t->lane_count; i++)
+            good = record_triangles(&r->triangles, &t->lanes[i]);
+    }
+    for (size_t i = 0; good && i < r->triangles.count; i += TRIANGLE_CHUNK) {
+        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
+        good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue.vf) &&
+               record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue.ee);
     }
     return good;
 }
@@ -74,13 +97,14 @@ static bool open_recording(recording *r, io_error *error) {
     if (cscd_context_create(NULL, &r->context) != CSCD_OK) return io_fail(error, "no context");
     if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
         cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
-        detector_update(r->detector, r->start.positions, r->end.positions, 0.0) != CSCD_OK)
+        detector_build(r->detector, r->start.positions) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
+    forest_move(&r->detector->forest, r->start.positions, r->end.positions, 0.0);
     r->lane = &r->detector->contact_lanes[0];
     r->interval = (swept_interval){.mesh = r->mesh,
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
-                                   .vertex_volumes = r->detector->vertex_volumes,
+                                   .forest = &r->detector->forest,
                                    .representatives = r->detector->representatives,
                                    .limit = r->detector->limit};
     contact_lane_reset(r->lane);
@@ -93,6 +117,7 @@ static void close_recording(recording *r) {
     cscd_context_destroy(r->context);
     mesh_file_free(&r->start);
     mesh_file_free(&r->end);
+    free(r->triangles.pairs);
     for (int i = 0; i < 2; i++) {
         free(r->of_kind[i].a);
         free(r->of_kind[i].b);
@@ -101,25 +126,11 @@ static void close_recording(recording *r) {
 
 /* ---- one by one -------------------------------------------------------------------------------------- */
 
-static kdop edge_volume(const recording *r, uint32_t edge) {
-    const uint32_t *ends = r->mesh->edges[edge];
-    return kdop_union(&r->interval.vertex_volumes[ends[0]], &r->interval.vertex_volumes[ends[1]]);
-}
-
-static bool volumes_overlap(const recording *r, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    const kdop *volumes = r->interval.vertex_volumes;
-    bool vf = kind == CSCD_CONTACT_VF;
-    kdop first = vf ? volumes[a] : edge_volume(r, a);
-    kdop second = vf ? kdop_triangle(volumes, r->mesh->triangles[b]) : edge_volume(r, b);
-    return kdop_overlap(&first, &second);
-}
-
 static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
     const recorded_pairs *pairs = &r->of_kind[kind];
     for (size_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_hit hit;
-        if (!volumes_overlap(r, kind, pairs->a[i], pairs->b[i])) continue;
         narrow_phase_load(&r->interval, kind, pairs->a[i], pairs->b[i], &query);
         elementary_verdict verdict = (kind == CSCD_CONTACT_VF ? elementary_vf : elementary_ee)(&query, &hit);
         r->lane->decided[verdict.level]++;
@@ -130,23 +141,29 @@ static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
 
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
-typedef enum batch_stage { VOLUMES, SIGNS, ALL_STAGES } batch_stage;
+/* Representatives, sieve, queue; what is in the queue then is dropped. */
+static void sieve(recording *r, cscd_contact_kind kind) {
+    (void)kind;
+    for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
+        narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
+        r->lane->queue.vf.count = r->lane->queue.ee.count = 0;
+    }
+}
 
-static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, batch_stage last) {
+static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, bool signs_only) {
     const kernels *table = kernels_of(r->context);
     feature_source source = feature_queue_source(&r->interval);
     feature_pairs pairs = {list->a, list->b, list->count};
     bool vf = kind == CSCD_CONTACT_VF;
-    if (last == ALL_STAGES) {
+    if (!signs_only) {
         (vf ? feature_queue_decide_vf : feature_queue_decide_ee)(&r->interval, r->lane);
         return;
     }
-    (vf ? table->keep_near_vf : table->keep_near_ee)(&source, &pairs);
-    if (last == SIGNS) (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &pairs);
+    (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &pairs);
     r->left += pairs.count;
 }
 
-static void decide_in_batches(recording *r, cscd_contact_kind kind, batch_stage last) {
+static void decide_in_batches(recording *r, cscd_contact_kind kind, bool signs_only) {
     const recorded_pairs *pairs = &r->of_kind[kind];
     feature_list *list = kind == CSCD_CONTACT_VF ? &r->lane->queue.vf : &r->lane->queue.ee;
     r->left = 0;
@@ -155,20 +172,16 @@ static void decide_in_batches(recording *r, cscd_contact_kind kind, batch_stage 
         memcpy(list->a, pairs->a + i, count * sizeof *list->a);
         memcpy(list->b, pairs->b + i, count * sizeof *list->b);
         list->count = (uint32_t)count;
-        decide_list(r, kind, list, last);
+        decide_list(r, kind, list, signs_only);
     }
 }
 
-static void by_volumes(recording *r, cscd_contact_kind kind) {
-    decide_in_batches(r, kind, VOLUMES);
-}
-
 static void by_signs(recording *r, cscd_contact_kind kind) {
-    decide_in_batches(r, kind, SIGNS);
+    decide_in_batches(r, kind, true);
 }
 
 static void by_all(recording *r, cscd_contact_kind kind) {
-    decide_in_batches(r, kind, ALL_STAGES);
+    decide_in_batches(r, kind, false);
 }
 
 /* ---- the table --------------------------------------------------------------------------------------- */
@@ -179,15 +192,15 @@ static double processor_ns(void) {
     return (double)now.tv_sec * 1e9 + (double)now.tv_nsec;
 }
 
-/* Per pair. */
-static double time_pairs(recording *r, cscd_contact_kind kind,
+/* Per each of count pairs. */
+static double time_pairs(recording *r, cscd_contact_kind kind, size_t count,
                          void (*decide)(recording *, cscd_contact_kind)) {
-    double least = 1e300, count = (double)r->of_kind[kind].count;
+    double least = 1e300;
     for (int i = 0; i < REPEATS; i++) {
         contact_lane_reset(r->lane);
         double start = processor_ns();
         decide(r, kind);
-        double ns = (processor_ns() - start) / (count > 0.0 ? count : 1.0);
+        double ns = (processor_ns() - start) / (double)(count > 0 ? count : 1);
         least = ns < least ? ns : least;
     }
     return least;
@@ -197,25 +210,39 @@ static double percent(uint64_t part, size_t whole) {
     return whole > 0 ? 100.0 * (double)part / (double)whole : 0.0;
 }
 
+static void use_level(recording *r, cscd_simd level) {
+    r->context->simd = level;
+    r->detector->forest.kernels = kernels_of(r->context);
+}
+
+static void print_triangles(recording *r) {
+    cscd_simd best = r->context->simd;
+    size_t pairs = r->triangles.count, left = r->of_kind[0].count + r->of_kind[1].count;
+    puts("ns per pair of triangles      pairs    sieve");
+    for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
+        use_level(r, (cscd_simd)level);
+        printf("    %-10s %20zu %8.1f\n", cscd_simd_name((cscd_simd)level), pairs,
+               time_pairs(r, CSCD_CONTACT_VF, pairs, sieve));
+    }
+    printf("    leaves %.2f of 15 pairs of features\n\n", (double)left / (double)(pairs > 0 ? pairs : 1));
+}
+
 static void print_kind(recording *r, cscd_contact_kind kind) {
-    size_t pairs = r->of_kind[kind].count, near = 0, open = 0;
+    size_t pairs = r->of_kind[kind].count, open = 0;
     const char *name = cscd_contact_kind_name(kind);
     cscd_simd best = r->context->simd;
-    printf("%-3s %-10s %9zu %8s %8s %8.1f\n", name, "one by one", pairs, "", "",
-           time_pairs(r, kind, decide_one_by_one));
+    printf("%-3s %-10s %20zu %8s %8.1f\n", name, "one by one", pairs, "",
+           time_pairs(r, kind, pairs, decide_one_by_one));
     for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
-        r->context->simd = (cscd_simd)level;
-        double volumes = time_pairs(r, kind, by_volumes);
-        near = r->left;
-        double signs = time_pairs(r, kind, by_signs);
+        use_level(r, (cscd_simd)level);
+        double signs = time_pairs(r, kind, pairs, by_signs);
         open = r->left;
-        printf("%-3s %-10s %9zu %8.1f %8.1f %8.1f\n", name, cscd_simd_name((cscd_simd)level), pairs, volumes,
-               signs, time_pairs(r, kind, by_all));
+        printf("%-3s %-10s %20zu %8.1f %8.1f\n", name, cscd_simd_name((cscd_simd)level), pairs, signs,
+               time_pairs(r, kind, pairs, by_all));
     }
     const uint64_t *decided = r->lane->decided;
-    printf("    volumes leave %.1f %%, signs %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n",
-           percent(near, pairs), percent(open, pairs), percent(r->lane->count, pairs),
-           percent(decided[ELEMENTARY_EXACT], pairs));
+    printf("    signs leave %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n", percent(open, pairs),
+           percent(r->lane->count, pairs), percent(decided[ELEMENTARY_EXACT], pairs));
 }
 
 int main(int argument_count, char **arguments) {
@@ -228,7 +255,8 @@ int main(int argument_count, char **arguments) {
     bool good = mesh_file_read(arguments[1], &r.start, &error) &&
                 mesh_file_read(arguments[2], &r.end, &error) && open_recording(&r, &error);
     if (good) {
-        puts("ns per pair       pairs   volumes  + signs      all");
+        print_triangles(&r);
+        puts("ns per pair of features       pairs    signs  + roots");
         print_kind(&r, CSCD_CONTACT_VF);
         print_kind(&r, CSCD_CONTACT_EE);
     } else {

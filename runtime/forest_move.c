@@ -141,14 +141,25 @@ static void place_part(const forest *f, const forest_part *p, const float *own, 
     }
 }
 
+static void place_nothing(const forest *f, float *bounds) {
+    for (int k = 0; k < f->axis_count; k++) {
+        bounds[2 * k * FOREST_LANES] = INFINITY;
+        bounds[(2 * k + 1) * FOREST_LANES] = -INFINITY;
+    }
+}
+
 /* The part level: each part has one block on the level below, of its own number. */
 static void place_parts(const forest *f) {
+    const forest_level *level = &f->levels[f->part_level];
     size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
-    float *bounds = f->levels[f->part_level].bounds;
     const float *roots = f->levels[f->part_level - 1].bounds;
-    for (uint32_t i = 0; f->part_count > 1 && i < f->part_count; i++)
-        place_part(f, &f->parts[i], roots + i * stride, f->parts[0].origin[0],
-                   bounds + i / FOREST_LANES * stride + i % FOREST_LANES);
+    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * FOREST_LANES; i++) {
+        float *bounds = level->bounds + i / FOREST_LANES * stride + i % FOREST_LANES;
+        if (i < f->part_count)
+            place_part(f, &f->parts[i], roots + i * stride, f->parts[0].origin[0], bounds);
+        else
+            place_nothing(f, bounds);
+    }
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------------- */

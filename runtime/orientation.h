@@ -4,17 +4,10 @@
 
 #include "src/mesh.h"
 
-/* Bits, so that the flags of a set of triangles are the flags of its members or'ed. */
+/* PLUS (MINUS): (p0 - d) . n > 0 (< 0), with n = (p1 - p0) x (p2 - p0) and d the detector point, at every
+ * moment of the interval, certified; ZERO: anything else. Bits, so that the flags of a set of triangles are
+ * the flags of its members or'ed. */
 enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
-
-/* A point that moves linearly during the interval. */
-typedef struct moving_point {
-    double start[3], end[3];
-} moving_point;
-
-/* PLUS (MINUS): (p0 - d) . n > 0 (< 0), with n = (p1 - p0) x (p2 - p0), at every moment of the interval,
- * certified; ZERO: anything else. Corners move from x0 to x1, the point from d's start to its end. */
-uint8_t orientation_of(const uint32_t corners[3], const double *x0, const double *x1, const moving_point *d);
 
 /* May triangles of one region with these flags, or any of two sets of them, be the first to touch? Not if
  * all are PLUS, and not if all are MINUS: see docs/culling.md. */

@@ -27,7 +27,6 @@ typedef struct batch {
     uint32_t count, order[BATCH_MAX];
     elementary_query queries[BATCH_MAX];
     double x0[BATCH_MAX * 12], x1[BATCH_MAX * 12];
-    kdop volumes[BATCH_MAX * 4];
     uint32_t triangles[BATCH_MAX][3], edges[BATCH_MAX * 2][2];
     uint32_t a[BATCH_MAX + SLACK], b[BATCH_MAX + SLACK];
 } batch;
@@ -58,19 +57,12 @@ static void add_query(const elementary_query *query, uint32_t i) {
     work.queries[i] = *query;
     memcpy(work.x0 + (size_t)i * 12, query->x0, sizeof query->x0);
     memcpy(work.x1 + (size_t)i * 12, query->x1, sizeof query->x1);
-    for (uint32_t v = 0; v < 4; v++) {
-        kdop_exact start, end;
-        kdop_point(query->x0[v], &start);
-        kdop_point(query->x1[v], &end);
-        kdop_exact_add(&start, &end);
-        work.volumes[i * 4 + v] = kdop_round(&start);
-    }
     for (uint32_t v = 0; v < 3; v++) work.triangles[i][v] = i * 4 + 1 + v;
     for (uint32_t v = 0; v < 4; v++) work.edges[i * 2 + v / 2][v % 2] = i * 4 + v;
 }
 
 static feature_source source_of_work(void) {
-    return (feature_source){work.x0, work.x1, work.volumes, (const uint32_t(*)[3])work.triangles,
+    return (feature_source){work.x0, work.x1, (const uint32_t(*)[3])work.triangles,
                             (const uint32_t(*)[2])work.edges};
 }
 
@@ -136,16 +128,6 @@ static bool open_after_signs(uint32_t i) {
     return !separated_by_axes(&work.queries[i], first_count()) && !coplanarity_excluded(&f);
 }
 
-static bool volumes_overlap(uint32_t i) {
-    const kdop *v = &work.volumes[i * 4];
-    kdop first = v[0], second = kdop_union(&v[2], &v[3]);
-    if (work.kind == PAIR_VF)
-        second = kdop_union(&v[1], &second);
-    else
-        first = kdop_union(&v[0], &v[1]);
-    return kdop_overlap(&first, &second);
-}
-
 static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const kernels *)) {
     for (int level = 0; level < LEVEL_COUNT; level++) {
         if (contexts[level] == NULL) continue;
@@ -160,19 +142,6 @@ static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const k
 /* ---- lane by lane ------------------------------------------------------------------------------------ */
 
 static uint64_t kept_total, pair_total;
-
-static void check_near(random_stream *random, const kernels *table) {
-    check_kept(random, work.kind == PAIR_VF ? table->keep_near_vf : table->keep_near_ee, volumes_overlap,
-               &kept_total);
-    pair_total += work.count;
-}
-
-static void near_as_scalar(void **state) {
-    (void)state;
-    kept_total = pair_total = 0;
-    for_each_batch(71, check_near);
-    assert_true(kept_total * 10 > pair_total && kept_total * 100 < pair_total * 99);
-}
 
 static void check_open(random_stream *random, const kernels *table) {
     check_kept(random, work.kind == PAIR_VF ? table->keep_open_vf : table->keep_open_ee, open_after_signs,
@@ -326,7 +295,6 @@ static void same_on_all_levels(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(near_as_scalar),
         cmocka_unit_test(signs_as_scalar),
         cmocka_unit_test(roots_as_scalar),
         cmocka_unit_test(same_on_all_levels),
