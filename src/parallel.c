@@ -16,15 +16,28 @@ static const double patience_ms = 0.05;
 
 /* The gate: above the flags the number of the work on offer, below them how many helpers are inside. Helpers
  * enter only while it is open: the caller never waits for one that has not come by the time all is done. */
-#define GATE_INSIDE ((uint64_t)0xffff)
+#define GATE_INSIDE  ((uint64_t)0xffff)
 #define GATE_AWAITED ((uint64_t)1 << 30) /* the caller sleeps until nobody is inside */
-#define GATE_OPEN ((uint64_t)1 << 31)
+#define GATE_OPEN    ((uint64_t)1 << 31)
 enum { GATE_NUMBER_SHIFT = 32 };
+
+/* Tasks next to end - 1 are meant for one thread, so that it finds in its cache what it wrote there in the
+ * stage before; the others take them when they have done their own. */
+typedef struct task_range {
+    _Alignas(CACHE_LINE_SIZE) atomic_uint next;
+    uint32_t end;
+} task_range;
+
+typedef struct helper {
+    struct parallel *threads;
+    pthread_t thread;
+    uint32_t index; /* the caller is 0 */
+} helper;
 
 struct parallel {
     uint32_t thread_count; /* the caller included */
     uint32_t started;      /* helpers that were really started */
-    pthread_t *helpers;
+    helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
     pthread_mutex_t lock;
@@ -36,17 +49,27 @@ struct parallel {
     /* What is on offer: written while the gate is closed and nobody is inside. */
     parallel_task *task;
     void *data;
-    uint32_t task_count;
+    task_range *ranges; /* per thread */
 
     _Alignas(CACHE_LINE_SIZE) atomic_uint_fast64_t gate;
-    _Alignas(CACHE_LINE_SIZE) atomic_uint next_task;
 };
 
-static void run_tasks(parallel *threads) {
-    for (;;) {
-        uint32_t task = atomic_fetch_add(&threads->next_task, 1);
-        if (task >= threads->task_count) return;
-        threads->task(threads->data, task);
+static void run_tasks(parallel *threads, uint32_t self) {
+    for (uint32_t i = 0; i < threads->thread_count; i++) {
+        task_range *range = &threads->ranges[(self + i) % threads->thread_count];
+        while (atomic_load(&range->next) < range->end) {
+            uint32_t task = atomic_fetch_add(&range->next, 1);
+            if (task < range->end) threads->task(threads->data, task);
+        }
+    }
+}
+
+static void offer(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
+    threads->task = task;
+    threads->data = data;
+    for (uint32_t i = 0; i < threads->thread_count; i++) {
+        atomic_store(&threads->ranges[i].next, (uint32_t)((uint64_t)task_count * i / threads->thread_count));
+        threads->ranges[i].end = (uint32_t)((uint64_t)task_count * (i + 1) / threads->thread_count);
     }
 }
 
@@ -116,11 +139,12 @@ static void call_sleepers(parallel *threads) {
 }
 
 static void *helper_main(void *argument) {
-    parallel *threads = argument;
+    const helper *self = argument;
+    parallel *threads = self->threads;
     uint32_t seen = 0;
     while (!atomic_load(&threads->quit)) {
         if (enter_soon(threads, &seen)) {
-            run_tasks(threads);
+            run_tasks(threads, self->index);
             leave(threads);
         } else {
             sleep_until_called(threads, seen);
@@ -140,7 +164,10 @@ static uint32_t processors_for_us(void) {
 
 static cscd_status start_helpers(parallel *threads) {
     for (uint32_t i = 0; i + 1 < threads->thread_count; i++) {
-        if (pthread_create(&threads->helpers[i], NULL, helper_main, threads) != 0) return CSCD_SYSTEM_ERROR;
+        helper *h = &threads->helpers[i];
+        h->threads = threads;
+        h->index = i + 1;
+        if (pthread_create(&h->thread, NULL, helper_main, h) != 0) return CSCD_SYSTEM_ERROR;
         threads->started++;
     }
     return CSCD_OK;
@@ -159,7 +186,9 @@ cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parall
     pthread_cond_init(&threads->work_ready, NULL);
     pthread_cond_init(&threads->work_done, NULL);
     threads->helpers = context_allocate(context, thread_count, sizeof *threads->helpers);
-    cscd_status status = threads->helpers != NULL ? start_helpers(threads) : CSCD_OUT_OF_MEMORY;
+    threads->ranges = context_allocate(context, thread_count, sizeof *threads->ranges);
+    bool allocated = threads->helpers != NULL && threads->ranges != NULL;
+    cscd_status status = allocated ? start_helpers(threads) : CSCD_OUT_OF_MEMORY;
     if (status != CSCD_OK) {
         parallel_destroy(context, threads);
         return status;
@@ -172,11 +201,12 @@ void parallel_destroy(cscd_context *context, parallel *threads) {
     if (threads == NULL) return;
     atomic_store(&threads->quit, true);
     call_sleepers(threads);
-    for (uint32_t i = 0; i < threads->started; i++) pthread_join(threads->helpers[i], NULL);
+    for (uint32_t i = 0; i < threads->started; i++) pthread_join(threads->helpers[i].thread, NULL);
     pthread_cond_destroy(&threads->work_done);
     pthread_cond_destroy(&threads->work_ready);
     pthread_mutex_destroy(&threads->lock);
     context_free(context, threads->helpers);
+    context_free(context, threads->ranges);
     context_free(context, threads);
 }
 
@@ -218,13 +248,10 @@ void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, v
         for (uint32_t i = 0; i < task_count; i++) task(data, i);
         return;
     }
-    threads->task = task;
-    threads->data = data;
-    threads->task_count = task_count;
-    atomic_store(&threads->next_task, 0);
+    offer(threads, task_count, task, data);
     uint64_t number = (atomic_load(&threads->gate) >> GATE_NUMBER_SHIFT) + 1;
     atomic_store(&threads->gate, number << GATE_NUMBER_SHIFT | GATE_OPEN);
     if (atomic_load(&threads->sleepers) > 0) call_sleepers(threads);
-    run_tasks(threads);
+    run_tasks(threads, 0);
     close_gate(threads);
 }
