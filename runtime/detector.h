@@ -40,8 +40,11 @@ struct cscd_detector {
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches; /* of the forest, with ICCD */
-    forest forest;   /* built from the first positions seen; of the interval or moment at hand */
+    patches patches;          /* of the forest, with ICCD */
+    forest forest;            /* of the interval or moment at hand */
+    uint64_t intervals_moved; /* of the forest, */
+    double spread_when_built; /* and how good it was: see upkeep.h */
+    bool rebuilt;             /* in the interval at hand */
     representatives representatives;
     orphan_sets orphans; /* once an interval without culling has come, unless there are too many */
     bool orphans_known, orphans_usable;
@@ -54,9 +57,6 @@ struct cscd_detector {
     cscd_timings timings;
     cscd_counters counters;
 };
-
-/* Builds the forest from positions, if there is none yet. */
-cscd_status detector_build(cscd_detector *detector, const double *positions);
 
 /* Does the method cull pairs by orientation? */
 static inline bool detector_culls(const cscd_detector *d) {

@@ -3,6 +3,7 @@
 
 #include "runtime/detector.h"
 #include "runtime/triangle_intersection.h"
+#include "runtime/upkeep.h"
 #include "src/positions.h"
 #include "src/predicates.h"
 #include "src/timer.h"
@@ -197,9 +198,8 @@ cscd_status static_check_suspects(cscd_detector *detector, const double *positio
 
 static cscd_status check_moment(moment *now) {
     cscd_detector *d = now->detector;
-    cscd_status status = detector_build(d, now->positions);
+    cscd_status status = upkeep_move(d, now->positions, now->positions, 0.0);
     if (status != CSCD_OK) return status;
-    forest_move(&d->forest, now->positions, now->positions, 0.0);
     memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
     if (status != CSCD_OK) return status;

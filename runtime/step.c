@@ -4,37 +4,9 @@
 #include "runtime/brute_force.h"
 #include "runtime/contact_list.h"
 #include "runtime/tainting.h"
+#include "runtime/upkeep.h"
 #include "src/positions.h"
 #include "src/timer.h"
-
-static int volume_axes(const cscd_detector *d) {
-    return d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
-}
-
-/* As published, a patch of ICCD is any set of triangles: then all components are one part. */
-static cscd_status build_of_one_part(cscd_detector *d, const double *positions) {
-    uint32_t *none = context_allocate(d->context, d->mesh->triangle_count, sizeof *none);
-    if (none == NULL) return CSCD_OUT_OF_MEMORY;
-    forest_regions regions = {none, d->culling.triangle_weights, 1};
-    cscd_status status = forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
-    context_free(d->context, none);
-    return status;
-}
-
-cscd_status detector_build(cscd_detector *d, const double *positions) {
-    if (d->forest.mesh != NULL) return CSCD_OK;
-    if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) return build_of_one_part(d, positions);
-    forest_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights,
-                              d->culling.region_count};
-    return forest_build(d->mesh, regions, positions, volume_axes(d), &d->forest);
-}
-
-/* The forest of the interval from x0 to x1, or of a moment. */
-static cscd_status move_forest(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    cscd_status status = detector_build(d, x0);
-    if (status == CSCD_OK) forest_move(&d->forest, x0, x1, distance);
-    return status;
-}
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
@@ -153,11 +125,11 @@ static cscd_status prove_starts(step_work *work) {
     bool at_once = suspects > d->mesh->triangle_count / SUSPECTS_SHARE;
     cscd_status status = CSCD_OK;
     if (at_once) {
-        status = move_forest(d, start, start, 0.0);
+        status = upkeep_move(d, start, start, 0.0);
         if (status == CSCD_OK) status = static_check_suspects(d, start);
     }
     if (proves) timer_lap(&since, &work->timings.proof_ms);
-    if (status == CSCD_OK) status = move_forest(d, start, work->interval.x1, d->limit.distance);
+    if (status == CSCD_OK) status = upkeep_move(d, start, work->interval.x1, d->limit.distance);
     timer_lap(&since, &work->timings.update_ms);
     if (status == CSCD_OK && suspects > 0 && !at_once) status = static_check_suspects(d, start);
     if (proves) timer_lap(&since, &work->timings.proof_ms);
@@ -295,6 +267,7 @@ static void hand_on_states(cscd_detector *d, const double *end) {
 static cscd_status step(step_work *work, cscd_contacts *contacts) {
     cscd_detector *d = work->detector;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) contact_lane_reset(&d->contact_lanes[i]);
+    d->rebuilt = false;
     culling_clear(&d->culling);
     tainting_begin(d);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->finished[c] = false;
@@ -304,6 +277,7 @@ static cscd_status step(step_work *work, cscd_contacts *contacts) {
     bool brute = d->options.method == CSCD_METHOD_BRUTE;
     cscd_status status = brute ? find_by_brute_force(work) : find_by_trees(work);
     if (status != CSCD_OK) return status;
+    work->counters.rebuilds = d->rebuilt;
     tainting_look(d);
     double since = timer_now_ms();
     status = contact_list_collect(d, &work->counters, contacts);

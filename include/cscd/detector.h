@@ -99,7 +99,8 @@ typedef struct cscd_contacts {
 } cscd_contacts;
 
 /* The contacts between start and end, two arrays of positions, that the mode promises. The first call builds
- * the trees from start, so it is slower; later calls allocate only when a buffer has to grow. */
+ * the trees from start, so it is slower; later calls allocate only when a buffer has to grow, or when trees
+ * have decayed over a long deformation and are built anew. */
 CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
                                         cscd_contacts *out);
 
@@ -166,6 +167,7 @@ typedef struct cscd_timings { /* of the last step; the seed of each is a stage o
 typedef struct cscd_counters { /* of the last step; exact, and the same for any thread count */
     uint64_t static_checks;    /* of the start, within the step: of the triangles not known to be free */
     uint64_t clean;            /* triangles clean at the start: only these are culled */
+    uint64_t rebuilds;         /* 1: the trees had decayed and were built anew */
     uint64_t passes;           /* further traversals, for pairs that contacts have uncovered */
     uint64_t plus, minus;      /* triangles that are S+ and S- */
     uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
