@@ -3,6 +3,8 @@
 
 #include "src/sort.h"
 
+#include <string.h>
+
 typedef struct triangle_list {
     const uint32_t *items;
     uint32_t count;
@@ -35,36 +37,62 @@ static bool ignored(const cscd_detector *d, const cscd_contact *contact) {
     return any_pair_ignored(&d->options, edge_star(d->mesh, contact->a), edge_star(d->mesh, contact->b));
 }
 
-static int compare_contacts(const void *left, const void *right) {
-    const cscd_contact *l = left, *r = right;
-    if (l->toi != r->toi) return l->toi < r->toi ? -1 : 1;
+/* Of contacts at the same time. */
+static int compare_names(const void *left, const void *right) {
+    const cscd_contact *l = ((const sort_key *)left)->of, *r = ((const sort_key *)right)->of;
     if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
     if (l->a != r->a) return l->a < r->a ? -1 : 1;
     return l->b < r->b ? -1 : l->b > r->b;
 }
+
+/* Numbers from 0 on are in the order of their bits. */
+static uint64_t bits_of(double toi) {
+    uint64_t bits;
+    double positive = toi + 0.0; /* not -0 */
+    memcpy(&bits, &positive, sizeof bits);
+    return bits;
+}
+
+/* By (toi, kind, a, b). */
+static void sort_contacts(sort_key *keys, sort_key *scratch, size_t count) {
+    sort_keys(keys, scratch, count);
+    for (size_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && keys[end].key == keys[begin].key;) end++;
+        if (end - begin > 1) sort_items(keys + begin, scratch, end - begin, sizeof *keys, compare_names);
+    }
+}
+
+static void add_counters(const contact_lane *lane, cscd_counters *counters) {
+    counters->feature_pairs += lane->feature_pairs;
+    counters->by_signs += lane->decided[ELEMENTARY_SIGNS];
+    counters->by_roots += lane->decided[ELEMENTARY_ROOTS];
+    counters->by_exact += lane->decided[ELEMENTARY_EXACT];
+    counters->tests += lane->separations;
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) counters->tests += lane->decided[i];
+}
+
+_Static_assert(2 * sizeof(sort_key) <= sizeof(cscd_contact), "keys are sorted where contacts will not be");
 
 cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd_contacts *out) {
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
     cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
     if (status != CSCD_OK) return status;
-    cscd_contact *items = d->contacts.items;
+    sort_key *keys = d->contacts.scratch;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
         const contact_lane *lane = &d->contact_lanes[i];
-        counters->feature_pairs += lane->feature_pairs;
-        counters->by_signs += lane->decided[ELEMENTARY_SIGNS];
-        counters->by_roots += lane->decided[ELEMENTARY_ROOTS];
-        counters->by_exact += lane->decided[ELEMENTARY_EXACT];
-        counters->tests += lane->separations;
+        add_counters(lane, counters);
         for (size_t j = 0; j < lane->count; j++) {
-            if (ignored(d, &lane->contacts[j])) continue;
-            *(lane->contacts[j].kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
-            counters->bounded += lane->contacts[j].bounded;
-            items[kept++] = lane->contacts[j];
+            const cscd_contact *contact = &lane->contacts[j];
+            if (ignored(d, contact)) continue;
+            *(contact->kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
+            counters->bounded += contact->bounded;
+            keys[kept++] = (sort_key){bits_of(contact->toi), contact};
         }
     }
-    counters->tests += counters->by_signs + counters->by_roots + counters->by_exact;
-    sort_items(items, d->contacts.scratch, kept, sizeof *items, compare_contacts);
+    if (kept > 1) sort_contacts(keys, keys + found, kept);
+    cscd_contact *items = d->contacts.items;
+    for (size_t i = 0; i < kept; i++) memcpy(&items[i], keys[i].of, sizeof *items);
     *out = (cscd_contacts){items, kept};
     return CSCD_OK;
 }

@@ -1,4 +1,5 @@
-/* Trees that decay over a long deformation are built anew, once, and as the same for any number of threads. */
+/* Trees that decay over a long deformation are built anew, once, and as the same for any number of threads.
+ */
 #include "cscd/cscd.h"
 
 #include <math.h>
