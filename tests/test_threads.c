@@ -1,6 +1,7 @@
 /* Threads: contacts and counters are the same, bit for bit, for any number of them, whoever does what. */
 #include "cscd/cscd.h"
 #include "src/context.h"
+#include "src/sort.h"
 #include "tests/support/rig.h"
 
 #include <math.h>
@@ -14,7 +15,7 @@
 
 #include <cmocka.h>
 
-enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000 };
+enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000, ITEMS_MAX = 40000 };
 
 static const uint32_t thread_counts[COUNTS] = {1, 2, 3, 8};
 
@@ -135,9 +136,40 @@ static void each_task_runs_once(void **state) {
     }
 }
 
+/* ---- sorting ------------------------------------------------------------------------------------------- */
+
+typedef struct item {
+    uint32_t key, place;
+} item;
+
+static int compare_keys(const void *a, const void *b) {
+    uint32_t x = ((const item *)a)->key, y = ((const item *)b)->key;
+    return x < y ? -1 : x > y;
+}
+
+/* Few keys, so that stability shows. */
+static void sorting_together_gives_the_same(void **state) {
+    (void)state;
+    static item alone[ITEMS_MAX], together[ITEMS_MAX], scratch[ITEMS_MAX];
+    cscd_context *context = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = 3;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    for (uint32_t count = 0; count < ITEMS_MAX; count = 2 * count + 1) {
+        for (uint32_t keys = 1; keys <= 1000000; keys *= 100) {
+            for (uint32_t i = 0; i < count; i++)
+                alone[i] = together[i] = (item){i * 2654435761u % 1000003 % keys, i};
+            sort_items(alone, scratch, count, sizeof *alone, compare_keys);
+            sort_items_together(context->threads, together, scratch, count, sizeof *together, compare_keys);
+            assert_memory_equal(together, alone, count * sizeof *alone);
+        }
+    }
+    cscd_context_destroy(context);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_gives_the_same),
-                                       cmocka_unit_test(separation_gives_the_same),
-                                       cmocka_unit_test(each_task_runs_once)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_method_gives_the_same), cmocka_unit_test(separation_gives_the_same),
+        cmocka_unit_test(each_task_runs_once), cmocka_unit_test(sorting_together_gives_the_same)};
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
 }
