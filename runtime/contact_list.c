@@ -5,6 +5,12 @@
 
 #include <string.h>
 
+/* Every lane has room for so many contacts, or for all, and for twice its share of more. */
+enum { CONTACTS_FOR_ALL = 4096 };
+
+/* What one thread copies at a time. */
+enum { CONTACTS_PER_COPY = 4096 };
+
 typedef struct triangle_list {
     const uint32_t *items;
     uint32_t count;
@@ -71,12 +77,43 @@ static void add_counters(const contact_lane *lane, cscd_counters *counters) {
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) counters->tests += lane->decided[i];
 }
 
+/* How many contacts each lane finds differs from run to run: without this a buffer might grow in an interval
+ * like those before. */
+static cscd_status reserve_lanes(cscd_detector *d, size_t found) {
+    uint32_t lanes = d->traversal.busy_lanes;
+    size_t wanted = lanes > 1 && found > CONTACTS_FOR_ALL ? 2 * found / lanes + CONTACTS_FOR_ALL : found;
+    for (uint32_t i = 0; lanes > 1 && i < lanes; i++) {
+        contact_lane *lane = &d->contact_lanes[i];
+        if (lane->capacity >= wanted) continue;
+        size_t capacity = wanted + wanted / 2;
+        cscd_contact *grown = context_grow(d->context, lane->contacts, lane->count, capacity, sizeof *grown);
+        if (grown == NULL) return CSCD_OUT_OF_MEMORY;
+        lane->contacts = grown;
+        lane->capacity = capacity;
+    }
+    return CSCD_OK;
+}
+
+typedef struct sorted_contacts {
+    const sort_key *keys;
+    cscd_contact *items;
+    size_t count;
+} sorted_contacts;
+
+static void copy_contacts(void *data, uint32_t index) {
+    const sorted_contacts *s = data;
+    size_t begin = (size_t)index * CONTACTS_PER_COPY, end = begin + CONTACTS_PER_COPY;
+    for (size_t i = begin; i < end && i < s->count; i++)
+        memcpy(&s->items[i], s->keys[i].of, sizeof *s->items);
+}
+
 _Static_assert(2 * sizeof(sort_key) <= sizeof(cscd_contact), "keys are sorted where contacts will not be");
 
 cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd_contacts *out) {
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
     cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
+    if (status == CSCD_OK) status = reserve_lanes(d, found);
     if (status != CSCD_OK) return status;
     sort_key *keys = d->contacts.scratch;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
@@ -91,8 +128,9 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
         }
     }
     if (kept > 1) sort_contacts(keys, keys + found, kept);
-    cscd_contact *items = d->contacts.items;
-    for (size_t i = 0; i < kept; i++) memcpy(&items[i], keys[i].of, sizeof *items);
-    *out = (cscd_contacts){items, kept};
+    sorted_contacts sorted = {keys, d->contacts.items, kept};
+    uint32_t copies = (uint32_t)((kept + CONTACTS_PER_COPY - 1) / CONTACTS_PER_COPY);
+    parallel_run(d->context->threads, copies, copy_contacts, &sorted);
+    *out = (cscd_contacts){d->contacts.items, kept};
     return CSCD_OK;
 }

@@ -4,8 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-/* What makes a task of some microseconds; blocks of level 0 are a good deal more work than others. */
-enum { SAMPLE_COUNT = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_BLOCKS_PER_TASK = 128 };
+/* What makes a task of some microseconds; blocks of level 0 are a good deal more work than others. Levels of
+ * fewer blocks are not worth a second thread. */
+enum { SAMPLE_COUNT = 64, SHARED_BLOCKS_MIN = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_BLOCKS_PER_TASK = 128 };
 
 /* Within these no product of the kernels over- or underflows. */
 static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
@@ -99,21 +100,23 @@ static void move_records(moving *now) {
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static uint32_t blocks_per_task(int level) {
+static uint32_t blocks_per_task(const forest *f, int level) {
+    uint32_t count = f->levels[level].block_count;
+    if (count < SHARED_BLOCKS_MIN) return count;
     return level == 0 ? LOW_BLOCKS_PER_TASK : HIGH_BLOCKS_PER_TASK;
 }
 
 static void refit_task(void *data, uint32_t index) {
     const moving *now = data;
     const forest *f = now->forest;
-    uint32_t size = blocks_per_task(now->level), begin = index * size;
+    uint32_t size = blocks_per_task(f, now->level), begin = index * size;
     uint32_t rest = f->levels[now->level].block_count - begin;
     f->kernels->refit(f, now->level, begin, begin + (rest < size ? rest : size));
 }
 
 static void refit_level(moving *now) {
     const forest *f = now->forest;
-    uint32_t size = blocks_per_task(now->level);
+    uint32_t size = blocks_per_task(f, now->level);
     uint32_t tasks = (f->levels[now->level].block_count + size - 1) / size;
     parallel_run(f->mesh->context->threads, tasks, refit_task, now);
 }
