@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000, ITEMS_MAX = 40000 };
+enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000 };
 
 static const uint32_t thread_counts[COUNTS] = {1, 2, 3, 8};
 
