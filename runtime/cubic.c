@@ -6,7 +6,7 @@
 #include "runtime/cubic_guess.h"
 #include "runtime/vector.h"
 
-enum { POLISH_STEPS = 8, SUBDIVISIONS = 3 };
+enum { POLISH_STEPS = 10, SUBDIVISIONS = 3 };
 
 /* What rounding of t itself moves a root by, and more. A step of Newton's method this short squares the error
  * to less than that, mostly; where it does not, the proof fails. */
@@ -63,13 +63,15 @@ static int sign_between(const coplanarity *f, double from, double to, int subdiv
     return left != 0 && left == sign_between(f, middle, to, subdivisions - 1) ? left : 0;
 }
 
-/* Newton's method, kept within [low, high]. False when it does not converge. */
-static bool polish(const double b[4], double low, double high, double *t) {
+/* Newton's method, kept within [low, high], where the cubic has the sign `change` before the root and -change
+ * after it; 0: unknown. False when it does not converge. */
+static bool polish(const double b[4], double low, double high, double change, double *t) {
     for (int i = 0; i < POLISH_STEPS; i++) {
         polar p = polar_at(b, *t);
-        double next = *t - blend(p.low, p.high, *t) / (3.0 * (p.high - p.low));
-        if (!(next >= low)) next = 0.5 * (*t + low); /* or not a number */
-        if (next > high) next = 0.5 * (*t + high);
+        double value = blend(p.low, p.high, *t), next = *t - value / (3.0 * (p.high - p.low));
+        if (change * value > 0.0) low = *t;
+        if (change * value < 0.0) high = *t;
+        if (!(next >= low && next <= high)) next = 0.5 * (low + high); /* or not a number */
         double step = fabs(next - *t);
         *t = next;
         if (step < converged) return true;
@@ -92,7 +94,7 @@ static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
     int guess_count = cubic_guess_roots(c, guesses);
     for (int i = 0; i < guess_count; i++) {
         if (!(guesses[i] > -0x1p-20 && guesses[i] < 1.0 + 0x1p-20)) continue;
-        if (!polish(f->b, -1.0, 2.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
+        if (!polish(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
             return ROOTS_UNCERTAIN;
         if (!(out[count].begin < out[count].end)) continue; /* polished out of [0,1] */
         if (count > 0 && !(out[count - 1].end < out[count].begin)) return ROOTS_UNCERTAIN;
@@ -130,7 +132,7 @@ static int single_change(const coplanarity *f) {
  * between which it has exactly one root. */
 static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
                             root_interval *out) {
-    if (!polish(f->b, low, high, &root) || !interval_about(f, root, out)) return false;
+    if (!polish(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
     out->begin = larger(out->begin, low);
     out->end = smaller(out->end, high);
     polar begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);

@@ -5,7 +5,7 @@
 
 #include "runtime/kernels/wide_pairs.h"
 
-enum { POLISH_STEPS = 8 };
+enum { POLISH_STEPS = 10 };
 
 static inline f64w blend(f64w a, f64w b, f64w t) {
     return (1.0 - t) * a + t * b;
@@ -25,16 +25,19 @@ static inline f64w value_at(const f64w b[4], f64w t) {
     return blend(p.low, p.high, t);
 }
 
-/* Newton's method within [low, high], on the lanes given; returns those in which it converges. */
-static inline uint32_t polish(const f64w b[4], uint32_t lanes, f64w low, f64w high, f64w *root) {
+/* Newton's method within [low, high], on the lanes given, where the cubic has the sign `change` before the
+ * root and -change after it; returns those in which it converges. */
+static inline uint32_t polish(const f64w b[4], uint32_t lanes, f64w low, f64w high, f64w change, f64w *root) {
     const f64w converged = f64w_all(0x1p-26);
     f64w t = *root;
     uint32_t open = lanes;
     for (int i = 0; i < POLISH_STEPS && open != 0; i++) {
         polar p = polar_at(b, t);
-        f64w next = t - blend(p.low, p.high, t) / (3.0 * (p.high - p.low));
-        next = f64w_select(f64w_at_most(low, next), next, 0.5 * (t + low));
-        next = f64w_select(f64w_below(high, next), 0.5 * (t + high), next);
+        f64w value = blend(p.low, p.high, t), next = t - value / (3.0 * (p.high - p.low));
+        f64w side = change * value;
+        low = f64w_select(f64w_below(f64w_all(0.0), side), t, low);
+        high = f64w_select(f64w_below(side, f64w_all(0.0)), t, high);
+        next = f64w_select(f64w_at_most(low, next) & f64w_at_most(next, high), next, 0.5 * (low + high));
         f64w step = f64w_abs(next - t);
         t = f64w_select(open, next, t);
         open &= ~f64w_below(step, converged);
@@ -56,7 +59,7 @@ static inline uint32_t narrow_enough(const wide_intervals *interval) {
  * between which it has exactly one root: the lanes in which that is certainly in the interval. */
 static inline uint32_t isolate_between(const f64w b[4], f64w error, uint32_t lanes, f64w low, f64w high,
                                        f64w change, f64w root, wide_intervals *out) {
-    lanes = polish(b, lanes, low, high, &root);
+    lanes = polish(b, lanes, low, high, change, &root);
     polar p = polar_at(b, root);
     f64w slope = 3.0 * (p.high - p.low);
     f64w radius = 1.25 * (error / f64w_abs(slope)) + 0x1p-50;
