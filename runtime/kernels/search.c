@@ -220,7 +220,10 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
             if (pair.columns == 0) continue;
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
-        compare_leaves(t, lane, &pair, at->part_a == at->part_b, d);
+        if (d == NULL) /* compiled apart, for it is most of the work */
+            compare_leaves(t, lane, &pair, true, NULL);
+        else
+            compare_leaves(t, lane, &pair, false, d);
     }
 }
 
