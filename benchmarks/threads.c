@@ -8,13 +8,16 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
+enum { ROUNDS = 7 };
+
 static const char help[] =
     "usage: threads [options]\n"
     "\n"
     "The same intervals on one thread and on two, in turn, and between them a fixed loop of multiplications\n"
-    "and additions on one thread and on two at once, which is what the machine gives. Speedup: median of "
-    "one\n"
-    "thread over that of two. Efficiency: the speedup over the machine's own. --threads means nothing here.\n"
+    "and additions on one thread and on two at once, which is what the machine gives. All of it several\n"
+    "times over, of which the least counts, interval by interval: other programs only ever cost time.\n"
+    "Speedup: one thread's time over that of two. Efficiency: the speedup over the machine's own. --threads\n"
+    "means nothing here.\n"
     "\n";
 
 /* ---- the machine's own factor ------------------------------------------------------------------------ */
@@ -37,56 +40,77 @@ static void *work(void *data) {
     return NULL;
 }
 
-/* Twice the work on two threads, how many times as fast as one after the other; 0: the system refused. */
-static double machine_factor(void) {
+static double lesser(double a, double b) {
+    return a > 0.0 && a < b ? a : b;
+}
+
+/* Of the loop: the least on one thread, and of two loops on two threads until both are done; 0: none yet. */
+typedef struct loop_times {
+    double one, two;
+} loop_times;
+
+static void time_loops(loop_times *least) {
     worker w[3] = {{0.0, 0.0, 0.0}};
     pthread_t other;
     atomic_store(&waiting, 1);
     work(&w[0]);
     atomic_store(&waiting, 2);
-    if (pthread_create(&other, NULL, work, &w[1]) != 0) return 0.0;
+    if (pthread_create(&other, NULL, work, &w[1]) != 0) exit(1);
     work(&w[2]);
     pthread_join(other, NULL);
     double begin = w[1].begin < w[2].begin ? w[1].begin : w[2].begin;
     double end = w[1].end > w[2].end ? w[1].end : w[2].end;
-    return 2.0 * (w[0].end - w[0].begin) / (end - begin);
+    least->one = lesser(least->one, w[0].end - w[0].begin);
+    least->two = lesser(least->two, end - begin);
 }
 
 /* ---- measuring --------------------------------------------------------------------------------------- */
 
 typedef struct duel {
-    subject *subjects[2]; /* on one thread and on two */
-    double factors[SAMPLES_MAX];
-    uint32_t factor_count;
+    subject *subjects[2];                            /* on one thread and on two */
+    double least[2][STAGE_COUNT][INTERVALS_MAX + 1]; /* per interval; 0: none yet */
+    uint32_t intervals;
+    loop_times loops;
 } duel;
 
+/* The first interval of a round only moves the subjects there. */
 static bool run_interval(const deforming_body *b, duel *d, uint32_t i, double *ends, io_error *error) {
     size_t size = (size_t)b->vertex_count * 3;
     bool good = true;
     deforming_body_interval(b, i, 0.0, ends, ends + size);
     for (uint32_t k = 0; good && k < 2; k++) {
+        uint32_t which = (k + i) % 2;
+        stage_samples *samples = &d->subjects[which]->samples;
         cscd_contacts found;
-        good = subject_step(d->subjects[(k + i) % 2], ends, ends + size, i > 0, &found, error);
+        good = subject_step(d->subjects[which], ends, ends + size, i > 0, &found, error);
+        for (int j = 0; good && i > 0 && j < STAGE_COUNT; j++)
+            d->least[which][j][i] = lesser(d->least[which][j][i], samples->ms[j][0]);
+        samples->count = 0;
     }
-    if (i > 0 && d->factor_count < SAMPLES_MAX) d->factors[d->factor_count++] = machine_factor();
+    if (i > 0) time_loops(&d->loops);
     return good;
 }
 
+static double mean(const duel *d, int which, stage s) {
+    double sum = 0.0;
+    for (uint32_t i = 1; i <= d->intervals; i++) sum += d->least[which][s][i];
+    return sum / d->intervals;
+}
+
 static void print_row(const deforming_body *b, const subject_options *options, const duel *d, json *out) {
-    const stage_samples *one = &d->subjects[0]->samples, *two = &d->subjects[1]->samples;
-    double machine = median(d->factors, d->factor_count);
-    double speedup = stage_median(one, STAGE_TOTAL) / stage_median(two, STAGE_TOTAL);
+    double machine = 2.0 * d->loops.one / d->loops.two;
+    double speedup = mean(d, 0, STAGE_TOTAL) / mean(d, 1, STAGE_TOTAL);
     printf("  %9u %-7s", b->triangle_count, cscd_method_name(options->method));
     for (int i = 0; i < STAGE_COUNT; i++) {
-        double ms = stage_median(one, (stage)i);
+        double ms = mean(d, 0, (stage)i);
         if (i == STAGE_PROOF) continue;
         if (ms >= 0.001)
-            printf(" %8.2f", ms / stage_median(two, (stage)i));
+            printf(" %8.2f", ms / mean(d, 1, (stage)i));
         else
             printf(" %8s", "-");
     }
-    printf(" %9.3f %9.3f %8.2f %10.2f\n", stage_median(one, STAGE_TOTAL), stage_median(two, STAGE_TOTAL),
-           machine, speedup / machine);
+    printf(" %9.3f %9.3f %8.2f %10.2f\n", mean(d, 0, STAGE_TOTAL), mean(d, 1, STAGE_TOTAL), machine,
+           speedup / machine);
     fflush(stdout);
     if (out->file == NULL) return;
     json_break_line(out);
@@ -95,8 +119,7 @@ static void print_row(const deforming_body *b, const subject_options *options, c
     json_string(out, "method", cscd_method_name(options->method));
     for (int k = 0; k < 2; k++) {
         json_begin_object(out, k == 0 ? "one_ms" : "two_ms");
-        for (int i = 0; i < STAGE_COUNT; i++)
-            json_number(out, stage_names[i], stage_median(k == 0 ? one : two, (stage)i));
+        for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_names[i], mean(d, k, (stage)i));
         json_end_object(out);
     }
     json_number(out, "machine", machine);
@@ -106,16 +129,16 @@ static void print_row(const deforming_body *b, const subject_options *options, c
 
 static bool run_method(const deforming_body *b, const bench_options *o, cscd_method method, json *out,
                        io_error *error) {
-    duel d = {{NULL, NULL}, {0.0}, 0};
+    duel d = {.intervals = bench_intervals(o, b->triangle_count)};
     subject_options options[2] = {{method, CSCD_MODE_ALL, 1, o->simd}, {method, CSCD_MODE_ALL, 2, o->simd}};
     double *ends = body_allocate((size_t)b->vertex_count * 6, sizeof *ends);
-    uint32_t intervals = bench_intervals(o, b->triangle_count);
     bool good = true;
     for (int k = 0; good && k < 2; k++) {
         d.subjects[k] = subject_make(b, &options[k], error);
         good = d.subjects[k] != NULL;
     }
-    for (uint32_t i = 0; good && i <= intervals; i++) good = run_interval(b, &d, i, ends, error);
+    uint32_t count = d.intervals + 1, rounds = o->quick ? 3 : ROUNDS;
+    for (uint32_t i = 0; good && i < rounds * count; i++) good = run_interval(b, &d, i % count, ends, error);
     if (good) print_row(b, &options[0], &d, out);
     subject_destroy(d.subjects[0]);
     subject_destroy(d.subjects[1]);

@@ -4,7 +4,8 @@
 
 #include "runtime/narrow_phase.h"
 
-/* Of pairs of features of two triangles, bits as in kernels.h, those that the pair answers for. */
-uint32_t answering_select(const swept_interval *interval, triangle_pair pair, uint32_t features);
+/* Of the pairs of features of pairs of triangles, bits as in kernels.h, keeps those that these answer for. */
+void answering_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                      uint16_t *features);
 
 #endif

@@ -25,9 +25,14 @@ static uint32_t spread(start_states *s, uint8_t state, uint32_t begin, uint32_t 
     return end;
 }
 
+static void count_again(start_states *s) {
+    s->counted = false;
+    start_states_count(s);
+}
+
 /* Whether something of the component is not free decides what it takes. */
 static void settle_embedded(start_states *s) {
-    start_states_count(s);
+    count_again(s);
     for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
         const component_start *start = &s->of[s->mesh->triangle_components[t]];
         if (start->unknown == 0 && start->crossing == 0) s->triangles[t] = TRIANGLE_CLEAN;
@@ -47,7 +52,7 @@ static void spread_clean(start_states *s) {
         s->queue[0] = t;
         spread(s, TRIANGLE_CLEAN, 0, 1);
     }
-    start_states_count(s);
+    count_again(s);
 }
 
 static bool mostly_clean(const start_states *s, uint32_t component) {

@@ -51,11 +51,13 @@ void culling_clear(culling *c) {
 
 void culling_begin(culling *c) {
     memcpy(c->orientations, c->facing, c->mesh->triangle_count);
-    c->plus = c->minus = 0;
+    uint32_t plus = 0, minus = 0;
     for (uint32_t t = 0; t < c->mesh->triangle_count; t++) {
-        c->plus += c->facing[t] == ORIENTATION_PLUS;
-        c->minus += c->facing[t] == ORIENTATION_MINUS;
+        plus += c->facing[t] == ORIENTATION_PLUS;
+        minus += c->facing[t] == ORIENTATION_MINUS;
     }
+    c->plus = plus;
+    c->minus = minus;
 }
 
 void culling_pass_done(culling *c) {

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { SAMPLE_COUNT = 64, BLOCKS_PER_TASK = 32 };
+/* What makes a task of some microseconds; blocks of level 0 are a good deal more work than others. */
+enum { SAMPLE_COUNT = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_BLOCKS_PER_TASK = 128 };
 
 /* Within these no product of the kernels over- or underflows. */
 static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
@@ -98,20 +99,23 @@ static void move_records(moving *now) {
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static uint32_t tasks_for(uint32_t block_count) {
-    return (block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK;
-}
-
-static uint32_t last_of_task(uint32_t index, uint32_t block_count) {
-    uint32_t begin = index * BLOCKS_PER_TASK;
-    return block_count - begin < BLOCKS_PER_TASK ? block_count : begin + BLOCKS_PER_TASK;
+static uint32_t blocks_per_task(int level) {
+    return level == 0 ? LOW_BLOCKS_PER_TASK : HIGH_BLOCKS_PER_TASK;
 }
 
 static void refit_task(void *data, uint32_t index) {
     const moving *now = data;
     const forest *f = now->forest;
-    f->kernels->refit(f, now->level, index * BLOCKS_PER_TASK,
-                      last_of_task(index, f->levels[now->level].block_count));
+    uint32_t size = blocks_per_task(now->level), begin = index * size;
+    uint32_t rest = f->levels[now->level].block_count - begin;
+    f->kernels->refit(f, now->level, begin, begin + (rest < size ? rest : size));
+}
+
+static void refit_level(moving *now) {
+    const forest *f = now->forest;
+    uint32_t size = blocks_per_task(now->level);
+    uint32_t tasks = (f->levels[now->level].block_count + size - 1) / size;
+    parallel_run(f->mesh->context->threads, tasks, refit_task, now);
 }
 
 static double along(const double v[3], int axis) {
@@ -180,11 +184,10 @@ void forest_move(forest *f, const double *x0, const double *x1, double distance)
     moving now = {f, x0, x1, distance, 0};
     move_records(&now);
     for (; now.level < f->level_count; now.level++) {
-        uint32_t tasks = tasks_for(f->levels[now.level].block_count);
         if (now.level == f->part_level)
             place_parts(f);
         else
-            parallel_run(f->mesh->context->threads, tasks, refit_task, &now);
+            refit_level(&now);
         clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
     }
     clear_flags(f->leaf_flags, f->leaf_count);

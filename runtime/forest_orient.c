@@ -1,7 +1,7 @@
 /* The forest's flags: what faces the detector points, and what has lost its flag. */
 #include "runtime/forest.h"
 
-enum { LEAVES_PER_TASK = 256 };
+enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
 
 typedef struct orienting {
     const forest *forest;
@@ -52,28 +52,46 @@ static void orient_task(void *data, uint32_t index) {
     }
 }
 
-static void mark_level(const forest *f, int index) {
+/* ---- flags of blocks --------------------------------------------------------------------------------- */
+
+typedef struct marking {
+    const forest *forest;
+    int level;
+} marking;
+
+static void mark_block(const forest *f, int index, uint32_t block) {
     const forest_level *level = &f->levels[index];
-    for (uint32_t b = 0; b < level->block_count; b++) {
-        lane_flags *flags = &level->flags[b];
-        uint32_t plus = 0, minus = 0, fresh = 0;
-        const lane_flags *children =
-            (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[b];
-        for (uint32_t i = 0; i < FOREST_LANES && (flags->used >> i & 1) != 0; i++) {
-            plus |= (uint32_t)(children[i].plus == children[i].used) << i;
-            minus |= (uint32_t)(children[i].minus == children[i].used) << i;
-            fresh |= (uint32_t)(children[i].fresh != 0) << i;
-        }
-        bool one_part = index < f->part_level;
-        flags->plus = (uint8_t)(one_part ? plus : 0);
-        flags->minus = (uint8_t)(one_part ? minus : 0);
-        flags->fresh = (uint8_t)fresh;
+    lane_flags *flags = &level->flags[block];
+    uint32_t plus = 0, minus = 0, fresh = 0;
+    const lane_flags *children =
+        (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[block];
+    for (uint32_t i = 0; i < FOREST_LANES && (flags->used >> i & 1) != 0; i++) {
+        plus |= (uint32_t)(children[i].plus == children[i].used) << i;
+        minus |= (uint32_t)(children[i].minus == children[i].used) << i;
+        fresh |= (uint32_t)(children[i].fresh != 0) << i;
     }
+    bool one_part = index < f->part_level;
+    flags->plus = (uint8_t)(one_part ? plus : 0);
+    flags->minus = (uint8_t)(one_part ? minus : 0);
+    flags->fresh = (uint8_t)fresh;
+}
+
+static void mark_task(void *data, uint32_t index) {
+    const marking *now = data;
+    uint32_t begin = index * BLOCKS_PER_TASK, end = begin + BLOCKS_PER_TASK;
+    uint32_t count = now->forest->levels[now->level].block_count;
+    for (uint32_t b = begin; b < end && b < count; b++) mark_block(now->forest, now->level, b);
 }
 
 static void mark_blocks(const forest *f) {
-    for (int i = 0; i < f->level_count; i++) mark_level(f, i);
+    marking now = {f, 0};
+    for (; now.level < f->level_count; now.level++) {
+        uint32_t tasks = (f->levels[now.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK;
+        parallel_run(f->mesh->context->threads, tasks, mark_task, &now);
+    }
 }
+
+/* ---- flags of leaves --------------------------------------------------------------------------------- */
 
 static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orientations) {
     lane_flags flags = {.used = f->leaf_flags[index].used};
@@ -85,13 +103,31 @@ static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orien
     return flags;
 }
 
-void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now) {
-    for (uint32_t i = 0; i < f->leaf_count; i++) {
-        lane_flags earlier = flags_of(f, i, before), flags = flags_of(f, i, now);
+typedef struct refreshing {
+    const forest *forest;
+    const uint8_t *before, *now;
+} refreshing;
+
+static void refresh_task(void *data, uint32_t index) {
+    const refreshing *r = data;
+    const forest *f = r->forest;
+    uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
+    for (uint32_t i = begin; i < end && i < f->leaf_count; i++) {
+        lane_flags earlier = flags_of(f, i, r->before), flags = flags_of(f, i, r->now);
         flags.fresh = (uint8_t)((earlier.plus | earlier.minus) & ~(flags.plus | flags.minus));
         f->flags_before[i] = earlier;
         f->leaf_flags[i] = flags;
     }
+}
+
+static void run_over_leaves(const forest *f, parallel_task *task, void *data) {
+    parallel_run(f->mesh->context->threads, (f->leaf_count + LEAVES_PER_TASK - 1) / LEAVES_PER_TASK, task,
+                 data);
+}
+
+void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now) {
+    refreshing r = {f, before, now};
+    run_over_leaves(f, refresh_task, &r);
     mark_blocks(f);
 }
 
@@ -108,7 +144,6 @@ void forest_mark_suspects(forest *f, const bool *suspects) {
 void forest_orient(forest *f, const forest_view *view, uint8_t *orientations) {
     orienting now = {f, view, orientations};
     for (uint32_t i = 0; i < f->part_count; i++) place_detector(f, &f->parts[i], view);
-    parallel_run(f->mesh->context->threads, (f->leaf_count + LEAVES_PER_TASK - 1) / LEAVES_PER_TASK,
-                 orient_task, &now);
+    run_over_leaves(f, orient_task, &now);
     mark_blocks(f);
 }

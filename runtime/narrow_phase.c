@@ -118,12 +118,16 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
                       contact_lane *lane) {
     const forest *f = interval->forest;
     uint16_t features[PAIRS_AT_ONCE];
+    triangle_pair pairs[PAIRS_AT_ONCE];
+    uint32_t kept = 0;
     f->kernels->sieve(f, slots, count, interval->limit.distance, features);
     for (uint32_t i = 0; i < count; i++) {
         if (features[i] == 0) continue;
-        triangle_pair pair = {forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
-        put(interval, pair, answering_select(interval, pair, features[i]), lane);
+        pairs[kept] = (triangle_pair){forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
+        features[kept++] = features[i];
     }
+    answering_select(interval, pairs, kept, features);
+    for (uint32_t i = 0; i < kept; i++) put(interval, pairs[i], features[i], lane);
 }
 
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,

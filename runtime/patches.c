@@ -2,7 +2,11 @@
 #include "runtime/patches.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
+
+/* A subtree of 2^SMALL_HEIGHT triangles at most is one thread's; nodes above it are tested level by level. */
+enum { SMALL_HEIGHT = 6 };
 
 /* Lists of edge numbers, one per node, while they are made: the last node's first. */
 typedef struct contour_lists {
@@ -143,6 +147,19 @@ static void place_contour(patches *p, const contour_lists *l, uint32_t node, uin
     }
 }
 
+/* Subtrees that one thread works on at a time. */
+static void find_small(patches *p, const uint32_t *ends) {
+    for (uint32_t i = 0; i < p->tree.node_count;) {
+        if (p->tree.nodes[i].height > SMALL_HEIGHT) {
+            i++;
+            continue;
+        }
+        p->small_roots[p->small_count] = i;
+        p->small_ends[p->small_count++] = ends[i];
+        i = ends[i];
+    }
+}
+
 static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
                  vertex_visit *visits) {
     uint32_t longest = 0;
@@ -152,7 +169,9 @@ static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, cont
         if (l->sizes[i] > longest) longest = l->sizes[i];
     }
     p->contour_edges = context_allocate(l->context, l->count + 1, sizeof *p->contour_edges);
-    p->scratch = context_allocate(l->context, (size_t)longest + 1, sizeof *p->scratch);
+    p->longest = (size_t)longest + 1;
+    size_t lanes = parallel_thread_count(l->context->threads);
+    p->scratch = context_allocate(l->context, lanes * p->longest, sizeof *p->scratch);
     if (p->contour_edges == NULL || p->scratch == NULL) return false;
     for (uint32_t i = 0; i < p->tree.node_count; i++) {
         p->contour_offsets[i] = total;
@@ -166,6 +185,7 @@ static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, cont
         place_contour(p, l, tree->nodes[i].right, i);
     }
     find_disks(p, mesh, tree, l, visits);
+    find_small(p, p->stack);
     return true;
 }
 
@@ -196,9 +216,14 @@ static bool allocate(patches *p, contour_lists *lists) {
     p->stack = context_allocate(context, count, sizeof *p->stack);
     p->parent_tested = context_allocate(context, count, sizeof *p->parent_tested);
     p->passed = context_allocate(context, count, sizeof *p->passed);
+    p->tested = context_allocate(context, count, sizeof *p->tested);
+    p->reached = context_allocate(context, count, sizeof *p->reached);
+    p->small_roots = context_allocate(context, count, sizeof *p->small_roots);
+    p->small_ends = context_allocate(context, count, sizeof *p->small_ends);
     return lists->begins != NULL && lists->sizes != NULL && p->contour_offsets != NULL &&
            p->inherited != NULL && p->disks != NULL && p->cones != NULL && p->stack != NULL &&
-           p->parent_tested != NULL && p->passed != NULL;
+           p->parent_tested != NULL && p->passed != NULL && p->tested != NULL && p->reached != NULL &&
+           p->small_roots != NULL && p->small_ends != NULL;
 }
 
 cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out) {
@@ -221,8 +246,9 @@ cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out) {
 }
 
 void patches_free(cscd_context *context, patches *p) {
-    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited,     p->disks, p->cones,
-                      p->scratch,         p->stack,         p->parent_tested, p->passed};
+    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited,     p->disks,  p->cones,
+                      p->scratch,         p->stack,         p->parent_tested, p->passed, p->tested,
+                      p->reached,         p->small_roots,   p->small_ends};
     patch_tree_free(context, &p->tree);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     *p = (patches){0};
@@ -230,60 +256,134 @@ void patches_free(cscd_context *context, patches *p) {
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
-static void merge_cones(patches *p, const cscd_mesh *mesh, const double *x0, const double *x1,
-                        bool published) {
-    const float pi = 3.14159265f, limit = published ? pi : normal_cone_limit;
-    for (uint32_t i = p->tree.node_count; i-- > 0;) {
-        const patch_node *n = &p->tree.nodes[i];
-        if (patch_is_leaf(n))
-            p->cones[i] =
-                (published ? normal_cone_of_ends : normal_cone_of)(mesh->triangles[n->triangle], x0, x1);
-        else
-            p->cones[i] = normal_cone_union(&p->cones[i + 1], &p->cones[n->right], limit);
+/* Nodes are decided from the roots down, each by itself once its parent has not passed: so threads take large
+ * nodes of one wave, the children of those before, and then small subtrees, in any order. */
+typedef struct sealing {
+    patches *p;
+    const cscd_mesh *mesh;
+    const double *x0, *x1;
+    bool published;
+    uint32_t wave_end; /* in p->stack */
+    atomic_uint next;
+} sealing;
+
+static void set_cone(const sealing *s, uint32_t node) {
+    const float pi = 3.14159265f, limit = s->published ? pi : normal_cone_limit;
+    const patch_node *n = &s->p->tree.nodes[node];
+    normal_cone *cones = s->p->cones;
+    if (patch_is_leaf(n)) {
+        const uint32_t *corners = s->mesh->triangles[n->triangle];
+        cones[node] = (s->published ? normal_cone_of_ends : normal_cone_of)(corners, s->x0, s->x1);
+    } else {
+        cones[node] = normal_cone_union(&cones[node + 1], &cones[n->right], limit);
     }
 }
 
-static bool passes(patches *p, const cscd_mesh *mesh, uint32_t node, const double *x0, const double *x1,
-                   bool published) {
+static void merge_small_cones(void *data, uint32_t index) {
+    const sealing *s = data;
+    for (uint32_t i = s->p->small_ends[index]; i-- > s->p->small_roots[index];) set_cone(s, i);
+}
+
+static void merge_cones(sealing *s) {
+    patches *p = s->p;
+    parallel_run(s->mesh->context->threads, p->small_count, merge_small_cones, s);
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        if (p->tree.nodes[i].height > SMALL_HEIGHT) set_cone(s, i);
+    }
+}
+
+static bool passes(const sealing *s, uint32_t node, contour_edge *scratch) {
+    const patches *p = s->p;
     size_t first = p->contour_offsets[node];
-    const contour_query query = {.mesh = mesh,
+    const contour_query query = {.mesh = s->mesh,
                                  .edges = p->contour_edges + first,
                                  .edge_count = (uint32_t)(p->contour_offsets[node + 1] - first),
-                                 .x0 = x0,
-                                 .x1 = x1,
+                                 .x0 = s->x0,
+                                 .x1 = s->x1,
                                  .axis = p->cones[node].axis,
-                                 .skipped = published && p->parent_tested[node] ? p->inherited[node] : 0,
-                                 .published = published};
-    p->contours++;
-    return contour_stays_simple(&query, p->scratch);
+                                 .skipped = s->published && p->parent_tested[node] ? p->inherited[node] : 0,
+                                 .published = s->published};
+    return contour_stays_simple(&query, scratch);
 }
 
-static void seal_part(patches *p, const cscd_mesh *mesh, uint32_t root, const double *x0, const double *x1,
-                      bool published) {
-    uint32_t depth = 0;
-    p->parent_tested[root] = false;
-    p->stack[depth++] = root;
-    while (depth > 0) {
-        uint32_t node = p->stack[--depth];
-        const patch_node *n = &p->tree.nodes[node];
-        if (patch_is_leaf(n)) continue;
-        bool tested = p->cones[node].angle < INFINITY && (published || p->disks[node]);
-        if (tested && passes(p, mesh, node, x0, x1, published)) {
-            p->passed[node] = true;
-            p->sealed++;
-            continue;
-        }
-        p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
-        p->stack[depth++] = n->right;
-        p->stack[depth++] = node + 1;
+/* Returns whether the children are to be decided, too. */
+static bool decide(const sealing *s, uint32_t node, contour_edge *scratch) {
+    patches *p = s->p;
+    const patch_node *n = &p->tree.nodes[node];
+    if (patch_is_leaf(n)) return false;
+    bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
+    p->tested[node] = tested;
+    p->passed[node] = tested && passes(s, node, scratch);
+    if (p->passed[node]) return false;
+    p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
+    p->reached[node + 1] = p->reached[n->right] = true;
+    return true;
+}
+
+static void decide_wave(void *data, uint32_t lane) {
+    sealing *s = data;
+    patches *p = s->p;
+    for (;;) {
+        uint32_t at = atomic_fetch_add(&s->next, 1);
+        if (at >= s->wave_end) return;
+        decide(s, p->stack[at], p->scratch + lane * p->longest);
     }
+}
+
+static void decide_small(void *data, uint32_t lane) {
+    sealing *s = data;
+    patches *p = s->p;
+    for (;;) {
+        uint32_t at = atomic_fetch_add(&s->next, 1);
+        if (at >= p->small_count) return;
+        for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
+            if (p->reached[i]) decide(s, i, p->scratch + lane * p->longest);
+        }
+    }
+}
+
+/* The large nodes of a wave stand in the stack after those of the wave before. */
+static void append_large(patches *p, uint32_t node, uint32_t *end) {
+    if (p->tree.nodes[node].height > SMALL_HEIGHT) p->stack[(*end)++] = node;
+}
+
+static void decide_all(sealing *s) {
+    patches *p = s->p;
+    parallel *threads = s->mesh->context->threads;
+    uint32_t lanes = parallel_thread_count(threads), begin = 0, end = 0;
+    for (uint32_t i = 0; i < p->tree.root_count; i++) {
+        p->reached[p->tree.roots[i]] = true;
+        append_large(p, p->tree.roots[i], &end);
+    }
+    while (begin < end) {
+        s->wave_end = end;
+        atomic_store(&s->next, begin);
+        parallel_run(threads, end - begin < lanes ? end - begin : lanes, decide_wave, s);
+        for (uint32_t last = end; begin < last; begin++) {
+            uint32_t node = p->stack[begin];
+            if (p->passed[node]) continue;
+            append_large(p, node + 1, &end);
+            append_large(p, p->tree.nodes[node].right, &end);
+        }
+    }
+    atomic_store(&s->next, 0);
+    parallel_run(threads, lanes, decide_small, s);
 }
 
 void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
                   bool published) {
-    merge_cones(p, mesh, x0, x1, published);
+    sealing s = {.p = p, .mesh = mesh, .x0 = x0, .x1 = x1, .published = published};
+    size_t size = p->tree.node_count * sizeof *p->passed;
+    merge_cones(&s);
+    memset(p->parent_tested, 0, size);
+    memset(p->passed, 0, size);
+    memset(p->tested, 0, size);
+    memset(p->reached, 0, size);
+    decide_all(&s);
     p->contours = p->sealed = 0;
-    memset(p->passed, 0, p->tree.node_count * sizeof *p->passed);
-    for (uint32_t i = 0; i < p->tree.root_count; i++) seal_part(p, mesh, p->tree.roots[i], x0, x1, published);
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
+        p->contours += p->tested[i];
+        p->sealed += p->passed[i];
+    }
     patch_tree_hide(&p->tree, p->passed, f);
 }

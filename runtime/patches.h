@@ -14,9 +14,14 @@ typedef struct patches {
     uint32_t *inherited;     /* per node so many */
     bool *disks;             /* per node: connected, oriented, and its contour is one loop */
     normal_cone *cones;
-    contour_edge *scratch;
-    uint32_t *stack;
+    contour_edge *scratch;        /* longest for each thread */
+    size_t longest;               /* contour */
+    uint32_t *stack;              /* large nodes that wait for their turn */
+    uint32_t *small_roots;        /* the largest small subtrees, in the order of nodes, */
+    uint32_t small_count;         /* so many, */
+    uint32_t *small_ends;         /* and one past the last node of each */
     bool *parent_tested, *passed; /* per node, in the interval at hand; none below one that passed */
+    bool *tested, *reached;       /* its contour was; no node above it has passed */
     uint64_t contours, sealed;    /* tests made, patches that passed */
 } patches;
 

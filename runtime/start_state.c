@@ -3,9 +3,10 @@
 
 #include "runtime/clean_patch.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
-enum { PATIENCE_MAX = 16 };
+enum { PATIENCE_MAX = 16, VERTICES_PER_TASK = 2048 };
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
     start_states s = {.context = mesh->context, .mesh = mesh};
@@ -30,9 +31,52 @@ void start_states_destroy(start_states *s) {
     *s = (start_states){0};
 }
 
+/* ---- the positions seen last ------------------------------------------------------------------------ */
+
+typedef struct comparison {
+    start_states *s;
+    const double *x;
+    atomic_bool differ;
+} comparison;
+
+static size_t task_begin(uint32_t index) {
+    return (size_t)index * VERTICES_PER_TASK * 3;
+}
+
+static size_t task_bytes(const start_states *s, uint32_t index) {
+    uint32_t rest = s->mesh->vertex_count - index * VERTICES_PER_TASK;
+    return (rest < VERTICES_PER_TASK ? rest : VERTICES_PER_TASK) * sizeof(double[3]);
+}
+
+static void compare_task(void *data, uint32_t index) {
+    comparison *c = data;
+    size_t begin = task_begin(index);
+    if (memcmp(c->s->positions + begin, c->x + begin, task_bytes(c->s, index)) != 0)
+        atomic_store(&c->differ, true);
+}
+
+static void copy_task(void *data, uint32_t index) {
+    comparison *c = data;
+    size_t begin = task_begin(index);
+    memcpy(c->s->positions + begin, c->x + begin, task_bytes(c->s, index));
+}
+
+static void run_over_vertices(parallel_task *task, comparison *c) {
+    uint32_t tasks = c->s->mesh->vertex_count / VERTICES_PER_TASK;
+    tasks += c->s->mesh->vertex_count % VERTICES_PER_TASK != 0;
+    parallel_run(c->s->context->threads, tasks, task, c);
+}
+
 static void remember(start_states *s, const double *x) {
-    memcpy(s->positions, x, s->mesh->vertex_count * sizeof(double[3]));
+    comparison c = {.s = s, .x = x};
+    run_over_vertices(copy_task, &c);
     s->known = true;
+}
+
+static bool still_there(start_states *s, const double *x) {
+    comparison c = {.s = s, .x = x};
+    run_over_vertices(compare_task, &c);
+    return !atomic_load(&c.differ);
 }
 
 /* Bit for bit, but for the sign of zero. */
@@ -43,7 +87,7 @@ static bool vertex_moved(const start_states *s, const double *x, uint32_t vertex
 
 void start_states_begin(start_states *s, const double *x) {
     const cscd_mesh *mesh = s->mesh;
-    if (s->known && memcmp(s->positions, x, mesh->vertex_count * sizeof(double[3])) == 0) return;
+    if (s->known && still_there(s, x)) return;
     for (uint32_t c = 0; c < mesh->component_count; c++) s->moved[c] = !s->known;
     for (uint32_t t = 0; s->known && t < mesh->triangle_count; t++) {
         for (int i = 0; i < 3; i++)
@@ -52,18 +96,36 @@ void start_states_begin(start_states *s, const double *x) {
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (s->moved[mesh->triangle_components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
     }
+    s->counted = false;
     remember(s, x);
 }
 
+/* ---- states ------------------------------------------------------------------------------------------ */
+
+static void count_run(component_start *start, const uint8_t *states, uint32_t count) {
+    uint32_t unknown = 0, crossing = 0, clean = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        unknown += states[i] == TRIANGLE_UNKNOWN;
+        crossing += states[i] == TRIANGLE_CROSSING;
+        clean += states[i] == TRIANGLE_CLEAN;
+    }
+    start->unknown += unknown;
+    start->crossing += crossing;
+    start->clean += clean;
+}
+
+/* A component's triangles mostly follow each other. */
 void start_states_count(start_states *s) {
+    const uint32_t *components = s->mesh->triangle_components;
+    uint32_t count = s->mesh->triangle_count;
+    if (s->counted) return;
     for (uint32_t c = 0; c < s->mesh->component_count; c++)
         s->of[c].unknown = s->of[c].crossing = s->of[c].clean = 0;
-    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
-        component_start *start = &s->of[s->mesh->triangle_components[t]];
-        start->unknown += s->triangles[t] == TRIANGLE_UNKNOWN;
-        start->crossing += s->triangles[t] == TRIANGLE_CROSSING;
-        start->clean += s->triangles[t] == TRIANGLE_CLEAN;
+    for (uint32_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && components[end] == components[begin];) end++;
+        count_run(&s->of[components[begin]], s->triangles + begin, end - begin);
     }
+    s->counted = true;
 }
 
 uint32_t start_states_suspect(start_states *s, bool *suspects) {
@@ -112,6 +174,7 @@ void start_states_checked(start_states *s, const bool *suspects, const bool *cro
     }
     s->vouched = false;
     clean_patches_find(s);
+    s->counted = false;
     for (uint32_t c = 0; c < mesh->component_count; c++) {
         if (checked[c]) lose_patience(&s->of[c], mesh->components[c].triangle_count);
     }
@@ -125,12 +188,16 @@ void start_states_vouch(start_states *s) {
         s->triangles[t] = TRIANGLE_CLEAN;
         s->vouched = true;
     }
+    s->counted = false;
 }
 
 void start_states_end(start_states *s, const double *x, const bool *lost) {
-    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+    bool any = false;
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) any |= lost[c] || s->of[c].crossing > 0;
+    for (uint32_t t = 0; any && t < s->mesh->triangle_count; t++) {
         if (lost[s->mesh->triangle_components[t]] || s->triangles[t] == TRIANGLE_CROSSING)
             s->triangles[t] = TRIANGLE_UNKNOWN;
     }
+    s->counted &= !any;
     remember(s, x);
 }

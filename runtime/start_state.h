@@ -36,6 +36,7 @@ typedef struct start_states {
     bool *moved;         /* scratch, per component */
     uint8_t *triangles;  /* triangle_state, of each */
     component_start *of; /* per component; up to date after start_states_count */
+    bool counted;        /* they are */
     uint32_t *queue;     /* scratch, per triangle */
     free_patch *largest; /* scratch, per component */
 } start_states;
@@ -65,6 +66,7 @@ void start_states_count(start_states *s);
 /* A feature of the triangle's closure takes part in a contact with its component. */
 static inline void start_states_taint(start_states *s, uint32_t triangle) {
     s->triangles[triangle] = TRIANGLE_UNKNOWN;
+    s->counted = false;
 }
 
 /* The interval ends at x, and all triangles in contact were tainted, but for components that are lost: what

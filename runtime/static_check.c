@@ -5,7 +5,6 @@
 #include "runtime/triangle_intersection.h"
 #include "src/positions.h"
 #include "src/predicates.h"
-#include "src/sort.h"
 #include "src/timer.h"
 
 #include <string.h>
@@ -32,16 +31,32 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
     lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
 }
 
+/* The batch, which is consumed, becomes one of triangles, those of different components left out where these
+ * do not count. */
+static void name_triangles(const moment *now, traversal_lane *batch) {
+    const forest *f = &now->detector->forest;
+    const uint32_t *components = now->detector->mesh->triangle_components;
+    bool within = now->pass == TRAVERSAL_SUSPECTS;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < batch->pair_count; i++) {
+        triangle_pair pair = {forest_triangle(f, batch->pairs[i].a), forest_triangle(f, batch->pairs[i].b)};
+        batch->pairs[kept] = pair;
+        kept += !within || components[pair.a] == components[pair.b];
+    }
+    batch->pair_count = kept;
+}
+
 static void test_batch(void *data, uint32_t index) {
     const moment *now = data;
     cscd_detector *d = now->detector;
-    const traversal_lane *batch = &d->traversal.lanes[index];
-    const uint32_t *components = d->mesh->triangle_components;
-    for (uint32_t i = 0; i < batch->pair_count; i++) {
-        triangle_pair pair = {forest_triangle(&d->forest, batch->pairs[i].a),
-                              forest_triangle(&d->forest, batch->pairs[i].b)};
-        if (now->pass == TRAVERSAL_SUSPECTS && components[pair.a] != components[pair.b]) continue;
-        if (triangles_intersect(d->mesh->triangles[pair.a], d->mesh->triangles[pair.b], now->positions))
+    traversal_lane *batch = &d->traversal.lanes[index];
+    const uint32_t(*triangles)[3] = (const uint32_t(*)[3])d->mesh->triangles;
+    name_triangles(now, batch);
+    uint32_t open =
+        d->forest.kernels->keep_meeting(triangles, now->positions, batch->pairs, batch->pair_count);
+    for (uint32_t i = 0; i < open; i++) {
+        triangle_pair pair = batch->pairs[i];
+        if (triangles_intersect(triangles[pair.a], triangles[pair.b], now->positions))
             add_intersection(d->context, &d->intersection_lanes[index], pair.a, pair.b);
     }
 }
@@ -53,23 +68,66 @@ static bool has_no_area(const moment *now, uint32_t triangle) {
     return collinear(corners[0], corners[1], corners[2]);
 }
 
-/* Of the suspects. */
-static void count_zero_area(void *data, uint32_t index) {
-    const moment *now = data;
-    const cscd_mesh *mesh = now->detector->mesh;
-    intersection_lane *lane = &now->detector->intersection_lanes[index];
-    *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
-    for (uint32_t t = index; t < mesh->triangle_count; t += now->detector->traversal.lane_count) {
-        if (!now->detector->suspects[t] || !has_no_area(now, t)) continue;
-        now->detector->crossing[t] = true;
-        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = t;
+enum { AREA_BATCH = 512 };
+
+/* Of the suspects among triangles begin to end - 1, at most AREA_BATCH. */
+static void mark_zero_area(const moment *now, intersection_lane *lane, uint32_t begin, uint32_t end) {
+    cscd_detector *d = now->detector;
+    uint32_t list[AREA_BATCH], count = 0;
+    for (uint32_t t = begin; t < end; t++) {
+        list[count] = t;
+        count += d->suspects[t];
+    }
+    memset(d->crossing + begin, false, (end - begin) * sizeof *d->crossing);
+    count =
+        d->forest.kernels->keep_thin((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!has_no_area(now, list[i])) continue;
+        d->crossing[list[i]] = true;
+        if (lane->zero_area_triangles++ == 0) lane->first_zero_area = list[i];
     }
 }
 
-static int compare_intersections(const void *left, const void *right) {
-    const cscd_intersection *l = left, *r = right;
-    if (l->a != r->a) return l->a < r->a ? -1 : 1;
-    return l->b < r->b ? -1 : l->b > r->b;
+/* Of a lane's share of the triangles. */
+static void count_zero_area(void *data, uint32_t index) {
+    const moment *now = data;
+    cscd_detector *d = now->detector;
+    intersection_lane *lane = &d->intersection_lanes[index];
+    uint64_t count = d->mesh->triangle_count, lanes = d->traversal.lane_count;
+    uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
+    *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
+    for (uint32_t t = begin; t < end; t += AREA_BATCH)
+        mark_zero_area(now, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
+}
+
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+
+/* By one digit of b, or of a, stable. */
+static void sort_by_digit(const cscd_intersection *items, cscd_intersection *out, size_t count, bool by_a,
+                          uint32_t shift) {
+    size_t places[DIGITS] = {0}, place = 0;
+    for (size_t i = 0; i < count; i++) places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++;
+    for (uint32_t digit = 0; digit < DIGITS; digit++) {
+        size_t next = place + places[digit];
+        places[digit] = place;
+        place = next;
+    }
+    for (size_t i = 0; i < count; i++)
+        out[places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++] = items[i];
+}
+
+/* By a, then by b, all below limit; as many digits of the one as of the other, so it ends where it began. */
+static void sort_intersections(cscd_intersection *items, cscd_intersection *scratch, size_t count,
+                               uint32_t limit) {
+    cscd_intersection *from = items, *to = scratch;
+    for (int by_a = 0; by_a < 2 && count > 1; by_a++) {
+        for (uint32_t shift = 0; shift < 32 && (limit - 1) >> shift > 0; shift += DIGIT_BITS) {
+            sort_by_digit(from, to, count, by_a, shift);
+            cscd_intersection *swapped = from;
+            from = to;
+            to = swapped;
+        }
+    }
 }
 
 static bool ignored(const cscd_detector_options *options, cscd_intersection pair) {
@@ -94,7 +152,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
-    sort_items(items, d->intersections.scratch, kept, sizeof *items, compare_intersections);
+    sort_intersections(items, d->intersections.scratch, kept, d->mesh->triangle_count);
     result.count = kept;
     *out = result;
     return CSCD_OK;
@@ -102,7 +160,6 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
-    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->crossing[t] = false;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
     traversal_begin(&d->traversal, &d->forest, now->pass, false);
     for (bool more = true; more;) {
@@ -143,7 +200,7 @@ static cscd_status check_moment(moment *now) {
     cscd_status status = detector_build(d, now->positions);
     if (status != CSCD_OK) return status;
     forest_move(&d->forest, now->positions, now->positions, 0.0);
-    for (uint32_t t = 0; t < d->mesh->triangle_count; t++) d->suspects[t] = true;
+    memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
     if (status != CSCD_OK) return status;
     start_states_begin(&d->starts, now->positions);

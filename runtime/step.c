@@ -46,12 +46,20 @@ typedef struct step_work {
     bool any_culled, skip_adjacent;
 } step_work;
 
-static void test_batch(void *data, uint32_t index) {
+/* Lanes search and test in turn: each takes of both what it finds, and nobody waits for anybody else's. */
+static void search_and_test(void *data, uint32_t index) {
     step_work *work = data;
-    const traversal_lane *batch = &work->detector->traversal.lanes[index];
+    traversal *t = &work->detector->traversal;
+    traversal_lane *batch = &t->lanes[index];
     contact_lane *lane = &work->detector->contact_lanes[index];
-    narrow_phase_test(&work->interval, batch->pairs, batch->pair_count, lane);
+    double begin = timer_now_ms(), spent = 0.0;
+    while (!lane->out_of_memory && traversal_fill(t, index)) {
+        batch->pairs_found += batch->pair_count;
+        narrow_phase_test(&work->interval, batch->pairs, batch->pair_count, lane);
+    }
     narrow_phase_finish(&work->interval, lane);
+    timer_lap(&begin, &spent);
+    batch->consume_ms = spent - batch->search_ms;
 }
 
 static void test_share(void *data, uint32_t index) {
@@ -67,30 +75,38 @@ static cscd_status lanes_status(const cscd_detector *d) {
     return CSCD_OK;
 }
 
+/* What the lanes took together goes to the stages as the lanes' own times are to each other. */
+static void share_out(step_work *work, double together_ms) {
+    const traversal *t = &work->detector->traversal;
+    double search = 0.0, test = 0.0;
+    for (uint32_t i = 0; i < t->busy_lanes; i++) {
+        search += t->lanes[i].search_ms;
+        test += t->lanes[i].consume_ms;
+        work->counters.pcp += t->lanes[i].pairs_found;
+    }
+    double share = search + test > 0.0 ? search / (search + test) : 0.0;
+    work->timings.traversal_ms += share * together_ms;
+    work->timings.contact_ms += (1.0 - share) * together_ms;
+}
+
 static cscd_status traverse(step_work *work, traversal_pass pass) {
     cscd_detector *d = work->detector;
-    cscd_status status = CSCD_OK;
-    double since = timer_now_ms();
+    double since = timer_now_ms(), together = 0.0;
     traversal_begin(&d->traversal, &d->forest, pass, work->skip_adjacent);
-    for (bool more = true; more && status == CSCD_OK;) {
-        status = traversal_round(&d->traversal, &more);
-        timer_lap(&since, &work->timings.traversal_ms);
-        if (status != CSCD_OK) return status;
-        for (uint32_t i = 0; i < d->traversal.lane_count; i++)
-            work->counters.pcp += d->traversal.lanes[i].pair_count;
-        parallel_run(d->context->threads, d->traversal.lane_count, test_batch, work);
-        status = lanes_status(d);
-        timer_lap(&since, &work->timings.contact_ms);
-    }
+    timer_lap(&since, &work->timings.traversal_ms);
+    parallel_run(d->context->threads, d->traversal.busy_lanes, search_and_test, work);
+    timer_lap(&since, &together);
+    share_out(work, together);
     work->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
-    return status;
+    cscd_status status = traversal_status(&d->traversal);
+    return status == CSCD_OK ? lanes_status(d) : status;
 }
 
 static void test_orphans(void *data, uint32_t index) {
     step_work *work = data;
-    contact_lane *lane = &work->detector->contact_lanes[index];
-    narrow_phase_test_orphans(&work->interval, &work->detector->orphans, index,
-                              work->detector->traversal.lane_count, lane);
+    cscd_detector *d = work->detector;
+    contact_lane *lane = &d->contact_lanes[index];
+    narrow_phase_test_orphans(&work->interval, &d->orphans, index, d->traversal.busy_lanes, lane);
     narrow_phase_finish(&work->interval, lane);
 }
 
@@ -109,7 +125,7 @@ static cscd_status find_without_adjacent(step_work *work) {
     cscd_status status = traverse(work, TRAVERSAL_KEPT);
     if (status != CSCD_OK || !d->orphans_usable) return status;
     double since = timer_now_ms();
-    parallel_run(d->context->threads, d->traversal.lane_count, test_orphans, work);
+    parallel_run(d->context->threads, d->traversal.busy_lanes, test_orphans, work);
     timer_lap(&since, &work->timings.contact_ms);
     return lanes_status(d);
 }

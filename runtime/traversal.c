@@ -1,9 +1,13 @@
-/* Self-traversal of the forest: rounds, and how lanes share the work. */
+/* Self-traversal of the forest: batches, and how lanes share the work. */
 #include "runtime/traversal.h"
+
+#include "src/timer.h"
 
 #include <string.h>
 
-enum { STACK_START = 1024, PAIRS_PER_LANE = 16 };
+/* Shares are block pairs, at least so many per lane where there are as many. A forest of fewer leaves is not
+ * worth a second thread. */
+enum { STACK_START = 1024, SHARES_PER_LANE = 128, SHARED_LEAVES_MIN = 96, VISITS_AT_ONCE = 16 };
 
 static bool create_lane(cscd_context *context, traversal_lane *lane) {
     lane->stack_capacity = STACK_START;
@@ -13,10 +17,15 @@ static bool create_lane(cscd_context *context, traversal_lane *lane) {
     return lane->stack != NULL && lane->pairs != NULL && lane->cache.volumes != NULL;
 }
 
+static size_t share_room(uint32_t lane_count) {
+    return (size_t)lane_count * SHARES_PER_LANE + TRAVERSAL_PUSHES_PER_VISIT;
+}
+
 cscd_status traversal_create(cscd_context *context, traversal *out) {
     traversal t = {.context = context, .lane_count = parallel_thread_count(context->threads)};
     t.lanes = context_allocate(context, t.lane_count, sizeof *t.lanes);
-    bool allocated = t.lanes != NULL;
+    t.shares = context_allocate(context, share_room(t.lane_count), sizeof *t.shares);
+    bool allocated = t.lanes != NULL && t.shares != NULL;
     for (uint32_t i = 0; allocated && i < t.lane_count; i++) allocated = create_lane(context, &t.lanes[i]);
     if (!allocated) {
         traversal_destroy(&t);
@@ -33,21 +42,8 @@ void traversal_destroy(traversal *t) {
         context_free(t->context, t->lanes[i].cache.volumes);
     }
     context_free(t->context, t->lanes);
+    context_free(t->context, t->shares);
     *t = (traversal){0};
-}
-
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent) {
-    t->forest = f;
-    t->pass = pass;
-    t->skip_adjacent = skip_adjacent;
-    for (uint32_t i = 0; i < t->lane_count; i++) {
-        traversal_lane *lane = &t->lanes[i];
-        lane->stack_count = lane->pair_count = 0;
-        lane->boxes_tested = 0;
-        lane->out_of_memory = false;
-        memset(lane->cache.tags, 0, sizeof lane->cache.tags);
-    }
-    t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
 }
 
 static bool make_room(cscd_context *context, traversal_lane *lane, size_t pushes) {
@@ -60,75 +56,93 @@ static bool make_room(cscd_context *context, traversal_lane *lane, size_t pushes
     return true;
 }
 
-static bool has_room(const traversal_lane *lane) {
-    return lane->pair_count + TRAVERSAL_PAIRS_PER_VISIT <= TRAVERSAL_BATCH_SIZE;
-}
-
-static void run_lane(void *data, uint32_t index) {
-    const traversal *t = data;
-    traversal_lane *lane = &t->lanes[index];
-    while (lane->stack_count > 0 && has_room(lane)) {
-        if (!make_room(t->context, lane, TRAVERSAL_PUSHES_PER_VISIT)) {
-            lane->out_of_memory = true;
-            return;
-        }
-        t->forest->kernels->search(t, lane, SIZE_MAX);
-    }
-}
-
-/* Moves all open block pairs to the first lane. */
-static bool gather(traversal *t) {
-    traversal_lane *first = &t->lanes[0];
-    for (uint32_t i = 1; i < t->lane_count; i++) {
-        traversal_lane *lane = &t->lanes[i];
-        if (!make_room(t->context, first, lane->stack_count)) return false;
-        memcpy(first->stack + first->stack_count, lane->stack, lane->stack_count * sizeof *lane->stack);
-        first->stack_count += lane->stack_count;
-        lane->stack_count = 0;
-    }
-    return true;
-}
-
-/* Breadth-first on the first lane until there are block pairs enough to share, or its batch is full. */
+/* Breadth-first on the first lane until there are shares enough, or nothing but leaves below them. */
 static bool spread(traversal *t) {
     traversal_lane *first = &t->lanes[0];
-    size_t wanted = (size_t)t->lane_count * PAIRS_PER_LANE, next = 0;
-    while (next < first->stack_count && first->stack_count - next < wanted && has_room(first)) {
+    size_t wanted = (size_t)t->lane_count * SHARES_PER_LANE, next = 0;
+    while (next < first->stack_count && first->stack_count - next < wanted && first->stack[next].level > 0) {
         if (!make_room(t->context, first, TRAVERSAL_PUSHES_PER_VISIT + 1)) return false;
         first->stack[first->stack_count] = first->stack[next++];
         first->stack_count++;
         t->forest->kernels->search(t, first, 1);
     }
-    first->stack_count -= next;
-    memmove(first->stack, first->stack + next, first->stack_count * sizeof *first->stack);
+    t->share_count = (uint32_t)(first->stack_count - next);
+    memcpy(t->shares, first->stack + next, t->share_count * sizeof *t->shares);
+    first->stack_count = 0;
     return true;
 }
 
-/* Deals the first lane's block pairs out to all lanes like cards: large subtrees and small ones alike. */
-static bool deal(traversal *t) {
-    traversal_lane *first = &t->lanes[0];
-    size_t count = first->stack_count;
-    first->stack_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        block_pair pair = first->stack[i];
-        traversal_lane *lane = &t->lanes[i % t->lane_count];
-        if (!make_room(t->context, lane, 1)) return false;
-        lane->stack[lane->stack_count++] = pair;
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent) {
+    t->forest = f;
+    t->pass = pass;
+    t->skip_adjacent = skip_adjacent;
+    t->share_count = 0;
+    atomic_store(&t->next_share, 0);
+    for (uint32_t i = 0; i < t->lane_count; i++) {
+        traversal_lane *lane = &t->lanes[i];
+        lane->stack_count = lane->pair_count = 0;
+        lane->boxes_tested = lane->pairs_found = 0;
+        lane->search_ms = lane->consume_ms = 0.0;
+        lane->out_of_memory = false;
+        memset(lane->cache.tags, 0, sizeof lane->cache.tags);
     }
+    t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
+    t->busy_lanes = f->leaf_count < SHARED_LEAVES_MIN ? 1 : t->lane_count;
+    if (t->busy_lanes > 1) t->lanes[0].out_of_memory = !spread(t);
+}
+
+/* Many at first, for neighbours have leaves in common, and then fewer and fewer. */
+static bool take_shares(traversal *t, traversal_lane *lane) {
+    uint32_t next = atomic_load(&t->next_share), count;
+    do {
+        if (next >= t->share_count) return false;
+        count = (t->share_count - next) / (4 * t->busy_lanes) + 1;
+    } while (!atomic_compare_exchange_weak(&t->next_share, &next, next + count));
+    if (!make_room(t->context, lane, count)) {
+        lane->out_of_memory = true;
+        return false;
+    }
+    memcpy(lane->stack + lane->stack_count, t->shares + next, count * sizeof *lane->stack);
+    lane->stack_count += count;
     return true;
+}
+
+static void fill(traversal *t, traversal_lane *lane, uint32_t enough) {
+    lane->pair_count = 0;
+    while (lane->pair_count < enough && !lane->out_of_memory) {
+        if (lane->stack_count == 0 && !take_shares(t, lane)) return;
+        if (!make_room(t->context, lane, TRAVERSAL_PUSHES_PER_VISIT))
+            lane->out_of_memory = true;
+        else
+            t->forest->kernels->search(t, lane, VISITS_AT_ONCE);
+    }
+}
+
+bool traversal_fill(traversal *t, uint32_t index) {
+    traversal_lane *lane = &t->lanes[index];
+    double since = timer_now_ms();
+    fill(t, lane, TRAVERSAL_BATCH_ENOUGH);
+    timer_lap(&since, &lane->search_ms);
+    return lane->pair_count > 0;
+}
+
+cscd_status traversal_status(const traversal *t) {
+    for (uint32_t i = 0; i < t->lane_count; i++) {
+        if (t->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    return CSCD_OK;
+}
+
+static void fill_lane(void *data, uint32_t index) {
+    traversal *t = data;
+    fill(t, &t->lanes[index], TRAVERSAL_BATCH_SIZE - TRAVERSAL_PAIRS_PER_VISIT + 1);
 }
 
 cscd_status traversal_round(traversal *t, bool *more) {
-    for (uint32_t i = 0; i < t->lane_count; i++) t->lanes[i].pair_count = 0;
-    if (t->lane_count > 1 && !(gather(t) && spread(t) && deal(t))) return CSCD_OUT_OF_MEMORY;
-    parallel_run(t->context->threads, t->lane_count, run_lane, t);
-    bool any = false;
-    for (uint32_t i = 0; i < t->lane_count; i++) {
-        if (t->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
-        any |= t->lanes[i].pair_count > 0 || t->lanes[i].stack_count > 0;
-    }
-    *more = any;
-    return CSCD_OK;
+    parallel_run(t->context->threads, t->busy_lanes, fill_lane, t);
+    *more = false;
+    for (uint32_t i = 0; i < t->busy_lanes; i++) *more |= t->lanes[i].pair_count > 0;
+    return traversal_status(t);
 }
 
 uint64_t traversal_boxes_tested(const traversal *t) {

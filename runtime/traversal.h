@@ -4,6 +4,8 @@
 
 #include "runtime/forest.h"
 
+#include <stdatomic.h>
+
 /* A potentially colliding pair of different triangles, by their slots. */
 typedef struct triangle_pair {
     uint32_t a, b;
@@ -36,14 +38,16 @@ typedef struct traversal_lane {
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
     uint32_t pair_count;
-    uint64_t boxes_tested;
+    uint64_t boxes_tested, pairs_found; /* pairs are counted by the caller */
+    double search_ms,
+        consume_ms; /* what filling batches took since the begin, and, by the caller, the rest */
     leaf_cache cache;
     bool out_of_memory;
 } traversal_lane;
 
 /* A visit adds no more: pairs of 64 leaf pairs; 64 pairs of children and 8 children with themselves. */
 enum { TRAVERSAL_PAIRS_PER_VISIT = 64 * 64, TRAVERSAL_PUSHES_PER_VISIT = 72 };
-enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT };
+enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT, TRAVERSAL_BATCH_ENOUGH = 1024 };
 
 typedef struct traversal {
     cscd_context *context;
@@ -52,6 +56,12 @@ typedef struct traversal {
     bool skip_adjacent;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
+    uint32_t busy_lanes; /* the first so many share this traversal; 1: it is too small to be shared */
+
+    /* Open block pairs that no lane has taken yet: from next_share on. */
+    block_pair *shares;
+    uint32_t share_count;
+    atomic_uint next_share;
 } traversal;
 
 /* On failure the traversal holds nothing. */
@@ -62,9 +72,17 @@ void traversal_destroy(traversal *t);
  * are left out. */
 void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent);
 
-/* Fills each lane's batch with up to TRAVERSAL_BATCH_SIZE pairs; false when all is done and every batch is
- * empty. Between two rounds the caller consumes the batches. The union of all batches, and the sum of
- * boxes_tested, are the same for any lane count. OUT_OF_MEMORY: a stack could not grow. */
+/* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
+ * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and
+ * nothing is left that is not in the hands of another lane. The union of all batches, and the sum of
+ * boxes_tested, are the same for any lane count. */
+bool traversal_fill(traversal *t, uint32_t lane);
+
+/* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
+cscd_status traversal_status(const traversal *t);
+
+/* All lanes at once, and batches as full as they get; *more is false when every batch is empty. Between two
+ * rounds the caller consumes the batches. */
 cscd_status traversal_round(traversal *t, bool *more);
 
 uint64_t traversal_boxes_tested(const traversal *t);

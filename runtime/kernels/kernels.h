@@ -5,8 +5,10 @@
 
 #include "src/context.h"
 
+struct cscd_mesh;
 struct forest;
 struct forest_part;
+struct representatives;
 struct traversal;
 struct traversal_lane;
 struct triangle_pair;
@@ -63,10 +65,16 @@ typedef struct kernels {
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */
     void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
+
     /* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
      * their volumes, and that share no vertex. */
     void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
                   uint16_t *features);
+
+    /* Of features of pairs of triangles, those that these represent; open: those whose representatives share
+     * a vertex, where the features share none. */
+    void (*represent)(const struct cscd_mesh *mesh, const struct representatives *r,
+                      const struct triangle_pair *pairs, uint32_t count, uint16_t *features, uint16_t *open);
 
     /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */
@@ -78,6 +86,16 @@ typedef struct kernels {
 
     /* and where it has two, or none. */
     root_kernel *two_roots_vf, *two_roots_ee;
+
+    /* Of pairs of different triangles, in place and in any order, keeps those that may meet (see
+     * runtime/triangle_intersection.h) at positions, which are as positions_check wants them; returns how
+     * many. */
+    uint32_t (*keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                             struct triangle_pair *pairs, uint32_t count);
+
+    /* Of triangles, in place, keeps those that may be without area. */
+    uint32_t (*keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                          uint32_t count);
 } kernels;
 
 /* Of the context's level. */

@@ -12,10 +12,13 @@ const kernels SIMD_NAME(kernels) = {
     .orient = SIMD_NAME(orient),
     .search = SIMD_NAME(search),
     .sieve = SIMD_NAME(sieve),
+    .represent = SIMD_NAME(represent),
     .keep_open_vf = SIMD_NAME(keep_open_vf),
     .keep_open_ee = SIMD_NAME(keep_open_ee),
     .roots_vf = SIMD_NAME(roots_vf),
     .roots_ee = SIMD_NAME(roots_ee),
     .two_roots_vf = SIMD_NAME(two_roots_vf),
     .two_roots_ee = SIMD_NAME(two_roots_ee),
+    .keep_meeting = SIMD_NAME(keep_meeting),
+    .keep_thin = SIMD_NAME(keep_thin),
 };

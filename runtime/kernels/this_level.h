@@ -3,6 +3,7 @@
 #define CSCD_THIS_LEVEL_H
 
 #include "runtime/kernels/kernels.h"
+#include "runtime/representatives.h"
 #include "runtime/traversal.h"
 #include "src/simd.h"
 
@@ -15,5 +16,12 @@ void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_m
 
 void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
                       uint16_t *features);
+void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
+                          uint32_t count, uint16_t *features, uint16_t *open);
+
+uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                                 triangle_pair *pairs, uint32_t count);
+uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                              uint32_t count);
 
 #endif
