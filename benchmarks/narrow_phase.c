@@ -11,7 +11,7 @@
 static const char help[] =
     "usage: narrow_phase START END\n"
     "\n"
-    "Records all pairs of triangles of the mesh START (OBJ, PLY, OFF) whose volumes overlap on the way to\n"
+    "Records the pairs of triangles of the mesh START (OBJ, PLY, OFF) whose volumes overlap on the way to\n"
     "END, the same mesh at other positions, and all pairs of features that their sieve leaves, and times\n"
     "the narrow phase on them (one thread's processor time, least of 5).\n";
 
@@ -71,11 +71,13 @@ static uint32_t triangle_chunk(const recording *r, size_t i) {
     return (uint32_t)(r->triangles.count - i < TRIANGLE_CHUNK ? r->triangles.count - i : TRIANGLE_CHUNK);
 }
 
-/* Takes the pairs out of the queue before it is full. */
+/* As a step does where nothing is culled, but for orphans. Takes the pairs out of the queue before it is
+ * full.
+ */
 static bool record_pairs(recording *r) {
     traversal *t = &r->detector->traversal;
     bool good = true, more = true;
-    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT);
+    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT, true);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
         for (uint32_t i = 0; good && i < t->lane_count; i++)
@@ -105,7 +107,8 @@ static bool open_recording(recording *r, io_error *error) {
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
                                    .forest = &r->detector->forest,
-                                   .representatives = r->detector->representatives,
+                                   .strangers = true,
+                                   .representatives = &r->detector->representatives,
                                    .limit = r->detector->limit};
     contact_lane_reset(r->lane);
     return record_pairs(r) || io_fail(error, "out of memory");

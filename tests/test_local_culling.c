@@ -162,16 +162,39 @@ static bool any_kept(const culling *c, const uint32_t *a, uint32_t a_count, cons
 }
 
 /* How many tests there may be: pairs of features without a common vertex that some pair of triangles leaves,
- * and that no direction separates; at most also those that are separated by no more than rounding. */
+ * and that no direction separates; at most also those that are separated by no more than rounding, and those
+ * that only adjacent triangles contain and that no axis separates. */
 typedef struct test_range {
     uint64_t least, most;
 } test_range;
 
-static void count_pair(motion m, point_set a, point_set b, long double rounding, bool kept,
-                       test_range *range) {
-    long double gap = kept ? direction_gap(m, a, b, rounding) : INFINITY;
-    range->least += gap <= 0.0L;
-    range->most += gap <= rounding;
+/* Of triangles around a feature. */
+typedef struct star {
+    const uint32_t *triangles;
+    uint32_t count;
+} star;
+
+static bool all_adjacent(const cscd_mesh *m, star a, star b) {
+    for (uint32_t i = 0; i < a.count * b.count; i++) {
+        const uint32_t *s = m->triangles[a.triangles[i / b.count]],
+                       *t = m->triangles[b.triangles[i % b.count]];
+        if (!triangles_share_vertex(s, t)) return false;
+    }
+    return true;
+}
+
+static void count_pair(const cscd_detector *d, motion m, long double rounding, point_set a, star of_a,
+                       point_set b, star of_b, test_range *range) {
+    if (!any_kept(&d->culling, of_a.triangles, of_a.count, of_b.triangles, of_b.count)) return;
+    long double gap = direction_gap(m, a, b, rounding);
+    bool near =
+        gap <= rounding || (axis_gap(m, a, b, rounding) <= rounding && all_adjacent(d->mesh, of_a, of_b));
+    range->least += gap <= 0.0;
+    range->most += near;
+}
+
+static star star_of_edge(const cscd_mesh *m, uint32_t edge) {
+    return (star){m->edge_stars + m->edge_star_offsets[edge], edge_star_size(m, edge)};
 }
 
 static test_range expected_tests(const cscd_detector *d, motion moved) {
@@ -182,17 +205,15 @@ static test_range expected_tests(const cscd_detector *d, motion moved) {
         for (uint32_t v = 0; v < m->vertex_count; v++) {
             uint32_t begin = m->vertex_star_offsets[v], end = m->vertex_star_offsets[v + 1];
             if (triangle_contains(m->triangles[t], v)) continue;
-            count_pair(moved, (point_set){&v, 1}, (point_set){m->triangles[t], 3}, rounding,
-                       any_kept(&d->culling, m->vertex_stars + begin, end - begin, &t, 1), &range);
+            count_pair(d, moved, rounding, (point_set){&v, 1}, (star){m->vertex_stars + begin, end - begin},
+                       (point_set){m->triangles[t], 3}, (star){&t, 1}, &range);
         }
     }
     for (uint32_t a = 0; a < m->edge_count; a++) {
         for (uint32_t b = a + 1; b < m->edge_count; b++) {
             if (edges_share_vertex(m->edges[a], m->edges[b])) continue;
-            count_pair(moved, (point_set){m->edges[a], 2}, (point_set){m->edges[b], 2}, rounding,
-                       any_kept(&d->culling, m->edge_stars + m->edge_star_offsets[a], 2,
-                                m->edge_stars + m->edge_star_offsets[b], 2),
-                       &range);
+            count_pair(d, moved, rounding, (point_set){m->edges[a], 2}, star_of_edge(m, a),
+                       (point_set){m->edges[b], 2}, star_of_edge(m, b), &range);
         }
     }
     return range;

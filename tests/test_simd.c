@@ -122,6 +122,22 @@ static void across_lanes_as_in_c(void **state) {
     on_all_levels(check_across);
 }
 
+static void check_negative(const simd_operations *o, random_stream *random) {
+    uint32_t a[LANES];
+    for (int i = 0; i < LANES; i++) {
+        static const uint32_t edges[] = {0, 1, UINT32_MAX, INT32_MAX, 0x80000000u};
+        a[i] = stream_below(random, 2) == 0 ? edges[stream_below(random, 5)] : (uint32_t)stream_bits(random);
+    }
+    uint32_t negative = o->i32_negative(a);
+    for (int i = 0; i < LANES; i++) assert_int_equal(lane_of(negative, i), a[i] > INT32_MAX);
+    assert_int_equal(negative >> LANES, 0);
+}
+
+static void integers_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_negative);
+}
+
 typedef void binary(const double *a, const double *b, double *out);
 typedef uint32_t comparison(const double *a, const double *b);
 
@@ -211,11 +227,9 @@ static void points_and_no_more_are_read(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(floats_as_in_c),
-        cmocka_unit_test(across_lanes_as_in_c),
-        cmocka_unit_test(doubles_as_in_c),
-        cmocka_unit_test(conversions_as_in_c),
-        cmocka_unit_test(points_and_no_more_are_read),
+        cmocka_unit_test(floats_as_in_c),      cmocka_unit_test(across_lanes_as_in_c),
+        cmocka_unit_test(integers_as_in_c),    cmocka_unit_test(doubles_as_in_c),
+        cmocka_unit_test(conversions_as_in_c), cmocka_unit_test(points_and_no_more_are_read),
     };
     return cmocka_run_group_tests_name("simd", tests, NULL, NULL);
 }

@@ -56,6 +56,10 @@ static void f32_transpose(const float (*rows)[8], float (*out)[8]) {
     for (int i = 0; i < 8; i++) f32x8_store(out[i], r[i]);
 }
 
+static uint32_t i32_negative(const uint32_t *a) {
+    return i32x8_negative(i32x8_load(a));
+}
+
 /* ---- eight doubles ------------------------------------------------------------------------------------- */
 
 static void f64_min(const double *a, const double *b, double *out) {
@@ -145,6 +149,7 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f32_least = f32_least,
     .f32_greatest = f32_greatest,
     .f32_transpose = f32_transpose,
+    .i32_negative = i32_negative,
     .f64_min = f64_min,
     .f64_max = f64_max,
     .f64_abs = f64_abs,

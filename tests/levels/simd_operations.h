@@ -18,6 +18,8 @@ typedef struct simd_operations {
     float (*f32_greatest)(const float *a);
     void (*f32_transpose)(const float (*rows)[8], float (*out)[8]);
 
+    uint32_t (*i32_negative)(const uint32_t *a);
+
     void (*f64_min)(const double *a, const double *b, double *out);
     void (*f64_max)(const double *a, const double *b, double *out);
     void (*f64_abs)(const double *a, double *out);

@@ -36,9 +36,9 @@ static extent extent_of(const double *x, point_set points, int direction) {
     return out;
 }
 
-long double direction_gap(motion m, point_set a, point_set b, long double enough) {
+static long double gap_along_some(motion m, point_set a, point_set b, int count, long double enough) {
     long double largest = -INFINITY;
-    for (int k = 0; k < DIRECTION_COUNT && largest <= enough; k++) {
+    for (int k = 0; k < count && largest <= enough; k++) {
         extent a0 = extent_of(m.x0, a, k), a1 = extent_of(m.x1, a, k);
         extent b0 = extent_of(m.x0, b, k), b1 = extent_of(m.x1, b, k);
         long double above = lesser(a0.low - b0.high, a1.low - b1.high);
@@ -47,6 +47,14 @@ long double direction_gap(motion m, point_set a, point_set b, long double enough
         largest = greater(largest, k < 3 ? gap : gap / sqrtl(3.0L));
     }
     return largest;
+}
+
+long double direction_gap(motion m, point_set a, point_set b, long double enough) {
+    return gap_along_some(m, a, b, DIRECTION_COUNT, enough);
+}
+
+long double axis_gap(motion m, point_set a, point_set b, long double enough) {
+    return gap_along_some(m, a, b, 3, enough);
 }
 
 double motion_extent(motion m, uint32_t vertex_count) {

@@ -27,6 +27,9 @@ long double along_direction(const long double p[3], int direction);
  * than enough, another that is. */
 long double direction_gap(motion m, point_set a, point_set b, long double enough);
 
+/* The same along x, y and z alone. */
+long double axis_gap(motion m, point_set a, point_set b, long double enough);
+
 /* The largest magnitude of a coordinate relative to that of the vertex 0 at the start. */
 double motion_extent(motion m, uint32_t vertex_count);
 
