@@ -54,7 +54,8 @@ static void share_out(step_work *work, double together_ms) {
     for (uint32_t i = 0; i < t->busy_lanes; i++) {
         search += t->lanes[i].search_ms;
         test += t->lanes[i].consume_ms;
-        work->counters.pcp += t->lanes[i].pairs_found;
+        work->counters.pcp += t->lanes[i].pairs_found + t->lanes[i].adjacent;
+        work->counters.adjacent += t->lanes[i].adjacent;
     }
     double share = search + test > 0.0 ? search / (search + test) : 0.0;
     work->timings.traversal_ms += share * together_ms;

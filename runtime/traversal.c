@@ -81,7 +81,7 @@ void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool sk
     for (uint32_t i = 0; i < t->lane_count; i++) {
         traversal_lane *lane = &t->lanes[i];
         lane->stack_count = lane->pair_count = 0;
-        lane->boxes_tested = lane->pairs_found = 0;
+        lane->boxes_tested = lane->adjacent = lane->pairs_found = 0;
         lane->search_ms = lane->consume_ms = 0.0;
         lane->out_of_memory = false;
         memset(lane->cache.tags, 0, sizeof lane->cache.tags);

@@ -38,9 +38,9 @@ typedef struct traversal_lane {
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
     uint32_t pair_count;
-    uint64_t boxes_tested, pairs_found; /* pairs are counted by the caller */
-    double search_ms,
-        consume_ms; /* what filling batches took since the begin, and, by the caller, the rest */
+    uint64_t boxes_tested, adjacent; /* pairs left out as adjacent, whose volumes overlap, too */
+    uint64_t pairs_found;            /* by the caller */
+    double search_ms, consume_ms;    /* of filling batches since the begin, and, by the caller, of the rest */
     leaf_cache cache;
     bool out_of_memory;
 } traversal_lane;

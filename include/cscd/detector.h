@@ -173,6 +173,8 @@ typedef struct cscd_counters { /* of the last step; exact, and the same for any 
     uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
+    uint64_t adjacent;         /* those of them that share a vertex and were left out, for others answer for
+                                * their features: where nothing is culled */
     uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */
     uint64_t tests;            /* elementary tests: those of them whose own swept volumes overlap */
     uint64_t by_signs;         /* tests that signs rejected, */

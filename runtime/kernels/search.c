@@ -182,7 +182,11 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
-        if (lanes != 0 && t->skip_adjacent) lanes = strangers(f, pair, i, lanes, one_part);
+        if (lanes != 0 && t->skip_adjacent) {
+            uint32_t kept = strangers(f, pair, i, lanes, one_part);
+            lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
+            lanes = kept;
+        }
         if (lanes == 0) continue;
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
         add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);

@@ -91,6 +91,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     else
         json_null(out, "earliest_toi");
     json_integer(out, "pcp", result->counters.pcp);
+    json_integer(out, "adjacent", result->counters.adjacent);
     json_integer(out, "tests", result->counters.tests);
     json_integer(out, "plus", result->counters.plus);
     json_integer(out, "minus", result->counters.minus);
