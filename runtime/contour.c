@@ -7,9 +7,10 @@
 
 enum { DEPTH_MAX = 8 };
 
-/* The plane across the axis, and how far computed coordinates may be from those of the exact projection. */
+/* The plane across the axis, and how far computed coordinates may be from those of the exact projection. Its
+ * origin moves with a vertex: what all of a body does together takes no part in whether it meets itself. */
 typedef struct plane {
-    double origin[3], right[3], up[3];
+    double origin[2][3], right[3], up[3];
     double error;
 } plane;
 
@@ -24,13 +25,14 @@ static void cross3(const double a[3], const double b[3], double out[3]) {
 
 /* right and up are perpendicular to the axis up to rounding: the exact projection, along right x up, is along
  * an axis that is off by 1e-14 or so, which normal_cone_limit allows for. */
-static plane make_plane(const float axis[3], const double *origin) {
+static plane make_plane(const float axis[3], const double *start, const double *end) {
     plane p = {.error = 0.0};
     double direction[3], helper[3] = {0.0, 0.0, 0.0}, least = INFINITY, length = 0.0;
     int smallest = 0;
     for (int k = 0; k < 3; k++) {
         direction[k] = (double)axis[k];
-        p.origin[k] = origin[k];
+        p.origin[0][k] = start[k];
+        p.origin[1][k] = end[k];
         if (fabs(direction[k]) < least) {
             least = fabs(direction[k]);
             smallest = k;
@@ -45,10 +47,10 @@ static plane make_plane(const float axis[3], const double *origin) {
 }
 
 /* A projected coordinate is a sum of three products of differences: off by less than 8 u times their sum. */
-static void project(plane *p, const double *x, double out[2]) {
+static void project(plane *p, const double *x, int time, double out[2]) {
     double size = 0.0, from[3];
     for (int k = 0; k < 3; k++) {
-        from[k] = x[k] - p->origin[k];
+        from[k] = x[k] - p->origin[time][k];
         size += fabs(from[k]);
     }
     out[0] = p->right[0] * from[0] + p->right[1] * from[1] + p->right[2] * from[2];
@@ -177,14 +179,15 @@ bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
     const cscd_mesh *mesh = query->mesh;
     uint32_t count = query->edge_count;
     if (count == 0) return true;
-    plane p = make_plane(query->axis, query->x0 + (size_t)mesh->edges[query->edges[0]][0] * 3);
+    size_t first = (size_t)mesh->edges[query->edges[0]][0] * 3;
+    plane p = make_plane(query->axis, query->x0 + first, query->x1 + first);
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t *v = mesh->edges[query->edges[i]];
         contour_edge *e = &scratch[i];
-        project(&p, query->x0 + (size_t)v[0] * 3, e->a[0]);
-        project(&p, query->x1 + (size_t)v[0] * 3, e->a[1]);
-        project(&p, query->x0 + (size_t)v[1] * 3, e->b[0]);
-        project(&p, query->x1 + (size_t)v[1] * 3, e->b[1]);
+        project(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
+        project(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
+        project(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
+        project(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
         e->vertices[0] = v[0];
         e->vertices[1] = v[1];
         e->index = i;
