@@ -182,7 +182,7 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
     static const char *const names[] = {"embree, refit", "embree, rebuild"};
     deforming_body b;
     broad_phase scenes[2];
-    subject_options options = {CSCD_METHOD_NONE, CSCD_MODE_ALL, 1, CSCD_SIMD_AUTO};
+    subject_options options = {CSCD_METHOD_NONE, CSCD_MODE_ALL, 1, CSCD_SIMD_AUTO, CSCD_VOLUME_BOX};
     if (!deforming_body_make(o->kind, size, DEFORM_WAVE, o->shuffled, &b, error)) return false;
     subject *s = subject_make(&b, &options, error);
     bool good = s != NULL;

@@ -130,7 +130,8 @@ static void print_row(const deforming_body *b, const subject_options *options, c
 static bool run_method(const deforming_body *b, const bench_options *o, cscd_method method, json *out,
                        io_error *error) {
     duel d = {.intervals = bench_intervals(o, b->triangle_count)};
-    subject_options options[2] = {{method, CSCD_MODE_ALL, 1, o->simd}, {method, CSCD_MODE_ALL, 2, o->simd}};
+    subject_options options[2] = {{method, CSCD_MODE_ALL, 1, o->simd, o->volume},
+                                  {method, CSCD_MODE_ALL, 2, o->simd, o->volume}};
     double *ends = body_allocate((size_t)b->vertex_count * 6, sizeof *ends);
     bool good = true;
     for (int k = 0; good && k < 2; k++) {
