@@ -73,7 +73,8 @@ static void remember(start_states *s, const double *x) {
     s->known = true;
 }
 
-static bool still_there(start_states *s, const double *x) {
+bool start_states_hold(start_states *s, const double *x) {
+    if (!s->known) return false;
     comparison c = {.s = s, .x = x};
     run_over_vertices(compare_task, &c);
     return !atomic_load(&c.differ);
@@ -87,7 +88,6 @@ static bool vertex_moved(const start_states *s, const double *x, uint32_t vertex
 
 void start_states_begin(start_states *s, const double *x) {
     const cscd_mesh *mesh = s->mesh;
-    if (s->known && still_there(s, x)) return;
     for (uint32_t c = 0; c < mesh->component_count; c++) s->moved[c] = !s->known;
     for (uint32_t t = 0; s->known && t < mesh->triangle_count; t++) {
         for (int i = 0; i < 3; i++)
@@ -200,4 +200,10 @@ void start_states_end(start_states *s, const double *x, const bool *lost) {
     }
     s->counted &= !any;
     remember(s, x);
+}
+
+void start_states_forget(start_states *s) {
+    if (!s->known) return;
+    memset(s->triangles, TRIANGLE_UNKNOWN, s->mesh->triangle_count * sizeof *s->triangles);
+    s->known = s->counted = false;
 }

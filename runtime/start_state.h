@@ -44,8 +44,11 @@ typedef struct start_states {
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);
 
-/* An interval begins at x: triangles of components whose vertices are not where they were seen last become
- * UNKNOWN. */
+/* Is x, bit for bit, where the vertices were seen last? */
+bool start_states_hold(start_states *s, const double *x);
+
+/* An interval begins at x, which is elsewhere: triangles of components whose vertices are not where they were
+ * seen last become UNKNOWN. */
 void start_states_begin(start_states *s, const double *x);
 
 /* Marks the triangles that a static check has to compare with one another, and returns how many: those not
@@ -72,5 +75,8 @@ static inline void start_states_taint(start_states *s, uint32_t triangle) {
 /* The interval ends at x, and all triangles in contact were tainted, but for components that are lost: what
  * becomes of those is UNKNOWN. All others that were free or clean still are. */
 void start_states_end(start_states *s, const double *x, const bool *lost);
+
+/* Nothing is known of the end of the interval. */
+void start_states_forget(start_states *s);
 
 #endif

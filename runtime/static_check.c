@@ -203,7 +203,7 @@ static cscd_status check_moment(moment *now) {
     memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
     if (status != CSCD_OK) return status;
-    start_states_begin(&d->starts, now->positions);
+    if (!start_states_hold(&d->starts, now->positions)) start_states_begin(&d->starts, now->positions);
     record_starts(now);
     return CSCD_OK;
 }

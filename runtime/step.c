@@ -15,7 +15,7 @@ typedef struct step_work {
     swept_interval interval;
     cscd_timings timings;
     cscd_counters counters;
-    bool any_culled, skip_adjacent;
+    bool any_culled, skip_adjacent, all_clean; /* all of the components that are culled */
 } step_work;
 
 /* Lanes search and test in turn: each takes of both what it finds, and nobody waits for anybody else's. */
@@ -157,6 +157,7 @@ static void choose_culled(step_work *work) {
             published ? embedded || follows(d, PUBLISHED_UNPROVEN) : detector_culls(d) && clean > 0;
         d->finished[c] = d->culled[c] && !published && (finishes(d) || !embedded);
         work->any_culled |= d->culled[c];
+        work->all_clean &= !d->culled[c] || embedded;
         work->counters.clean += clean;
     }
 }
@@ -165,7 +166,8 @@ static void orient(step_work *work) {
     cscd_detector *d = work->detector;
     bool still = follows(d, PUBLISHED_STILL);
     double since = timer_now_ms();
-    forest_view view = {d->culled, follows(d, PUBLISHED_UNPROVEN) ? NULL : d->starts.triangles,
+    bool all = work->all_clean || follows(d, PUBLISHED_UNPROVEN);
+    forest_view view = {d->culled, all ? NULL : d->starts.triangles,
                         (const double(*)[3])d->culling.detector_offsets, still};
     forest_orient(&d->forest, &view, d->culling.facing);
     culling_begin(&d->culling);
@@ -257,6 +259,10 @@ static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
 
 /* The states of the triangles go on to the end, but where contacts may be missing. */
 static void hand_on_states(cscd_detector *d, const double *end) {
+    if (!detector_culls(d)) {
+        start_states_forget(&d->starts); /* contacts have not tainted it */
+        return;
+    }
     bool *lost = d->culled; /* which nobody asks for any more */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
@@ -272,7 +278,6 @@ static cscd_status step(step_work *work, cscd_contacts *contacts) {
     culling_clear(&d->culling);
     tainting_begin(d);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->finished[c] = false;
-    start_states_begin(&d->starts, work->interval.x0);
     if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
     start_states_count(&d->starts);
     bool brute = d->options.method == CSCD_METHOD_BRUTE;
@@ -286,14 +291,28 @@ static cscd_status step(step_work *work, cscd_contacts *contacts) {
     return status;
 }
 
+/* What was seen last has been checked then. States are of the start from here on; without culling they matter
+ * only if a static check has left some. */
+static cscd_status check_positions(cscd_detector *d, const double *start, const double *end) {
+    uint32_t vertices = d->mesh->vertex_count;
+    cscd_status status = CSCD_OK;
+    if (end == NULL || start == NULL || !start_states_hold(&d->starts, start)) {
+        status = positions_check(d->context, start, vertices, "start");
+        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "end");
+        if (status == CSCD_OK && (detector_culls(d) || d->starts.known))
+            start_states_begin(&d->starts, start);
+        return status;
+    }
+    return positions_check(d->context, end, vertices, "end");
+}
+
 cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
                                cscd_contacts *out) {
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
     double since = timer_now_ms();
-    cscd_status status = positions_check(context, start, detector->mesh->vertex_count, "start");
-    if (status == CSCD_OK) status = positions_check(context, end, detector->mesh->vertex_count, "end");
+    cscd_status status = check_positions(detector, start, end);
     if (status != CSCD_OK) return status;
 
     cscd_contacts contacts;
@@ -304,6 +323,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
                                    .forest = &detector->forest,
                                    .representatives = &detector->representatives,
                                    .limit = detector->limit},
+                      .all_clean = true,
                       .timings = {.check_ms = detector->timings.check_ms}};
     status = step(&work, &contacts);
     if (status != CSCD_OK) return context_out_of_memory(context);

@@ -1,8 +1,6 @@
 /* The detector's trees: built when they are first needed, moved, and built anew when they have decayed. */
 #include "runtime/upkeep.h"
 
-#include <math.h>
-
 enum { LOOK_EVERY = 16 };
 
 static const double decayed = 1.25;
@@ -23,26 +21,9 @@ static cscd_status build(const cscd_detector *d, const double *positions, forest
     return status;
 }
 
-/* Extents of a leaf and of its triangles at the start, added up over the axes. */
-static void add_extents(const forest *f, const forest_leaf *leaf, double *whole, double *of_triangles) {
-    for (int k = 0; k < BOX_AXES; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (int lane = 0; lane < FOREST_LANES; lane++) {
-            float a = f->records[leaf->corners[0][lane]][k], b = f->records[leaf->corners[1][lane]][k];
-            float c = f->records[leaf->corners[2][lane]][k];
-            float least = fminf(fminf(a, b), c), most = fmaxf(fmaxf(a, b), c);
-            low = fminf(low, least);
-            high = fmaxf(high, most);
-            if (leaf->triangles[lane] != UINT32_MAX) *of_triangles += (double)(most - least);
-        }
-        *whole += (double)(high - low);
-    }
-}
-
 double upkeep_spread(const forest *f) {
-    double whole = 0.0, of_triangles = 0.0;
-    for (uint32_t i = 0; i < f->leaf_count; i++) add_extents(f, &f->leaves[i], &whole, &of_triangles);
-    return of_triangles > 0.0 ? whole / of_triangles : 0.0;
+    extents sum = f->kernels->extents_at_start(f);
+    return sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0;
 }
 
 /* What hangs on the order of the triangles goes with the old trees; without memory for new ones they stay. */

@@ -20,6 +20,11 @@ typedef struct copied {
 } copied;
 enum { KERNEL_LANES = 8 };
 
+/* Along the axes, added up. */
+typedef struct extents {
+    double leaves, triangles;
+} extents;
+
 /* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
  * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j
  * of b. */
@@ -56,6 +61,9 @@ typedef struct kernels {
 
     /* Bounds of the children of blocks begin to end - 1 of any level but the part level. */
     void (*refit)(const struct forest *f, int level, uint32_t begin, uint32_t end);
+
+    /* How far leaves, and their triangles, extend at the start. */
+    extents (*extents_at_start)(const struct forest *f);
 
     /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; states: triangle_state
      * of each triangle of the mesh, of which only the clean ones have an orientation; NULL: all. */

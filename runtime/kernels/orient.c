@@ -62,25 +62,42 @@ static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus,
     *minus = f32x8_below(greatest, -bound);
 }
 
+/* Of the triangles used, those that are clean. */
+static uint32_t clean_lanes(const forest_leaf *l, uint32_t used, const uint8_t *states) {
+    uint32_t clean = 0;
+    for (int lane = 0; lane < LANES; lane++) {
+        uint32_t triangle = l->triangles[(used >> lane & 1) != 0 ? lane : 0];
+        clean |= (uint32_t)(states[triangle] == TRIANGLE_CLEAN) << lane;
+    }
+    return clean & used;
+}
+
+_Static_assert((ORIENTATION_ZERO ^ 2) == ORIENTATION_PLUS && (ORIENTATION_ZERO ^ 1) == ORIENTATION_MINUS,
+               "written without branches below");
+
+/* Lanes that are not used are after those that are, and repeat the first triangle. */
+static void store_orientations(const forest_leaf *l, uint32_t used, uint32_t plus, uint32_t minus,
+                               uint8_t *orientations) {
+    for (int lane = LANES - 1; lane >= 0; lane--) {
+        int from = (used >> lane & 1) != 0 ? lane : 0;
+        uint32_t flag = ORIENTATION_ZERO ^ (plus >> from & 1) << 1 ^ (minus >> from & 1);
+        orientations[l->triangles[from]] = (uint8_t)flag;
+    }
+}
+
 static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *states,
                         uint8_t *orientations) {
     const forest_leaf *l = &f->leaves[index];
-    uint32_t plus, minus, free = f->leaf_flags[index].used;
+    uint32_t plus, minus, used = f->leaf_flags[index].used;
+    uint32_t clean = states != NULL ? clean_lanes(l, used, states) : used;
     leaf_corners corners;
     load_corners(f, l, corners);
     orient(p, corners, &plus, &minus);
-    for (int lane = 0; states != NULL && lane < LANES; lane++) {
-        if ((f->leaf_flags[index].used >> lane & 1) != 0 && states[l->triangles[lane]] != TRIANGLE_CLEAN)
-            free &= ~(1u << lane);
-    }
-    plus &= free;
-    minus &= free;
+    plus &= clean;
+    minus &= clean;
     f->leaf_flags[index].plus = (uint8_t)plus;
     f->leaf_flags[index].minus = (uint8_t)minus;
-    for (uint32_t lane = 0; lane < LANES && (f->leaf_flags[index].used >> lane & 1) != 0; lane++)
-        orientations[l->triangles[lane]] = (uint8_t)((plus >> lane & 1) != 0    ? ORIENTATION_PLUS
-                                                     : (minus >> lane & 1) != 0 ? ORIENTATION_MINUS
-                                                                                : ORIENTATION_ZERO);
+    store_orientations(l, used, plus, minus, orientations);
 }
 
 void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,

@@ -96,3 +96,24 @@ void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end) 
             enclose_blocks(f, level, block);
     }
 }
+
+/* Empty lanes repeat the first triangle, so they do not extend the leaf; they count as triangles, the same
+ * ones every time. */
+extents SIMD_NAME(extents_at_start)(const forest *f) {
+    extents sum = {0.0, 0.0};
+    for (uint32_t i = 0; i < f->leaf_count; i++) {
+        leaf_corners corners;
+        float whole = 0.0f;
+        f32x8 of_triangles = f32x8_all(0.0f);
+        load_corners(f, &f->leaves[i], corners);
+        for (int k = 0; k < BOX_AXES; k++) {
+            f32x8 low = f32x8_min(f32x8_min(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);
+            f32x8 high = f32x8_max(f32x8_max(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);
+            whole += f32x8_greatest(high) - f32x8_least(low);
+            of_triangles += high - low;
+        }
+        sum.leaves += (double)whole;
+        for (int lane = 0; lane < LANES; lane++) sum.triangles += (double)of_triangles[lane];
+    }
+    return sum;
+}

@@ -9,6 +9,7 @@ const kernels SIMD_NAME(kernels) = {
     .name = NAME_OF_LEVEL(SIMD_LEVEL),
     .copy_in = SIMD_NAME(copy_in),
     .refit = SIMD_NAME(refit),
+    .extents_at_start = SIMD_NAME(extents_at_start),
     .orient = SIMD_NAME(orient),
     .search = SIMD_NAME(search),
     .sieve = SIMD_NAME(sieve),

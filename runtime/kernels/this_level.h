@@ -10,6 +10,7 @@
 void SIMD_NAME(copy_in)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end, const double *x0,
                         const double *x1, copied *out);
 void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end);
+extents SIMD_NAME(extents_at_start)(const forest *f);
 void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
                        const uint8_t *states, uint8_t *orientations);
 void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);
