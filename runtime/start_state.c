@@ -6,10 +6,13 @@
 #include <stdatomic.h>
 #include <string.h>
 
+/* By measurement (docs/culling.md). */
+static const double share_worth_it = 0.9;
+
 enum { PATIENCE_MAX = 16, VERTICES_PER_TASK = 2048 };
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
-    start_states s = {.context = mesh->context, .mesh = mesh};
+    start_states s = {.context = mesh->context, .mesh = mesh, .share_worth_it = share_worth_it};
     s.positions = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
     s.moved = context_allocate(mesh->context, mesh->component_count, sizeof *s.moved);
     s.triangles = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.triangles);
@@ -146,10 +149,9 @@ uint32_t start_states_suspect(start_states *s, bool *suspects) {
     return count;
 }
 
-/* Does the next check pay? One whose outcome leaves most to be tested costs about half of what culling saves.
- */
-static void lose_patience(component_start *start, uint32_t triangle_count) {
-    if (start->clean >= triangle_count - start->clean) {
+/* Does the next check pay? Not if its outcome leaves too much to be tested. */
+static void lose_patience(const start_states *s, component_start *start, uint32_t triangle_count) {
+    if (start_states_pay(s, start->clean, triangle_count)) {
         start->patience = start->waiting = 0;
     } else if (start->waiting == 0) {
         start->patience = start->patience == 0             ? 1
@@ -176,7 +178,7 @@ void start_states_checked(start_states *s, const bool *suspects, const bool *cro
     clean_patches_find(s);
     s->counted = false;
     for (uint32_t c = 0; c < mesh->component_count; c++) {
-        if (checked[c]) lose_patience(&s->of[c], mesh->components[c].triangle_count);
+        if (checked[c]) lose_patience(s, &s->of[c], mesh->components[c].triangle_count);
     }
 }
 

@@ -39,7 +39,15 @@ typedef struct start_states {
     bool counted;        /* they are */
     uint32_t *queue;     /* scratch, per triangle */
     free_patch *largest; /* scratch, per component */
+    double
+        share_worth_it; /* with fewer of its triangles clean, a component is not worth culling, or a check */
 } start_states;
+
+/* Are so many clean triangles of a component enough for culling to pay? Below, the pairs of all others, their
+ * neighbours among them, cost more than all pairs do without. */
+static inline bool start_states_pay(const start_states *s, uint32_t clean, uint32_t triangle_count) {
+    return clean > 0 && (double)clean >= s->share_worth_it * (double)triangle_count;
+}
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);
@@ -53,8 +61,8 @@ void start_states_begin(start_states *s, const double *x);
 
 /* Marks the triangles that a static check has to compare with one another, and returns how many: those not
  * known to be free, of closed manifold components that hold unknown ones and wait no longer; those that wait
- * do so for one interval less. After a check that leaves less than half of a component clean, its next one
- * waits 1 interval, then 2, 4, 8 and 16. */
+ * do so for one interval less. After a check that leaves too little of a component clean (start_states_pay),
+ * its next one waits 1 interval, then 2, 4, 8 and 16. */
 uint32_t start_states_suspect(start_states *s, bool *suspects);
 
 /* The suspects were compared with one another: crossing says which meet another one, or have no area. */

@@ -143,8 +143,8 @@ static bool finishes(const cscd_detector *d) {
     return d->options.mode == CSCD_MODE_ALL || d->options.ignore != NULL;
 }
 
-/* Which components are culled: closed ones with clean triangles. Those that are not all clean are finished in
- * either mode. As published: embedded ones, or all, and none is finished. */
+/* Which components are culled: closed ones of which nearly all triangles are clean. Those that are not all
+ * clean are finished in either mode. As published: embedded ones, or all, and none is finished. */
 static void choose_culled(step_work *work) {
     cscd_detector *d = work->detector;
     bool published = d->options.method == CSCD_METHOD_PUBLISHED;
@@ -153,8 +153,8 @@ static void choose_culled(step_work *work) {
         const cscd_component *component = &d->mesh->components[c];
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
-        d->culled[c] =
-            published ? embedded || follows(d, PUBLISHED_UNPROVEN) : detector_culls(d) && clean > 0;
+        bool pays = start_states_pay(&d->starts, clean, component->triangle_count);
+        d->culled[c] = published ? embedded || follows(d, PUBLISHED_UNPROVEN) : detector_culls(d) && pays;
         d->finished[c] = d->culled[c] && !published && (finishes(d) || !embedded);
         work->any_culled |= d->culled[c];
         work->all_clean &= !d->culled[c] || embedded;

@@ -1,6 +1,7 @@
 /* Culling by orientation where it is easily wrong: surfaces without an inside, degenerate first touches,
  * starts that are not embedded, minimum separation. */
 #include "cscd/cscd.h"
+#include "runtime/detector.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 
@@ -306,11 +307,22 @@ static void contact_and_recovery(void **state) {
     memcpy(open, s.x0, sizeof open);
     memcpy(crossing, s.x1, sizeof crossing);
     chain c = start_chain(CSCD_START_PROVE);
+    c.detector->starts.share_worth_it = 0.5;
     step(&c, open, crossing, CSCD_REASON_FINISHED);
     step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* most triangles stay clean, so the others are */
-    step(&c, crossing, open, CSCD_REASON_CROSSING);     /* checked at each start */
+    assert_true(cscd_detector_counters(c.detector).plus > 0);
+    step(&c, crossing, open, CSCD_REASON_CROSSING); /* checked at each start */
     step(&c, open, open, CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 4);
+    end_chain(&c);
+
+    c = start_chain(CSCD_START_PROVE);
+    step(&c, open, crossing, CSCD_REASON_FINISHED);
+    step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* too few are clean for culling to pay, */
+    assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
+    step(&c, crossing, open, CSCD_REASON_UNPROVEN); /* so the next check waits */
+    step(&c, open, open, CSCD_REASON_CLEAN);
+    assert_int_equal(c.checks, 3);
     end_chain(&c);
 }
 

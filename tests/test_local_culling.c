@@ -87,6 +87,7 @@ static cscd_detector *culling_detector(const ways *w, int way) {
     if (way == ALL_PLANNED) plan = w->planned;
     if (plan == NULL) options.method = CSCD_METHOD_SINGLE;
     assert_int_equal(cscd_detector_create(w->mesh, plan, &options, &detector), CSCD_OK);
+    if (way != ALL_SINGLE) detector->starts.share_worth_it = 0.0; /* however few triangles are clean */
     return detector;
 }
 

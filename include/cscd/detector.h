@@ -127,8 +127,9 @@ CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *
 typedef enum cscd_reason {
     CSCD_REASON_METHOD,    /* complete: the method does not cull, or not with min_separation */
     CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so never culled */
-    CSCD_REASON_CROSSING,  /* complete: the start crosses or touches itself; culled where it does not */
-    CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded; culled where it is */
+    CSCD_REASON_CROSSING,  /* complete: the start crosses or touches itself; culled, if at all, where not */
+    CSCD_REASON_UNPROVEN,  /* complete: the start is not known to be embedded; culled, if at all, where it is
+                            */
     CSCD_REASON_CLEAN,     /* complete: the start is embedded, and there is no contact */
     CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED or ICCD_PUBLISHED */
