@@ -127,14 +127,15 @@ static double along(const double v[3], int axis) {
     return axes[axis][0] * v[0] + axes[axis][1] * v[1] + axes[axis][2] * v[2];
 }
 
-/* A part's volume over the interval in a frame at rest at `at`, rounded outward by 2^-20 of what is added. */
-static void place_part(const forest *f, const forest_part *p, const float *own, const double at[3],
+/* A part's volume over the interval in the frame of another one, rounded outward by 2^-20 of what is added.
+ */
+static void place_part(const forest *f, const forest_part *p, const float *own, const forest_part *frame,
                        float *bounds) {
     double from[2][3], size = 4.0 * (double)p->reach;
     for (int i = 0; i < 6; i++) {
-        double origin = p->origin[i / 3][i % 3];
-        from[i / 3][i % 3] = (origin - at[i % 3]) * f->scale;
-        size += fabs(from[i / 3][i % 3]) + 0x1p-30 * f->scale * (fabs(origin) + fabs(at[i % 3]));
+        double origin = p->origin[i / 3][i % 3], at = frame->origin[i / 3][i % 3];
+        from[i / 3][i % 3] = (origin - at) * f->scale;
+        size += fabs(from[i / 3][i % 3]) + 0x1p-30 * f->scale * (fabs(origin) + fabs(at));
     }
     for (int k = 0; k < f->axis_count; k++) {
         double low = INFINITY, high = -INFINITY;
@@ -163,7 +164,7 @@ static void place_parts(const forest *f) {
     for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * FOREST_LANES; i++) {
         float *bounds = level->bounds + i / FOREST_LANES * stride + i % FOREST_LANES;
         if (i < f->part_count)
-            place_part(f, &f->parts[i], roots + i * stride, f->parts[0].origin[0], bounds);
+            place_part(f, &f->parts[i], roots + i * stride, &f->parts[0], bounds);
         else
             place_nothing(f, bounds);
     }
