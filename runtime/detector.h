@@ -24,6 +24,11 @@ enum {
     PUBLISHED_ALL = 15
 };
 
+/* How far leaves extend, as a multiple of their triangles, and blocks of parts, of their parts. */
+typedef struct tree_spread {
+    double leaves, parts;
+} tree_spread;
+
 struct cscd_detector {
     cscd_context *context;
     const cscd_mesh *mesh;
@@ -40,11 +45,11 @@ struct cscd_detector {
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches;          /* of the forest, with ICCD */
-    forest forest;            /* of the interval or moment at hand */
-    uint64_t intervals_moved; /* of the forest, */
-    double spread_when_built; /* and how good it was: see upkeep.h */
-    bool rebuilt;             /* in the interval at hand */
+    patches patches;               /* of the forest, with ICCD */
+    forest forest;                 /* of the interval or moment at hand */
+    tree_spread spread_when_built; /* and how good it is: see upkeep.h */
+    uint32_t intervals_unlooked, useless_rebuilds;
+    bool rebuilt; /* in the interval at hand */
     representatives representatives;
     orphan_sets orphans; /* once an interval without culling has come, unless there are too many */
     bool orphans_known, orphans_usable;

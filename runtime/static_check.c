@@ -198,7 +198,7 @@ cscd_status static_check_suspects(cscd_detector *detector, const double *positio
 
 static cscd_status check_moment(moment *now) {
     cscd_detector *d = now->detector;
-    cscd_status status = upkeep_move(d, now->positions, now->positions, 0.0);
+    cscd_status status = upkeep_move_to(d, now->positions);
     if (status != CSCD_OK) return status;
     memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);

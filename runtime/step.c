@@ -126,7 +126,7 @@ static cscd_status prove_starts(step_work *work) {
     bool at_once = suspects > d->mesh->triangle_count / SUSPECTS_SHARE;
     cscd_status status = CSCD_OK;
     if (at_once) {
-        status = upkeep_move(d, start, start, 0.0);
+        status = upkeep_move_to(d, start);
         if (status == CSCD_OK) status = static_check_suspects(d, start);
     }
     if (proves) timer_lap(&since, &work->timings.proof_ms);

@@ -1,9 +1,11 @@
 /* The detector's trees: built when they are first needed, moved, and built anew when they have decayed. */
 #include "runtime/upkeep.h"
 
-enum { LOOK_EVERY = 16 };
+#include <math.h>
 
-static const double decayed = 1.25;
+enum { LOOK_EVERY = 16, USELESS_MAX = 4 };
+
+static const double decayed = 1.25, of_use = 1.1;
 
 /* As published, a patch of ICCD is any set of triangles: then all components are one part. */
 static cscd_status build(const cscd_detector *d, const double *positions, forest *out) {
@@ -21,9 +23,34 @@ static cscd_status build(const cscd_detector *d, const double *positions, forest
     return status;
 }
 
-double upkeep_spread(const forest *f) {
+/* How far blocks of parts extend, as a multiple of their parts; 0: there is one block. */
+static double spread_of_parts(const forest *f) {
+    const forest_level *level = &f->levels[f->part_level];
+    const size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
+    double whole = 0.0, of_parts = 0.0;
+    for (uint32_t block = 0; level->block_count > 1 && block < level->block_count; block++) {
+        for (int k = 0; k < BOX_AXES; k++) {
+            const float *low = level->bounds + block * stride + 2 * k * FOREST_LANES,
+                        *high = low + FOREST_LANES;
+            float least = INFINITY, greatest = -INFINITY;
+            for (int i = 0; i < FOREST_LANES && (level->flags[block].used >> i & 1) != 0; i++) {
+                least = fminf(least, low[i]);
+                greatest = fmaxf(greatest, high[i]);
+                of_parts += (double)(high[i] - low[i]);
+            }
+            whole += (double)(greatest - least);
+        }
+    }
+    return of_parts > 0.0 ? whole / of_parts : 0.0;
+}
+
+static tree_spread spread_of(const forest *f) {
     extents sum = f->kernels->extents_at_start(f);
-    return sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0;
+    return (tree_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_parts(f)};
+}
+
+static bool beyond(tree_spread now, tree_spread before, double factor) {
+    return now.leaves > factor * before.leaves || now.parts > factor * before.parts;
 }
 
 /* What hangs on the order of the triangles goes with the old trees; without memory for new ones they stay. */
@@ -37,18 +64,33 @@ static bool rebuild(cscd_detector *d, const double *positions) {
     return true;
 }
 
-cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    if (d->forest.mesh == NULL) {
+static cscd_status move(cscd_detector *d, const double *x0, const double *x1, double distance) {
+    bool fresh = d->forest.mesh == NULL;
+    if (fresh) {
         cscd_status status = build(d, x0, &d->forest);
         if (status != CSCD_OK) return status;
     }
     forest_move(&d->forest, x0, x1, distance);
-    if (x0 == x1 || d->intervals_moved++ % LOOK_EVERY != 0) return CSCD_OK;
-    double spread = upkeep_spread(&d->forest);
-    if (d->intervals_moved == 1) d->spread_when_built = spread;
-    if (spread > decayed * d->spread_when_built && rebuild(d, x0)) {
-        forest_move(&d->forest, x0, x1, distance);
-        d->spread_when_built = upkeep_spread(&d->forest);
-    }
+    if (fresh) d->spread_when_built = spread_of(&d->forest);
+    return CSCD_OK;
+}
+
+cscd_status upkeep_move_to(cscd_detector *d, const double *positions) {
+    return move(d, positions, positions, 0.0);
+}
+
+cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
+    cscd_status status = move(d, x0, x1, distance);
+    if (status != CSCD_OK || ++d->intervals_unlooked < (uint32_t)LOOK_EVERY << d->useless_rebuilds)
+        return status;
+    tree_spread spread = spread_of(&d->forest);
+    d->intervals_unlooked = 0;
+    if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return CSCD_OK;
+    forest_move(&d->forest, x0, x1, distance);
+    d->spread_when_built = spread_of(&d->forest);
+    if (beyond(spread, d->spread_when_built, of_use))
+        d->useless_rebuilds = 0;
+    else if (d->useless_rebuilds < USELESS_MAX)
+        d->useless_rebuilds++;
     return CSCD_OK;
 }

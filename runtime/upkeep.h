@@ -4,13 +4,15 @@
 
 #include "runtime/detector.h"
 
-/* Moves the forest, built from x0 if there is none, on to the interval from x0 to x1; the same array twice:
- * to a moment. Every 16th interval its leaves are looked at: a refit keeps triangles together that were near
- * when the trees were built, and when leaves have grown by a quarter beyond their triangles, the trees are
- * built anew from x0. That depends on positions alone. */
+/* Moves the forest, built from x0 if there is none, on to the interval from x0 to x1.
+ *
+ * A refit keeps together what was near when the trees were built. Every 16th interval the extents of leaves
+ * are compared with those of their triangles, and those of blocks of parts with those of their parts; where
+ * one or the other has grown by a quarter, the trees are built anew from x0. Where that was of no use the
+ * next look waits twice as long. All this depends on positions alone. */
 cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance);
 
-/* How much farther leaves extend than the triangles in them, on average, at the interval's start. */
-double upkeep_spread(const forest *f);
+/* To a moment. */
+cscd_status upkeep_move_to(cscd_detector *d, const double *positions);
 
 #endif

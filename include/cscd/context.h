@@ -21,7 +21,7 @@ extern "C" {
 
 typedef enum cscd_status {
     CSCD_OK = 0,
-    CSCD_OUT_OF_MEMORY,    /* an allocation failed; every object is still valid and unchanged */
+    CSCD_OUT_OF_MEMORY, /* an allocation failed; every object is still valid, and the call may be repeated */
     CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options not made by _defaults() */
     CSCD_INVALID_MESH, /* empty, too large, an index past vertex_count, a triangle that repeats a vertex */
     CSCD_SYSTEM_ERROR  /* the system refused a thread */

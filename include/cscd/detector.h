@@ -99,8 +99,8 @@ typedef struct cscd_contacts {
 } cscd_contacts;
 
 /* The contacts between start and end, two arrays of positions, that the mode promises. The first call builds
- * the trees from start, so it is slower; later calls allocate only when a buffer has to grow, or when trees
- * have decayed over a long deformation and are built anew. */
+ * the trees from start, so it is slower; later calls allocate only when a buffer has to grow, when trees have
+ * decayed over a long deformation and are built anew, or in the first interval in which nothing is culled. */
 CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
                                         cscd_contacts *out);
 
@@ -155,7 +155,7 @@ CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, u
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
 
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
-    double update_ms;         /* BVH update: swept boxes and refit */
+    double update_ms;         /* BVH update: records and refit */
     double orientation_ms;    /* detector points, orientation check */
     double contour_ms;        /* ICCD: normal cones and contour tests */
     double traversal_ms;      /* overlapping triangle pairs */
@@ -174,16 +174,16 @@ typedef struct cscd_counters { /* of the last step; exact, and the same for any 
     uint64_t contours, sealed; /* ICCD: contour tests; patches that passed, in which no pair is looked at */
     uint64_t boxes_tested;     /* pairs of bounding volumes compared during traversal */
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
-    uint64_t adjacent;         /* those of them that share a vertex and were left out, for others answer for
-                                * their features: where nothing is culled */
-    uint64_t feature_pairs;    /* VF and EE pairs assigned to these triangle pairs, none twice */
-    uint64_t tests;            /* elementary tests: those of them whose own swept volumes overlap */
-    uint64_t by_signs;         /* tests that signs rejected, */
-    uint64_t by_roots;         /* those that intervals about the roots decided, */
-    uint64_t by_exact;         /* and those that took exact arithmetic: together all tests, or with
-                                * min_separation none */
-    uint64_t vf, ee;           /* contacts reported */
-    uint64_t bounded;          /* of these, cscd_contact.bounded */
+    uint64_t adjacent;         /* those of them that share a vertex and were left out: others answer for their
+                                * features, but in the published methods */
+    uint64_t feature_pairs; /* VF and EE pairs, none twice, that may touch by their own volumes; BRUTE: all */
+    uint64_t tests;         /* elementary tests, one for each of these */
+    uint64_t by_signs;      /* tests that signs rejected, */
+    uint64_t by_roots;      /* those that intervals about the roots decided, */
+    uint64_t by_exact;      /* and those that took exact arithmetic: together all tests, or with
+                             * min_separation none */
+    uint64_t vf, ee;        /* contacts reported */
+    uint64_t bounded;       /* of these, cscd_contact.bounded */
 } cscd_counters;
 
 CSCD_API cscd_timings cscd_detector_timings(const cscd_detector *detector);
