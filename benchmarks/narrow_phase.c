@@ -78,7 +78,7 @@ static uint32_t triangle_chunk(const recording *r, size_t i) {
 static bool record_pairs(recording *r) {
     traversal *t = &r->detector->traversal;
     bool good = true, more = true;
-    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT, true);
+    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
         for (uint32_t i = 0; good && i < t->lane_count; i++)

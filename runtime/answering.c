@@ -115,12 +115,44 @@ static uint32_t select_kept(const swept_interval *interval, triangle_pair pair, 
 
 /* ---- either -------------------------------------------------------------------------------------------- */
 
+/* Pairs that the flags do not answer for, and where their features are to go. */
+typedef struct other_pairs {
+    triangle_pair pairs[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE], *places[PAIRS_AT_ONCE];
+    uint32_t count;
+} other_pairs;
+
+static void select_others(const swept_interval *interval, other_pairs *others) {
+    select_strangers(interval, others->pairs, others->count, others->features);
+    for (uint32_t i = 0; i < others->count; i++) *others->places[i] = others->features[i];
+    others->count = 0;
+}
+
+/* Triangles of one component that is culled. */
+static bool flags_answer(const swept_interval *interval, triangle_pair pair) {
+    const uint32_t *components = interval->mesh->triangle_components;
+    return !interval->strangers ||
+           (components[pair.a] == components[pair.b] && interval->culled[components[pair.a]]);
+}
+
 void answering_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                       uint16_t *features) {
-    for (uint32_t p = 0; interval->culling != NULL && p < count; p++)
-        features[p] = (uint16_t)select_kept(interval, pairs[p], features[p]);
-    for (uint32_t p = 0; interval->culling == NULL && p < count; p += PAIRS_AT_ONCE) {
-        uint32_t some = count - p < PAIRS_AT_ONCE ? count - p : PAIRS_AT_ONCE;
-        select_strangers(interval, pairs + p, some, features + p);
+    if (interval->culling == NULL) {
+        for (uint32_t p = 0; p < count; p += PAIRS_AT_ONCE)
+            select_strangers(interval, pairs + p, count - p < PAIRS_AT_ONCE ? count - p : PAIRS_AT_ONCE,
+                             features + p);
+        return;
     }
+    other_pairs others = {.count = 0};
+    for (uint32_t p = 0; p < count; p++) {
+        if (flags_answer(interval, pairs[p])) {
+            features[p] = (uint16_t)select_kept(interval, pairs[p], features[p]);
+            continue;
+        }
+        others.pairs[others.count] = pairs[p];
+        others.features[others.count] = features[p];
+        others.places[others.count++] = &features[p];
+        if (others.count == PAIRS_AT_ONCE) select_others(interval, &others);
+    }
+    select_others(interval, &others);
 }

@@ -70,8 +70,10 @@ static bool allocate_per_component(cscd_detector *d) {
     d->culled = context_allocate(d->context, count, sizeof *d->culled);
     d->touched = context_allocate(d->context, count, sizeof *d->touched);
     d->finished = context_allocate(d->context, count, sizeof *d->finished);
+    d->skipped = context_allocate(d->context, count, sizeof *d->skipped);
     d->guarantees = context_allocate(d->context, count, sizeof *d->guarantees);
-    return d->culled != NULL && d->touched != NULL && d->finished != NULL && d->guarantees != NULL;
+    return d->culled != NULL && d->touched != NULL && d->finished != NULL && d->skipped != NULL &&
+           d->guarantees != NULL;
 }
 
 static bool allocate_per_triangle(cscd_detector *d) {
@@ -151,6 +153,7 @@ void cscd_detector_destroy(cscd_detector *d) {
                       d->culled,
                       d->touched,
                       d->finished,
+                      d->skipped,
                       d->suspects,
                       d->crossing,
                       d->contacts_seen,

@@ -40,6 +40,7 @@ struct cscd_detector {
     start_states starts;
     bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
     bool *touched;              /* it has a contact with itself, */
+    bool *skipped;              /* its pairs of adjacent triangles are left out, */
     bool *finished;             /* it is culled, and all its contacts are wanted */
     bool *suspects, *crossing;  /* per triangle, at the moment checked last */
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */

@@ -40,6 +40,7 @@ typedef struct forest_level {
  * and multiplies by the forest's scale. */
 typedef struct forest_part {
     uint32_t region;
+    bool skip_adjacent; /* pairs of its triangles that share a vertex are not looked for */
     uint32_t first_leaf, leaf_count, first_record, record_count;
     uint32_t first_blocks[PART_LEVEL_MAX]; /* per level below the part level */
     double origin[2][3];
@@ -102,6 +103,9 @@ void forest_move(forest *f, const double *x0, const double *x1, double distance)
 
 /* No pair is hidden by `within`, where there is such a thing. */
 void forest_show_all(forest *f);
+
+/* Whose pairs of adjacent triangles are left out: per component; NULL: nobody's. */
+void forest_skip_adjacent(forest *f, const bool *components);
 
 /* Which orientations count, and whence triangles are seen. */
 typedef struct forest_view {

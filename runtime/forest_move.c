@@ -197,3 +197,11 @@ void forest_move(forest *f, const double *x0, const double *x1, double distance)
     clear_flags(f->leaf_flags, f->leaf_count);
     forest_show_all(f);
 }
+
+void forest_skip_adjacent(forest *f, const bool *components) {
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        forest_part *p = &f->parts[i];
+        uint32_t component = f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
+        p->skip_adjacent = components != NULL && components[component];
+    }
+}

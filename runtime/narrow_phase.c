@@ -167,17 +167,24 @@ static bool stay_apart(const swept_interval *interval, const uint32_t *a, int co
     return false;
 }
 
+/* Adjacent triangles of components that are culled are pairs like others. */
+static bool reached_by_flags(const swept_interval *interval, uint32_t triangle) {
+    return interval->culling != NULL && interval->culled[interval->mesh->triangle_components[triangle]];
+}
+
 void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets *orphans, uint32_t index,
                                uint32_t stride, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     for (size_t i = index; i < orphans->vf_count; i += stride) {
         uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
+        if (reached_by_flags(interval, triangle)) continue;
         if (stay_apart(interval, &vertex, 1, mesh->triangles[triangle], 3)) continue;
         lane->feature_pairs++;
         narrow_phase_test_vf(interval, vertex, triangle, lane);
     }
     for (size_t i = index; i < orphans->ee_count; i += stride) {
         uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
+        if (reached_by_flags(interval, mesh->edge_stars[mesh->edge_star_offsets[a]])) continue;
         if (stay_apart(interval, mesh->edges[a], 2, mesh->edges[b], 2)) continue;
         lane->feature_pairs++;
         narrow_phase_test_ee(interval, a, b, lane);

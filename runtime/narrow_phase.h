@@ -19,8 +19,9 @@ typedef struct swept_interval {
     const forest *forest; /* slots of triangle pairs */
     const representatives *representatives;
     const culling *culling; /* NULL: the representatives answer, or: */
-    bool strangers;         /* pairs of adjacent triangles are not reached; others answer for theirs, and
-                             * orphans are tested apart */
+    const bool *culled;     /* with culling: components whose pairs are answered for by the flags */
+    bool strangers;         /* elsewhere pairs of adjacent triangles are not reached; others answer for
+                             * theirs, and orphans are tested apart */
     bool closing;           /* with culling: the pairs reached are those that it culled before */
     separation limit;       /* distance 0: a contact is touching */
 } swept_interval;

@@ -162,7 +162,8 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    traversal_begin(&d->traversal, &d->forest, now->pass, false);
+    forest_skip_adjacent(&d->forest, NULL);
+    traversal_begin(&d->traversal, &d->forest, now->pass);
     for (bool more = true; more;) {
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;

@@ -15,7 +15,8 @@ typedef struct step_work {
     swept_interval interval;
     cscd_timings timings;
     cscd_counters counters;
-    bool any_culled, skip_adjacent, all_clean; /* all of the components that are culled */
+    bool any_culled, any_not_culled; /* components */
+    bool all_clean;                  /* are those that are culled */
 } step_work;
 
 /* Lanes search and test in turn: each takes of both what it finds, and nobody waits for anybody else's. */
@@ -65,7 +66,7 @@ static void share_out(step_work *work, double together_ms) {
 static cscd_status traverse(step_work *work, traversal_pass pass) {
     cscd_detector *d = work->detector;
     double since = timer_now_ms(), together = 0.0;
-    traversal_begin(&d->traversal, &d->forest, pass, work->skip_adjacent);
+    traversal_begin(&d->traversal, &d->forest, pass);
     timer_lap(&since, &work->timings.traversal_ms);
     parallel_run(d->context->threads, d->traversal.busy_lanes, search_and_test, work);
     timer_lap(&since, &together);
@@ -83,9 +84,15 @@ static void test_orphans(void *data, uint32_t index) {
     narrow_phase_finish(&work->interval, lane);
 }
 
-/* Every pair of triangles is reached, so those that share a vertex, most of all pairs, need not be: other
- * pairs answer for their features, and there are orphans. */
-static cscd_status find_without_adjacent(step_work *work) {
+static void skip_adjacent(cscd_detector *d, bool everywhere, const bool *culled) {
+    for (uint32_t c = 0; c < d->mesh->component_count; c++)
+        d->skipped[c] = everywhere && (culled == NULL || !culled[c]);
+    forest_skip_adjacent(&d->forest, d->skipped);
+}
+
+/* Where nothing is culled every pair of triangles is reached, so those that share a vertex, most of all
+ * pairs, need not be: other pairs answer for their features, and there are orphans. */
+static cscd_status leave_out_adjacent(step_work *work) {
     cscd_detector *d = work->detector;
     if (!d->orphans_known) {
         bool too_many;
@@ -94,9 +101,16 @@ static cscd_status find_without_adjacent(step_work *work) {
         d->orphans_known = true;
         d->orphans_usable = !too_many;
     }
-    work->skip_adjacent = work->interval.strangers = d->orphans_usable;
-    cscd_status status = traverse(work, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || !d->orphans_usable) return status;
+    work->interval.strangers = d->orphans_usable;
+    skip_adjacent(d, d->orphans_usable, work->interval.culling != NULL ? d->culled : NULL);
+    return CSCD_OK;
+}
+
+static cscd_status find_without_adjacent(step_work *work) {
+    cscd_detector *d = work->detector;
+    cscd_status status = leave_out_adjacent(work);
+    if (status == CSCD_OK) status = traverse(work, TRAVERSAL_KEPT);
+    if (status != CSCD_OK || !work->interval.strangers) return status;
     double since = timer_now_ms();
     parallel_run(d->context->threads, d->traversal.busy_lanes, test_orphans, work);
     timer_lap(&since, &work->timings.contact_ms);
@@ -157,6 +171,7 @@ static void choose_culled(step_work *work) {
         d->culled[c] = published ? embedded || follows(d, PUBLISHED_UNPROVEN) : detector_culls(d) && pays;
         d->finished[c] = d->culled[c] && !published && (finishes(d) || !embedded);
         work->any_culled |= d->culled[c];
+        work->any_not_culled |= !d->culled[c];
         work->all_clean &= !d->culled[c] || embedded;
         work->counters.clean += clean;
     }
@@ -175,6 +190,7 @@ static void orient(step_work *work) {
     work->counters.plus = d->culling.plus;
     work->counters.minus = d->culling.minus;
     work->interval.culling = follows(d, PUBLISHED_REPRESENTATIVES) ? NULL : &d->culling;
+    work->interval.culled = d->culled;
 }
 
 /* Tests the pairs that contacts have uncovered, until these bring no more: then all contacts of the
@@ -207,8 +223,9 @@ static cscd_status find_unsealed(step_work *work) {
     timer_lap(&since, &work->timings.contour_ms);
     work->counters.contours = d->patches.contours;
     work->counters.sealed = d->patches.sealed;
-    work->skip_adjacent = published;
-    return published ? traverse(work, TRAVERSAL_KEPT) : find_without_adjacent(work);
+    if (!published) return find_without_adjacent(work);
+    skip_adjacent(d, true, NULL);
+    return traverse(work, TRAVERSAL_KEPT);
 }
 
 static cscd_status find_by_trees(step_work *work) {
@@ -218,10 +235,18 @@ static cscd_status find_by_trees(step_work *work) {
     if (detector_seals(d)) return find_unsealed(work);
     choose_culled(work);
     if (!work->any_culled) return find_without_adjacent(work);
-    work->skip_adjacent = follows(d, PUBLISHED_ADJACENT);
     orient(work);
-    status = traverse(work, TRAVERSAL_KEPT);
-    return status == CSCD_OK && d->options.method != CSCD_METHOD_PUBLISHED ? close_contacts(work) : status;
+    if (d->options.method == CSCD_METHOD_PUBLISHED) {
+        skip_adjacent(d, follows(d, PUBLISHED_ADJACENT), NULL);
+        return traverse(work, TRAVERSAL_KEPT);
+    }
+    if (work->any_not_culled) {
+        status = find_without_adjacent(work);
+    } else {
+        skip_adjacent(d, false, NULL);
+        status = traverse(work, TRAVERSAL_KEPT);
+    }
+    return status == CSCD_OK ? close_contacts(work) : status;
 }
 
 static cscd_status find_by_brute_force(step_work *work) {

@@ -72,10 +72,9 @@ static bool spread(traversal *t) {
     return true;
 }
 
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent) {
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass) {
     t->forest = f;
     t->pass = pass;
-    t->skip_adjacent = skip_adjacent;
     t->share_count = 0;
     atomic_store(&t->next_share, 0);
     for (uint32_t i = 0; i < t->lane_count; i++) {

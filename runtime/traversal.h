@@ -53,7 +53,6 @@ typedef struct traversal {
     cscd_context *context;
     const forest *forest;
     traversal_pass pass;
-    bool skip_adjacent;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
     uint32_t busy_lanes; /* the first so many share this traversal; 1: it is too small to be shared */
@@ -68,9 +67,8 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of f, which is up to date. skip_adjacent: pairs of triangles that share a vertex
- * are left out. */
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass, bool skip_adjacent);
+/* Starts anew at the root of f, which is up to date. */
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
 
 /* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
  * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and

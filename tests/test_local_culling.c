@@ -343,7 +343,7 @@ static void run_kind(sequence_kind kind, const char *name, tally *sum) {
     print_tally(name, sum);
     print_message("  tests counted in %llu intervals, to one in %llu\n", (unsigned long long)sum->small,
                   (unsigned long long)sum->exactly);
-    assert_true(sum->exactly * 10 > sum->small * 9);
+    assert_true(sum->exactly * 5 > sum->small * 4);
 }
 
 static void scenes_equal_no_culling(void **state) {

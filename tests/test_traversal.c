@@ -38,7 +38,7 @@ static void traverse_but(const forest_rig *r, traversal_pass pass, bool skip_adj
     traversal t;
     memset(out, 0, sizeof *out);
     assert_int_equal(traversal_create(r->context, &t), CSCD_OK);
-    traversal_begin(&t, &r->forest, pass, skip_adjacent);
+    traversal_begin(&t, &r->forest, pass);
     for (bool more = true; more;) {
         assert_int_equal(traversal_round(&t, &more), CSCD_OK);
         for (uint32_t i = 0; i < t.lane_count; i++) {

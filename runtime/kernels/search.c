@@ -165,7 +165,7 @@ static inline uint32_t strangers(const forest *f, const leaf_pair *pair, int i, 
 }
 
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
-                                  bool one_part, const displacement *d) {
+                                  bool skip_adjacent, bool one_part, const displacement *d) {
     const forest *f = t->forest;
     const comparison c = {.a = f->leaf_flags[pair->a],
                           .b = f->leaf_flags[pair->b],
@@ -182,7 +182,7 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
-        if (lanes != 0 && t->skip_adjacent) {
+        if (lanes != 0 && skip_adjacent) {
             uint32_t kept = strangers(f, pair, i, lanes, one_part);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
@@ -201,6 +201,7 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
     const forest *f = t->forest;
     const forest_level *level = &f->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
+    bool skip_adjacent = f->parts[at->part_a].skip_adjacent; /* part b is of the component, or not adjacent */
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     for (; lanes != 0; lanes &= lanes - 1) {
         int j = __builtin_ctz(lanes);
@@ -225,9 +226,9 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
         if (d == NULL) /* compiled apart, for it is most of the work */
-            compare_leaves(t, lane, &pair, true, NULL);
+            compare_leaves(t, lane, &pair, skip_adjacent, true, NULL);
         else
-            compare_leaves(t, lane, &pair, false, d);
+            compare_leaves(t, lane, &pair, skip_adjacent, false, d);
     }
 }
 
