@@ -43,6 +43,12 @@ static bool ignored(const cscd_detector *d, const cscd_contact *contact) {
     return any_pair_ignored(&d->options, edge_star(d->mesh, contact->a), edge_star(d->mesh, contact->b));
 }
 
+/* A contact, and its time as a number. */
+typedef struct sort_key {
+    uint64_t key;
+    const cscd_contact *of;
+} sort_key;
+
 /* Of contacts at the same time. */
 static int compare_names(const void *left, const void *right) {
     const cscd_contact *l = ((const sort_key *)left)->of, *r = ((const sort_key *)right)->of;
@@ -61,7 +67,7 @@ static uint64_t bits_of(double toi) {
 
 /* By (toi, kind, a, b). */
 static void sort_contacts(sort_key *keys, sort_key *scratch, size_t count) {
-    sort_keys(keys, scratch, count);
+    sort_by_number(keys, scratch, count, sizeof *keys);
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end].key == keys[begin].key;) end++;
         if (end - begin > 1) sort_items(keys + begin, scratch, end - begin, sizeof *keys, compare_names);
@@ -107,7 +113,8 @@ static void copy_contacts(void *data, uint32_t index) {
         memcpy(&s->items[i], s->keys[i].of, sizeof *s->items);
 }
 
-_Static_assert(2 * sizeof(sort_key) <= sizeof(cscd_contact), "keys are sorted where contacts will not be");
+_Static_assert(sizeof(sort_key) == 16 && 2 * sizeof(sort_key) <= sizeof(cscd_contact),
+               "keys are sorted where contacts will not be");
 
 cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd_contacts *out) {
     size_t found = 0, kept = 0;

@@ -5,8 +5,7 @@
 #include "src/mesh.h"
 
 /* PLUS (MINUS): (p0 - d) . n > 0 (< 0), with n = (p1 - p0) x (p2 - p0) and d the detector point, at every
- * moment of the interval, certified; ZERO: anything else. Bits, so that the flags of a set of triangles are
- * the flags of its members or'ed. */
+ * moment of the interval, certified; ZERO: anything else. */
 enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
 
 /* May triangles of one region with these flags, or any of two sets of them, be the first to touch? Not if

@@ -4,8 +4,9 @@
 
 #include "src/mesh.h"
 
-/* A feature's representative is the first triangle of its star (Tang et al. 2009). Complete as long as every
- * overlapping triangle pair is reached: the representatives' volumes contain the features'. */
+/* A feature's representative is the first triangle of its star (Tang et al. 2009). The pair of the
+ * representatives answers for a pair of features, unless it is one of adjacent triangles that are left out.
+ */
 typedef struct representatives {
     uint8_t *owned; /* per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i */
     uint32_t (*others)[2]; /* per vertex: the other vertices of its representative */

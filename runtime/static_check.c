@@ -6,6 +6,7 @@
 #include "runtime/upkeep.h"
 #include "src/positions.h"
 #include "src/predicates.h"
+#include "src/sort.h"
 #include "src/timer.h"
 
 #include <string.h>
@@ -101,33 +102,17 @@ static void count_zero_area(void *data, uint32_t index) {
         mark_zero_area(now, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
-
-/* By one digit of b, or of a, stable. */
-static void sort_by_digit(const cscd_intersection *items, cscd_intersection *out, size_t count, bool by_a,
-                          uint32_t shift) {
-    size_t places[DIGITS] = {0}, place = 0;
-    for (size_t i = 0; i < count; i++) places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++;
-    for (uint32_t digit = 0; digit < DIGITS; digit++) {
-        size_t next = place + places[digit];
-        places[digit] = place;
-        place = next;
+/* By a, then by b: in place as numbers, and back. */
+static void sort_intersections(cscd_intersection *items, void *scratch, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        uint64_t number = (uint64_t)items[i].a << 32 | items[i].b;
+        memcpy(&items[i], &number, sizeof number);
     }
-    for (size_t i = 0; i < count; i++)
-        out[places[((by_a ? items[i].a : items[i].b) >> shift) % DIGITS]++] = items[i];
-}
-
-/* By a, then by b, all below limit; as many digits of the one as of the other, so it ends where it began. */
-static void sort_intersections(cscd_intersection *items, cscd_intersection *scratch, size_t count,
-                               uint32_t limit) {
-    cscd_intersection *from = items, *to = scratch;
-    for (int by_a = 0; by_a < 2 && count > 1; by_a++) {
-        for (uint32_t shift = 0; shift < 32 && (limit - 1) >> shift > 0; shift += DIGIT_BITS) {
-            sort_by_digit(from, to, count, by_a, shift);
-            cscd_intersection *swapped = from;
-            from = to;
-            to = swapped;
-        }
+    sort_by_number(items, scratch, count, sizeof *items);
+    for (size_t i = 0; i < count; i++) {
+        uint64_t number;
+        memcpy(&number, &items[i], sizeof number);
+        items[i] = (cscd_intersection){(uint32_t)(number >> 32), (uint32_t)number};
     }
 }
 
@@ -153,7 +138,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
-    sort_intersections(items, d->intersections.scratch, kept, d->mesh->triangle_count);
+    sort_intersections(items, d->intersections.scratch, kept);
     result.count = kept;
     *out = result;
     return CSCD_OK;

@@ -40,38 +40,49 @@ void sort_items(void *items, void *scratch, size_t count, size_t size,
 
 /* ---- by digits ----------------------------------------------------------------------------------------- */
 
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, KEY_BITS = 64, DIGITS_WORTH_IT = 512 };
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, NUMBER_BITS = 64, DIGITS_WORTH_IT = 512 };
 
-static int compare_keys(const void *left, const void *right) {
-    const sort_key *l = left, *r = right;
-    return l->key < r->key ? -1 : l->key > r->key;
+static uint64_t number_of(const void *item) {
+    uint64_t number;
+    memcpy(&number, item, sizeof number);
+    return number;
+}
+
+static int compare_numbers(const void *left, const void *right) {
+    uint64_t l = number_of(left), r = number_of(right);
+    return l < r ? -1 : l > r;
 }
 
 /* Returns whether anything was moved: not where all have the same digit. */
-static bool sort_by_digit(const sort_key *from, sort_key *to, size_t count, int shift) {
+static inline bool sort_by_digit(const char *from, char *to, size_t count, size_t size, int shift) {
     size_t places[DIGITS] = {0}, place = 0;
-    for (size_t i = 0; i < count; i++) places[from[i].key >> shift & (DIGITS - 1)]++;
-    if (places[from[0].key >> shift & (DIGITS - 1)] == count) return false;
+    for (size_t i = 0; i < count; i++) places[number_of(from + i * size) >> shift & (DIGITS - 1)]++;
+    if (places[number_of(from) >> shift & (DIGITS - 1)] == count) return false;
     for (uint32_t digit = 0; digit < DIGITS; digit++) {
         size_t next = place + places[digit];
         places[digit] = place;
         place = next;
     }
-    for (size_t i = 0; i < count; i++) to[places[from[i].key >> shift & (DIGITS - 1)]++] = from[i];
+    for (size_t i = 0; i < count; i++) {
+        const char *item = from + i * size;
+        memcpy(to + places[number_of(item) >> shift & (DIGITS - 1)]++ * size, item, size);
+    }
     return true;
 }
 
-void sort_keys(sort_key *keys, sort_key *scratch, size_t count) {
-    sort_key *from = keys, *to = scratch;
+void sort_by_number(void *items, void *scratch, size_t count, size_t size) {
+    char *from = items, *to = scratch;
     if (count < DIGITS_WORTH_IT) {
-        sort_items(keys, scratch, count, sizeof *keys, compare_keys);
+        sort_items(items, scratch, count, size, compare_numbers);
         return;
     }
-    for (int shift = 0; shift < KEY_BITS; shift += DIGIT_BITS) {
-        if (!sort_by_digit(from, to, count, shift)) continue;
-        sort_key *swapped = from;
+    for (int shift = 0; shift < NUMBER_BITS; shift += DIGIT_BITS) {
+        bool moved = size == 8 ? sort_by_digit(from, to, count, 8, shift)
+                               : sort_by_digit(from, to, count, 16, shift); /* compiled apart */
+        if (!moved) continue;
+        char *swapped = from;
         from = to;
         to = swapped;
     }
-    if (from != keys) memcpy(keys, from, count * sizeof *keys);
+    if (from != items) memcpy(items, from, count * size);
 }

@@ -10,13 +10,8 @@
 void sort_items(void *items, void *scratch, size_t count, size_t size,
                 int (*compare)(const void *, const void *));
 
-/* Something to be sorted by a number. */
-typedef struct sort_key {
-    uint64_t key;
-    const void *of;
-} sort_key;
-
-/* Ascending by key, stable. scratch: room for count more. */
-void sort_keys(sort_key *keys, sort_key *scratch, size_t count);
+/* Sorts items of 8 or 16 bytes that begin with a uint64_t by that, ascending, stable; scratch has room for as
+ * many. */
+void sort_by_number(void *items, void *scratch, size_t count, size_t size);
 
 #endif

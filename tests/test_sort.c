@@ -10,6 +10,11 @@
 
 enum { ITEMS_MAX = 20000 };
 
+typedef struct sort_key {
+    uint64_t key;
+    const void *of;
+} sort_key;
+
 static int compare_keys(const void *left, const void *right) {
     uint64_t a = ((const sort_key *)left)->key, b = ((const sort_key *)right)->key;
     return a < b ? -1 : a > b;
@@ -29,7 +34,7 @@ static void digits_as_merging(void **state) {
                     by_digits[i] = merged[i];
                 }
                 sort_items(merged, scratch, count, sizeof *merged, compare_keys);
-                sort_keys(by_digits, scratch, count);
+                sort_by_number(by_digits, scratch, count, sizeof *by_digits);
                 for (uint32_t i = 0; i < count; i++) {
                     assert_true(by_digits[i].key == merged[i].key && by_digits[i].of == merged[i].of);
                     if (i == 0) continue;
