@@ -31,16 +31,15 @@ typedef struct start_states {
     cscd_context *context;
     const cscd_mesh *mesh;
     double *positions;
-    bool known;          /* positions holds something */
-    bool vouched;        /* clean is, of some triangles, the caller's word */
-    bool *moved;         /* scratch, per component */
-    uint8_t *triangles;  /* triangle_state, of each */
-    component_start *of; /* per component; up to date after start_states_count */
-    bool counted;        /* they are */
-    uint32_t *queue;     /* scratch, per triangle */
-    free_patch *largest; /* scratch, per component */
-    double
-        share_worth_it; /* with fewer of its triangles clean, a component is not worth culling, or a check */
+    bool known;            /* positions holds something */
+    bool vouched;          /* clean is, of some triangles, the caller's word */
+    bool *moved;           /* scratch, per component */
+    uint8_t *triangles;    /* triangle_state, of each */
+    component_start *of;   /* per component; up to date after start_states_count */
+    bool counted;          /* they are */
+    uint32_t *queue;       /* scratch, per triangle */
+    free_patch *largest;   /* scratch, per component */
+    double share_worth_it; /* of a component, clean: with less neither culling nor a check pays */
 } start_states;
 
 /* Are so many clean triangles of a component enough for culling to pay? Below, the pairs of all others, their

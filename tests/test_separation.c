@@ -1,7 +1,6 @@
 /* Minimum separation where the answer is known by hand: regions, degenerate features, grazing, the bound on
  * work.
  */
-#include "runtime/kdop.h"
 #include "tests/support/separation_check.h"
 
 #include <math.h>
@@ -281,31 +280,31 @@ static void next_to_each_other(void **state) {
     }
 }
 
-/* Of two points at the distance along an axis or a diagonal, anywhere: they still overlap when widened by it.
- */
-static void widened_volumes_overlap(void **state) {
+/* A vertex at the distance from a face's corner along an axis or a diagonal, anywhere: none of the directions
+ * that are asked first takes them apart. */
+static void along_the_directions(void **state) {
     (void)state;
     static const double places[] = {0.0, 1.0, -1.5, 1e6, -1e9};
     static const double directions[][4] = {
         {1, 0, 0, 1}, {0, 0, -1, 1}, {1, 1, 1, 1.7320508075688774}, {-1, 1, 1, 1.7320508075688774}};
     for (int i = 0; i < 4 * 5; i++) {
         const double *direction = directions[i % 4];
-        for (int exponent = -290; exponent <= 250; exponent += 10) {
-            double start[3], end[3], d = ldexp(direction[3], exponent);
-            kdop_exact a, b;
+        for (int exponent = -260; exponent <= 250; exponent += 10) {
+            elementary_query query;
             for (int k = 0; k < 3; k++) {
-                start[k] = ldexp(places[i / 4], exponent);
-                end[k] = start[k] + ldexp(direction[k], exponent);
+                double corner = places[i / 4], away = direction[k];
+                query.x0[0][k] = ldexp(corner + away, exponent);
+                query.x0[1][k] = ldexp(corner, exponent);
+                query.x0[2][k] = ldexp(corner - 2.0 * away + (k == 0), exponent);
+                query.x0[3][k] = ldexp(corner - 2.0 * away + (k == 1), exponent);
             }
-            kdop_point(start, &a);
-            kdop_point(end, &b);
-            kdop_exact narrow_a = a, narrow_b = b;
-            kdop_exact_widen(&a, d);
-            kdop_exact_widen(&b, d);
-            assert_true(kdop_exact_overlap(&a, &b));
-            kdop_exact_widen(&narrow_a, 0.998 * d);
-            kdop_exact_widen(&narrow_b, 0.998 * d);
-            assert_false(kdop_exact_overlap(&narrow_a, &narrow_b));
+            memcpy(query.x1, query.x0, sizeof query.x1);
+            elementary_hit hit;
+            bool bounded = false;
+            separation near = within(ldexp(direction[3] * (1.0 + 0x1p-40), exponent));
+            separation far = within(ldexp(direction[3] * 0.998, exponent));
+            assert_true(separation_vf(&query, &near, &hit, &bounded));
+            assert_false(separation_vf(&query, &far, &hit, &bounded));
         }
     }
 }
@@ -340,7 +339,7 @@ int main(void) {
                                        cmocka_unit_test(grazing),
                                        cmocka_unit_test(extreme_distances),
                                        cmocka_unit_test(next_to_each_other),
-                                       cmocka_unit_test(widened_volumes_overlap),
+                                       cmocka_unit_test(along_the_directions),
                                        cmocka_unit_test(bound_on_work)};
     return cmocka_run_group_tests_name("separation", tests, NULL, NULL);
 }

@@ -35,8 +35,12 @@ static void add_pair(const forest *f, triangle_pair pair, pair_table *out) {
 }
 
 static void traverse_but(const forest_rig *r, traversal_pass pass, bool skip_adjacent, pair_table *out) {
+    static bool everywhere[SCENE_TRIANGLES_MAX];
+    forest same = r->forest;
     traversal t;
     memset(out, 0, sizeof *out);
+    memset(everywhere, true, sizeof everywhere);
+    forest_skip_adjacent(&same, skip_adjacent ? everywhere : NULL);
     assert_int_equal(traversal_create(r->context, &t), CSCD_OK);
     traversal_begin(&t, &r->forest, pass);
     for (bool more = true; more;) {

@@ -18,12 +18,13 @@ struct triangle_pair;
 typedef struct copied {
     double reach, weighted[2][3];
 } copied;
-enum { KERNEL_LANES = 8 };
 
 /* Along the axes, added up. */
 typedef struct extents {
     double leaves, triangles;
 } extents;
+
+enum { KERNEL_LANES = 8 };
 
 /* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
  * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j

@@ -67,7 +67,7 @@ void in_frame(const forest *f, const forest_part *p, motion m, uint32_t vertex, 
         size_t at = (size_t)vertex * 3 + k;
         const forest_part *frame = p != NULL ? p : &f->parts[0];
         long double start = (long double)m.x0[at] - frame->origin[0][k];
-        long double end = (long double)m.x1[at] - frame->origin[p != NULL ? 1 : 0][k];
+        long double end = (long double)m.x1[at] - frame->origin[1][k];
         out[k] = ((1.0L - t) * start + t * end) * f->scale;
     }
 }

@@ -28,7 +28,8 @@ void forest_rig_destroy(forest_rig *r);
 /* Adds to positions, three per vertex. */
 void translate(double *x, uint32_t vertex_count, const double by[3]);
 
-/* Moves as points in the frame of a part, or of the root for NULL, at t in {0, 1/2, 1} = moment / 2; scaled.
+/* Moves as points in the frame of a part, or of the first one for NULL, at t in {0, 1/2, 1} = moment / 2;
+ * scaled.
  */
 void in_frame(const forest *f, const forest_part *p, motion m, uint32_t vertex, int moment,
               long double out[3]);
