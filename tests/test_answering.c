@@ -15,12 +15,13 @@
 
 enum { TRIANGLES_MAX = 120, VERTICES_MAX = 130, EDGES_MAX = 3 * TRIANGLES_MAX, FAN = 64 };
 
-static uint8_t vf[VERTICES_MAX][TRIANGLES_MAX], ee[EDGES_MAX][EDGES_MAX];
+static uint32_t vf[VERTICES_MAX][TRIANGLES_MAX], ee[EDGES_MAX][EDGES_MAX];
 
 static void count_pair(const swept_interval *interval, triangle_pair pair) {
     const cscd_mesh *mesh = interval->mesh;
-    uint16_t features = FEATURE_ALL;
-    answering_select(interval, &pair, 1, &features);
+    uint16_t answered = FEATURE_ALL;
+    answering_select(interval, &pair, 1, &answered);
+    uint32_t features = answered;
     for (int i = 0; i < 3; i++) {
         vf[mesh->triangles[pair.a][i]][pair.b] += features >> i & 1;
         vf[mesh->triangles[pair.b][i]][pair.a] += features >> (FEATURE_VERTEX_B + i) & 1;
