@@ -61,6 +61,10 @@ static inline f32x8 f32x8_all(float x) {
     return (f32x8){x, x, x, x, x, x, x, x};
 }
 
+static inline i32x8 i32x8_all(int32_t x) {
+    return (i32x8){x, x, x, x, x, x, x, x};
+}
+
 static inline f64x8 f64x8_all(double x) {
     return (f64x8){x, x, x, x, x, x, x, x};
 }

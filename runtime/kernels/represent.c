@@ -33,7 +33,7 @@ static inline i32x8 adjacent_corners(const octet *o, int t, int first_bit) {
     for (int i = 0; i < 3; i++) {
         i32x8 adjacent = is_corner((const i32x8 *)face, i32x8_load(o->others[t][i][0])) |
                          is_corner((const i32x8 *)face, i32x8_load(o->others[t][i][1]));
-        features |= adjacent & (1 << (first_bit + i));
+        features |= adjacent & i32x8_all(1 << (first_bit + i));
     }
     return features;
 }
@@ -54,7 +54,7 @@ static inline i32x8 adjacent_edges(const octet *o) {
         for (int j = 0; j < 3; j++) {
             i32x8 adjacent = (over[0][i] == over[1][j]) | at[1][i][j] | at[1][i][(j + 1) % 3] | at[0][j][i] |
                              at[0][j][(i + 1) % 3];
-            features |= adjacent & (1 << (FEATURE_EDGES + 3 * i + j));
+            features |= adjacent & i32x8_all(1 << (FEATURE_EDGES + 3 * i + j));
         }
     }
     return features;
