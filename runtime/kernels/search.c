@@ -92,7 +92,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 /* Of b's lanes, those to be compared with lane i of a. */
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
-    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & (FOREST_ALL_LANES << (i + 1));
+    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)FOREST_ALL_LANES << (i + 1));
     if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
     if (c->pass == TRAVERSAL_FRESH) {
         if (!c->one_part) return 0;
