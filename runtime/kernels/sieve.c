@@ -75,7 +75,7 @@ static inline void widen(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
 
 /* Of features, those whose gaps do not exceed `least`. */
 static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x8 features) {
-    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & (1 << i));
+    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & i32x8_all(1 << i));
     return features;
 }
 
@@ -116,11 +116,11 @@ static inline i32x8 sharing(const octet *o) {
     for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
     for (int i = 0; i < 3; i++) {
         i32x8 of_a = same[i][0] | same[i][1] | same[i][2], of_b = same[0][i] | same[1][i] | same[2][i];
-        features |= (of_a & (1 << i)) | (of_b & (1 << (FEATURE_VERTEX_B + i)));
+        features |= (of_a & i32x8_all(1 << i)) | (of_b & i32x8_all(1 << (FEATURE_VERTEX_B + i)));
         for (int j = 0; j < 3; j++) {
             int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
             i32x8 any = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
-            features |= any & (1 << (FEATURE_EDGES + 3 * i + j));
+            features |= any & i32x8_all(1 << (FEATURE_EDGES + 3 * i + j));
         }
     }
     return features;
