@@ -2,9 +2,9 @@
 #include "runtime/narrow_phase.h"
 
 #include "runtime/answering.h"
+#include "runtime/directions.h"
 #include "runtime/representatives.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { PAIRS_AT_ONCE = 256 };
@@ -138,33 +138,10 @@ void narrow_phase_test(const swept_interval *interval, const triangle_pair *pair
 
 /* ---- orphans ----------------------------------------------------------------------------------------- */
 
-/* The least and the greatest coordinate of some points. */
-typedef struct span {
-    double low, high;
-} span;
-
-static span span_of(const double *positions, const uint32_t *vertices, int count, int axis) {
-    span s = {INFINITY, -INFINITY};
-    for (int i = 0; i < count; i++) {
-        double x = (positions + (size_t)vertices[i] * 3)[axis];
-        s.low = x < s.low ? x : s.low;
-        s.high = x > s.high ? x : s.high;
-    }
-    return s;
-}
-
-/* The first points stay on one side of the others, farther than the limit's distance. A rounded difference
- * above a number is so exactly. */
-static bool stay_apart(const swept_interval *interval, const uint32_t *a, int count_a, const uint32_t *b,
-                       int count_b) {
-    double distance = interval->limit.distance;
-    for (int axis = 0; axis < 3; axis++) {
-        span a0 = span_of(interval->x0, a, count_a, axis), b0 = span_of(interval->x0, b, count_b, axis);
-        span a1 = span_of(interval->x1, a, count_a, axis), b1 = span_of(interval->x1, b, count_b, axis);
-        if (b0.low - a0.high > distance && b1.low - a1.high > distance) return true;
-        if (a0.low - b0.high > distance && a1.low - b1.high > distance) return true;
-    }
-    return false;
+static bool parted(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    elementary_query query;
+    narrow_phase_load(interval, kind, a, b, &query);
+    return directions_part(&query, kind == CSCD_CONTACT_VF ? 1 : 2, interval->limit.distance);
 }
 
 /* Adjacent triangles of components that are culled are pairs like others. */
@@ -178,14 +155,14 @@ void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets
     for (size_t i = index; i < orphans->vf_count; i += stride) {
         uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
         if (reached_by_flags(interval, triangle)) continue;
-        if (stay_apart(interval, &vertex, 1, mesh->triangles[triangle], 3)) continue;
+        if (parted(interval, CSCD_CONTACT_VF, vertex, triangle)) continue;
         lane->feature_pairs++;
         narrow_phase_test_vf(interval, vertex, triangle, lane);
     }
     for (size_t i = index; i < orphans->ee_count; i += stride) {
         uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
         if (reached_by_flags(interval, mesh->edge_stars[mesh->edge_star_offsets[a]])) continue;
-        if (stay_apart(interval, mesh->edges[a], 2, mesh->edges[b], 2)) continue;
+        if (parted(interval, CSCD_CONTACT_EE, a, b)) continue;
         lane->feature_pairs++;
         narrow_phase_test_ee(interval, a, b, lane);
     }

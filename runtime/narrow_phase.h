@@ -53,7 +53,7 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                        contact_lane *lane);
 
-/* Those of the orphans of index, index + stride, and so on that may touch by their boxes. */
+/* Those of the orphans of index, index + stride, and so on that no direction parts. */
 void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets *orphans, uint32_t index,
                                uint32_t stride, contact_lane *lane);
 

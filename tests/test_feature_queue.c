@@ -6,6 +6,7 @@
 #include "runtime/kernels/kernels.h"
 #include "runtime/separating.h"
 #include "tests/support/elementary_generator.h"
+#include "tests/support/levels.h"
 #include "tests/support/scenes.h"
 
 #include <math.h>
@@ -19,7 +20,7 @@
 
 #include <cmocka.h>
 
-enum { BATCH_MAX = 200, SLACK = 8, BATCHES_A_FAMILY = 48, LEVEL_COUNT = CSCD_SIMD_AVX512 };
+enum { BATCH_MAX = 200, SLACK = 8, BATCHES_A_FAMILY = 48 };
 
 /* Queries as a mesh of their own, four vertices each. Pair i is query order[i]. */
 typedef struct batch {
@@ -32,24 +33,6 @@ typedef struct batch {
 } batch;
 
 static batch work; /* large; one test at a time */
-static cscd_context *contexts[LEVEL_COUNT];
-
-static int open_levels(void **state) {
-    (void)state;
-    for (int i = 0; i < LEVEL_COUNT; i++) {
-        cscd_context_options options = cscd_context_defaults();
-        options.simd = (cscd_simd)(CSCD_SIMD_SCALAR + i);
-        if (cscd_context_create(&options, &contexts[i]) != CSCD_OK) contexts[i] = NULL;
-        print_message("%s: %s\n", cscd_simd_name(options.simd), contexts[i] != NULL ? "compared" : "absent");
-    }
-    return contexts[0] != NULL ? 0 : 1;
-}
-
-static int close_levels(void **state) {
-    (void)state;
-    for (int i = 0; i < LEVEL_COUNT; i++) cscd_context_destroy(contexts[i]);
-    return 0;
-}
 
 /* ---- batches ----------------------------------------------------------------------------------------- */
 

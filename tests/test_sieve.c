@@ -12,12 +12,12 @@
 
 #include <cmocka.h>
 
-enum { PAIR_COUNT = 1500, LEVEL_COUNT = CSCD_SIMD_AVX512 };
+enum { PAIR_COUNT = 1500, LEVELS_MAX = CSCD_SIMD_AVX512 };
 
 static scene shape; /* large; one test at a time */
 static triangle_pair pairs[PAIR_COUNT];
-static uint16_t features[LEVEL_COUNT][PAIR_COUNT];
-static forest_rig levels[LEVEL_COUNT];
+static uint16_t features[LEVELS_MAX][PAIR_COUNT];
+static forest_rig levels[LEVELS_MAX];
 static uint32_t level_count;
 static uint64_t kept_count, dropped_count;
 

@@ -4,6 +4,7 @@
 #include "runtime/traversal.h"
 #include "runtime/triangle_intersection.h"
 #include "src/predicates.h"
+#include "tests/support/levels.h"
 #include "tests/support/random.h"
 
 #include <math.h>
@@ -16,26 +17,7 @@
 
 #include <cmocka.h>
 
-enum { BATCH_MAX = 700, BATCHES = 600, LEVEL_COUNT = CSCD_SIMD_AVX512 };
-
-static cscd_context *contexts[LEVEL_COUNT];
-
-static int open_levels(void **state) {
-    (void)state;
-    for (int i = 0; i < LEVEL_COUNT; i++) {
-        cscd_context_options options = cscd_context_defaults();
-        options.simd = (cscd_simd)(CSCD_SIMD_SCALAR + i);
-        if (cscd_context_create(&options, &contexts[i]) != CSCD_OK) contexts[i] = NULL;
-        print_message("%s: %s\n", cscd_simd_name(options.simd), contexts[i] != NULL ? "compared" : "absent");
-    }
-    return contexts[0] != NULL ? 0 : 1;
-}
-
-static int close_levels(void **state) {
-    (void)state;
-    for (int i = 0; i < LEVEL_COUNT; i++) cscd_context_destroy(contexts[i]);
-    return 0;
-}
+enum { BATCH_MAX = 700, BATCHES = 600 };
 
 static int seed(void **state) {
     (void)state;

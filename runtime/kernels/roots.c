@@ -23,7 +23,6 @@ static inline uint32_t isolate(const wide_cubics *f, wide_intervals *out) {
     return isolate_between(f->b, f->error, falling | rising, f64w_all(0.0), f64w_all(1.0), change, root, out);
 }
 
-/* Pairs i to i + WIDTH - 1 of the eight. */
 static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
     wide_vectors vectors;
     wide_cubics f;
@@ -37,22 +36,12 @@ static inline void decide(const wide_points *points, int first_count, int i, roo
     memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
 }
 
-static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                                int first_count, root_outcomes *out) {
-    out->misses = out->hits = 0;
-    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
-        wide_points points;
-        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
-        decide(&points, first_count, i, out);
-    }
-}
-
 void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out) {
-    decide_eight(source, a, b, 1, out);
+    decide_eight(source, a, b, 1, decide, out);
 }
 
 void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out) {
-    decide_eight(source, a, b, 2, out);
+    decide_eight(source, a, b, 2, decide, out);
 }

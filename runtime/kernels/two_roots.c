@@ -57,7 +57,6 @@ static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t la
     return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
 }
 
-/* Pairs i to i + WIDTH - 1 of the eight. */
 static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
     wide_vectors vectors;
     wide_cubics f;
@@ -83,22 +82,12 @@ static inline void decide(const wide_points *points, int first_count, int i, roo
     out->hits |= (hits | later) << i;
 }
 
-static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                                int first_count, root_outcomes *out) {
-    out->misses = out->hits = 0;
-    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
-        wide_points points;
-        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
-        decide(&points, first_count, i, out);
-    }
-}
-
 void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, 1, out);
+    decide_eight(source, a, b, 1, decide, out);
 }
 
 void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, 2, out);
+    decide_eight(source, a, b, 2, decide, out);
 }

@@ -142,4 +142,19 @@ static inline sign_lanes inside(const wide_vectors *v, int first_count, const wi
     return (sign_lanes){signs.right & known, signs.wrong & known};
 }
 
+/* ---- eight pairs --------------------------------------------------------------------------------------- */
+
+/* What becomes of the pairs i to i + WIDTH - 1 of the eight. */
+typedef void decide_some(const wide_points *points, int first_count, int i, root_outcomes *out);
+
+static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                                int first_count, decide_some *decide, root_outcomes *out) {
+    out->misses = out->hits = 0;
+    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
+        wide_points points;
+        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
+        decide(&points, first_count, i, out);
+    }
+}
+
 #endif
