@@ -4,8 +4,7 @@
 #include "runtime/representatives.h"
 
 cscd_detector_options cscd_detector_defaults(void) {
-    return (cscd_detector_options){
-        .struct_size = sizeof(cscd_detector_options), .method = CSCD_METHOD_AUTO, .mode = CSCD_MODE_ALL};
+    return (cscd_detector_options){.struct_size = sizeof(cscd_detector_options), .step_factor = 0.8};
 }
 
 /* Lengths are 0 or in the range of positions. */

@@ -22,6 +22,10 @@ const char *cscd_status_string(cscd_status status) {
         return "invalid mesh";
     case CSCD_SYSTEM_ERROR:
         return "the system refused a resource";
+    case CSCD_CANCELLED:
+        return "cancelled";
+    case CSCD_IN_CONTACT:
+        return "in contact at the start";
     }
     return "unknown status";
 }
@@ -56,7 +60,8 @@ static const char *const reasons[] = {
     [CSCD_REASON_FINISHED] = "embedded at the start; all contacts found",
     [CSCD_REASON_PUBLISHED] = "culled as published, which loses contacts",
     [CSCD_REASON_CONTOUR] = "pairs in patches that cannot touch themselves are left out; all contacts found",
-    [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing"};
+    [CSCD_REASON_EARLIEST] = "embedded at the start; later contacts may be missing",
+    [CSCD_REASON_OBSTACLE] = "an obstacle; contacts with itself are not looked for"};
 
 static const char *name_at(const char *const *names, size_t count, size_t i) {
     return i < count ? names[i] : "unknown";

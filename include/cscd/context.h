@@ -21,16 +21,18 @@ extern "C" {
 
 typedef enum cscd_status {
     CSCD_OK = 0,
-    CSCD_OUT_OF_MEMORY, /* an allocation failed; every object is still valid, and the call may be repeated */
+    CSCD_OUT_OF_MEMORY,    /* an allocation failed; every object is still valid, the call may be repeated */
     CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options not made by _defaults() */
     CSCD_INVALID_MESH, /* empty, too large, an index past vertex_count, a triangle that repeats a vertex */
-    CSCD_SYSTEM_ERROR  /* the system refused a thread */
+    CSCD_SYSTEM_ERROR, /* the system refused a thread */
+    CSCD_CANCELLED,    /* cscd_progress said so; every object is still valid, the call may be repeated */
+    CSCD_IN_CONTACT    /* no step is free of contact, for the start is not: cscd_detector_max_step */
 } cscd_status;
 
 /* One short English phrase, static storage, never NULL. */
 CSCD_API const char *cscd_status_string(cscd_status status);
 
-/* ---- context: allocator and threads ---------------------------------------------------------------- */
+/* ---- context: allocator, threads, progress ---------------------------------------------------------- */
 
 typedef struct cscd_context cscd_context;
 
@@ -55,11 +57,33 @@ typedef enum cscd_simd {
 CSCD_API const char *cscd_simd_name(cscd_simd simd);
 CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);
 
+/* The host's own parallel loop, so that cscd starts no threads beside the host's: calls task(data, index) for
+ * every index below task_count, each once, in any order, on any threads, and returns when all have returned.
+ * Tasks never wait for each other, so one after the other will do. A thread that waits in run must not be
+ * lent to another call into cscd with objects of the same context. */
+typedef struct cscd_parallel_for {
+    void (*run)(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index), void *data);
+    void *user;
+} cscd_parallel_for;
+
+/* Called now and then, at most every few milliseconds, by functions that take long (cscd_plan_create, _step,
+ * _check, _near, _max_step, cscd_line_begin), on the thread that called them: stage is a word or two of
+ * static storage; fraction, in [0,1], an estimate of how much of the call is done, which never falls during
+ * it. False cancels the call, which then fails with CSCD_CANCELLED. It must not call cscd with objects of the
+ * same context. */
+typedef struct cscd_progress {
+    bool (*report)(void *user, const char *stage, double fraction);
+    void *user;
+} cscd_progress;
+
 typedef struct cscd_context_options {
-    uint32_t struct_size;     /* set by cscd_context_defaults */
-    uint32_t thread_count;    /* 0 = one per processor; default 1; at most 256 */
-    cscd_simd simd;           /* default AUTO; INVALID_ARGUMENT where the processor has it not */
-    cscd_allocator allocator; /* default: aligned_alloc and free */
+    uint32_t struct_size;           /* set by cscd_context_defaults */
+    uint32_t thread_count;          /* 0 = one per processor; default 1; at most 256. With parallel_for: into
+                                     * how many tasks that take long work is cut, and no thread is started */
+    cscd_simd simd;                 /* default AUTO; INVALID_ARGUMENT where the processor has it not */
+    cscd_allocator allocator;       /* default: aligned_alloc and free */
+    cscd_parallel_for parallel_for; /* default NULL: threads of the context's own */
+    cscd_progress progress;         /* default NULL: none, and nothing can be cancelled */
 } cscd_context_options;
 
 CSCD_API cscd_context_options cscd_context_defaults(void);

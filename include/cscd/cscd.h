@@ -30,16 +30,17 @@
 #include <cscd/detector.h>
 #include <cscd/mesh.h>
 #include <cscd/plan.h>
+#include <cscd/solver.h>
 
-#define CSCD_VERSION_MAJOR 0
-#define CSCD_VERSION_MINOR 1
+#define CSCD_VERSION_MAJOR 1
+#define CSCD_VERSION_MINOR 0
 #define CSCD_VERSION_PATCH 0
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* "0.1.0", static storage. */
+/* "1.0.0", static storage. */
 CSCD_API const char *cscd_version_string(void);
 
 #ifdef __cplusplus

@@ -48,11 +48,21 @@ typedef struct cscd_detector_options {
     cscd_start start;     /* default PROVE */
     cscd_volume volume;   /* default BOX */
 
-    /* Pairs to leave out: a contact is not reported, and a self-intersection not listed, when this says
-     * true for two triangles a < b of which one contains (or is) the one feature and the other the other.
-     * Called on the calling thread, for pairs in contact only. Default NULL: nothing is left out. */
+    /* Pairs to leave out: a contact or nearness is not reported, and a self-intersection not listed, when
+     * this says true for two triangles a < b of which one contains (or is) the one feature and the other the
+     * other. Called on the calling thread, for pairs in contact only. Default NULL: nothing is left out. */
     bool (*ignore)(void *user, uint32_t a, uint32_t b);
     void *ignore_user;
+
+    /* The same as a list, which is copied: ignored_count pairs of triangles, in any order. Default NULL. */
+    const uint32_t *ignored;
+    size_t ignored_count;
+
+    /* Seams, copied: seam_count pairs of vertices that count as one vertex, as where panels of cloth are sewn
+     * together or a welded surface is split. Features that share one are never reported, as ever. A chain of
+     * pairs makes all of its vertices one. Default NULL. */
+    const uint32_t *seams;
+    size_t seam_count;
 
     /* Lengths, each 0 or from 2^-300 to 2^300. min_separation 0, the default: a contact is touching; d: a
      * contact is coming within d. Then every pair that comes within d is reported, and toi is not after the
@@ -62,6 +72,10 @@ typedef struct cscd_detector_options {
      * limit: for a pair whose positions at both ends extend over a length s along x, y or z, a tolerance
      * below 2^-42 s is taken for 2^-42 s. */
     double min_separation, tolerance;
+
+    /* A step that a contact limits has at most this share of its time: cscd_detector_max_step. In (0,1),
+     * default 0.8. */
+    double step_factor;
 } cscd_detector_options;
 
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
@@ -134,7 +148,8 @@ typedef enum cscd_reason {
     CSCD_REASON_FINISHED,  /* complete: the start is embedded, there are contacts, and mode ALL found all */
     CSCD_REASON_PUBLISHED, /* contacts may be missing: method PUBLISHED or ICCD_PUBLISHED */
     CSCD_REASON_CONTOUR,   /* complete: ICCD needs no embedded start */
-    CSCD_REASON_EARLIEST   /* the start is embedded, and mode EARLIEST promises the first contacts only */
+    CSCD_REASON_EARLIEST,  /* the start is embedded, and mode EARLIEST promises the first contacts only */
+    CSCD_REASON_OBSTACLE   /* not looked for: an obstacle */
 } cscd_reason;
 
 /* A sentence's part: "open, non-manifold or inconsistently oriented"; static storage, never NULL. */

@@ -21,6 +21,35 @@ typedef struct cscd_mesh_desc {
 CSCD_API cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out);
 CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 
+/* ---- several meshes as one scene --------------------------------------------------------------------- */
+
+typedef struct cscd_object_desc {
+    cscd_mesh_desc mesh; /* triangles name the object's own vertices, from 0 on */
+    bool obstacle;       /* moves as the caller says: contacts, crossings and nearness of its features with
+                          * each other, and with other obstacles, are not looked for */
+} cscd_object_desc;
+
+/* In the scene the vertices, edges and triangles of an object follow those of the object before. */
+CSCD_API cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc *objects,
+                                            uint32_t object_count, cscd_mesh **out);
+
+/* Where an object's features lie in the scene's numbering: subtract the first to have its own. */
+typedef struct cscd_object {
+    uint32_t first_vertex, vertex_count;
+    uint32_t first_edge, edge_count;
+    uint32_t first_triangle, triangle_count;
+    bool obstacle;
+} cscd_object;
+
+/* 1 for a mesh of cscd_mesh_create. */
+CSCD_API uint32_t cscd_mesh_object_count(const cscd_mesh *mesh);
+CSCD_API cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object);
+
+/* The object of a vertex; vertex < vertex_count. */
+CSCD_API uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex);
+
+/* ---- its features ------------------------------------------------------------------------------------ */
+
 CSCD_API uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh);
 CSCD_API uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh);
 
@@ -49,6 +78,26 @@ typedef struct cscd_component {
 CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
 CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
+
+/* A hash of the vertex count and the triangles in their order, not of positions: plans fit where it is equal.
+ */
+CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
+
+/* ---- positions as a solver has them ------------------------------------------------------------------ */
+
+typedef enum cscd_scalar { CSCD_SCALAR_DOUBLE, CSCD_SCALAR_FLOAT } cscd_scalar;
+
+/* Vertex i has its x at byte i * stride, y and z each coordinate_stride bytes further on. Aligned or not. */
+typedef struct cscd_view {
+    const void *data;
+    cscd_scalar scalar;
+    size_t stride;            /* 0: three scalars; of a matrix by columns one scalar, and as */
+    size_t coordinate_stride; /* its height in bytes; 0: one scalar */
+} cscd_view;
+
+/* Copies positions in any layout, one view per object, to the packed doubles that all other functions take:
+ * vertex_count * 3 of them. Floats are widened, which is exact. */
+CSCD_API cscd_status cscd_mesh_pack(const cscd_mesh *mesh, const cscd_view *views, double *positions);
 
 #ifdef __cplusplus
 }

@@ -88,10 +88,6 @@ typedef struct cscd_preprocess_timings {
 
 CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
-/* A hash of the vertex count and the triangles in their order, not of positions: plans fit where it is equal.
- */
-CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
-
 #ifdef __cplusplus
 }
 #endif
