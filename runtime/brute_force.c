@@ -37,12 +37,22 @@ static bool in_surface(const cscd_mesh *mesh, uint32_t vertex) {
     return mesh->vertex_star_offsets[vertex + 1] > mesh->vertex_star_offsets[vertex];
 }
 
+static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
+    return triangle_of_obstacle(mesh, mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]);
+}
+
+static bool edge_of_obstacle(const cscd_mesh *mesh, uint32_t edge) {
+    return triangle_of_obstacle(mesh, mesh->edge_stars[mesh->edge_star_offsets[edge]]);
+}
+
 static void test_face(const swept_interval *interval, uint32_t triangle, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = feature_box(interval, corners, 3);
+    bool obstacle = triangle_of_obstacle(mesh, triangle);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
+        if (obstacle && vertex_of_obstacle(mesh, v)) continue;
         lane->feature_pairs++;
         swept_box vertex = feature_box(interval, &v, 1);
         if (boxes_within(&face, &vertex, interval->limit.distance))
@@ -54,9 +64,10 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *ends_a = mesh->edges[a];
     swept_box box_a = feature_box(interval, ends_a, 2);
+    bool obstacle = edge_of_obstacle(mesh, a);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
-        if (edges_share_vertex(ends_a, ends_b)) continue;
+        if (edges_share_vertex(ends_a, ends_b) || (obstacle && edge_of_obstacle(mesh, b))) continue;
         lane->feature_pairs++;
         swept_box box_b = feature_box(interval, ends_b, 2);
         if (boxes_within(&box_a, &box_b, interval->limit.distance))

@@ -138,7 +138,8 @@ uint32_t start_states_suspect(start_states *s, bool *suspects) {
     start_states_count(s);
     for (uint32_t c = 0; c < mesh->component_count; c++) {
         component_start *start = &s->of[c];
-        wanted[c] = start->unknown > 0 && mesh->components[c].closed_manifold && start->waiting == 0;
+        bool culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c);
+        wanted[c] = culled && start->unknown > 0 && start->waiting == 0;
         if (start->unknown > 0 && start->waiting > 0) start->waiting--;
         any |= wanted[c];
     }

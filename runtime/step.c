@@ -165,6 +165,8 @@ static void choose_culled(step_work *work) {
     start_states_count(&d->starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_component *component = &d->mesh->components[c];
+        d->culled[c] = d->finished[c] = false;
+        if (component_is_obstacle(d->mesh, c)) continue;
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
         bool pays = start_states_pay(&d->starts, clean, component->triangle_count);
@@ -261,6 +263,8 @@ static cscd_guarantee guarantee_of(const cscd_detector *d, uint32_t component) {
     const component_start *start = &d->starts.of[component];
     bool embedded = start->clean == d->mesh->components[component].triangle_count;
     cscd_guarantee g = {true, embedded, CSCD_REASON_METHOD};
+    if (component_is_obstacle(d->mesh, component))
+        return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
     if (detector_seals(d)) {
         bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
         g.reason = published ? CSCD_REASON_PUBLISHED : CSCD_REASON_CONTOUR;
@@ -291,7 +295,7 @@ static void hand_on_states(cscd_detector *d, const double *end) {
     bool *lost = d->culled; /* which nobody asks for any more */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
-        lost[c] = !g->complete;
+        lost[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
     }
     start_states_end(&d->starts, end, lost);
 }
