@@ -1,0 +1,121 @@
+/* The scenes of the cloth simulator: which garment falls how, onto what. */
+#include "models/cloth/cloth_scene.h"
+#include "models/cloth/garment.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BALL_TRIANGLES = 1280 };
+
+static const double pi = 3.14159265358979323846;
+
+const cloth_scene cloth_scenes[] = {
+    {
+        .name = "cloth-drape",
+        .text = "a sheet falls onto a ball and the floor, folds, and the ball rises and turns",
+        .cut = CLOTH_SHEET,
+        .width = 1.6,
+        .resolution = 60,
+        .place = {0.05, -0.03, 0.85},
+        .turn = 0.15,
+        .lean = 0.03,
+        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 2e-4, .damping = 2e-3, .drag = 1.0},
+        .friction = 0.4,
+        .gravity = 10.0,
+        .obstacle_count = 2,
+        .obstacles = {{.kind = CLOTH_FLOOR, .size = 3.0},
+                      {.kind = CLOTH_BALL,
+                       .size = 0.35,
+                       .centre = {0.0, 0.0, 0.42},
+                       .begin = 1.6,
+                       .seconds = 1.2,
+                       .rise = 0.25,
+                       .turn = 0.7}},
+        .frame_count = 320,
+        .frame_seconds = 0.01,
+        .small_steps = 12,
+    },
+    {
+        .name = "sleeve",
+        .text = "a closed sleeve falls on its foot and collapses in folds on itself",
+        .cut = CLOTH_TUBE,
+        .width = 0.5,
+        .height = 1.4,
+        .resolution = 60,
+        .place = {0.0, 0.0, 0.1},
+        .turn = 0.1,
+        .lean = 0.03,
+        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 5e-4, .damping = 2e-3, .drag = 1.0},
+        .friction = 0.4,
+        .gravity = 10.0,
+        .obstacle_count = 1,
+        .obstacles = {{.kind = CLOTH_FLOOR, .size = 3.0}},
+        .frame_count = 320,
+        .frame_seconds = 0.01,
+        .small_steps = 12,
+    },
+};
+
+const uint32_t cloth_scene_count = sizeof cloth_scenes / sizeof *cloth_scenes;
+
+const cloth_scene *cloth_scene_find(const char *name) {
+    for (uint32_t i = 0; i < cloth_scene_count; i++) {
+        if (strcmp(cloth_scenes[i].name, name) == 0) return &cloth_scenes[i];
+    }
+    return NULL;
+}
+
+double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution) {
+    return s->cut == CLOTH_SHEET ? s->width / (resolution - 1) : s->width * pi / resolution;
+}
+
+/* Turns two coordinates by an angle of which this is the tangent of the half: without sines, whose last bits
+ * differ from library to library. */
+static void turn_plane(double tangent, double *x, double *y) {
+    double square = tangent * tangent, c = (1.0 - square) / (1.0 + square), s = 2.0 * tangent / (1.0 + square);
+    double turned = c * *x - s * *y;
+    *y = s * *x + c * *y;
+    *x = turned;
+}
+
+/* Of even triangles with sides of the spacing. */
+static void add_tube(const cloth_scene *s, uint32_t resolution, body *b) {
+    double spacing = cloth_scene_spacing(s, resolution), radius = 0.5 * s->width;
+    double area = 2.0 * pi * radius * (s->height + radius);
+    garment_add_tube(b, 2 * (uint32_t)(area / (0.5 * sqrt(3.0) * spacing * spacing)), radius, s->height);
+}
+
+body cloth_scene_garment(const cloth_scene *s, uint32_t resolution) {
+    body b = {0};
+    if (s->cut == CLOTH_SHEET)
+        garment_add_sheet(&b, resolution, s->width);
+    else
+        add_tube(s, resolution, &b);
+    for (uint32_t v = 0; v < b.vertex_count; v++) {
+        double *p = b.positions + v * 3;
+        turn_plane(s->turn, &p[0], &p[1]);
+        turn_plane(s->lean, &p[1], &p[2]);
+        for (int k = 0; k < 3; k++) p[k] += s->place[k];
+    }
+    body_round(&b);
+    return b;
+}
+
+bool cloth_obstacle_make(const cloth_obstacle *o, body *out, io_error *error) {
+    body made = {0};
+    if (o->kind == CLOTH_FLOOR) garment_add_floor(&made, o->size);
+    if (o->kind == CLOTH_BALL && !garment_add_ball(&made, BALL_TRIANGLES, o->size, error)) return false;
+    *out = made;
+    return true;
+}
+
+void cloth_obstacle_place(const cloth_obstacle *o, const body *shape, double time, double *positions) {
+    double part = o->seconds > 0.0 ? fmin(fmax((time - o->begin) / o->seconds, 0.0), 1.0) : 0.0;
+    double done = part * part * (3.0 - 2.0 * part);
+    for (uint32_t v = 0; v < shape->vertex_count; v++) {
+        double *p = positions + v * 3;
+        memcpy(p, shape->positions + v * 3, 3 * sizeof *p);
+        turn_plane(done * o->turn, &p[0], &p[1]);
+        for (int k = 0; k < 3; k++) p[k] += o->centre[k] + (k == 2 ? done * o->rise : 0.0);
+    }
+}

@@ -1,0 +1,162 @@
+/* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
+#include "models/cloth/safe_motion.h"
+#include "models/cloth/apart.h"
+#include "models/shapes/body.h"
+#include "models/softbody/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* First contacts only stop what approaches, one by one; what then still meets moves together. */
+enum { STOPPING_ROUNDS = 4, ROUNDS = 16 };
+
+/* How much of the way to a contact is left to its features. */
+static const double share_of_way = 0.7;
+
+safe_motion safe_motion_make(cscd_detector *detector, const cscd_mesh *mesh, const double *inverse_masses) {
+    safe_motion s = {.detector = detector, .mesh = mesh, .inverse_masses = inverse_masses};
+    s.vertex_count = cscd_mesh_vertex_count(mesh);
+    s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
+    s.zones = body_allocate(s.vertex_count, sizeof *s.zones);
+    s.told = body_allocate(s.vertex_count, sizeof *s.told);
+    return s;
+}
+
+void safe_motion_free(safe_motion *s) {
+    free(s->parents);
+    free(s->zones);
+    free(s->told);
+    *s = (safe_motion){0};
+}
+
+/* Each approach goes on only for a share of its way to the contact. */
+static void stop_approaches(const safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        cscd_stencil stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        double from[3], change[3];
+        apart_sum(&stencil, x0, from);
+        apart_sum(&stencil, x1, change);
+        for (int k = 0; k < 3; k++) change[k] -= from[k];
+        double approach = -dot(change, c->normal);
+        if (approach <= 0.0) continue;
+        for (int k = 0; k < 3; k++) change[k] = (1.0 - share_of_way * c->toi) * approach * c->normal[k];
+        apart_push(&stencil, s->inverse_masses, change, x1);
+    }
+}
+
+static void part_zones(safe_motion *s) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) s->parents[v] = v;
+    memset(s->told, 0, s->vertex_count * sizeof *s->told);
+}
+
+static uint32_t zone_of(safe_motion *s, uint32_t vertex) {
+    while (s->parents[vertex] != vertex) {
+        s->parents[vertex] = s->parents[s->parents[vertex]];
+        vertex = s->parents[vertex];
+    }
+    return vertex;
+}
+
+static bool is_told(const safe_motion *s, uint32_t vertex) {
+    return s->inverse_masses[vertex] == 0.0;
+}
+
+/* The vertices of a contact come into one zone; but for an obstacle's, which only tell it how they move: or
+ * all that lies on a floor were one. Returns UINT32_MAX for vertices of obstacles only. */
+static uint32_t join(safe_motion *s, const cscd_stencil *stencil, const double *x0, const double *x1) {
+    uint32_t zone = UINT32_MAX;
+    for (int i = 0; i < 4; i++) {
+        if (is_told(s, stencil->vertices[i])) continue;
+        uint32_t other = zone_of(s, stencil->vertices[i]);
+        if (zone == UINT32_MAX) zone = other;
+        uint32_t least = zone < other ? zone : other;
+        s->parents[zone] = s->parents[other] = least;
+        zone = least;
+    }
+    for (int i = 0; i < 4 && zone != UINT32_MAX; i++) {
+        size_t v = stencil->vertices[i];
+        if (!is_told(s, stencil->vertices[i])) continue;
+        add_scaled(s->told[zone], 1.0, x1 + v * 3);
+        add_scaled(s->told[zone], -1.0, x0 + v * 3);
+        s->told[zone][3] += 1.0;
+    }
+    return zone;
+}
+
+static void sum_up_zones(safe_motion *s, const double *x0, const double *x1) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) s->zones[v] = (safe_motion_zone){.share = 1.0};
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (is_told(s, v)) continue;
+        safe_motion_zone *zone = &s->zones[zone_of(s, v)];
+        double mass = 1.0 / s->inverse_masses[v];
+        add_scaled(zone->motion, mass, x1 + (size_t)v * 3);
+        add_scaled(zone->motion, -mass, x0 + (size_t)v * 3);
+        zone->mass += mass;
+        add_scaled(zone->told, 1.0, s->told[v]);
+        zone->tellers += s->told[v][3];
+    }
+}
+
+/* What meets comes nearer to the common motion of its zone: that of the obstacles in it, or of its centre of
+ * mass, which keeps momentum. Vertices that all move alike keep their distances. */
+static void move_together(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+    cscd_stencil stencil;
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        join(s, &stencil, x0, x1);
+    }
+    sum_up_zones(s, x0, x1);
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        for (int j = 0; j < 4; j++) {
+            if (is_told(s, stencil.vertices[j])) continue;
+            safe_motion_zone *zone = &s->zones[zone_of(s, stencil.vertices[j])];
+            zone->share = fmin(zone->share, share_of_way * c->toi);
+        }
+    }
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (is_told(s, v)) continue;
+        const safe_motion_zone *zone = &s->zones[zone_of(s, v)];
+        if (zone->share == 1.0) continue;
+        for (int k = 0; k < 3; k++) {
+            size_t i = (size_t)v * 3 + (size_t)k;
+            double common = zone->tellers > 0.0 ? zone->told[k] / zone->tellers : zone->motion[k] / zone->mass;
+            x1[i] = x0[i] + common + zone->share * (x1[i] - x0[i] - common);
+        }
+    }
+}
+
+/* The whole motion, shortened. */
+static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
+    cscd_free_step way;
+    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
+    s->counts.fallbacks++;
+    *length = way.length;
+    if (status != CSCD_IN_CONTACT) return status;
+    s->counts.waits++;
+    memcpy(x1, x0, (size_t)s->vertex_count * 3 * sizeof *x1);
+    *length = 0.0;
+    return CSCD_OK;
+}
+
+cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length) {
+    *length = 1.0;
+    for (int round = 0; round < ROUNDS; round++) {
+        cscd_contacts found;
+        cscd_status status = cscd_detector_step(s->detector, x0, x1, &found);
+        if (status != CSCD_OK) return status;
+        s->counts.steps++;
+        s->counts.contacts += found.count;
+        if (found.count == 0) return CSCD_OK;
+        s->counts.cut += round == 0;
+        if (round == STOPPING_ROUNDS) part_zones(s);
+        if (round < STOPPING_ROUNDS)
+            stop_approaches(s, &found, x0, x1);
+        else
+            move_together(s, &found, x0, x1);
+    }
+    return fall_back(s, x0, x1, length);
+}

@@ -1,0 +1,43 @@
+/* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
+#ifndef CSCD_MODELS_SAFE_MOTION_H
+#define CSCD_MODELS_SAFE_MOTION_H
+
+#include "cscd/cscd.h"
+
+/* What has been done so far. */
+typedef struct safe_motion_counts {
+    uint64_t steps;    /* calls of cscd_detector_step */
+    uint64_t contacts; /* found by them */
+    uint64_t cut;      /* motions that needed a change */
+    uint64_t fallbacks, waits; /* that took cscd_detector_max_step; that found no way on, and stayed */
+} safe_motion_counts;
+
+/* Vertices that move together, named by the smallest. */
+typedef struct safe_motion_zone {
+    double motion[3], mass; /* summed: mass times motion */
+    double told[3], tellers; /* summed: motions of the obstacles that it meets */
+    double share;            /* what this round leaves of the motions that differ */
+} safe_motion_zone;
+
+/* Owned by the caller: detector and mesh; inverse_masses, one per vertex, 0 for those that move as they are
+ * told. */
+typedef struct safe_motion {
+    cscd_detector *detector; /* with a min_separation */
+    const cscd_mesh *mesh;
+    const double *inverse_masses;
+    uint32_t vertex_count;
+    uint32_t *parents;       /* the zones of a motion, as a forest of vertices */
+    safe_motion_zone *zones; /* at the vertices that name them */
+    double (*told)[4];       /* per vertex: sum and number of the motions of obstacles that it met */
+    safe_motion_counts counts;
+} safe_motion;
+
+safe_motion safe_motion_make(cscd_detector *detector, const cscd_mesh *mesh, const double *inverse_masses);
+void safe_motion_free(safe_motion *s);
+
+/* Changes x1 until vertices that move from x0 to it in straight lines stay farther apart than the detector's
+ * min_separation, which holds at x0. *length: 1, or how far the obstacles went, at least 0: where no other
+ * motion is left, all vertices stop on the way, the obstacles with them. */
+cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length);
+
+#endif
