@@ -66,6 +66,5 @@ static void solve_pair(const apart *a, const apart_pair *pair, const double *inv
 }
 
 void apart_solve(const apart *a, const double *inverse_masses, double *previous, double *positions) {
-    for (size_t i = 0; i < a->count; i++)
-        solve_pair(a, &a->pairs[i], inverse_masses, previous, positions);
+    for (size_t i = 0; i < a->count; i++) solve_pair(a, &a->pairs[i], inverse_masses, previous, positions);
 }

@@ -4,7 +4,8 @@
 
 #include "cscd/cscd.h"
 
-/* Two features to be kept apart along a normal, which like the weights stays as it was when they were found. */
+/* Two features to be kept apart along a normal, which like the weights stays as it was when they were found.
+ */
 typedef struct apart_pair {
     cscd_stencil stencil;
     double normal[3]; /* from the second to the first */
@@ -20,12 +21,13 @@ typedef struct apart {
 
 void apart_free(apart *a);
 
-/* Forgets the pairs before. Two edges whose nearest points lie at an end of one are left to the vertex there. */
+/* Forgets the pairs before. Two edges whose nearest points lie at an end of one are left to the vertex there.
+ */
 void apart_take(apart *a, const cscd_mesh *mesh, const cscd_proximities *near);
 
 /* One pass in order. A pair on its way to come nearer than `thickness` is stopped, and slowed down along the
- * surface by friction. One that is nearer is moved apart, and `previous` with it, so that no speed comes of it.
- * Vertices with inverse mass 0 stay. */
+ * surface by friction. One that is nearer is moved apart, and `previous` with it, so that no speed comes of
+ * it. Vertices with inverse mass 0 stay. */
 void apart_solve(const apart *a, const double *inverse_masses, double *previous, double *positions);
 
 /* The weighted sum of a stencil's vertices. */

@@ -12,45 +12,47 @@ static const double pi = 3.14159265358979323846;
 const cloth_scene cloth_scenes[] = {
     {
         .name = "cloth-drape",
-        .text = "a sheet falls onto a ball and the floor, folds, and the ball rises and turns",
+        .text = "a sheet falls onto a ball, which sinks and turns until the sheet lies in folds on the floor",
         .cut = CLOTH_SHEET,
-        .width = 1.6,
+        .width = 1.8,
         .resolution = 60,
-        .place = {0.05, -0.03, 0.85},
+        .place = {0.05, -0.03, 1.05},
         .turn = 0.15,
         .lean = 0.03,
-        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 2e-4, .damping = 2e-3, .drag = 1.0},
+        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 2e-4, .damping = 3e-3, .drag = 2.5},
         .friction = 0.4,
         .gravity = 10.0,
         .obstacle_count = 2,
-        .obstacles = {{.kind = CLOTH_FLOOR, .size = 3.0},
+        .obstacles = {{.kind = CLOTH_BOX, .size = 3.0},
                       {.kind = CLOTH_BALL,
                        .size = 0.35,
-                       .centre = {0.0, 0.0, 0.42},
-                       .begin = 1.6,
-                       .seconds = 1.2,
-                       .rise = 0.25,
-                       .turn = 0.7}},
+                       .centre = {0.0, 0.0, 0.65},
+                       .begin = 1.0,
+                       .seconds = 1.6,
+                       .rise = -0.22,
+                       .turn = 1.7}},
         .frame_count = 320,
         .frame_seconds = 0.01,
         .small_steps = 12,
     },
     {
         .name = "sleeve",
-        .text = "a closed sleeve falls on its foot and collapses in folds on itself",
+        .text = "a closed sleeve collapses in folds on itself, and a ball presses it down",
         .cut = CLOTH_TUBE,
         .width = 0.5,
-        .height = 1.4,
+        .height = 1.3,
         .resolution = 60,
-        .place = {0.0, 0.0, 0.1},
+        .place = {0.0, 0.0, 0.02},
         .turn = 0.1,
-        .lean = 0.03,
-        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 5e-4, .damping = 2e-3, .drag = 1.0},
+        .lean = 0.01,
+        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 4e-4, .damping = 3e-3, .drag = 2.5},
         .friction = 0.4,
         .gravity = 10.0,
-        .obstacle_count = 1,
-        .obstacles = {{.kind = CLOTH_FLOOR, .size = 3.0}},
-        .frame_count = 320,
+        .obstacle_count = 2,
+        .obstacles =
+            {{.kind = CLOTH_BOX, .size = 3.0},
+             {.kind = CLOTH_BALL, .size = 0.25, .centre = {0.03, 0.02, 1.65}, .seconds = 1.5, .rise = -1.27}},
+        .frame_count = 240,
         .frame_seconds = 0.01,
         .small_steps = 12,
     },
@@ -72,7 +74,8 @@ double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution) {
 /* Turns two coordinates by an angle of which this is the tangent of the half: without sines, whose last bits
  * differ from library to library. */
 static void turn_plane(double tangent, double *x, double *y) {
-    double square = tangent * tangent, c = (1.0 - square) / (1.0 + square), s = 2.0 * tangent / (1.0 + square);
+    double square = tangent * tangent, c = (1.0 - square) / (1.0 + square),
+           s = 2.0 * tangent / (1.0 + square);
     double turned = c * *x - s * *y;
     *y = s * *x + c * *y;
     *x = turned;
@@ -103,7 +106,7 @@ body cloth_scene_garment(const cloth_scene *s, uint32_t resolution) {
 
 bool cloth_obstacle_make(const cloth_obstacle *o, body *out, io_error *error) {
     body made = {0};
-    if (o->kind == CLOTH_FLOOR) garment_add_floor(&made, o->size);
+    if (o->kind == CLOTH_BOX) garment_add_box(&made, o->size);
     if (o->kind == CLOTH_BALL && !garment_add_ball(&made, BALL_TRIANGLES, o->size, error)) return false;
     *out = made;
     return true;

@@ -7,14 +7,14 @@
 
 typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE } cloth_cut;
 
-typedef enum cloth_obstacle_kind { CLOTH_FLOOR, CLOTH_BALL } cloth_obstacle_kind;
+typedef enum cloth_obstacle_kind { CLOTH_BOX, CLOTH_BALL } cloth_obstacle_kind;
 
 /* Moves as it is told: from `begin` to `begin + seconds` it rises, and turns about the vertical through its
  * centre; before and afterwards it rests. */
 typedef struct cloth_obstacle {
     cloth_obstacle_kind kind;
-    double size;      /* radius of a ball, reach of a floor to all sides */
-    double centre[3]; /* of a floor: of its top */
+    double size;      /* radius of a ball; of a box its reach to the sides */
+    double centre[3]; /* of a box: of its top */
     double begin, seconds, rise;
     double turn; /* tangent of half the angle */
 } cloth_obstacle;

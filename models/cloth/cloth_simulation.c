@@ -17,7 +17,7 @@ double cloth_thickness(const cloth_simulation *c) {
 }
 
 double cloth_separation(const cloth_simulation *c) {
-    return separation * c->spacing;
+    return ldexp(c->safe.separation, -2 * (int)c->safe.counts.tightest);
 }
 
 static double now_ms(void) {
@@ -37,16 +37,12 @@ static cscd_mesh_desc describe(const body *b) {
 }
 
 /* One scene of the garment, which is looked after, and obstacles, which move as they are told. */
-static cscd_status open_detector(cloth_simulation *c) {
+static cscd_status open_mesh(cloth_simulation *c) {
     cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {{describe(&c->garment), false}};
     uint32_t count = c->scene->obstacle_count;
-    cscd_detector_options options = cscd_detector_defaults();
-    options.min_separation = cloth_separation(c);
     for (uint32_t i = 0; i < count; i++)
         objects[1 + i] = (cscd_object_desc){describe(&c->obstacles[i]), true};
-    cscd_status status = cscd_mesh_create_scene(c->context, objects, 1 + count, &c->mesh);
-    if (status == CSCD_OK) status = cscd_detector_create(c->mesh, NULL, &options, &c->detector);
-    return status;
+    return cscd_mesh_create_scene(c->context, objects, 1 + count, &c->mesh);
 }
 
 static void place_obstacles(const cloth_simulation *c, double time, double *positions) {
@@ -57,7 +53,7 @@ static void place_obstacles(const cloth_simulation *c, double time, double *posi
     }
 }
 
-static void make_state(cloth_simulation *c) {
+static cscd_status make_state(cloth_simulation *c) {
     size_t vertices = cscd_mesh_vertex_count(c->mesh), garment = c->garment.vertex_count;
     double **arrays[] = {&c->positions, &c->start, &c->target, &c->previous, &c->velocities};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -71,7 +67,7 @@ static void make_state(cloth_simulation *c) {
     c->pairs.thickness = cloth_thickness(c);
     c->pairs.healing = healing * cloth_thickness(c);
     c->pairs.friction = c->scene->friction;
-    c->safe = safe_motion_make(c->detector, c->mesh, c->inverse_masses);
+    return safe_motion_open(c->mesh, separation * c->spacing, c->inverse_masses, &c->safe);
 }
 
 bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context, cloth_simulation *out,
@@ -83,21 +79,19 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context
     bool good = true;
     for (uint32_t i = 0; good && i < s->obstacle_count; i++)
         good = cloth_obstacle_make(&s->obstacles[i], &c.obstacles[i], error);
-    if (good) good = explain(&c, open_detector(&c), error);
+    if (good) good = explain(&c, open_mesh(&c), error) && explain(&c, make_state(&c), error);
     if (!good) {
         cloth_close(&c);
         return false;
     }
-    make_state(&c);
     *out = c;
     return true;
 }
 
 void cloth_close(cloth_simulation *c) {
-    safe_motion_free(&c->safe);
+    safe_motion_close(&c->safe);
     apart_free(&c->pairs);
     fabric_free(&c->cloth);
-    cscd_detector_destroy(c->detector);
     cscd_mesh_destroy(c->mesh);
     body_free(&c->garment);
     for (uint32_t i = 0; i < CLOTH_OBSTACLES_MAX; i++) body_free(&c->obstacles[i]);
@@ -135,12 +129,13 @@ static void want(cloth_simulation *c) {
 }
 
 bool cloth_advance(cloth_simulation *c, io_error *error) {
-    size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3, free_size = (size_t)c->garment.vertex_count * 3;
+    size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3,
+           free_size = (size_t)c->garment.vertex_count * 3;
     cloth_statistics *s = &c->statistics;
     double begin = now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
     cscd_proximities near;
-    cscd_status status = cscd_detector_near(c->detector, c->start, reach * c->spacing, &near);
+    cscd_status status = cscd_detector_near(c->safe.detectors[0], c->start, reach * c->spacing, &near);
     s->near_ms += now_ms() - begin;
     if (!explain(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);

@@ -10,7 +10,7 @@
 typedef struct cloth_statistics {
     uint32_t frames;
     double total_ms, near_ms, step_ms;
-    uint64_t near_pairs; /* that cscd_detector_near found */
+    uint64_t near_pairs;  /* that cscd_detector_near found */
     uint64_t most_rounds; /* detector steps of one frame */
     double waited;        /* frames that obstacles have lost */
     safe_motion_counts motion;
@@ -18,12 +18,11 @@ typedef struct cloth_statistics {
 
 typedef struct cloth_simulation {
     const cloth_scene *scene;
-    double spacing;  /* of the garment's vertices */
-    body garment;    /* as it begins */
+    double spacing;                      /* of the garment's vertices */
+    body garment;                        /* as it begins */
     body obstacles[CLOTH_OBSTACLES_MAX]; /* about their centres */
     cscd_context *context;               /* the caller's */
     cscd_mesh *mesh;                     /* object 0: the garment; then the obstacles */
-    cscd_detector *detector;
     fabric cloth;
     double *inverse_masses; /* here and below for all vertices of the scene; 0: an obstacle's */
     double *positions;      /* now: free of contact, and reached without any */
@@ -41,11 +40,12 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context
                 io_error *error);
 void cloth_close(cloth_simulation *c);
 
-/* On to the next frame: from `start` to `positions` in straight lines nothing comes nearer than
- * cloth_separation. */
+/* On to the next frame: from `start` to `positions` in straight lines nothing meets, nor comes nearer than
+ * cloth_separation says. */
 bool cloth_advance(cloth_simulation *c, io_error *error);
 
-/* What the solver keeps, as long as it can; and what the detector certifies. */
+/* The distance that the solver keeps, as long as it can; and the one that is certified so far, which is
+ * smaller where the cloth was pressed together. */
 double cloth_thickness(const cloth_simulation *c);
 double cloth_separation(const cloth_simulation *c);
 

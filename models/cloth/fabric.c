@@ -78,8 +78,8 @@ static double *make_inverse_masses(const body *rest, double density) {
     double *masses = body_allocate(rest->vertex_count, sizeof *masses);
     for (uint32_t t = 0; t < rest->triangle_count; t++) {
         const uint32_t *v = rest->triangles + t * 3;
-        double area = triangle_area(rest->positions + v[0] * 3, rest->positions + v[1] * 3,
-                                    rest->positions + v[2] * 3);
+        double area =
+            triangle_area(rest->positions + v[0] * 3, rest->positions + v[1] * 3, rest->positions + v[2] * 3);
         for (int i = 0; i < 3; i++) masses[v[i]] += density * area / 3.0;
     }
     for (uint32_t v = 0; v < rest->vertex_count; v++) masses[v] = 1.0 / masses[v];

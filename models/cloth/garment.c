@@ -1,4 +1,4 @@
-/* What falls and what it falls onto: sheets, tubes, floors and balls as meshes. */
+/* What falls and what it falls onto: sheets, tubes, boxes and balls as meshes. */
 #include "models/cloth/garment.h"
 #include "models/shapes/catalogue.h"
 #include "models/shapes/rings.h"
@@ -32,7 +32,7 @@ void garment_add_tube(body *b, uint32_t triangle_count, double radius, double he
 }
 
 /* Corners as the bits of 0 to 7: x, y, z. */
-void garment_add_floor(body *b, double reach) {
+void garment_add_box(body *b, double reach) {
     static const uint8_t sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     const double thickness = 0.1 * reach;
@@ -49,7 +49,8 @@ void garment_add_floor(body *b, double reach) {
 
 bool garment_add_ball(body *b, uint32_t triangle_count, double radius, io_error *error) {
     body sphere;
-    if (!body_make(BODY_SPHERE, body_nearest_count(BODY_SPHERE, triangle_count), &sphere, error)) return false;
+    if (!body_make(BODY_SPHERE, body_nearest_count(BODY_SPHERE, triangle_count), &sphere, error))
+        return false;
     for (uint32_t i = 0; i < sphere.vertex_count * 3; i++) sphere.positions[i] *= radius;
     body_append(b, &sphere, (double[3]){0.0, 0.0, 0.0});
     body_round(b);

@@ -1,4 +1,4 @@
-/* What falls and what it falls onto: sheets, tubes, floors and balls as meshes. z is up, lengths in metres. */
+/* What falls and what it falls onto: sheets, tubes, boxes and balls as meshes. z is up, lengths in metres. */
 #ifndef CSCD_MODELS_GARMENT_H
 #define CSCD_MODELS_GARMENT_H
 
@@ -15,8 +15,8 @@ void garment_add_sheet(body *b, uint32_t side, double width);
  * exactly triangle_count, an even number, some hundred at least. */
 void garment_add_tube(body *b, uint32_t triangle_count, double radius, double height);
 
-/* A box with its top at z = 0, `reach` to all sides. */
-void garment_add_floor(body *b, double reach);
+/* A flat box about the z axis with its top at z = 0: `reach` to each side, a tenth of it high. */
+void garment_add_box(body *b, double reach);
 
 /* About the origin, of about triangle_count triangles. */
 bool garment_add_ball(body *b, uint32_t triangle_count, double radius, io_error *error);

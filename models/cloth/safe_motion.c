@@ -13,16 +13,34 @@ enum { STOPPING_ROUNDS = 4, ROUNDS = 16 };
 /* How much of the way to a contact is left to its features. */
 static const double share_of_way = 0.7;
 
-safe_motion safe_motion_make(cscd_detector *detector, const cscd_mesh *mesh, const double *inverse_masses) {
-    safe_motion s = {.detector = detector, .mesh = mesh, .inverse_masses = inverse_masses};
+/* The detector of a separation, made when first needed. */
+static cscd_status choose_detector(safe_motion *s, uint32_t which, cscd_detector **out) {
+    cscd_status status = CSCD_OK;
+    if (s->detectors[which] == NULL) {
+        cscd_detector_options options = cscd_detector_defaults();
+        options.min_separation = ldexp(s->separation, -2 * (int)which);
+        status = cscd_detector_create(s->mesh, NULL, &options, &s->detectors[which]);
+    }
+    *out = s->detectors[which];
+    return status;
+}
+
+cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
+                             safe_motion *out) {
+    safe_motion s = {.mesh = mesh, .separation = separation, .inverse_masses = inverse_masses};
+    cscd_detector *first;
+    cscd_status status = choose_detector(&s, 0, &first);
+    if (status != CSCD_OK) return status;
     s.vertex_count = cscd_mesh_vertex_count(mesh);
     s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
     s.zones = body_allocate(s.vertex_count, sizeof *s.zones);
     s.told = body_allocate(s.vertex_count, sizeof *s.told);
-    return s;
+    *out = s;
+    return CSCD_OK;
 }
 
-void safe_motion_free(safe_motion *s) {
+void safe_motion_close(safe_motion *s) {
+    for (int i = 0; i < SAFE_MOTION_SEPARATIONS; i++) cscd_detector_destroy(s->detectors[i]);
     free(s->parents);
     free(s->zones);
     free(s->told);
@@ -123,40 +141,60 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
         if (zone->share == 1.0) continue;
         for (int k = 0; k < 3; k++) {
             size_t i = (size_t)v * 3 + (size_t)k;
-            double common = zone->tellers > 0.0 ? zone->told[k] / zone->tellers : zone->motion[k] / zone->mass;
+            double common =
+                zone->tellers > 0.0 ? zone->told[k] / zone->tellers : zone->motion[k] / zone->mass;
             x1[i] = x0[i] + common + zone->share * (x1[i] - x0[i] - common);
         }
     }
 }
 
 /* The whole motion, shortened. */
-static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
-    cscd_free_step way;
-    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
+static cscd_status fall_back(safe_motion *s, cscd_detector *detector, const double *x0, double *x1,
+                             double *length) {
+    cscd_free_step way = {.length = 0.0};
+    cscd_status status = cscd_detector_max_step(detector, x0, x1, x1, &way);
     s->counts.fallbacks++;
     *length = way.length;
     if (status != CSCD_IN_CONTACT) return status;
     s->counts.waits++;
     memcpy(x1, x0, (size_t)s->vertex_count * 3 * sizeof *x1);
-    *length = 0.0;
+    return CSCD_OK;
+}
+
+/* What the first of all detectors finds for which x0 is far enough apart; else, the last. A contact at time 0
+ * is one of x0. */
+static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_detector **detector,
+                              cscd_contacts *found) {
+    uint32_t which = 0;
+    for (;; which++) {
+        cscd_status status = choose_detector(s, which, detector);
+        if (status == CSCD_OK) status = cscd_detector_step(*detector, x0, x1, found);
+        if (status != CSCD_OK) return status;
+        s->counts.steps++;
+        s->counts.contacts += found->count;
+        if (found->count == 0 || found->items[0].toi > 0.0 || which + 1 == SAFE_MOTION_SEPARATIONS) break;
+    }
+    s->counts.tight += which > 0;
+    if (which > s->counts.tightest) s->counts.tightest = which;
+    s->counts.cut += found->count > 0;
     return CSCD_OK;
 }
 
 cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length) {
+    cscd_detector *detector;
+    cscd_contacts found;
     *length = 1.0;
-    for (int round = 0; round < ROUNDS; round++) {
-        cscd_contacts found;
-        cscd_status status = cscd_detector_step(s->detector, x0, x1, &found);
-        if (status != CSCD_OK) return status;
-        s->counts.steps++;
-        s->counts.contacts += found.count;
-        if (found.count == 0) return CSCD_OK;
-        s->counts.cut += round == 0;
+    cscd_status status = find_first(s, x0, x1, &detector, &found);
+    for (int round = 0; status == CSCD_OK && found.count > 0; round++) {
+        if (round == ROUNDS) return fall_back(s, detector, x0, x1, length);
         if (round == STOPPING_ROUNDS) part_zones(s);
         if (round < STOPPING_ROUNDS)
             stop_approaches(s, &found, x0, x1);
         else
             move_together(s, &found, x0, x1);
+        status = cscd_detector_step(detector, x0, x1, &found);
+        s->counts.steps++;
+        s->counts.contacts += found.count;
     }
-    return fall_back(s, x0, x1, length);
+    return status;
 }

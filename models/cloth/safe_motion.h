@@ -6,24 +6,29 @@
 
 /* What has been done so far. */
 typedef struct safe_motion_counts {
-    uint64_t steps;    /* calls of cscd_detector_step */
-    uint64_t contacts; /* found by them */
-    uint64_t cut;      /* motions that needed a change */
+    uint64_t steps;            /* calls of cscd_detector_step */
+    uint64_t contacts;         /* found by them */
+    uint64_t cut;              /* motions that needed a change */
     uint64_t fallbacks, waits; /* that took cscd_detector_max_step; that found no way on, and stayed */
+    uint64_t tight;            /* that began too near for the first separation; */
+    uint32_t tightest;         /* the last that was needed, 0 the first */
 } safe_motion_counts;
+
+/* Each separation is a quarter of the one before. */
+enum { SAFE_MOTION_SEPARATIONS = 5 };
 
 /* Vertices that move together, named by the smallest. */
 typedef struct safe_motion_zone {
-    double motion[3], mass; /* summed: mass times motion */
+    double motion[3], mass;  /* summed: mass times motion */
     double told[3], tellers; /* summed: motions of the obstacles that it meets */
     double share;            /* what this round leaves of the motions that differ */
 } safe_motion_zone;
 
-/* Owned by the caller: detector and mesh; inverse_masses, one per vertex, 0 for those that move as they are
- * told. */
+/* Owned by the caller: mesh and inverse_masses, one per vertex, 0 for those that move as they are told. */
 typedef struct safe_motion {
-    cscd_detector *detector; /* with a min_separation */
+    cscd_detector *detectors[SAFE_MOTION_SEPARATIONS]; /* all but the first: NULL until needed */
     const cscd_mesh *mesh;
+    double separation; /* of the first detector */
     const double *inverse_masses;
     uint32_t vertex_count;
     uint32_t *parents;       /* the zones of a motion, as a forest of vertices */
@@ -32,12 +37,14 @@ typedef struct safe_motion {
     safe_motion_counts counts;
 } safe_motion;
 
-safe_motion safe_motion_make(cscd_detector *detector, const cscd_mesh *mesh, const double *inverse_masses);
-void safe_motion_free(safe_motion *s);
+cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
+                             safe_motion *out);
+void safe_motion_close(safe_motion *s);
 
-/* Changes x1 until vertices that move from x0 to it in straight lines stay farther apart than the detector's
- * min_separation, which holds at x0. *length: 1, or how far the obstacles went, at least 0: where no other
- * motion is left, all vertices stop on the way, the obstacles with them. */
+/* Changes x1 until vertices that move from x0 to it in straight lines meet nothing on the way: they stay
+ * farther apart than the separation, or, where they are pressed together until they begin nearer than that,
+ * than the next one, and so on. x0 touches nothing. *length: 1, or how much of their way the obstacles went,
+ * down to 0: where no other motion is left, all vertices stop on the way, the obstacles with them. */
 cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length);
 
 #endif
