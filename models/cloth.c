@@ -1,6 +1,6 @@
 /* Records cloth that falls, drapes and folds without ever passing through anything: a model, its frames, and
  * what it falls onto. */
-#include "models/cloth/cloth_simulation.h"
+#include "models/textile/cloth_simulation.h"
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache_write.h"
 

@@ -2,7 +2,7 @@
 #ifndef CSCD_MODELS_CLOTH_SCENE_H
 #define CSCD_MODELS_CLOTH_SCENE_H
 
-#include "models/cloth/fabric.h"
+#include "models/textile/fabric.h"
 #include "src/io/io_error.h"
 
 typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE } cloth_cut;

@@ -2,9 +2,9 @@
 #ifndef CSCD_MODELS_CLOTH_SIMULATION_H
 #define CSCD_MODELS_CLOTH_SIMULATION_H
 
-#include "models/cloth/apart.h"
-#include "models/cloth/cloth_scene.h"
-#include "models/cloth/safe_motion.h"
+#include "models/textile/apart.h"
+#include "models/textile/cloth_scene.h"
+#include "models/textile/safe_motion.h"
 
 /* So far. total_ms is that of cloth_advance; near_ms and step_ms are spent in cscd. */
 typedef struct cloth_statistics {

@@ -1,5 +1,5 @@
 /* Cloth as springs along its edges and stiff hinges across them, by XPBD. */
-#include "models/cloth/fabric.h"
+#include "models/textile/fabric.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>

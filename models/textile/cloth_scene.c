@@ -1,6 +1,6 @@
 /* The scenes of the cloth simulator: which garment falls how, onto what. */
-#include "models/cloth/cloth_scene.h"
-#include "models/cloth/garment.h"
+#include "models/textile/cloth_scene.h"
+#include "models/textile/garment.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
-#include "models/cloth/safe_motion.h"
-#include "models/cloth/apart.h"
+#include "models/textile/safe_motion.h"
+#include "models/textile/apart.h"
 #include "models/shapes/body.h"
 #include "models/softbody/vector.h"
 

@@ -1,5 +1,5 @@
 /* What falls and what it falls onto: sheets, tubes, boxes and balls as meshes. */
-#include "models/cloth/garment.h"
+#include "models/textile/garment.h"
 #include "models/shapes/catalogue.h"
 #include "models/shapes/rings.h"
 

@@ -1,5 +1,5 @@
 /* Cloth that nothing passes through: a solver for cloth on the public API of cscd alone, frame by frame. */
-#include "models/cloth/cloth_simulation.h"
+#include "models/textile/cloth_simulation.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Contact and friction: what cscd_detector_near finds, as constraints on positions. */
-#include "models/cloth/apart.h"
+#include "models/textile/apart.h"
 #include "models/shapes/body.h"
 #include "models/softbody/vector.h"
 
