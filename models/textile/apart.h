@@ -9,13 +9,14 @@
 typedef struct apart_pair {
     cscd_stencil stencil;
     double normal[3]; /* from the second to the first */
+    double healing;   /* how far it is moved apart in one small step if it is too near */
 } apart_pair;
 
 typedef struct apart {
-    apart_pair *pairs; /* in the order of the detector */
+    apart_pair *pairs; /* in the order of the detector, those with obstacles last */
     size_t count, capacity;
     double thickness; /* the distance to be kept */
-    double healing;   /* how far pairs that are nearer are moved apart in one small step */
+    double healing;   /* of pairs of the cloth; an obstacle lifts more */
     double friction;  /* Coulomb's coefficient */
 } apart;
 

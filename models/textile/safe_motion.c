@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* First contacts only stop what approaches, one by one; what then still meets moves together. */
-enum { STOPPING_ROUNDS = 4, ROUNDS = 16 };
+/* First contacts only stop what approaches; what then still meets moves together. */
+enum { STOPPING_ROUNDS = 6, STOPPING_PASSES = 20, ROUNDS = 16 };
 
 /* How much of the way to a contact is left to its features. */
 static const double share_of_way = 0.7;
@@ -41,25 +41,50 @@ cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const dou
 
 void safe_motion_close(safe_motion *s) {
     for (int i = 0; i < SAFE_MOTION_SEPARATIONS; i++) cscd_detector_destroy(s->detectors[i]);
+    free(s->stops);
     free(s->parents);
     free(s->zones);
     free(s->told);
     *s = (safe_motion){0};
 }
 
-/* Each approach goes on only for a share of its way to the contact. */
-static void stop_approaches(const safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+/* How far the two points come nearer along the normal. */
+static double approach_of(const safe_motion_stop *stop, const double *x0, const double *x1) {
+    double from[3], to[3];
+    apart_sum(&stop->stencil, x0, from);
+    apart_sum(&stop->stencil, x1, to);
+    return dot(from, stop->normal) - dot(to, stop->normal);
+}
+
+static void take_stops(safe_motion *s, const cscd_contacts *found, const double *x0, const double *x1) {
+    if (s->stop_count + found->count > s->stop_capacity) {
+        s->stop_capacity = 2 * (s->stop_count + found->count);
+        safe_motion_stop *grown = body_allocate(s->stop_capacity, sizeof *grown);
+        if (s->stop_count > 0) memcpy(grown, s->stops, s->stop_count * sizeof *grown);
+        free(s->stops);
+        s->stops = grown;
+    }
     for (size_t i = 0; i < found->count; i++) {
         const cscd_contact *c = &found->items[i];
-        cscd_stencil stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
-        double from[3], change[3];
-        apart_sum(&stencil, x0, from);
-        apart_sum(&stencil, x1, change);
-        for (int k = 0; k < 3; k++) change[k] -= from[k];
-        double approach = -dot(change, c->normal);
+        safe_motion_stop *stop = &s->stops[s->stop_count];
+        stop->stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        memcpy(stop->normal, c->normal, sizeof stop->normal);
+        double approach = approach_of(stop, x0, x1);
         if (approach <= 0.0) continue;
-        for (int k = 0; k < 3; k++) change[k] = (1.0 - share_of_way * c->toi) * approach * c->normal[k];
-        apart_push(&stencil, s->inverse_masses, change, x1);
+        stop->allowed = share_of_way * c->toi * approach;
+        s->stop_count++;
+    }
+}
+
+/* What was found in this and earlier rounds approaches only for a share of its way to the contact. */
+static void stop_approaches(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+    take_stops(s, found, x0, x1);
+    for (size_t i = 0; i < s->stop_count * STOPPING_PASSES; i++) {
+        const safe_motion_stop *stop = &s->stops[i % s->stop_count];
+        double excess = approach_of(stop, x0, x1) - stop->allowed, change[3];
+        if (excess <= 0.0) continue;
+        for (int k = 0; k < 3; k++) change[k] = excess * stop->normal[k];
+        apart_push(&stop->stencil, s->inverse_masses, change, x1);
     }
 }
 
@@ -184,6 +209,7 @@ cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, doubl
     cscd_detector *detector;
     cscd_contacts found;
     *length = 1.0;
+    s->stop_count = 0;
     cscd_status status = find_first(s, x0, x1, &detector, &found);
     for (int round = 0; status == CSCD_OK && found.count > 0; round++) {
         if (round == ROUNDS) return fall_back(s, detector, x0, x1, length);

@@ -17,6 +17,12 @@ typedef struct safe_motion_counts {
 /* Each separation is a quarter of the one before. */
 enum { SAFE_MOTION_SEPARATIONS = 5 };
 
+/* How near the points of a contact may come to each other along its normal. */
+typedef struct safe_motion_stop {
+    cscd_stencil stencil;
+    double normal[3], allowed;
+} safe_motion_stop;
+
 /* Vertices that move together, named by the smallest. */
 typedef struct safe_motion_zone {
     double motion[3], mass;  /* summed: mass times motion */
@@ -31,6 +37,8 @@ typedef struct safe_motion {
     double separation; /* of the first detector */
     const double *inverse_masses;
     uint32_t vertex_count;
+    safe_motion_stop *stops; /* of a motion */
+    size_t stop_count, stop_capacity;
     uint32_t *parents;       /* the zones of a motion, as a forest of vertices */
     safe_motion_zone *zones; /* at the vertices that name them */
     double (*told)[4];       /* per vertex: sum and number of the motions of obstacles that it met */
