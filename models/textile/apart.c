@@ -14,9 +14,6 @@ static bool is_inside(double parameter) {
     return parameter > 0.0 && parameter < 1.0;
 }
 
-/* Layers that part push the lowest one down, each a little, and it must not give way. */
-static const double firmness = 10.0;
-
 static bool is_with_obstacle(const cscd_mesh *mesh, const cscd_stencil *s) {
     return cscd_mesh_object(mesh, cscd_mesh_vertex_object(mesh, s->vertices[0])).obstacle ||
            cscd_mesh_object(mesh, cscd_mesh_vertex_object(mesh, s->vertices[3])).obstacle;
@@ -37,7 +34,7 @@ void apart_take(apart *a, const cscd_mesh *mesh, const cscd_proximities *near) {
             apart_pair pair = {.stencil = cscd_mesh_stencil(mesh, p->kind, p->a, p->b, p->u, p->v)};
             if (is_with_obstacle(mesh, &pair.stencil) != (last == 1)) continue;
             for (int k = 0; k < 3; k++) pair.normal[k] = p->normal[k];
-            pair.healing = last == 1 ? firmness * a->healing : a->healing;
+            pair.healing = a->healing[last];
             a->pairs[a->count++] = pair;
         }
     }
@@ -72,7 +69,7 @@ static void solve_pair(const apart *a, const apart_pair *pair, const double *inv
     add_scaled(change, stopped, pair->normal);
     if (sliding > 0.0) add_scaled(change, -fmin(a->friction * stopped, sliding) / sliding, slid);
     apart_push(&pair->stencil, inverse_masses, change, positions);
-    double healed = fmin(depth - stopped, pair->healing);
+    double healed = pair->healing * (depth - stopped);
     for (int k = 0; k < 3; k++) change[k] = healed * pair->normal[k];
     apart_push(&pair->stencil, inverse_masses, change, positions);
     apart_push(&pair->stencil, inverse_masses, change, previous);

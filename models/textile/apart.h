@@ -9,14 +9,14 @@
 typedef struct apart_pair {
     cscd_stencil stencil;
     double normal[3]; /* from the second to the first */
-    double healing;   /* how far it is moved apart in one small step if it is too near */
+    double healing;   /* the share of what it lacks to the thickness that one small step gives it */
 } apart_pair;
 
 typedef struct apart {
     apart_pair *pairs; /* in the order of the detector, those with obstacles last */
     size_t count, capacity;
     double thickness; /* the distance to be kept */
-    double healing;   /* of pairs of the cloth; an obstacle lifts more */
+    double healing[2]; /* of pairs within cloth; of those with an obstacle */
     double friction;  /* Coulomb's coefficient */
 } apart;
 

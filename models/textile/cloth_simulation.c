@@ -9,8 +9,8 @@
 /* In spacings. Flat cloth has no features nearer than 0.7 that do not share a vertex. */
 static const double thickness = 0.3, separation = 0.03, reach = 0.6;
 
-/* Of the thickness, in one small step: folds pressed into each other part without haste. */
-static const double healing = 0.01;
+/* Shares of what pairs lack, a small step: layers that part press on the lowest, which must not give way. */
+static const double healing[2] = {0.05, 0.3};
 
 double cloth_thickness(const cloth_simulation *c) {
     return thickness * c->spacing;
@@ -65,7 +65,7 @@ static cscd_status make_state(cloth_simulation *c) {
     place_obstacles(c, 0.0, c->positions);
     memcpy(c->start, c->positions, vertices * 3 * sizeof *c->start);
     c->pairs.thickness = cloth_thickness(c);
-    c->pairs.healing = healing * cloth_thickness(c);
+    memcpy(c->pairs.healing, healing, sizeof healing);
     c->pairs.friction = c->scene->friction;
     return safe_motion_open(c->mesh, separation * c->spacing, c->inverse_masses, &c->safe);
 }
