@@ -142,7 +142,8 @@ static bool record_frames(cloth_simulation *c, const char *folder, const uint64_
     return good && complete;
 }
 
-static bool record(const cloth_scene *s, const char *folder, io_error *error) {
+/* Resolution 0: the scene's own. */
+static bool record(const cloth_scene *s, uint32_t resolution, const char *folder, io_error *error) {
     uint64_t allocations = 0;
     cscd_context *context;
     cscd_context_options options = cscd_context_defaults();
@@ -150,7 +151,7 @@ static bool record(const cloth_scene *s, const char *folder, io_error *error) {
     cscd_status status = cscd_context_create(&options, &context);
     if (status != CSCD_OK) return io_fail(error, "%s: %s", s->name, cscd_status_string(status));
     cloth_simulation c;
-    bool good = cloth_open(s, 0, context, &c, error);
+    bool good = cloth_open(s, resolution, context, &c, error);
     if (good) {
         good = record_frames(&c, folder, &allocations, error);
         cloth_close(&c);
@@ -161,37 +162,61 @@ static bool record(const cloth_scene *s, const char *folder, io_error *error) {
 
 static int print_help(FILE *stream) {
     fprintf(stream,
-            "usage: cloth SCENE... FOLDER\n"
+            "usage: cloth [--resolution N] SCENE... FOLDER\n"
             "\n"
             "Simulates cloth and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the cloth\n"
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
+            "N, %u to %u, is the number of vertices along a side or around a tube; without it 60.\n"
             "`all` stands for all scenes:\n"
-            "\n");
+            "\n",
+            CLOTH_RESOLUTION_MIN, CLOTH_RESOLUTION_MAX);
     for (uint32_t i = 0; i < cloth_scene_count; i++)
         fprintf(stream, "  %-22s %s\n", cloth_scenes[i].name, cloth_scenes[i].text);
     return stream == stdout ? 0 : 2;
 }
 
-static int run(int argument_count, char **arguments) {
-    if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) return print_help(stdout);
-    if (argument_count < 3) return print_help(stderr);
-    const char *folder = arguments[argument_count - 1];
-    for (int i = 1; i + 1 < argument_count; i++) {
-        if (strcmp(arguments[i], "all") == 0 || cloth_scene_find(arguments[i]) != NULL) continue;
-        fprintf(stderr, "cloth: no scene is called '%s'; cloth --help lists them\n", arguments[i]);
+static bool parse_resolution(const char *text, uint32_t *out) {
+    char *end;
+    errno = 0;
+    unsigned long value = strtoul(text, &end, 10);
+    if (errno != 0 || *end != '\0' || value < CLOTH_RESOLUTION_MIN || value > CLOTH_RESOLUTION_MAX) {
+        fprintf(stderr, "cloth: --resolution '%s': a number from %u to %u is wanted\n", text,
+                CLOTH_RESOLUTION_MIN, CLOTH_RESOLUTION_MAX);
+        return false;
+    }
+    *out = (uint32_t)value;
+    return true;
+}
+
+static int record_all(int name_count, char **names, uint32_t resolution, const char *folder) {
+    for (int i = 0; i < name_count; i++) {
+        if (strcmp(names[i], "all") == 0 || cloth_scene_find(names[i]) != NULL) continue;
+        fprintf(stderr, "cloth: no scene is called '%s'; cloth --help lists them\n", names[i]);
         return 2;
     }
     for (uint32_t i = 0; i < cloth_scene_count; i++) {
         bool wanted = false;
-        for (int j = 1; j + 1 < argument_count; j++)
-            wanted =
-                wanted || strcmp(arguments[j], "all") == 0 || strcmp(arguments[j], cloth_scenes[i].name) == 0;
+        for (int j = 0; j < name_count; j++)
+            wanted = wanted || strcmp(names[j], "all") == 0 || strcmp(names[j], cloth_scenes[i].name) == 0;
         io_error error;
-        if (!wanted || record(&cloth_scenes[i], folder, &error)) continue;
+        if (!wanted || record(&cloth_scenes[i], resolution, folder, &error)) continue;
         fprintf(stderr, "cloth: %s\n", error.text);
         return 1;
     }
     return 0;
+}
+
+static int run(int argument_count, char **arguments) {
+    uint32_t resolution = 0;
+    int first = 1;
+    if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) return print_help(stdout);
+    if (argument_count > 2 && strcmp(arguments[1], "--resolution") == 0) {
+        if (!parse_resolution(arguments[2], &resolution)) return 2;
+        first = 3;
+    }
+    if (argument_count < first + 2) return print_help(stderr);
+    return record_all(argument_count - 1 - first, arguments + first, resolution,
+                      arguments[argument_count - 1]);
 }
 
 int main(int argument_count, char **arguments) {

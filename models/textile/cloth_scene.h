@@ -44,7 +44,9 @@ extern const uint32_t cloth_scene_count;
 /* NULL: there is none of this name. */
 const cloth_scene *cloth_scene_find(const char *name);
 
-/* The mean distance of neighbouring vertices; resolution 2 or more, of a tube 12 or more. */
+enum { CLOTH_RESOLUTION_MIN = 12, CLOTH_RESOLUTION_MAX = 500 };
+
+/* The mean distance of neighbouring vertices. */
 double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution);
 
 /* The garment as it begins, which is how it rests. */

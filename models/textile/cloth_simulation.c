@@ -7,7 +7,7 @@
 #include <time.h>
 
 /* In spacings. Flat cloth has no features nearer than 0.7 that do not share a vertex. */
-static const double thickness = 0.3, separation = 0.03, reach = 0.6;
+static const double thickness = 0.3, separation = 0.03, reach = 0.45;
 
 /* Shares of what pairs lack, a small step: layers that part press on the lowest, which must not give way. */
 static const double healing[2] = {0.05, 0.3};
@@ -113,7 +113,7 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
     }
     for (size_t i = free_size; i < size; i++)
         x[i] = c->start[i] + (double)(which + 1) / steps * (goal[i] - c->start[i]);
-    fabric_solve(&c->cloth, step, which % 2 == 1, c->previous, x);
+    fabric_solve(&c->cloth, step, c->previous, x);
     apart_solve(&c->pairs, c->inverse_masses, c->previous, x);
     for (size_t i = 0; i < free_size; i++) c->velocities[i] = (x[i] - c->previous[i]) / step;
 }

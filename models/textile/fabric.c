@@ -152,15 +152,9 @@ static void solve_hinge(const fabric *f, const fabric_hinge *h, double step, con
                    direction);
 }
 
-void fabric_solve(const fabric *f, double step, bool backwards, const double *previous, double *positions) {
-    for (uint32_t i = 0; i < f->spring_count; i++) {
-        uint32_t which = backwards ? f->spring_count - 1 - i : i;
-        solve_spring(f, &f->springs[which], step, previous, positions);
-    }
-    for (uint32_t i = 0; i < f->hinge_count; i++) {
-        uint32_t which = backwards ? f->hinge_count - 1 - i : i;
-        solve_hinge(f, &f->hinges[which], step, previous, positions);
-    }
+void fabric_solve(const fabric *f, double step, const double *previous, double *positions) {
+    for (uint32_t i = 0; i < f->spring_count; i++) solve_spring(f, &f->springs[i], step, previous, positions);
+    for (uint32_t i = 0; i < f->hinge_count; i++) solve_hinge(f, &f->hinges[i], step, previous, positions);
 }
 
 double fabric_energy(const fabric *f, const double *positions, const double *velocities) {

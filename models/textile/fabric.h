@@ -39,9 +39,9 @@ typedef struct fabric {
 fabric fabric_make(const body *rest, const fabric_material *m);
 void fabric_free(fabric *f);
 
-/* One pass over all springs and hinges; at every second pass in the opposite order, so that no direction is
- * preferred. previous: where the small step began; step in seconds. */
-void fabric_solve(const fabric *f, double step, bool backwards, const double *previous, double *positions);
+/* One pass over all springs and hinges, always in one order: passes to and fro would not come to rest, for
+ * each ends a little elsewhere. previous: where the small step began; step in seconds. */
+void fabric_solve(const fabric *f, double step, const double *previous, double *positions);
 
 /* Kinetic energy plus that of springs and hinges above rest. */
 double fabric_energy(const fabric *f, const double *positions, const double *velocities);

@@ -8,10 +8,13 @@
 #include <string.h>
 
 /* First contacts only stop what approaches; what then still meets moves together. */
-enum { STOPPING_ROUNDS = 6, STOPPING_PASSES = 20, ROUNDS = 16 };
+enum { STOPPING_ROUNDS = 6, STOPPING_PASSES = 40, ROUNDS = 16 };
 
 /* How much of the way to a contact is left to its features. */
 static const double share_of_way = 0.7;
+
+/* How much of an excess is taken away in a pass: all of it at once would throw back what comes first. */
+static const double share_of_excess = 0.25;
 
 /* The detector of a separation, made when first needed. */
 static cscd_status choose_detector(safe_motion *s, uint32_t which, cscd_detector **out) {
@@ -83,7 +86,7 @@ static void stop_approaches(safe_motion *s, const cscd_contacts *found, const do
         const safe_motion_stop *stop = &s->stops[i % s->stop_count];
         double excess = approach_of(stop, x0, x1) - stop->allowed, change[3];
         if (excess <= 0.0) continue;
-        for (int k = 0; k < 3; k++) change[k] = excess * stop->normal[k];
+        for (int k = 0; k < 3; k++) change[k] = share_of_excess * excess * stop->normal[k];
         apart_push(&stop->stencil, s->inverse_masses, change, x1);
     }
 }
