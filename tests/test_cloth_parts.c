@@ -127,7 +127,8 @@ static void springs_and_hinges_keep_momentum(void **state) {
     (void)state;
     body b = make_sheet(10);
     fabric f = fabric_make(&b, &cotton);
-    double *before = copy_of(b.positions, b.vertex_count * 3), *x, linear[3] = {0}, angular[3] = {0}, most = 0.0;
+    double *before = copy_of(b.positions, b.vertex_count * 3), *x, linear[3] = {0}, angular[3] = {0},
+           most = 0.0;
     shake(7, 1e-6, before, b.vertex_count * 3);
     x = copy_of(before, b.vertex_count * 3);
     fabric_solve(&f, 1e-3, b.positions, x);
@@ -183,9 +184,8 @@ static void a_hanging_sheet_stretches_little(void **state) {
 
 /* A vertex of mass 1 above a triangle that stays: vertex 0 over 1, 2, 3. */
 static apart one_pair(apart_pair *pair) {
-    *pair = (apart_pair){.stencil = {{0, 1, 2, 3}, {1.0, -0.5, -0.25, -0.25}},
-                         .normal = {0.0, 0.0, 1.0},
-                         .healing = 0.1};
+    *pair = (apart_pair){
+        .stencil = {{0, 1, 2, 3}, {1.0, -0.5, -0.25, -0.25}}, .normal = {0.0, 0.0, 1.0}, .healing = 0.1};
     return (apart){.pairs = pair, .count = 1, .thickness = 0.01, .friction = 0.5};
 }
 
@@ -237,8 +237,13 @@ static void friction_is_coulombs(void **state) {
 
 static void obstacles_move_as_told(void **state) {
     (void)state;
-    const cloth_obstacle o = {
-        .kind = CLOTH_BALL, .size = 0.5, .centre = {1.0, 2.0, 3.0}, .begin = 1.0, .seconds = 2.0, .rise = 0.4, .turn = 1.0};
+    const cloth_obstacle o = {.kind = CLOTH_BALL,
+                              .size = 0.5,
+                              .centre = {1.0, 2.0, 3.0},
+                              .begin = 1.0,
+                              .seconds = 2.0,
+                              .rise = 0.4,
+                              .turn = 1.0};
     body shape;
     io_error error;
     assert_true(cloth_obstacle_make(&o, &shape, &error));

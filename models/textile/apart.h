@@ -15,9 +15,9 @@ typedef struct apart_pair {
 typedef struct apart {
     apart_pair *pairs; /* in the order of the detector, those with obstacles last */
     size_t count, capacity;
-    double thickness; /* the distance to be kept */
+    double thickness;  /* the distance to be kept */
     double healing[2]; /* of pairs within cloth; of those with an obstacle */
-    double friction;  /* Coulomb's coefficient */
+    double friction;   /* Coulomb's coefficient */
 } apart;
 
 void apart_free(apart *a);

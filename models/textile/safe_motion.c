@@ -1,8 +1,8 @@
 /* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
 #include "models/textile/safe_motion.h"
-#include "models/textile/apart.h"
 #include "models/shapes/body.h"
 #include "models/softbody/vector.h"
+#include "models/textile/apart.h"
 
 #include <stdlib.h>
 #include <string.h>
