@@ -36,7 +36,7 @@ each_file() {
     "$1" template "$templates/cscdConfig.cmake.in" "$cmake_folder/cscdConfig.cmake"
     "$1" template "$templates/cscdConfigVersion.cmake.in" "$cmake_folder/cscdConfigVersion.cmake"
     for page in docs/man/*.[1-9]; do
-        "$1" 644 "$page" "$MANDIR/man${page##*.}/${page##*/}"
+        "$1" template "$page" "$MANDIR/man${page##*.}/${page##*/}"
     done
 }
 
