@@ -131,7 +131,7 @@ gallery: models
 test: packages
 	@$(MAKE) --no-print-directory test-run
 
-test-run: tool $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
+test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
