@@ -107,6 +107,12 @@ install: $(TOOL) $(LIBRARY) $(SHARED)
 uninstall:
 	@$(INSTALLER) uninstall
 
+# The functions of the library as HTML, from the headers' comments; a warning of doxygen is an error.
+reference:
+	@GSL=$(GSL) .ci/packages reference
+	@mkdir -p build/reference
+	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
+
 # Everything that the build or the tests need and this machine lacks.
 packages:
 	@GSL=$(GSL) .ci/packages
