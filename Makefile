@@ -37,7 +37,8 @@ LEVEL_scalar := -DSIMD_LEVEL=0
 LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 
-# -ffp-contract=off: error bounds are derived for separate multiplications and additions.
+# -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: the same objects make
+# both libraries, and run no slower for it.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
@@ -198,7 +199,7 @@ help:
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
-	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, headers, libraries, man pages, for pkg-config and CMake; make uninstall'
+	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'

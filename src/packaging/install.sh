@@ -10,7 +10,7 @@ major=${VERSION%%.*}
 pc_folder=$LIBDIR/pkgconfig
 cmake_folder=$LIBDIR/cmake/cscd
 templates=src/packaging
-made=$BUILD/installed-folders # the folders that install made, one a line
+made=$BUILD/installed-folders.$(id -u) # the folders that install made, one a line; by user, for root makes some
 
 for folder in "$BINDIR" "$LIBDIR" "$INCLUDEDIR" "$MANDIR"; do
     case $folder in
