@@ -17,6 +17,13 @@
 /* All names of options in a text, each once. */
 #define NAMES "grep -oE '(^|[^-a-z])-(o\\b|-[a-z-]+)' | grep -oE -e '-.*' | LC_ALL=C sort -u"
 
+static int find_tool(void **state) {
+    (void)state;
+    if (getenv("CSCD_TOOL") != NULL) return 0;
+    print_error("CSCD_TOOL must name the built tool; run the tests through tests/run.sh\n");
+    return -1;
+}
+
 static void expect_equal(const char *what, char *page, char *truth) {
     if (strcmp(page, truth) != 0) fail_msg("%s: the page has\n%s\nbut there are\n%s", what, page, truth);
     assert_true(page[0] != '\0');
@@ -93,5 +100,5 @@ int main(void) {
         cmocka_unit_test(no_option_is_made_up),
         cmocka_unit_test(functions_are_those_of_the_headers),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, find_tool, NULL);
 }
