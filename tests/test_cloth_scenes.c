@@ -11,12 +11,15 @@
 
 #include <cmocka.h>
 
-/* Fewer under sanitizers; a brute-force test of all pairs every so many frames. */
+/* Under sanitizers only the first frames; they know folds, too. A brute-force test of all pairs now and then.
+ */
 #ifdef __SANITIZE_ADDRESS__
-enum { RESOLUTION = 14, THREADED_FRAMES = 30, BRUTE_EVERY = 100 };
+enum { FRAMES = 100, THREADED_FRAMES = 20, BRUTE_EVERY = 70 };
 #else
-enum { RESOLUTION = 18, THREADED_FRAMES = 80, BRUTE_EVERY = 80 };
+enum { FRAMES = 1000, THREADED_FRAMES = 40, BRUTE_EVERY = 70 };
 #endif
+
+enum { RESOLUTION = 18 };
 
 /* A run of a scene beside detectors that know nothing of the solver's, on what a recording keeps: positions
  * in single precision. */
@@ -132,55 +135,59 @@ static double largest_motion(const trial *t) {
     return most;
 }
 
-/* To the end: no contact from frame to frame, no frame that crosses, obstacles where they should be, and
- * folds in some frame. Returns with the last frame in hand. */
-static trial run_whole(const char *name) {
-    trial t = begin(name, 1);
-    size_t most_folds = 0;
-    expect_embedded(t.judge, t.after);
-    for (uint32_t frame = 1; frame < t.run.scene->frame_count; frame++) {
-        advance(&t);
-        expect_nothing(t.judge, t.before, t.after, frame);
-        expect_embedded(t.judge, t.after);
-        if (frame % BRUTE_EVERY == 0) expect_nothing(t.brute, t.before, t.after, frame);
-        if (frame % 20 == 0) {
-            meetings m = count_meetings(&t);
-            most_folds = m.folds > most_folds ? m.folds : most_folds;
-        }
+/* No contact from frame to frame, and so no frame that crosses; no obstacle that had to wait. *most_folds: of
+ * a frame. True if that was the whole scene, which ends nearly at rest. */
+static bool run_scene(trial *t, size_t *most_folds) {
+    *most_folds = 0;
+    uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;
+    expect_embedded(t->judge, t->after);
+    for (uint32_t frame = 1; frame < frame_count; frame++) {
+        advance(t);
+        expect_nothing(t->judge, t->before, t->after, frame);
+        if (frame % BRUTE_EVERY == 0) expect_nothing(t->brute, t->before, t->after, frame);
+        if (frame % 20 > 0) continue;
+        expect_embedded(t->judge, t->after);
+        meetings m = count_meetings(t);
+        if (m.folds > *most_folds) *most_folds = m.folds;
     }
-    assert_true(most_folds > 20);
-    assert_true(t.run.statistics.waited == 0.0);
-    assert_true(largest_motion(&t) < 0.2 * t.run.spacing);
-    return t;
+    assert_true(t->run.statistics.waited == 0.0);
+    if (frame_count < t->run.scene->frame_count) return false;
+    assert_true(largest_motion(t) < 0.5 * t->run.spacing);
+    return true;
 }
 
-/* The sheet lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it.
- */
+/* It lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it. */
 static void the_sheet_drapes_over_the_ball(void **state) {
     (void)state;
-    trial t = run_whole("cloth-drape");
+    trial t = begin("cloth-drape", 1);
     const cloth_obstacle *ball = &t.run.scene->obstacles[1];
     double top = ball->centre[2] + ball->rise + ball->size, highest = 0.0;
+    size_t most_folds;
+    bool whole = run_scene(&t, &most_folds);
     meetings m = count_meetings(&t);
     assert_true(m.obstacles[0] > 10 && m.obstacles[1] > 10);
     for (uint32_t v = 0; v < t.garment_count; v++) {
-        const double *p = t.run.positions + v * 3;
-        assert_true(p[2] > 0.0);
-        highest = fmax(highest, p[2]);
+        assert_true(t.run.positions[v * 3 + 2] > 0.0);
+        highest = fmax(highest, t.run.positions[v * 3 + 2]);
     }
-    assert_true(highest > top && highest < top + 2.0 * t.run.spacing);
+    if (whole) assert_true(most_folds > 20 && highest > top && highest < top + 2.0 * t.run.spacing);
     end(&t);
 }
 
+/* Flat on the floor, below the ball. */
 static void the_sleeve_lies_in_folds(void **state) {
     (void)state;
-    trial t = run_whole("sleeve");
+    trial t = begin("sleeve", 1);
+    double highest = 0.0;
+    size_t most_folds;
+    bool whole = run_scene(&t, &most_folds);
     meetings m = count_meetings(&t);
-    assert_true(m.folds > 20 && m.obstacles[0] > 10 && m.obstacles[1] > 10);
+    assert_true(most_folds > 20 && m.folds > 20 && m.obstacles[0] > 10);
     for (uint32_t v = 0; v < t.garment_count; v++) {
-        const double height = t.run.positions[v * 3 + 2];
-        assert_true(height > 0.0 && height < 0.4 * t.run.scene->height);
+        assert_true(t.run.positions[v * 3 + 2] > 0.0);
+        highest = fmax(highest, t.run.positions[v * 3 + 2]);
     }
+    if (whole) assert_true(m.obstacles[1] > 10 && highest < 0.4 * t.run.scene->height);
     end(&t);
 }
 
@@ -198,7 +205,7 @@ static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     assert_int_equal(cscd_mesh_create(t.context, &desc, &mesh), CSCD_OK);
     assert_int_equal(cscd_plan_create(mesh, garment->positions, &options, &plan), CSCD_OK);
     assert_int_equal(cscd_detector_create(mesh, plan, NULL, &detector), CSCD_OK);
-    for (uint32_t frame = 1; frame < 60; frame++) {
+    for (uint32_t frame = 1; frame < 40; frame++) {
         advance(&t);
         expect_nothing(detector, t.before, t.after, frame);
         cscd_guarantee guarantee = cscd_detector_guarantee(detector, 0);

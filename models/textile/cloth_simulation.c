@@ -135,7 +135,7 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     double begin = now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
     cscd_proximities near;
-    cscd_status status = cscd_detector_near(c->safe.detectors[0], c->start, reach * c->spacing, &near);
+    cscd_status status = cscd_detector_near(c->safe.detector, c->start, reach * c->spacing, &near);
     s->near_ms += now_ms() - begin;
     if (!explain(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);

@@ -16,23 +16,17 @@ static const double share_of_way = 0.7;
 /* How much of an excess is taken away in a pass: all of it at once would throw back what comes first. */
 static const double share_of_excess = 0.25;
 
-/* The detector of a separation, made when first needed. */
-static cscd_status choose_detector(safe_motion *s, uint32_t which, cscd_detector **out) {
-    cscd_status status = CSCD_OK;
-    if (s->detectors[which] == NULL) {
-        cscd_detector_options options = cscd_detector_defaults();
-        options.min_separation = ldexp(s->separation, -2 * (int)which);
-        status = cscd_detector_create(s->mesh, NULL, &options, &s->detectors[which]);
-    }
-    *out = s->detectors[which];
-    return status;
+/* Each separation is a quarter of the one before. */
+static cscd_status set_separation(safe_motion *s, uint32_t which) {
+    return cscd_detector_set_separation(s->detector, ldexp(s->separation, -2 * (int)which), 0.0);
 }
 
 cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
                              safe_motion *out) {
     safe_motion s = {.mesh = mesh, .separation = separation, .inverse_masses = inverse_masses};
-    cscd_detector *first;
-    cscd_status status = choose_detector(&s, 0, &first);
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = separation;
+    cscd_status status = cscd_detector_create(mesh, NULL, &options, &s.detector);
     if (status != CSCD_OK) return status;
     s.vertex_count = cscd_mesh_vertex_count(mesh);
     s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
@@ -43,7 +37,7 @@ cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const dou
 }
 
 void safe_motion_close(safe_motion *s) {
-    for (int i = 0; i < SAFE_MOTION_SEPARATIONS; i++) cscd_detector_destroy(s->detectors[i]);
+    cscd_detector_destroy(s->detector);
     free(s->stops);
     free(s->parents);
     free(s->zones);
@@ -177,10 +171,9 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
 }
 
 /* The whole motion, shortened. */
-static cscd_status fall_back(safe_motion *s, cscd_detector *detector, const double *x0, double *x1,
-                             double *length) {
+static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
     cscd_free_step way = {.length = 0.0};
-    cscd_status status = cscd_detector_max_step(detector, x0, x1, x1, &way);
+    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
     s->counts.fallbacks++;
     *length = way.length;
     if (status != CSCD_IN_CONTACT) return status;
@@ -189,41 +182,41 @@ static cscd_status fall_back(safe_motion *s, cscd_detector *detector, const doub
     return CSCD_OK;
 }
 
-/* What the first of all detectors finds for which x0 is far enough apart; else, the last. A contact at time 0
- * is one of x0. */
-static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_detector **detector,
-                              cscd_contacts *found) {
-    uint32_t which = 0;
-    for (;; which++) {
-        cscd_status status = choose_detector(s, which, detector);
-        if (status == CSCD_OK) status = cscd_detector_step(*detector, x0, x1, found);
+static cscd_status find_contacts(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
+    cscd_status status = cscd_detector_step(s->detector, x0, x1, found);
+    if (status != CSCD_OK) return status;
+    s->counts.steps++;
+    s->counts.contacts += found->count;
+    return CSCD_OK;
+}
+
+/* With the first separation that x0 keeps; else, with the last. A contact at time 0 is one of x0. */
+static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
+    for (uint32_t which = 0; which < SAFE_MOTION_SEPARATIONS; which++) {
+        cscd_status status = set_separation(s, which);
+        if (status == CSCD_OK) status = find_contacts(s, x0, x1, found);
         if (status != CSCD_OK) return status;
-        s->counts.steps++;
-        s->counts.contacts += found->count;
-        if (found->count == 0 || found->items[0].toi > 0.0 || which + 1 == SAFE_MOTION_SEPARATIONS) break;
+        s->counts.tight += which == 1;
+        if (which > s->counts.tightest) s->counts.tightest = which;
+        if (found->count == 0 || found->items[0].toi > 0.0) break;
     }
-    s->counts.tight += which > 0;
-    if (which > s->counts.tightest) s->counts.tightest = which;
     s->counts.cut += found->count > 0;
     return CSCD_OK;
 }
 
 cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length) {
-    cscd_detector *detector;
     cscd_contacts found;
     *length = 1.0;
     s->stop_count = 0;
-    cscd_status status = find_first(s, x0, x1, &detector, &found);
+    cscd_status status = find_first(s, x0, x1, &found);
     for (int round = 0; status == CSCD_OK && found.count > 0; round++) {
-        if (round == ROUNDS) return fall_back(s, detector, x0, x1, length);
+        if (round == ROUNDS) return fall_back(s, x0, x1, length);
         if (round == STOPPING_ROUNDS) part_zones(s);
         if (round < STOPPING_ROUNDS)
             stop_approaches(s, &found, x0, x1);
         else
             move_together(s, &found, x0, x1);
-        status = cscd_detector_step(detector, x0, x1, &found);
-        s->counts.steps++;
-        s->counts.contacts += found.count;
+        status = find_contacts(s, x0, x1, &found);
     }
     return status;
 }

@@ -32,9 +32,9 @@ typedef struct safe_motion_zone {
 
 /* Owned by the caller: mesh and inverse_masses, one per vertex, 0 for those that move as they are told. */
 typedef struct safe_motion {
-    cscd_detector *detectors[SAFE_MOTION_SEPARATIONS]; /* all but the first: NULL until needed */
+    cscd_detector *detector; /* its separation is that of the last motion */
     const cscd_mesh *mesh;
-    double separation; /* of the first detector */
+    double separation; /* the first */
     const double *inverse_masses;
     uint32_t vertex_count;
     safe_motion_stop *stops; /* of a motion */
