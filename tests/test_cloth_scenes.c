@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* Under sanitizers only the first frames; they know folds, too. A brute-force test of all pairs now and then.
+/* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
  */
 #ifdef __SANITIZE_ADDRESS__
 enum { FRAMES = 100, THREADED_FRAMES = 20, BRUTE_EVERY = 70 };
@@ -165,12 +165,15 @@ static void the_sheet_drapes_over_the_ball(void **state) {
     size_t most_folds;
     bool whole = run_scene(&t, &most_folds);
     meetings m = count_meetings(&t);
-    assert_true(m.obstacles[0] > 10 && m.obstacles[1] > 10);
+    assert_true(m.obstacles[1] > 10);
     for (uint32_t v = 0; v < t.garment_count; v++) {
         assert_true(t.run.positions[v * 3 + 2] > 0.0);
         highest = fmax(highest, t.run.positions[v * 3 + 2]);
     }
-    if (whole) assert_true(most_folds > 20 && highest > top && highest < top + 2.0 * t.run.spacing);
+    if (whole) {
+        assert_true(most_folds > 20 && m.obstacles[0] > 10);
+        assert_true(highest > top && highest < top + 2.0 * t.run.spacing);
+    }
     end(&t);
 }
 
@@ -182,12 +185,15 @@ static void the_sleeve_lies_in_folds(void **state) {
     size_t most_folds;
     bool whole = run_scene(&t, &most_folds);
     meetings m = count_meetings(&t);
-    assert_true(most_folds > 20 && m.folds > 20 && m.obstacles[0] > 10);
+    assert_true(m.obstacles[0] > 10);
     for (uint32_t v = 0; v < t.garment_count; v++) {
         assert_true(t.run.positions[v * 3 + 2] > 0.0);
         highest = fmax(highest, t.run.positions[v * 3 + 2]);
     }
-    if (whole) assert_true(m.obstacles[1] > 10 && highest < 0.4 * t.run.scene->height);
+    if (whole) {
+        assert_true(most_folds > 20 && m.folds > 20 && m.obstacles[1] > 10);
+        assert_true(highest < 0.4 * t.run.scene->height);
+    }
     end(&t);
 }
 
