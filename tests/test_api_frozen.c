@@ -288,6 +288,9 @@ uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh);
 void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]);
 uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh);
 void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
+void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]);
+const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count);
+const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count);
 uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
 uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
@@ -319,6 +322,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
                                  const cscd_detector_options *options, cscd_detector **out);
 void cscd_detector_destroy(cscd_detector *detector);
 const char *cscd_contact_kind_name(cscd_contact_kind kind);
+cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance);
 cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
                                cscd_contacts *out);
 cscd_status cscd_detector_check(cscd_detector *detector, const double *positions, cscd_intersections *out);
