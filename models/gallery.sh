@@ -31,5 +31,7 @@ strip dumbbell-stairs 25,14 4 0:143:13
 strip dumbbell-stairs-free 25,14 4 0:140:20
 strip figure-balls 25,14 4 12:144:12
 strip figure-balls-free 25,14 4 12:138:18
+strip cloth-drape 20,20 4 0:319:29
+strip sleeve 20,12 4 0:239:21
 "$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --frame 84 --colour contacts --view 0,10 --size 900x560 \
     --scenery "$models/pawn-drop-scenery.obj" -o "$images/pawn-contacts.png"
