@@ -55,7 +55,7 @@ static press make_press(double below, double above) {
     for (uint32_t v = p.floor; v < p.lid; v++) p.x0[v * 3 + 2] -= below;
     for (uint32_t v = p.lid; v < p.vertex_count; v++) p.x0[v * 3 + 2] += box_height + above;
     memcpy(p.x1, p.x0, p.vertex_count * 3 * sizeof *p.x1);
-    assert_int_equal(safe_motion_open(p.mesh, separation, p.inverse_masses, &p.safe), CSCD_OK);
+    assert_int_equal(safe_motion_open(p.mesh, separation, p.inverse_masses, NULL, 0, &p.safe), CSCD_OK);
     return p;
 }
 

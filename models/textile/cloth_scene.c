@@ -56,6 +56,33 @@ const cloth_scene cloth_scenes[] = {
         .frame_seconds = 0.01,
         .small_steps = 12,
     },
+    {
+        .name = "bag",
+        .text = "a bag sewn of two panels falls over a ball, which turns and lifts it",
+        .cut = CLOTH_BAG,
+        .width = 0.9,
+        .height = 0.9,
+        .depth = 0.25,
+        .resolution = 44,
+        .place = {0.02, 0.01, 0.56},
+        .turn = 0.3,
+        .lean = 0.02,
+        .stuff = {.density = 0.15, .stretch = 400.0, .bending = 2e-4, .damping = 3e-3, .drag = 2.5},
+        .friction = 0.6,
+        .gravity = 10.0,
+        .obstacle_count = 2,
+        .obstacles = {{.kind = CLOTH_BOX, .size = 3.0},
+                      {.kind = CLOTH_BALL,
+                       .size = 0.18,
+                       .centre = {0.0, 0.0, 0.36},
+                       .begin = 0.9,
+                       .seconds = 1.2,
+                       .rise = 0.3,
+                       .turn = 1.5}},
+        .frame_count = 260,
+        .frame_seconds = 0.01,
+        .small_steps = 12,
+    },
 };
 
 const uint32_t cloth_scene_count = sizeof cloth_scenes / sizeof *cloth_scenes;
@@ -68,7 +95,7 @@ const cloth_scene *cloth_scene_find(const char *name) {
 }
 
 double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution) {
-    return s->cut == CLOTH_SHEET ? s->width / (resolution - 1) : s->width * pi / resolution;
+    return s->cut == CLOTH_TUBE ? s->width * pi / resolution : s->width / (resolution - 1);
 }
 
 /* Turns two coordinates by an angle of which this is the tangent of the half: without sines, whose last bits
@@ -88,12 +115,22 @@ static void add_tube(const cloth_scene *s, uint32_t resolution, body *b) {
     garment_add_tube(b, 2 * (uint32_t)(area / (0.5 * sqrt(3.0) * spacing * spacing)), radius, s->height);
 }
 
+/* Of a bag, whose columns are the resolution. */
+static uint32_t bag_rows(const cloth_scene *s, uint32_t resolution) {
+    return 1 + (uint32_t)(s->height / cloth_scene_spacing(s, resolution) + 0.5);
+}
+
+uint32_t *cloth_scene_seams(const cloth_scene *s, uint32_t resolution, uint32_t *pair_count) {
+    *pair_count = 0;
+    return s->cut == CLOTH_BAG ? garment_bag_seams(resolution, bag_rows(s, resolution), pair_count) : NULL;
+}
+
 body cloth_scene_garment(const cloth_scene *s, uint32_t resolution) {
     body b = {0};
-    if (s->cut == CLOTH_SHEET)
-        garment_add_sheet(&b, resolution, s->width);
-    else
-        add_tube(s, resolution, &b);
+    if (s->cut == CLOTH_SHEET) garment_add_sheet(&b, resolution, s->width);
+    if (s->cut == CLOTH_TUBE) add_tube(s, resolution, &b);
+    if (s->cut == CLOTH_BAG)
+        garment_add_bag(&b, resolution, bag_rows(s, resolution), s->width, s->height, s->depth);
     for (uint32_t v = 0; v < b.vertex_count; v++) {
         double *p = b.positions + v * 3;
         turn_plane(s->turn, &p[0], &p[1]);

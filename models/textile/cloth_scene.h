@@ -5,7 +5,7 @@
 #include "models/textile/fabric.h"
 #include "src/io/io_error.h"
 
-typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE } cloth_cut;
+typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE, CLOTH_BAG } cloth_cut;
 
 typedef enum cloth_obstacle_kind { CLOTH_BOX, CLOTH_BALL } cloth_obstacle_kind;
 
@@ -25,9 +25,10 @@ enum { CLOTH_OBSTACLES_MAX = 2 };
 typedef struct cloth_scene {
     const char *name, *text;
     cloth_cut cut;
-    double width, height; /* of a sheet its side; of a tube its diameter, and its height */
-    uint32_t resolution;  /* vertices along a sheet's side, or around a tube: the default */
-    double place[3];      /* of a sheet's middle, of the middle of a tube's foot */
+    double width, height; /* of a sheet its side; of a tube its diameter, and its height; of a bag both */
+    double depth;         /* of a bag, to each side */
+    uint32_t resolution;  /* vertices along a side, or around a tube: the default */
+    double place[3];      /* of a sheet's middle, or of the middle of the garment's foot */
     double turn, lean;    /* tangents of half the angles: about the vertical, then about the x axis */
     fabric_material stuff;
     double friction, gravity;
@@ -51,6 +52,9 @@ double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution);
 
 /* The garment as it begins, which is how it rests. */
 body cloth_scene_garment(const cloth_scene *s, uint32_t resolution);
+
+/* *pair_count pairs of vertices of the garment that are sewn together, to be freed; none: NULL. */
+uint32_t *cloth_scene_seams(const cloth_scene *s, uint32_t resolution, uint32_t *pair_count);
 
 /* An obstacle as a mesh about its centre, to be placed by cloth_obstacle_place. */
 bool cloth_obstacle_make(const cloth_obstacle *o, body *out, io_error *error);

@@ -67,7 +67,8 @@ static cscd_status make_state(cloth_simulation *c) {
     c->pairs.thickness = cloth_thickness(c);
     memcpy(c->pairs.healing, healing, sizeof healing);
     c->pairs.friction = c->scene->friction;
-    return safe_motion_open(c->mesh, separation * c->spacing, c->inverse_masses, &c->safe);
+    return safe_motion_open(c->mesh, separation * c->spacing, c->inverse_masses, c->seams, c->seam_count,
+                            &c->safe);
 }
 
 bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context, cloth_simulation *out,
@@ -76,6 +77,7 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context
     if (resolution == 0) resolution = s->resolution;
     c.spacing = cloth_scene_spacing(s, resolution);
     c.garment = cloth_scene_garment(s, resolution);
+    c.seams = cloth_scene_seams(s, resolution, &c.seam_count);
     bool good = true;
     for (uint32_t i = 0; good && i < s->obstacle_count; i++)
         good = cloth_obstacle_make(&s->obstacles[i], &c.obstacles[i], error);
@@ -95,6 +97,7 @@ void cloth_close(cloth_simulation *c) {
     cscd_mesh_destroy(c->mesh);
     body_free(&c->garment);
     for (uint32_t i = 0; i < CLOTH_OBSTACLES_MAX; i++) body_free(&c->obstacles[i]);
+    free(c->seams);
     double *arrays[] = {c->positions, c->start, c->target, c->previous, c->velocities, c->inverse_masses};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     *c = (cloth_simulation){0};
@@ -115,6 +118,8 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
         x[i] = c->start[i] + (double)(which + 1) / steps * (goal[i] - c->start[i]);
     fabric_solve(&c->cloth, step, c->previous, x);
     apart_solve(&c->pairs, c->inverse_masses, c->previous, x);
+    safe_motion_sew(&c->safe, c->previous);
+    safe_motion_sew(&c->safe, x);
     for (size_t i = 0; i < free_size; i++) c->velocities[i] = (x[i] - c->previous[i]) / step;
 }
 

@@ -23,6 +23,8 @@ typedef struct cloth_simulation {
     body obstacles[CLOTH_OBSTACLES_MAX]; /* about their centres */
     cscd_context *context;               /* the caller's */
     cscd_mesh *mesh;                     /* object 0: the garment; then the obstacles */
+    uint32_t *seams;                     /* pairs of the garment's vertices, NULL: none */
+    uint32_t seam_count;
     fabric cloth;
     double *inverse_masses; /* here and below for all vertices of the scene; 0: an obstacle's */
     double *positions;      /* now: free of contact, and reached without any */

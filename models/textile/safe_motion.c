@@ -22,10 +22,16 @@ static cscd_status set_separation(safe_motion *s, uint32_t which) {
 }
 
 cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
-                             safe_motion *out) {
-    safe_motion s = {.mesh = mesh, .separation = separation, .inverse_masses = inverse_masses};
+                             const uint32_t *seams, uint32_t seam_count, safe_motion *out) {
+    safe_motion s = {.mesh = mesh,
+                     .separation = separation,
+                     .inverse_masses = inverse_masses,
+                     .seams = seams,
+                     .seam_count = seam_count};
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = separation;
+    options.seams = seams;
+    options.seam_count = seam_count;
     cscd_status status = cscd_detector_create(mesh, NULL, &options, &s.detector);
     if (status != CSCD_OK) return status;
     s.vertex_count = cscd_mesh_vertex_count(mesh);
@@ -43,6 +49,17 @@ void safe_motion_close(safe_motion *s) {
     free(s->zones);
     free(s->told);
     *s = (safe_motion){0};
+}
+
+void safe_motion_sew(const safe_motion *s, double *positions) {
+    for (uint32_t i = 0; i < s->seam_count; i++) {
+        uint32_t a = s->seams[2 * i], b = s->seams[2 * i + 1];
+        double wa = s->inverse_masses[a], wb = s->inverse_masses[b];
+        for (uint32_t k = 0; k < 3; k++) {
+            double *x = &positions[a * 3 + k], *y = &positions[b * 3 + k];
+            if (*x != *y) *x = *y = (wb * *x + wa * *y) / (wa + wb);
+        }
+    }
 }
 
 /* How far the two points come nearer along the normal. */
@@ -88,6 +105,7 @@ static void stop_approaches(safe_motion *s, const cscd_contacts *found, const do
 static void part_zones(safe_motion *s) {
     for (uint32_t v = 0; v < s->vertex_count; v++) s->parents[v] = v;
     memset(s->told, 0, s->vertex_count * sizeof *s->told);
+    for (uint32_t i = 0; i < s->seam_count; i++) s->parents[s->seams[2 * i + 1]] = s->seams[2 * i];
 }
 
 static uint32_t zone_of(safe_motion *s, uint32_t vertex) {
@@ -216,6 +234,7 @@ cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, doubl
             stop_approaches(s, &found, x0, x1);
         else
             move_together(s, &found, x0, x1);
+        safe_motion_sew(s, x1);
         status = find_contacts(s, x0, x1, &found);
     }
     return status;

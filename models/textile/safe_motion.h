@@ -30,12 +30,15 @@ typedef struct safe_motion_zone {
     double share;            /* what this round leaves of the motions that differ */
 } safe_motion_zone;
 
-/* Owned by the caller: mesh and inverse_masses, one per vertex, 0 for those that move as they are told. */
+/* Owned by the caller: mesh, seams, and inverse_masses, one per vertex, 0 for those that move as they are
+ * told. */
 typedef struct safe_motion {
     cscd_detector *detector; /* its separation is that of the last motion */
     const cscd_mesh *mesh;
     double separation; /* the first */
     const double *inverse_masses;
+    const uint32_t *seams; /* pairs of vertices that move as one */
+    uint32_t seam_count;
     uint32_t vertex_count;
     safe_motion_stop *stops; /* of a motion */
     size_t stop_count, stop_capacity;
@@ -46,13 +49,17 @@ typedef struct safe_motion {
 } safe_motion;
 
 cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
-                             safe_motion *out);
+                             const uint32_t *seams, uint32_t seam_count, safe_motion *out);
 void safe_motion_close(safe_motion *s);
 
 /* Changes x1 until vertices that move from x0 to it in straight lines meet nothing on the way: they stay
  * farther apart than the separation, or, where they are pressed together until they begin nearer than that,
  * than the next one, and so on. x0 touches nothing. *length: 1, or how much of their way the obstacles went,
- * down to 0: where no other motion is left, all vertices stop on the way, the obstacles with them. */
+ * down to 0: where no other motion is left, all vertices stop on the way, the obstacles with them. Vertices
+ * that are sewn together lie on each other at x0 and x1, and stay so. */
 cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length);
+
+/* Both vertices of each seam to their common centre of mass. */
+void safe_motion_sew(const safe_motion *s, double *positions);
 
 #endif
