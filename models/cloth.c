@@ -166,7 +166,8 @@ static int print_help(FILE *stream) {
             "\n"
             "Simulates cloth and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the cloth\n"
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
-            "N, %u to %u, is the number of vertices along a side or around a tube; without it 60.\n"
+            "N, %u to %u, is the number of vertices along a side or around a tube; the default is 60, of a "
+            "bag 45.\n"
             "`all` stands for all scenes:\n"
             "\n",
             CLOTH_RESOLUTION_MIN, CLOTH_RESOLUTION_MAX);

@@ -47,6 +47,29 @@ static void sheets_are_open(void **state) {
     }
 }
 
+/* Two panels, which their seams join into one disc: with an open edge as long as both lower edges. */
+static void bags_are_sewn_from_two_panels(void **state) {
+    (void)state;
+    enum { COLUMNS = 7, ROWS = 9 };
+    body b = {0};
+    uint32_t seam_count, *seams = garment_bag_seams(COLUMNS, ROWS, &seam_count);
+    garment_add_bag(&b, COLUMNS, ROWS, 1.0, 1.2, 0.3);
+    assert_int_equal(b.vertex_count, 2 * COLUMNS * ROWS);
+    assert_int_equal(seam_count, 2 * (ROWS - 1) + COLUMNS);
+    for (uint32_t i = 0; i < seam_count; i++) {
+        const uint32_t *pair = seams + 2 * i;
+        assert_memory_equal(b.positions + pair[0] * 3, b.positions + pair[1] * 3, 3 * sizeof(double));
+        for (uint32_t k = 0; k < b.triangle_count * 3; k++)
+            if (b.triangles[k] == pair[1]) b.triangles[k] = pair[0];
+    }
+    cscd_component c = only_component(&b);
+    assert_int_equal(c.open_edges, 2 * (COLUMNS - 1));
+    assert_int_equal(c.inconsistent_edges + c.non_manifold_edges, 0);
+    assert_true(body_volume(&b) > 0.1); /* counter-clockwise from outside */
+    free(seams);
+    body_free(&b);
+}
+
 static void check_closed(body *b, double volume) {
     cscd_component c = only_component(b);
     assert_true(c.closed_manifold);
@@ -264,6 +287,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sheets_are_open),
         cmocka_unit_test(tubes_balls_and_boxes_are_closed),
+        cmocka_unit_test(bags_are_sewn_from_two_panels),
         cmocka_unit_test(what_rests_stays),
         cmocka_unit_test(fabric_counts),
         cmocka_unit_test(springs_and_hinges_keep_momentum),

@@ -14,9 +14,9 @@
 /* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
  */
 #ifdef __SANITIZE_ADDRESS__
-enum { FRAMES = 100, THREADED_FRAMES = 20, BRUTE_EVERY = 70 };
+enum { FRAMES = 100, THREADED_FRAMES = 20, SEWN_FRAMES = 60, BRUTE_EVERY = 70 };
 #else
-enum { FRAMES = 1000, THREADED_FRAMES = 40, BRUTE_EVERY = 70 };
+enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 100, BRUTE_EVERY = 70 };
 #endif
 
 enum { RESOLUTION = 18 };
@@ -37,11 +37,13 @@ static void round_positions(const double *from, uint32_t vertex_count, double *t
     body_round(&rounded);
 }
 
-static cscd_detector *make_detector(const cscd_mesh *mesh, cscd_method method) {
+static cscd_detector *make_detector(const cloth_simulation *run, cscd_method method) {
     cscd_detector *detector;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_OK);
+    options.seams = run->seams;
+    options.seam_count = run->seam_count;
+    assert_int_equal(cscd_detector_create(run->mesh, NULL, &options, &detector), CSCD_OK);
     return detector;
 }
 
@@ -55,8 +57,8 @@ static trial begin(const char *name, uint32_t thread_count) {
         fail_msg("%s", error.text);
     t.vertex_count = cscd_mesh_vertex_count(t.run.mesh);
     t.garment_count = t.run.garment.vertex_count;
-    t.judge = make_detector(t.run.mesh, CSCD_METHOD_NONE);
-    t.brute = make_detector(t.run.mesh, CSCD_METHOD_BRUTE);
+    t.judge = make_detector(&t.run, CSCD_METHOD_NONE);
+    t.brute = make_detector(&t.run, CSCD_METHOD_BRUTE);
     t.before = body_allocate(t.vertex_count * 3, sizeof *t.before);
     t.after = body_allocate(t.vertex_count * 3, sizeof *t.after);
     round_positions(t.run.positions, t.vertex_count, t.after);
@@ -197,6 +199,26 @@ static void the_sleeve_lies_in_folds(void **state) {
     end(&t);
 }
 
+/* The panels of the bag meet nothing but each other at their seams, where their vertices stay together, bit
+ * for bit. */
+static void seams_hold(void **state) {
+    (void)state;
+    trial t = begin("bag", 1);
+    expect_embedded(t.judge, t.after);
+    assert_true(t.run.seam_count > 3 * (RESOLUTION - 1));
+    for (uint32_t frame = 1; frame < SEWN_FRAMES; frame++) {
+        advance(&t);
+        expect_nothing(t.judge, t.before, t.after, frame);
+        for (uint32_t i = 0; i < t.run.seam_count; i++)
+            assert_memory_equal(t.run.positions + t.run.seams[2 * i] * 3,
+                                t.run.positions + t.run.seams[2 * i + 1] * 3, 3 * sizeof(double));
+    }
+    expect_embedded(t.judge, t.after);
+    assert_true(t.run.statistics.motion.cut > 0);
+    assert_true(count_meetings(&t).obstacles[1] > 10);
+    end(&t);
+}
+
 /* Steps of the garment alone, by a method that culls: of the open sheet nothing can be culled, and the sleeve
  * is known to be embedded throughout. */
 static void expect_reason(const char *name, cscd_reason reason, bool culls) {
@@ -253,6 +275,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_sheet_drapes_over_the_ball),
         cmocka_unit_test(the_sleeve_lies_in_folds),
+        cmocka_unit_test(seams_hold),
         cmocka_unit_test(guarantees_say_what_was_culled),
         cmocka_unit_test(threads_change_nothing),
     };

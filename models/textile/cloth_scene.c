@@ -63,7 +63,7 @@ const cloth_scene cloth_scenes[] = {
         .width = 0.9,
         .height = 0.9,
         .depth = 0.25,
-        .resolution = 44,
+        .resolution = 45,
         .place = {0.02, 0.01, 0.56},
         .turn = 0.3,
         .lean = 0.02,
@@ -94,8 +94,18 @@ const cloth_scene *cloth_scene_find(const char *name) {
     return NULL;
 }
 
+/* Odd, as a bag needs them. */
+static uint32_t bag_columns(uint32_t resolution) {
+    return resolution | 1;
+}
+
+static uint32_t bag_rows(const cloth_scene *s, uint32_t resolution) {
+    return 1 | (uint32_t)(s->height / cloth_scene_spacing(s, resolution) + 1.0);
+}
+
 double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution) {
-    return s->cut == CLOTH_TUBE ? s->width * pi / resolution : s->width / (resolution - 1);
+    if (s->cut == CLOTH_TUBE) return s->width * pi / resolution;
+    return s->width / ((s->cut == CLOTH_BAG ? bag_columns(resolution) : resolution) - 1);
 }
 
 /* Turns two coordinates by an angle of which this is the tangent of the half: without sines, whose last bits
@@ -115,14 +125,11 @@ static void add_tube(const cloth_scene *s, uint32_t resolution, body *b) {
     garment_add_tube(b, 2 * (uint32_t)(area / (0.5 * sqrt(3.0) * spacing * spacing)), radius, s->height);
 }
 
-/* Of a bag, whose columns are the resolution. */
-static uint32_t bag_rows(const cloth_scene *s, uint32_t resolution) {
-    return 1 + (uint32_t)(s->height / cloth_scene_spacing(s, resolution) + 0.5);
-}
-
 uint32_t *cloth_scene_seams(const cloth_scene *s, uint32_t resolution, uint32_t *pair_count) {
     *pair_count = 0;
-    return s->cut == CLOTH_BAG ? garment_bag_seams(resolution, bag_rows(s, resolution), pair_count) : NULL;
+    return s->cut == CLOTH_BAG
+               ? garment_bag_seams(bag_columns(resolution), bag_rows(s, resolution), pair_count)
+               : NULL;
 }
 
 body cloth_scene_garment(const cloth_scene *s, uint32_t resolution) {
@@ -130,7 +137,7 @@ body cloth_scene_garment(const cloth_scene *s, uint32_t resolution) {
     if (s->cut == CLOTH_SHEET) garment_add_sheet(&b, resolution, s->width);
     if (s->cut == CLOTH_TUBE) add_tube(s, resolution, &b);
     if (s->cut == CLOTH_BAG)
-        garment_add_bag(&b, resolution, bag_rows(s, resolution), s->width, s->height, s->depth);
+        garment_add_bag(&b, bag_columns(resolution), bag_rows(s, resolution), s->width, s->height, s->depth);
     for (uint32_t v = 0; v < b.vertex_count; v++) {
         double *p = b.positions + v * 3;
         turn_plane(s->turn, &p[0], &p[1]);

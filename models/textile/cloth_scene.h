@@ -27,7 +27,7 @@ typedef struct cloth_scene {
     cloth_cut cut;
     double width, height; /* of a sheet its side; of a tube its diameter, and its height; of a bag both */
     double depth;         /* of a bag, to each side */
-    uint32_t resolution;  /* vertices along a side, or around a tube: the default */
+    uint32_t resolution;  /* vertices along a side (a bag's: made odd), or around a tube: the default */
     double place[3];      /* of a sheet's middle, or of the middle of the garment's foot */
     double turn, lean;    /* tangents of half the angles: about the vertical, then about the x axis */
     fabric_material stuff;
