@@ -35,7 +35,7 @@ void garment_add_bag(body *b, uint32_t columns, uint32_t rows, double width, dou
             double up = (double)j / (rows - 1), open = 1.0 - up * up;
             for (uint32_t i = 0; i < columns; i++) {
                 double across = 2.0 * i / (columns - 1) - 1.0, bulge = depth * open * (1.0 - across * across);
-                body_add_vertex(b, 0.5 * width * across, side == 0 ? -bulge : bulge, height * up);
+                body_add_vertex(b, 0.5 * width * across, side == 0 ? 0.0 - bulge : bulge, height * up);
             }
         }
         add_cells(b, first, columns, rows, side == 1);
