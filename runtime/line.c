@@ -138,7 +138,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
                             distance, line->reach);
     motion m = motion_of(line);
     motion_at(&m, length, line->reached);
-    interval_search search = interval_search_begin(d, line->reached, line->reached, near_limit(distance));
+    interval_search search = near_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = near_collect(d, line->reached, &found);

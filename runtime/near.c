@@ -29,10 +29,6 @@ cscd_status near_check_distance(cscd_context *context, double distance) {
                         "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
 
-separation near_limit(double distance) {
-    return (separation){distance, relative_tolerance * distance};
-}
-
 /* From the point that v names on b, or u and v on the face, to the one on a: by differences, so that it is as
  * exact as they are. */
 static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
@@ -111,9 +107,16 @@ cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximi
     return CSCD_OK;
 }
 
+interval_search near_search(cscd_detector *d, const double *positions, double distance) {
+    separation limit = {distance, relative_tolerance * distance};
+    interval_search search = interval_search_begin(d, positions, positions, limit);
+    search.interval.at_rest = true;
+    return search;
+}
+
 static cscd_status find_near(cscd_detector *d, const double *positions, double distance,
                              cscd_proximities *out) {
-    interval_search search = interval_search_begin(d, positions, positions, near_limit(distance));
+    interval_search search = near_search(d, positions, distance);
     cscd_status status = CSCD_OK;
     if (d->options.method == CSCD_METHOD_BRUTE) {
         status = interval_search_by_brute_force(&search);

@@ -7,8 +7,8 @@
 /* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
 cscd_status near_check_distance(cscd_context *context, double distance);
 
-/* The limit under which a search of the interval from positions to the same positions finds them. */
-separation near_limit(double distance);
+/* A search of that moment, begun. */
+interval_search near_search(cscd_detector *d, const double *positions, double distance);
 
 /* Of that search, in the detector's buffer. */
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out);
