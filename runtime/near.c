@@ -52,18 +52,17 @@ static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, co
     return largest * sqrt(vector_dot(scaled, scaled));
 }
 
-static cscd_proximity proximity_of(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
-    cscd_proximity p;
-    memset(&p, 0, sizeof p); /* padding too: lists are compared bit for bit */
-    p.kind = at->kind;
-    p.a = at->a;
-    p.b = at->b;
-    p.distance = distance_between(mesh, at, x);
-    p.u = at->u;
-    p.v = at->v;
-    memcpy(p.point, at->point, sizeof p.point);
-    memcpy(p.normal, at->normal, sizeof p.normal);
-    return p;
+/* In place, for a copy need not keep the padding. */
+static void describe(const cscd_mesh *mesh, const cscd_contact *at, const double *x, cscd_proximity *p) {
+    memset(p, 0, sizeof *p); /* padding too: lists are compared bit for bit */
+    p->kind = at->kind;
+    p->a = at->a;
+    p->b = at->b;
+    p->distance = distance_between(mesh, at, x);
+    p->u = at->u;
+    p->v = at->v;
+    memcpy(p->point, at->point, sizeof p->point);
+    memcpy(p->normal, at->normal, sizeof p->normal);
 }
 
 /* The lanes' contacts by (kind, a, b): first by b, then, which keeps that order, by the rest. */
@@ -86,7 +85,7 @@ static void describe_share(void *data, uint32_t index) {
     const description *d = data;
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < d->count; i++)
-        d->items[i] = proximity_of(d->mesh, d->keys[i].of, d->positions);
+        describe(d->mesh, d->keys[i].of, d->positions, &d->items[i]);
 }
 
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
