@@ -81,17 +81,16 @@ static double cut_for(const cscd_detector *d, double time) {
  * brings contacts of its own, steps shrink ever faster. */
 static cscd_status shorten(cscd_detector *d, trial *t, double *reached, double *length) {
     cscd_status status = CSCD_OK;
-    double cut = cut_for(d, t->first.toi), shrink = 0.25;
+    double shrink = 0.25;
     bool start_checked = false, at_once = t->first.toi == 0.0;
     for (;;) {
         if (at_once && !start_checked) status = check_start(d, t);
         if (status != CSCD_OK) return status;
         start_checked = at_once;
-        *length = larger(*length * cut, shortest);
         motion_at(t->of, *length, reached);
         status = try_step(d, t, reached);
         if (status != CSCD_OK || !t->touches) return status;
-        cut = smaller(cut_for(d, t->first.toi), shrink);
+        *length = larger(*length * smaller(cut_for(d, t->first.toi), shrink), shortest);
         shrink *= shrink;
         at_once = true;
     }
@@ -107,6 +106,9 @@ cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, mo
         step.limited = true;
         step.limit = t.first;
         step.limit.toi *= longest;
+        double cut = longest * cut_for(d, 0.0);
+        if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* no more, by any rounding */
+        step.length = larger(cut, shortest);
         status = shorten(d, &t, reached, &step.length);
     }
     if (status == CSCD_OK) *out = step;
