@@ -12,8 +12,8 @@ struct cscd_line {
     double reach;
     bool begun;
     candidates candidates;
-    uint8_t *states; /* of the triangles at x0 */
-    bool states_known;
+    uint8_t *states;            /* of the triangles at x0 */
+    bool states_known, vouched; /* as in start_states */
 };
 
 static motion motion_of(const cscd_line *line) {
@@ -71,6 +71,7 @@ static double rounding_on(const cscd_line *line) {
 static void remember_states(cscd_line *line) {
     start_states *s = &line->detector->starts;
     line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
+    line->vouched = s->vouched;
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
 
@@ -171,6 +172,7 @@ static void take_step(cscd_line *line) {
     bool *lost = d->culled; /* scratch between steps */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) lost[c] = false;
     memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
+    d->starts.vouched |= line->vouched;
     d->starts.counted = false;
     start_states_count(&d->starts);
     start_states_end(&d->starts, line->reached, lost);
