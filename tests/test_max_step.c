@@ -1,8 +1,6 @@
 /* Steps that are certified free of contact: by brute force, and by marches of many steps. */
 #include "cscd/cscd.h"
-#include "tests/support/counting_allocator.h"
 #include "tests/support/free_step_check.h"
-#include "tests/support/random_stream.h"
 #include "tests/support/sequences.h"
 
 #include <math.h>
@@ -257,7 +255,7 @@ static void never_crosses_on_the_way(void **state) {
 
 /* ---- what the caller says ------------------------------------------------------------------------------ */
 
-/* Seed 1's spike goes through the far wall. */
+/* A spike that goes through the far wall. */
 static void make_limited(void) {
     for (uint64_t seed = 1;; seed++) {
         scene_make(SCENE_SPIKE, seed, &interval);
@@ -346,96 +344,12 @@ static void bad_arguments_are_named(void **state) {
     assert_true(out.length == -1.0);
 }
 
-/* ---- memory -------------------------------------------------------------------------------------------- */
-
-typedef struct counted {
-    counting_allocator counter;
-    cscd_context *context;
-    cscd_mesh *mesh;
-    cscd_detector *detector;
-} counted;
-
-static void counted_create(counted *c, const setting *s) {
-    c->counter = counting_allocator_start();
-    cscd_context_options context_options = cscd_context_defaults();
-    context_options.allocator = counting_allocator_interface(&c->counter);
-    context_options.thread_count = s->threads;
-    cscd_detector_options options = options_of(s);
-    cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
-    assert_int_equal(cscd_context_create(&context_options, &c->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(c->context, &desc, &c->mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(c->mesh, NULL, &options, &c->detector), CSCD_OK);
-}
-
-static void counted_destroy(counted *c) {
-    cscd_detector_destroy(c->detector);
-    cscd_mesh_destroy(c->mesh);
-    cscd_context_destroy(c->context);
-    assert_int_equal(c->counter.live, 0);
-}
-
-/* Fails at each allocation once; the same call then is right. */
-static void memory_may_run_out(void **state) {
-    (void)state;
-    static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_ICCD,
-                                          CSCD_METHOD_BRUTE};
-    static double expected[SCENE_VERTICES_MAX * 3];
-    make_limited();
-    size_t bytes = interval.vertex_count * sizeof(double[3]), failures = 0;
-    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-        setting s = plain;
-        s.method = methods[i];
-        bool failed = true;
-        for (size_t n = 0; failed; n++) {
-            counted c;
-            counted_create(&c, &s);
-            c.counter.fail_at = c.counter.calls + n;
-            free_step_prepare(interval.x0, interval.x1, 1.0, s.step_factor, &call);
-            cscd_status status = cscd_detector_max_step(c.detector, call.x0, call.x1, call.end, &call.step);
-            failed = status != CSCD_OK;
-            failures += failed;
-            if (failed) {
-                assert_int_equal(status, CSCD_OUT_OF_MEMORY);
-                assert_true(call.step.length < 0.0 && call.end[0] < -1000.0);
-                assert_int_equal(cscd_detector_max_step(c.detector, call.x0, call.x1, call.end, &call.step),
-                                 CSCD_OK);
-            }
-            if (i == 0 && n == 0) memcpy(expected, call.end, bytes);
-            assert_memory_equal(call.end, expected, bytes);
-            counted_destroy(&c);
-        }
-    }
-    assert_true(failures > 20);
-}
-
-static void steady_state_allocates_nothing(void **state) {
-    (void)state;
-    make_limited();
-    setting s = plain;
-    s.threads = 2;
-    counted c;
-    counted_create(&c, &s);
-    static double x[SCENE_VERTICES_MAX * 3];
-    size_t bytes = interval.vertex_count * sizeof(double[3]), calls = 0;
-    cscd_free_step step;
-    for (int round = 0; round < 12; round++) {
-        memcpy(x, interval.x0, bytes);
-        for (int i = 0; i < 8; i++)
-            assert_int_equal(cscd_detector_max_step(c.detector, x, interval.x1, x, &step), CSCD_OK);
-        if (round == 1) calls = c.counter.calls;
-    }
-    assert_int_equal(c.counter.calls, calls);
-    counted_destroy(&c);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(is_certified),
                                        cmocka_unit_test(never_crosses_when_pressed),
                                        cmocka_unit_test(never_crosses_on_the_way),
                                        cmocka_unit_test(end_may_be_nowhere_or_an_argument),
                                        cmocka_unit_test(step_factor_is_honoured),
-                                       cmocka_unit_test(bad_arguments_are_named),
-                                       cmocka_unit_test(memory_may_run_out),
-                                       cmocka_unit_test(steady_state_allocates_nothing)};
+                                       cmocka_unit_test(bad_arguments_are_named)};
     return cmocka_run_group_tests_name("max_step", tests, NULL, NULL);
 }
