@@ -68,7 +68,7 @@ typedef struct tally {
 } tally;
 
 static void check_steps(const search *s, const rig *reference, tally *sum) {
-    static const double longest[] = {1.0, 0.37, 1.0, 0x1p-20, 0.999, 1e-300};
+    static const double longest[] = {1.0, 0.37, 0x1p-20, 1e-300};
     for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
         step_on(s->line, interval.x0, interval.x1, longest[i]);
         sum->calls++;
@@ -86,7 +86,7 @@ static void steps_are_certified(void **state) {
     static const double distances[] = {0.0, 0.0, 1e-3, 0.02};
     tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        for (uint64_t seed = 0; seed < 6; seed++) {
+        for (uint64_t seed = 0; seed < 4; seed++) {
             uint64_t turn = seed + (uint64_t)family;
             scene_make((scene_family)family, 40 + seed, &interval);
             if (seed == 3) far_from_the_origin();
@@ -101,7 +101,7 @@ static void steps_are_certified(void **state) {
     }
     print_message("  %zu calls: %zu in contact, %zu limited, %zu whole\n", sum.calls, sum.in_contact,
                   sum.limited, sum.whole);
-    assert_true(sum.limited > 50 && sum.whole > 100 && sum.in_contact > 10);
+    assert_true(sum.limited > 25 && sum.whole > 50 && sum.in_contact > 5);
 }
 
 /* ---- nearness ------------------------------------------------------------------------------------------ */
@@ -133,7 +133,7 @@ static size_t check_moments(const search *s, double reach, uint64_t seed) {
     rig brute = rig_create(&interval, 1, &options);
     random_stream random = stream_start(seed);
     size_t pairs = 0;
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 5; i++) {
         double length = i == 0 ? 0.0 : i == 1 ? 1.0 : i == 2 ? 0x1p-40 : stream_between(&random, 0.0, 1.0);
         double distance = i % 2 == 0 ? reach : reach * stream_between(&random, 0.01, 1.0);
         pairs += check_near(s, &other, &brute, length, distance);
@@ -148,7 +148,7 @@ static void near_equals_the_detectors(void **state) {
     static const double reaches[] = {1e-6, 0.02, 0.15};
     size_t pairs = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        for (uint64_t seed = 0; seed < 4; seed++) {
+        for (uint64_t seed = 1; seed < 3; seed++) {
             uint64_t turn = seed + (uint64_t)family;
             scene_make((scene_family)family, 70 + seed, &interval);
             if (seed == 2) far_from_the_origin();
@@ -160,7 +160,7 @@ static void near_equals_the_detectors(void **state) {
         }
     }
     print_message("  %zu pairs\n", pairs);
-    assert_true(pairs > 10000);
+    assert_true(pairs > 3000);
 }
 
 static void scales_do_not_matter(void **state) {

@@ -133,11 +133,11 @@ static void is_certified(void **state) {
                                           CSCD_METHOD_ICCD,   CSCD_METHOD_BRUTE, CSCD_METHOD_CHARGE};
     tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        for (uint64_t seed = 0; seed < 12; seed++) {
+        for (uint64_t seed = 0; seed < 6; seed++) {
             scene_make((scene_family)family, seed, &interval);
             setting s = plain;
             s.method = methods[(seed + (uint64_t)family) % 6];
-            if (s.method == CSCD_METHOD_CHARGE && seed > 2) s.method = CSCD_METHOD_SINGLE;
+            if (s.method == CSCD_METHOD_CHARGE && seed > 1) s.method = CSCD_METHOD_SINGLE;
             s.mode = seed % 3 == 1 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
             s.threads = 1 + (uint32_t)(seed % 3);
             s.distance = seed % 4 == 3 ? 1e-3 : 0.0;
@@ -147,7 +147,7 @@ static void is_certified(void **state) {
     }
     print_message("  %zu calls: %zu in contact, %zu limited, %zu whole; %zu embedded\n", sum.calls,
                   sum.in_contact, sum.limited, sum.whole, sum.embedded);
-    assert_true(sum.limited > 20 && sum.whole > 20 && sum.in_contact > 5 && sum.embedded > 40);
+    assert_true(sum.limited > 10 && sum.whole > 20 && sum.in_contact > 2 && sum.embedded > 30);
 }
 
 /* ---- marches ------------------------------------------------------------------------------------------- */
@@ -186,17 +186,17 @@ static void never_crosses_when_pressed(void **state) {
     tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         uint32_t marches = 0;
-        for (uint64_t seed = 100; seed < 140 && marches < 3; seed++) {
+        for (uint64_t seed = 100 + (uint64_t)family % 4; seed < 140 && marches < 1; seed++) {
             setting s = plain;
             scene_make((scene_family)family, seed, &interval);
             s.distance = distances[seed % 4];
             s.method = seed % 2 == 0 ? CSCD_METHOD_SINGLE : CSCD_METHOD_NONE;
-            s.step_factor = seed % 3 == 0 ? 0.5 : 0.9;
+            s.step_factor = seed % 3 == 0 ? 0.95 : 0.99;
             cscd_detector_options options = options_of(&s);
             rig reference = free_step_reference(&interval, &options);
             if (starts_well(&reference)) {
                 rig r = rig_create(&interval, 1, &options);
-                march_to(&r, &reference, &s, 30, &sum);
+                march_to(&r, &reference, &s, 14, &sum);
                 rig_destroy(&r);
                 marches++;
             }
@@ -205,14 +205,14 @@ static void never_crosses_when_pressed(void **state) {
     }
     print_message("  %zu steps, %zu limited, %zu to where they began\n", sum.calls, sum.limited,
                   sum.in_contact);
-    assert_true(sum.calls > 300 && sum.limited > 300);
+    assert_true(sum.calls > 80 && sum.limited > 80 && sum.in_contact > 5);
 }
 
 /* To one pose after another, each no farther than is free: hundreds of steps without a crossing, and without
  * a check after the first. */
 static void march_through(uint64_t seed, const setting *s, tally *sum) {
     static double x[SCENE_VERTICES_MAX * 3];
-    sequence_make((sequence_kind)(seed % SEQUENCE_KIND_COUNT), seed, 40, &frames);
+    sequence_make(seed % 4 == 0 ? SEQUENCE_SCENE : SEQUENCE_GRID, seed, 24, &frames);
     size_t bytes = frames.shape.vertex_count * sizeof(double[3]);
     cscd_detector_options options = options_of(s);
     rig reference = free_step_reference(&frames.shape, &options);
@@ -243,14 +243,14 @@ static void march_through(uint64_t seed, const setting *s, tally *sum) {
 static void never_crosses_on_the_way(void **state) {
     (void)state;
     tally sum = {0};
-    for (uint64_t seed = 0; seed < 16; seed++) {
+    for (uint64_t seed = 0; seed < 12; seed++) {
         setting s = plain;
         s.threads = 1 + (uint32_t)(seed % 2);
         march_through(seed, &s, &sum);
     }
     print_message("  %zu steps, %zu limited, %zu in contact, %zu embedded\n", sum.calls, sum.limited,
                   sum.in_contact, sum.embedded);
-    assert_true(sum.limited > 100 && sum.embedded > 150);
+    assert_true(sum.limited > 60 && sum.embedded > 80);
 }
 
 /* ---- what the caller says ------------------------------------------------------------------------------ */
