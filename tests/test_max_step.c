@@ -133,11 +133,11 @@ static void is_certified(void **state) {
                                           CSCD_METHOD_ICCD,   CSCD_METHOD_BRUTE, CSCD_METHOD_CHARGE};
     tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        for (uint64_t seed = 0; seed < 6; seed++) {
+        for (uint64_t seed = 0; seed < 5; seed++) {
             scene_make((scene_family)family, seed, &interval);
             setting s = plain;
-            s.method = methods[(seed + (uint64_t)family) % 6];
-            if (s.method == CSCD_METHOD_CHARGE && seed > 1) s.method = CSCD_METHOD_SINGLE;
+            s.method = methods[(seed + (uint64_t)family * 5) % 6];
+            if (s.method == CSCD_METHOD_CHARGE && seed > 0) s.method = CSCD_METHOD_SINGLE;
             s.mode = seed % 3 == 1 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
             s.threads = 1 + (uint32_t)(seed % 3);
             s.distance = seed % 4 == 3 ? 1e-3 : 0.0;
@@ -147,7 +147,7 @@ static void is_certified(void **state) {
     }
     print_message("  %zu calls: %zu in contact, %zu limited, %zu whole; %zu embedded\n", sum.calls,
                   sum.in_contact, sum.limited, sum.whole, sum.embedded);
-    assert_true(sum.limited > 10 && sum.whole > 20 && sum.in_contact > 2 && sum.embedded > 30);
+    assert_true(sum.limited > 10 && sum.whole > 20 && sum.in_contact > 1 && sum.embedded > 30);
 }
 
 /* ---- marches ------------------------------------------------------------------------------------------- */
@@ -191,12 +191,12 @@ static void never_crosses_when_pressed(void **state) {
             scene_make((scene_family)family, seed, &interval);
             s.distance = distances[seed % 4];
             s.method = seed % 2 == 0 ? CSCD_METHOD_SINGLE : CSCD_METHOD_NONE;
-            s.step_factor = seed % 3 == 0 ? 0.95 : 0.99;
+            s.step_factor = seed % 3 == 0 ? 0.98 : 0.99;
             cscd_detector_options options = options_of(&s);
             rig reference = free_step_reference(&interval, &options);
             if (starts_well(&reference)) {
                 rig r = rig_create(&interval, 1, &options);
-                march_to(&r, &reference, &s, 14, &sum);
+                march_to(&r, &reference, &s, 11, &sum);
                 rig_destroy(&r);
                 marches++;
             }
@@ -243,14 +243,14 @@ static void march_through(uint64_t seed, const setting *s, tally *sum) {
 static void never_crosses_on_the_way(void **state) {
     (void)state;
     tally sum = {0};
-    for (uint64_t seed = 0; seed < 12; seed++) {
+    for (uint64_t seed = 0; seed < 7; seed++) {
         setting s = plain;
         s.threads = 1 + (uint32_t)(seed % 2);
         march_through(seed, &s, &sum);
     }
     print_message("  %zu steps, %zu limited, %zu in contact, %zu embedded\n", sum.calls, sum.limited,
                   sum.in_contact, sum.embedded);
-    assert_true(sum.limited > 60 && sum.embedded > 80);
+    assert_true(sum.limited > 40 && sum.embedded > 60);
 }
 
 /* ---- what the caller says ------------------------------------------------------------------------------ */
