@@ -4,8 +4,8 @@
 
 #include "runtime/interval_search.h"
 
-/* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
-cscd_status near_check_distance(cscd_context *context, double distance);
+/* Is this a distance that can be asked for? INVALID_ARGUMENT names the argument and says why not. */
+cscd_status near_check_distance(cscd_context *context, double distance, const char *name);
 
 /* A search of that moment, begun. */
 interval_search near_search(cscd_detector *d, const double *positions, double distance);
