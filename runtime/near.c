@@ -106,9 +106,12 @@ cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximi
     return CSCD_OK;
 }
 
+separation near_limit(double distance) {
+    return (separation){distance, relative_tolerance * distance};
+}
+
 interval_search near_search(cscd_detector *d, const double *positions, double distance) {
-    separation limit = {distance, relative_tolerance * distance};
-    interval_search search = interval_search_begin(d, positions, positions, limit);
+    interval_search search = interval_search_begin(d, positions, positions, near_limit(distance));
     search.interval.at_rest = true;
     return search;
 }

@@ -7,6 +7,9 @@
 /* Is this a distance that can be asked for? INVALID_ARGUMENT names the argument and says why not. */
 cscd_status near_check_distance(cscd_context *context, double distance, const char *name);
 
+/* Within this distance pairs are reported; between that and the tolerance beyond it they may be. */
+separation near_limit(double distance);
+
 /* A search of that moment, begun. */
 interval_search near_search(cscd_detector *d, const double *positions, double distance);
 

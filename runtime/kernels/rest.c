@@ -2,6 +2,7 @@
  */
 #include "runtime/kernels/feature_kernels.h"
 #include "runtime/kernels/wide_pairs.h"
+#include "runtime/vector.h"
 
 /* Nearest points of lanes: parameters as in cscd_contact, and the way from b's to a's. */
 typedef struct nearest {
@@ -115,33 +116,51 @@ static inline f64w extent_of(const f64w a[3], const f64w b[3], const f64w c[3]) 
     return largest;
 }
 
-/* In units of 2^-53 of the extent E of a, b and c, which are off by 1 each: the way is off by 1 + 2 + 2 for
- * them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with the
- * normal, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
- * from 2^-40 E on then have a normal that is right to 2^-4 of that bound. Products of four lengths are far
- * from over- and underflow for E from 2^-100 to 2^100. */
+/* The powers of two that bring what is not 0 to [1/2, 1): exact factors, so that results are those of any
+ * other scale, and products neither over- nor underflow. */
+static inline f64w to_one(f64w extent) {
+    double factors[WIDTH];
+    memcpy(factors, &extent, sizeof extent);
+    for (int lane = 0; lane < WIDTH; lane++) factors[lane] = power_of_two(-exponent_of(factors[lane]));
+    memcpy(&extent, factors, sizeof extent);
+    return extent;
+}
+
+/* Vectors below 1. In units of 2^-53: they are off by 1 each; the way is off by 1 + 2 + 2 for them, by 4 for
+ * the products and by 6 for the sums per coordinate, its length by twice that; dots with the normal, itself
+ * off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances from 2^-40 on then
+ * have a normal that is right to 2^-4 of that bound. */
 static inline void decide(const wide_points *p, int first_count, int i, double limit, rest_outcomes *out) {
-    f64w a[3], b[3], c[3];
+    f64w a[3], b[3], c[3], error = f64w_all(0x1p-45);
     int vf = first_count == 1;
     for (int k = 0; k < 3; k++) {
         a[k] = p->x0[vf ? 2 : 1][k] - p->x0[vf ? 1 : 0][k];
         b[k] = p->x0[3][k] - p->x0[vf ? 1 : 2][k];
         c[k] = vf ? p->x0[0][k] - p->x0[1][k] : p->x0[2][k] - p->x0[0][k];
     }
+    f64w factor = to_one(extent_of(a, b, c)), far = limit * factor;
+    for (int k = 0; k < 3; k++) {
+        a[k] *= factor;
+        b[k] *= factor;
+        c[k] *= factor;
+    }
     nearest n = vf ? nearest_in_triangle(c, a, b) : nearest_of_edges(c, a, b);
-    f64w extent = extent_of(a, b, c), error = extent * 0x1p-45, distance = f64w_sqrt(n.squared);
+    f64w distance = f64w_sqrt(n.squared);
     f64w gap = gap_across(&n, distance, first_count, c, a, b);
-    uint32_t sound = f64w_below(f64w_all(0x1p-100), extent) & f64w_below(extent, f64w_all(0x1p100)) &
-                     f64w_below(extent * 0x1p-40, distance);
-    uint32_t apart = sound & f64w_below(f64w_all(limit), gap - error);
+    uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
+    uint32_t apart = sound & f64w_below(far, gap - error);
     uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
-    uint32_t near = sound & ~apart & nearest_indeed & f64w_at_most(distance + error, f64w_all(limit));
+    uint32_t near = sound & ~apart & nearest_indeed & f64w_at_most(distance + error, far);
     out->misses |= apart << i;
     out->hits |= near << i;
     memcpy(out->u + i, &n.u, sizeof n.u);
     memcpy(out->v + i, &n.v, sizeof n.v);
-    for (int k = 0; k < 3; k++) memcpy(out->offset[k] + i, &n.offset[k], sizeof n.offset[k]);
+    distance /= factor;
     memcpy(out->distance + i, &distance, sizeof distance);
+    for (int k = 0; k < 3; k++) {
+        n.offset[k] /= factor;
+        memcpy(out->offset[k] + i, &n.offset[k], sizeof n.offset[k]);
+    }
 }
 
 static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
