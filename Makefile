@@ -122,7 +122,7 @@ demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
 
-# The recordings, and every shape at its default size: about 40 s, once.
+# The recordings, and every shape at its default size: about 35 s, once.
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
