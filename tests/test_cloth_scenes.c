@@ -14,9 +14,9 @@
 /* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
  */
 #ifdef __SANITIZE_ADDRESS__
-enum { FRAMES = 100, THREADED_FRAMES = 20, SEWN_FRAMES = 60, BRUTE_EVERY = 70 };
+enum { FRAMES = 75, THREADED_FRAMES = 16, SEWN_FRAMES = 48, BRUTE_EVERY = 70 };
 #else
-enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 100, BRUTE_EVERY = 70 };
+enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 70, BRUTE_EVERY = 70 };
 #endif
 
 enum { RESOLUTION = 18 };
