@@ -1,4 +1,5 @@
-/* What new connectivity costs: mesh, plan and detector made anew, and the first step, beside a steady step. */
+/* What new connectivity costs: mesh, plan and detector made anew, and the first step, beside a steady step.
+ */
 #include "benchmarks/options.h"
 #include "benchmarks/stages.h"
 #include "src/timer.h"
@@ -11,19 +12,30 @@ enum { REPEATS = 9, STEADY_STEPS = 4, INTERVAL_COUNT = STEADY_STEPS + 1 };
 static const char help[] =
     "usage: topology [options]\n"
     "\n"
-    "What a solver pays when triangles are torn, cut or remeshed: everything but the context is destroyed and\n"
-    "made anew. Milliseconds, each the least of some repetitions; in brackets steady steps, of the same row.\n"
+    "What a solver pays when triangles are torn, cut or remeshed: everything but the context is destroyed "
+    "and\n"
+    "made anew. Milliseconds, each the least of some repetitions; in brackets steady steps, of the same "
+    "row.\n"
     "Plan: none; single, one point per component; parts, four regions carried over by\n"
-    "cscd_plan_create_from_parts; vouched, single and no proof of the start. Its proof is a part of the first\n"
+    "cscd_plan_create_from_parts; vouched, single and no proof of the start. Its proof is a part of the "
+    "first\n"
     "step, and where there is one it builds the trees. Mode all; the body deforms and never touches itself.\n"
     "--intervals: the repetitions (default 9, with --quick 5).\n"
     "\n";
 
 /* In the order in which they are called. */
-typedef enum part { PART_MESH, PART_PLAN, PART_DETECTOR, PART_FIRST, PART_PROOF, PART_STEADY, PART_COUNT } part;
+typedef enum part {
+    PART_MESH,
+    PART_PLAN,
+    PART_DETECTOR,
+    PART_FIRST,
+    PART_PROOF,
+    PART_STEADY,
+    PART_COUNT
+} part;
 
-static const char *const part_names[PART_COUNT] = {"mesh", "plan", "detector", "first step", "its proof",
-                                                   "steady step"};
+static const char *const part_names[PART_COUNT] = {"mesh",       "plan",      "detector",
+                                                   "first step", "its proof", "steady step"};
 
 /* Carried over: what a plan of an earlier mesh said, in the numbers of the new one. */
 typedef struct carried {
