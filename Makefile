@@ -231,8 +231,8 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # Programs on bodies that deform, of any size; the public API alone.
-DEFORMING_SOURCES := benchmarks/options.c benchmarks/scene_files.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
-                     src/cli/provenance.c src/cli/progress.c src/timer.c
+DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
+                     benchmarks/scene_files.c src/cli/provenance.c src/cli/progress.c src/timer.c
 DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness)
 $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
               $(TOOL_OBJECTS) $(LIBRARY)

@@ -96,9 +96,7 @@ static void tear(uint32_t pairs[TIP][2]) {
         memcpy(torn.x0 + (size_t) new * 3, torn.x0 + (size_t)old * 3, sizeof(double[3]));
         for (uint32_t t = 0; t < torn.triangle_count; t++) {
             uint32_t *corners = torn.triangles + (size_t)t * 3;
-            bool right = false; /* a quad of two triangles per cell, row by row */
-            for (int k = 0; k < 3; k++) right |= corners[k] % (COLUMNS + 1) > CUT;
-            right = t / 2 % COLUMNS >= CUT && right;
+            bool right = t / 2 % COLUMNS >= CUT; /* two triangles per cell, row by row */
             for (int k = 0; right && k < 3; k++) corners[k] = corners[k] == old ? new : corners[k];
         }
     }
