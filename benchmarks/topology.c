@@ -16,10 +16,10 @@ static const char help[] =
     "and\n"
     "made anew. Milliseconds, each the least of some repetitions; in brackets steady steps, of the same "
     "row.\n"
-    "Plan: none; single, one point per component; parts, four regions carried over by\n"
-    "cscd_plan_create_from_parts; vouched, single and no proof of the start. Its proof is a part of the "
-    "first\n"
-    "step, and where there is one it builds the trees. Mode all; the body deforms and never touches itself.\n"
+    "Methods none and single need no plan; parts: four regions carried over by cscd_plan_create_from_parts;\n"
+    "vouched: single, and no proof of the start. Its proof is a part of the first step, and where there is "
+    "one\n"
+    "it builds the trees. Mode all; the body deforms and never touches itself.\n"
     "--intervals: the repetitions (default 9, with --quick 5).\n"
     "\n";
 
@@ -58,7 +58,7 @@ typedef struct subject_set {
 /* ---- one repetition ---------------------------------------------------------------------------------- */
 
 static cscd_status make_plan(subject_set *s) {
-    if (s->method == CSCD_METHOD_NONE) return CSCD_OK;
+    if (s->method != CSCD_METHOD_KMEANS) return CSCD_OK;
     if (s->carried != NULL) {
         const cscd_plan_parts parts = {.method = CSCD_METHOD_KMEANS,
                                        .region_count = s->carried->region_count,
@@ -75,6 +75,7 @@ static cscd_status make(subject_set *s, double ms[PART_COUNT]) {
     const deforming_body *b = s->body;
     const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
     cscd_detector_options options = cscd_detector_defaults();
+    options.method = s->method;
     options.start = s->start;
     double now = timer_now_ms();
     cscd_status status = cscd_mesh_create(s->context, &desc, &s->mesh);
@@ -189,6 +190,7 @@ static bool run_rows(subject_set *s, const bench_options *o, json *out, io_error
     s->method = CSCD_METHOD_SINGLE;
     good = good && measure(s, o, "single", out, error) && find_regions(s, &kept, error);
     s->carried = &kept;
+    s->method = CSCD_METHOD_KMEANS;
     good = good && measure(s, o, "parts", out, error);
     s->carried = NULL;
     s->method = CSCD_METHOD_SINGLE;
@@ -223,7 +225,7 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
 
 static bool run(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s; ms, in brackets steady steps\n  %9s %-7s", body_kind_name(o->kind),
-           o->thread_count, o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "plan");
+           o->thread_count, o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "method");
     for (int i = 0; i < PART_COUNT; i++) printf(i == PART_STEADY ? " %12s" : " %17s", part_names[i]);
     printf(" %9s\n", "anew");
     bool good = true;
