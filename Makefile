@@ -173,7 +173,7 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
 	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
+	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
