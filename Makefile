@@ -167,7 +167,7 @@ bench: packages
 # The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
 performance: packages
 	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
-	@for program in machine scaling threads motion cloth; do \
+	@for program in machine scaling threads motion cloth topology; do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
 # The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
@@ -202,7 +202,7 @@ help:
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
+	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
@@ -275,8 +275,8 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 
 # Programs on bodies that deform, of any size; the public API alone.
 DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
-                     src/cli/provenance.c src/cli/progress.c src/timer.c
-DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth)
+                     benchmarks/scene_files.c src/cli/provenance.c src/cli/progress.c src/timer.c
+DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness)
 $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
               $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'
