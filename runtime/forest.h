@@ -34,6 +34,8 @@ typedef struct forest_level {
     float *bounds; /* per block and axis 8 lows and 8 highs; no less than none for empty lanes */
     lane_flags *flags;
     uint64_t *within; /* byte i of a block: its children that are to be compared with child i; NULL: all */
+    uint8_t *passive; /* per block: its children that hold obstacles only, which are not compared with each
+                       * other; NULL: none, as below the part level */
 } forest_level;
 
 /* A region, or a component. Its frame takes origin[0] from positions at the start and origin[1] at the end,
@@ -91,6 +93,9 @@ typedef struct forest_regions {
 cscd_status forest_build(const cscd_mesh *mesh, forest_regions regions, const double *positions,
                          int axis_count, forest *out);
 void forest_free(forest *f);
+
+/* Fills in the levels' passive children; a step of forest_build. False: no memory. */
+bool forest_mark_obstacles(forest *f);
 
 static inline uint32_t forest_triangle(const forest *f, uint32_t slot) {
     return f->leaves[slot / FOREST_LANES].triangles[slot % FOREST_LANES];

@@ -352,7 +352,7 @@ cscd_status forest_build(const cscd_mesh *mesh, forest_regions regions, const do
         order_run(&b.regions, 0, regions.count);
         made = allocate_forest(&b, &f);
         for (uint32_t p = 0; made && p < f.part_count; p++) fill_part(&b, &f, p);
-        made = made && build_levels(&f, b.regions.items);
+        made = made && build_levels(&f, b.regions.items) && forest_mark_obstacles(&f);
     }
     free_builder(&b);
     if (!made) {
@@ -375,6 +375,7 @@ void forest_free(forest *f) {
         context_free(context, f->levels[i].bounds);
         context_free(context, f->levels[i].flags);
         context_free(context, f->levels[i].within);
+        context_free(context, f->levels[i].passive);
     }
     *f = (forest){0};
 }

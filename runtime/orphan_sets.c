@@ -75,6 +75,7 @@ static bool find(finder *f) {
     const cscd_mesh *mesh = f->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles[t];
+        if (triangle_of_obstacle(mesh, t)) continue;
         for (int i = 0; i < 3; i++) {
             uint32_t begin = mesh->vertex_star_offsets[corners[i]];
             uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];

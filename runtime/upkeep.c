@@ -2,12 +2,14 @@
 #include "runtime/upkeep.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LOOK_EVERY = 16, USELESS_MAX = 4 };
 
 static const double decayed = 1.25, of_use = 1.1;
 
-/* As published, a patch of ICCD is any set of triangles: then all components are one part. */
+/* As published, a patch of ICCD is any set of triangles: then all components are one part, and all obstacles
+ * another. */
 static cscd_status build(const cscd_detector *d, const double *positions, forest *out) {
     int axis_count = d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
     uint32_t *one_part = NULL;
@@ -16,7 +18,11 @@ static cscd_status build(const cscd_detector *d, const double *positions, forest
     if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) {
         one_part = context_allocate(d->context, d->mesh->triangle_count, sizeof *one_part);
         if (one_part == NULL) return CSCD_OUT_OF_MEMORY;
-        regions = (forest_regions){one_part, d->culling.triangle_weights, 1};
+        uint32_t obstacles = 0, count = d->mesh->triangle_count;
+        for (uint32_t t = 0; t < count; t++) obstacles += one_part[t] = triangle_of_obstacle(d->mesh, t);
+        bool both = obstacles > 0 && obstacles < count;
+        if (!both) memset(one_part, 0, count * sizeof *one_part);
+        regions = (forest_regions){one_part, d->culling.triangle_weights, both ? 2 : 1};
     }
     cscd_status status = forest_build(d->mesh, regions, positions, axis_count, out);
     context_free(d->context, one_part);
@@ -75,8 +81,8 @@ static cscd_status move(cscd_detector *d, const double *x0, const double *x1, do
     return CSCD_OK;
 }
 
-cscd_status upkeep_move_to(cscd_detector *d, const double *positions) {
-    return move(d, positions, positions, 0.0);
+cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance) {
+    return move(d, positions, positions, distance);
 }
 
 cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {

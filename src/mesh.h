@@ -18,6 +18,11 @@ struct cscd_mesh {
 
     uint32_t *triangle_components;
     cscd_component *components;
+
+    uint32_t object_count;
+    cscd_object *objects;
+    bool *obstacles; /* per component: pairs of its features, and with those of others, are not looked for;
+                      * NULL: there is none */
 };
 
 /* Fills edges, triangle_edges and both stars from triangles. */
@@ -25,6 +30,15 @@ cscd_status mesh_build_topology(cscd_mesh *mesh);
 
 /* Fills triangle_components and components; wants the topology. */
 cscd_status mesh_build_components(cscd_mesh *mesh);
+
+static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t component) {
+    return mesh->obstacles != NULL && mesh->obstacles[component];
+}
+
+/* Is the triangle's object an obstacle? */
+static inline bool triangle_of_obstacle(const cscd_mesh *mesh, uint32_t triangle) {
+    return component_is_obstacle(mesh, mesh->triangle_components[triangle]);
+}
 
 /* The number of triangles that contain an edge. */
 static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {

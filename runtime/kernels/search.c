@@ -81,6 +81,7 @@ typedef struct comparison {
     lane_flags a, b;
     lane_flags before_a, before_b; /* leaves in pass FRESH */
     uint64_t within;
+    uint32_t passive_a, passive_b; /* lanes that hold obstacles only */
     bool itself, one_part, leaves;
     traversal_pass pass;
 } comparison;
@@ -92,6 +93,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 /* Of b's lanes, those to be compared with lane i of a. */
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
+    if ((c->passive_a >> i & 1) != 0) lanes &= ~c->passive_b;
     if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)FOREST_ALL_LANES << (i + 1));
     if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
     if (c->pass == TRAVERSAL_FRESH) {
@@ -244,6 +246,8 @@ static inline void visit(const traversal *t, traversal_lane *lane, block_pair at
     const comparison c = {.a = level->flags[at.a],
                           .b = level->flags[at.b],
                           .within = level->within != NULL ? level->within[at.a] : UINT64_MAX,
+                          .passive_a = level->passive != NULL ? level->passive[at.a] : 0,
+                          .passive_b = level->passive != NULL ? level->passive[at.b] : 0,
                           .itself = at.a == at.b,
                           .one_part = below && !crosses,
                           .pass = t->pass};
@@ -257,7 +261,7 @@ static inline void visit(const traversal *t, traversal_lane *lane, block_pair at
         if (c.itself) {
             bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.fresh >> i & 1) != 0;
-            if (own) lanes |= 1u << i;
+            if (own && (c.passive_a >> i & 1) == 0) lanes |= 1u << i;
         }
         if (lanes != 0) descend(t, lane, &at, i, lanes, d);
     }
