@@ -92,11 +92,12 @@ static cscd_status solve_components(workspace *work, const cscd_mesh *mesh, cons
     for (uint32_t c = 0; c < mesh->component_count; c++)
         whole += charge_system_work(mesh->components[c].triangle_count);
     for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
-        work->system.part_begin = part_of_call * done / whole;
+        double begin = part_of_call * done / whole;
         done += charge_system_work(mesh->components[c].triangle_count);
-        work->system.part_end = part_of_call * done / whole;
+        progress_part(mesh->context, begin, part_of_call * done / whole);
         status = solve_component(work, mesh, positions, c, timings);
     }
+    progress_part(mesh->context, part_of_call, 1.0);
     return status;
 }
 

@@ -114,11 +114,10 @@ double charge_system_work(uint32_t count) {
     return 4.0 * entries_work(count) + factors_work(count);
 }
 
-/* From and to are parts of the work. */
-static void enter_stage(const charge_system *system, const char *name, double from, double to) {
-    double per_work = (system->part_end - system->part_begin) / charge_system_work(system->count);
-    progress_stage(system->context, name, system->part_begin + from * per_work,
-                   system->part_begin + to * per_work);
+/* Begin and end are parts of the work. */
+static void enter_stage(const charge_system *system, const char *name, double begin, double end) {
+    double work = charge_system_work(system->count);
+    progress_stage(system->context, name, begin / work, end / work);
 }
 
 static cscd_status assemble(charge_system *system) {

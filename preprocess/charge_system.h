@@ -16,15 +16,14 @@ typedef struct charge_point {
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. */
 typedef struct charge_system {
     cscd_context *context;
-    double part_begin, part_end; /* of the call, what the component takes */
-    uint32_t component, count;   /* of unknowns */
-    uint32_t point_count;        /* of triangles with an area */
-    double scale;                /* scaled length / length */
-    charge_point *points;        /* sorted by position, so by unknown too */
-    charge_point *scratch;       /* for sorting */
-    potential_source *sources;   /* of the unknowns, as all below */
-    double *x, *y, *z;           /* collocation points */
-    double *charges, *residual;  /* at potential 1 in scaled lengths */
+    uint32_t component, count;  /* of unknowns */
+    uint32_t point_count;       /* of triangles with an area */
+    double scale;               /* scaled length / length */
+    charge_point *points;       /* sorted by position, so by unknown too */
+    charge_point *scratch;      /* for sorting */
+    potential_source *sources;  /* of the unknowns, as all below */
+    double *x, *y, *z;          /* collocation points */
+    double *charges, *residual; /* at potential 1 in scaled lengths */
     float *correction;
     int32_t *pivots;
     float *matrix; /* count x count by columns: potential at point j of charge 1 on source k */

@@ -4,20 +4,32 @@
 #include "src/context.h"
 #include "src/timer.h"
 
+#include <math.h>
+
 static const double interval_ms = 4.0;
 
 progress progress_of(cscd_progress host) {
     return (progress){.host = host, .interval_ms = interval_ms};
 }
 
+bool progress_wanted(const cscd_context *context) {
+    return context->progress.host.report != NULL;
+}
+
 void progress_begin(cscd_context *context) {
     progress *p = &context->progress;
-    if (p->host.report == NULL) return;
+    if (!progress_wanted(context)) return;
     p->caller = pthread_self();
     p->asked_ms = timer_now_ms();
     p->reported = 0.0;
     atomic_store_explicit(&p->cancelled, false, memory_order_relaxed);
+    progress_part(context, 0.0, 1.0);
     progress_stage(context, "", 0.0, 1.0);
+}
+
+void progress_part(cscd_context *context, double begin, double end) {
+    context->progress.part_begin = begin;
+    context->progress.part_end = end;
 }
 
 void progress_stage(cscd_context *context, const char *stage, double begin, double end) {
@@ -29,14 +41,14 @@ void progress_stage(cscd_context *context, const char *stage, double begin, doub
 
 /* Estimates may fall, and be off; what is reported does not. */
 static void advance(progress *p, double share) {
-    double fraction = p->begin + (p->end - p->begin) * (share < 1.0 ? share : 1.0);
-    if (fraction > 1.0) fraction = 1.0;
+    double part = p->begin + (p->end - p->begin) * share;
+    double fraction = fmin(1.0, p->part_begin + (p->part_end - p->part_begin) * part);
     if (fraction > p->reported) p->reported = fraction;
 }
 
 bool progress_go_on(cscd_context *context, double share) {
     progress *p = &context->progress;
-    if (p->host.report == NULL) return true;
+    if (!progress_wanted(context)) return true;
     if (atomic_load_explicit(&p->cancelled, memory_order_relaxed)) return false;
     if (!pthread_equal(p->caller, pthread_self())) return true;
     double now = timer_now_ms();

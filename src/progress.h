@@ -14,19 +14,25 @@ typedef struct progress {
     pthread_t caller;   /* the thread that made the call, the only one to ask the host */
     double asked_ms;    /* when it did so last, or the call began */
     const char *stage;
-    double begin, end; /* the part of the call that the stage takes */
-    double reported;   /* never falls */
+    double part_begin, part_end; /* of the call, what is at work */
+    double begin, end;           /* of that part, the stage */
+    double reported;             /* never falls */
     atomic_bool cancelled;
 } progress;
 
 progress progress_of(cscd_progress host);
 
+bool progress_wanted(const cscd_context *context);
+
 /* A call begins that asks the host now and then. Any that can end with CSCD_CANCELLED does so first: what was
  * cancelled before is over. */
 void progress_begin(cscd_context *context);
 
-/* The call enters a stage, of static storage, which takes the part from begin to end of it, by estimate. Not
- * from within tasks. */
+/* What follows takes the part from begin to end of the call, by estimate; the whole until this is called. */
+void progress_part(cscd_context *context, double begin, double end);
+
+/* A stage begins, named in static storage, which takes what lies between begin and end of the part. These two
+ * are not for tasks. */
 void progress_stage(cscd_context *context, const char *stage, double begin, double end);
 
 /* So much of the stage is done, from 0 to 1: the host is asked when it is time. False: the call is cancelled,
