@@ -41,18 +41,17 @@ static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, co
     return largest * sqrt(vector_dot(scaled, scaled));
 }
 
-static cscd_proximity proximity_of(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
-    cscd_proximity p;
-    memset(&p, 0, sizeof p); /* padding too: lists are compared bit for bit */
-    p.kind = at->kind;
-    p.a = at->a;
-    p.b = at->b;
-    p.distance = distance_between(mesh, at, x);
-    p.u = at->u;
-    p.v = at->v;
-    memcpy(p.point, at->point, sizeof p.point);
-    memcpy(p.normal, at->normal, sizeof p.normal);
-    return p;
+/* In place: lists are compared bit for bit, and a structure that is returned need not keep its padding. */
+static void set_proximity(cscd_proximity *p, const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
+    memset(p, 0, sizeof *p);
+    p->kind = at->kind;
+    p->a = at->a;
+    p->b = at->b;
+    p->distance = distance_between(mesh, at, x);
+    p->u = at->u;
+    p->v = at->v;
+    memcpy(p->point, at->point, sizeof p->point);
+    memcpy(p->normal, at->normal, sizeof p->normal);
 }
 
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
@@ -61,7 +60,7 @@ cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximi
     cscd_status status = contact_list_collect(d, &counters, &found);
     if (status != CSCD_OK) return status;
     cscd_proximity *items = d->contacts.scratch; /* the sorted keys are of no more use */
-    for (size_t i = 0; i < found.count; i++) items[i] = proximity_of(d->mesh, &found.items[i], positions);
+    for (size_t i = 0; i < found.count; i++) set_proximity(&items[i], d->mesh, &found.items[i], positions);
     *out = (cscd_proximities){items, found.count};
     return CSCD_OK;
 }
