@@ -207,18 +207,7 @@ static void rebuilding_goes_on(void **state) {
 static void large_meshes_go_on(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads < 4; threads += 2) {
-        scene_clear(&q.shape);
-        scene_add_capsule(&q.shape, 6.0, 0.5, 44, 22);
-        q.frame_count = 5;
-        for (uint32_t f = 0; f < q.frame_count; f++) {
-            for (uint32_t v = 0; v < q.shape.vertex_count; v++) {
-                const double *rest = q.shape.x0 + (size_t)v * 3;
-                double angle = 0.28 * f * rest[2], *x = q.frames[f] + (size_t)v * 3;
-                x[0] = 1.0 + (rest[0] - 1.0) * cos(angle);
-                x[1] = rest[1];
-                x[2] = (1.0 - rest[0]) * sin(angle);
-            }
-        }
+        workload_tube(&q, 36, 18, 5);
         workload_result found =
             interrupt(threads, 4,
                       (workload){.options = of_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, CSCD_START_PROVE)});

@@ -1,7 +1,24 @@
 /* Every call of the API that takes long, one after the other, and a digest of what each gave. */
 #include "tests/support/workload.h"
 
+#include <math.h>
 #include <string.h>
+
+void workload_tube(sequence *out, int rings, int segments, uint32_t frame_count) {
+    scene_clear(&out->shape);
+    scene_add_capsule(&out->shape, 6.0, 0.5, rings, segments);
+    out->frame_count = frame_count;
+    for (uint32_t f = 0; f < frame_count; f++) {
+        double time = 0.3 * f;
+        for (uint32_t v = 0; v < out->shape.vertex_count; v++) {
+            const double *rest = out->shape.x0 + (size_t)v * 3;
+            double bend = 1.2 * time * rest[2], *x = out->frames[f] + (size_t)v * 3;
+            x[0] = rest[0] * cos(bend) + (1.0 - cos(bend)) * 1.5;
+            x[1] = rest[1];
+            x[2] = rest[2] + sin(bend) * (1.5 - rest[0]) - 0.8 * time * rest[2];
+        }
+    }
+}
 
 typedef struct run {
     const workload *w;

@@ -5,6 +5,9 @@
 #include "cscd/cscd.h"
 #include "tests/support/sequences.h"
 
+/* A closed tube whose upper part comes down on the lower one after some frames. */
+void workload_tube(sequence *out, int rings, int segments, uint32_t frame_count);
+
 typedef struct workload {
     const sequence *sequence;
     cscd_method plan; /* AUTO: none */
