@@ -1,6 +1,6 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results up to rounding.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
@@ -16,10 +16,11 @@ BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
 OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
+OPTIMISE_tsan     := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
 # The scalar twin: what the vector units compute must not differ from it.
 OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
 ifeq ($(OPTIMISE_$(CONFIG)),)
-$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize or scalar)
+$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
 endif
 
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-prototypes -Wvla
@@ -81,7 +82,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -141,6 +142,14 @@ test: packages
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
+# The tests that use threads, under the thread sanitizer.
+THREAD_TESTS := $(addprefix $(BUILD)/tests/test_,threads traversal progress parallel_for contexts)
+test-threads: packages
+	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
+
+test-threads-run: $(THREAD_TESTS)
+	@BUILD=$(BUILD) TSAN_OPTIONS=halt_on_error=1 tests/run.sh $(THREAD_TESTS)
+
 # Random queries against the exact oracle; 0 is no limit.
 SECONDS ?= 60
 QUERIES ?= 0
@@ -198,6 +207,7 @@ help:
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
+	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'

@@ -67,6 +67,7 @@ static bool rebuild(cscd_detector *d, const double *positions) {
     forest_free(&d->forest);
     d->forest = fresh;
     d->rebuilt = true;
+    d->rebuilds++;
     return true;
 }
 
@@ -96,6 +97,12 @@ cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, do
         return status;
     tree_spread spread = spread_of(&d->forest);
     d->intervals_unlooked = 0;
+    if (d->in_vain.done) {
+        d->rebuilt = true;
+        d->useless_rebuilds = d->in_vain.useless_rebuilds;
+        d->in_vain.done = false;
+        return CSCD_OK;
+    }
     if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return CSCD_OK;
     forest_move(&d->forest, x0, x1, distance);
     d->spread_when_built = spread_of(&d->forest);
