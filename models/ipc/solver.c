@@ -1,0 +1,180 @@
+/* Time steps of implicit Euler as minimisations by Newton's method, along lines that stay free of contact. */
+#include "models/ipc/solver.h"
+#include "models/softbody/vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { NEWTON_MOST = 60, GRADIENTS_MOST = 400, HALVINGS_MOST = 40 };
+
+/* The linear system's residual; what share of the slope a step must win (Armijo); and when a minimisation is
+ * done: no vertex would move farther than this share of the barrier's reach. */
+static const double solve_tolerance = 1e-2, least_gain = 1e-4, done_share = 0.05;
+
+static double now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc_contacts *contacts) {
+    double inertia = 0.0;
+    for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
+        double away[3];
+        difference(positions + (size_t)v * 3, p->predicted + (size_t)v * 3, away);
+        inertia += 0.5 * p->inertia[v] * dot(away, away);
+    }
+    return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
+}
+
+static void find_gradient(ipc_solver *p) {
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->gradient[i] = p->inertia[i / 3] * (p->positions[i] - p->predicted[i]);
+    ipc_springs_add_gradient(&p->springs, p->positions, p->gradient);
+    ipc_contacts_add_gradient(&p->contacts, p->gradient);
+}
+
+static void find_contacts(ipc_solver *p, const cscd_proximities *near, const double *positions,
+                          ipc_contacts *contacts) {
+    ipc_contacts_find(contacts, p->mesh, p->shape.positions, positions, near, &p->scene->barrier);
+    p->statistics.near += near->count;
+}
+
+/* As far towards where they are to be as they meet nothing, while the bodies stay; the energy is then that of
+ * another problem. */
+static cscd_status move_obstacles(ipc_solver *p) {
+    cscd_proximities near;
+    cscd_free_step step = {.length = 1.0};
+    double since = now_ms();
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->target[i] =
+            p->inertia[i / 3] > 0.0 ? p->positions[i] : p->shape.positions[i] + p->to_travel * p->travels[i];
+    cscd_status status = cscd_detector_max_step(p->detector, p->positions, p->target, p->target, &step);
+    if (status == CSCD_OK)
+        status = cscd_detector_near(p->detector, p->target, p->scene->barrier.reach, &near);
+    p->statistics.detect_ms += now_ms() - since;
+    if (status != CSCD_OK) return status;
+    memcpy(p->positions, p->target, (size_t)p->shape.vertex_count * 3 * sizeof *p->positions);
+    p->statistics.advances++;
+    p->arrived = !step.limited;
+    find_contacts(p, &near, p->positions, &p->contacts);
+    p->energy = ipc_solver_energy(p, p->positions, &p->contacts);
+    return CSCD_OK;
+}
+
+/* The energy at the trial point, `length` along the line. */
+static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
+    cscd_proximities near;
+    double since = now_ms();
+    cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
+    p->statistics.detect_ms += now_ms() - since;
+    if (status != CSCD_OK) return status;
+    find_contacts(p, &near, p->trial, &p->trial_contacts);
+    p->statistics.trials++;
+    *energy = ipc_solver_energy(p, p->trial, &p->trial_contacts);
+    return CSCD_OK;
+}
+
+/* Certified: p->trial is what the library verified, at most `longest` along the line. */
+static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
+    double since = now_ms();
+    cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
+    p->statistics.detect_ms += now_ms() - since;
+    return status;
+}
+
+static cscd_status begin_line(ipc_solver *p) {
+    double since = now_ms();
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) p->target[i] = p->positions[i] + p->direction[i];
+    cscd_status status = cscd_line_begin(p->line, p->positions, p->target, p->scene->barrier.reach);
+    p->statistics.candidates += status == CSCD_OK ? cscd_line_candidate_count(p->line) : 0;
+    p->statistics.detect_ms += now_ms() - since;
+    return status;
+}
+
+/* From the longest step that is free of contact on backwards, until the energy has fallen by enough (Armijo's
+ * rule). What is evaluated is what the library has verified. *found false: no step leads down. */
+static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
+    double longest = 1.0;
+    cscd_status status = begin_line(p);
+    for (int i = 0; status == CSCD_OK && !*found && i < HALVINGS_MOST; i++) {
+        cscd_free_step step;
+        double energy = INFINITY;
+        status = reach(p, longest, &step);
+        if (status == CSCD_OK) status = evaluate(p, step.length, &energy);
+        if (status != CSCD_OK) return status;
+        p->statistics.cut += i == 0 && step.limited;
+        *found = energy <= p->energy + least_gain * step.length * slope;
+        if (*found) p->energy = energy;
+        longest = 0.5 * step.length;
+    }
+    return status;
+}
+
+/* What was tried is where the vertices are. */
+static void accept(ipc_solver *p) {
+    double *positions = p->positions;
+    ipc_contacts contacts = p->contacts;
+    p->positions = p->trial;
+    p->contacts = p->trial_contacts;
+    p->trial = positions;
+    p->trial_contacts = contacts;
+    p->statistics.least_distance = fmin(p->statistics.least_distance, p->contacts.least_distance);
+}
+
+static double farthest(const ipc_solver *p) {
+    double most = 0.0;
+    for (uint32_t v = 0; v < p->shape.vertex_count; v++)
+        most = fmax(most, norm(p->direction + (size_t)v * 3));
+    return most;
+}
+
+cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
+    cscd_status status = p->arrived ? CSCD_OK : move_obstacles(p);
+    if (status != CSCD_OK) return status;
+    double slope = 0.0;
+    bool found = false;
+    find_gradient(p);
+    ipc_system_set(&p->system, p->positions, &p->contacts);
+    p->statistics.conjugate_gradients +=
+        ipc_system_solve(&p->system, p->gradient, solve_tolerance, GRADIENTS_MOST, p->direction);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) slope += p->gradient[i] * p->direction[i];
+    status = search_line(p, slope, &found);
+    if (status != CSCD_OK) return status;
+    p->statistics.newton++;
+    if (found) accept(p);
+    *done = p->arrived && (!found || farthest(p) < done_share * p->scene->barrier.reach);
+    return CSCD_OK;
+}
+
+void ipc_solver_begin_step(ipc_solver *p) {
+    double step = p->scene->step_seconds;
+    p->to_travel = ipc_scene_travelled(p->scene, p->time + step);
+    p->arrived = false;
+    memcpy(p->before, p->positions, (size_t)p->shape.vertex_count * 3 * sizeof *p->before);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->predicted[i] =
+            p->positions[i] + step * p->velocities[i] - (i % 3 == 2 ? step * step * p->scene->gravity : 0.0);
+}
+
+void ipc_solver_end_step(ipc_solver *p) {
+    double step = p->scene->step_seconds;
+    p->time += step;
+    p->statistics.steps++;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->velocities[i] = p->inertia[i / 3] > 0.0 ? (p->positions[i] - p->before[i]) / step : 0.0;
+}
+
+cscd_status ipc_solver_advance(ipc_solver *p) {
+    double since = now_ms();
+    bool done = false;
+    cscd_status status = CSCD_OK;
+    ipc_solver_begin_step(p);
+    for (int i = 0; i < NEWTON_MOST && status == CSCD_OK && !done; i++) status = ipc_solver_iterate(p, &done);
+    if (status != CSCD_OK) return status;
+    p->statistics.unfinished += !done;
+    ipc_solver_end_step(p);
+    p->statistics.total_ms += now_ms() - since;
+    return CSCD_OK;
+}
