@@ -57,7 +57,7 @@ static uint32_t make_press(uint32_t triangle_count, ipc_object objects[IPC_OBJEC
         high = fmax(high, objects[0].shape.positions[v * 3 + 2]);
     }
     objects[1] = make_plate(low - 0.13, 0.0);
-    objects[2] = make_plate(high + 0.13, -2.0);
+    objects[2] = make_plate(high + 0.13, -1.75);
     return 3;
 }
 
@@ -81,9 +81,9 @@ const ipc_scene ipc_scenes[] = {
         .text = "a coil is pressed between two plates, turn onto turn, and let go",
         .triangle_count = 3000,
         .make = make_press,
-        .stuff = {.density = 1.0, .membrane = 100.0, .solid = 500.0},
-        .gravity = 10.0,
-        .barrier = {.reach = 0.02, .stiffness = 100.0},
+        .stuff = {.density = 1.0, .membrane = 3000.0, .solid = 15000.0},
+        .gravity = 1.0,
+        .barrier = {.reach = 0.02, .stiffness = 2000.0},
         .min_separation = 2e-5,
         .travel_seconds = 2.5,
         .step_seconds = 1.0 / 60.0,
