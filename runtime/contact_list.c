@@ -11,36 +11,8 @@ enum { CONTACTS_FOR_ALL = 4096 };
 /* What one thread copies at a time. */
 enum { CONTACTS_PER_COPY = 4096 };
 
-typedef struct triangle_list {
-    const uint32_t *items;
-    uint32_t count;
-} triangle_list;
-
-static triangle_list vertex_star(const cscd_mesh *mesh, uint32_t vertex) {
-    uint32_t begin = mesh->vertex_star_offsets[vertex];
-    return (triangle_list){mesh->vertex_stars + begin, mesh->vertex_star_offsets[vertex + 1] - begin};
-}
-
-static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
-    return (triangle_list){mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge)};
-}
-
-static bool any_pair_ignored(const cscd_detector_options *options, triangle_list a, triangle_list b) {
-    for (uint32_t i = 0; i < a.count; i++) {
-        for (uint32_t j = 0; j < b.count; j++) {
-            uint32_t s = a.items[i], t = b.items[j];
-            if (s != t && options->ignore(options->ignore_user, s < t ? s : t, s < t ? t : s)) return true;
-        }
-    }
-    return false;
-}
-
-static bool ignored(const cscd_detector *d, const cscd_contact *contact) {
-    if (d->options.ignore == NULL) return false;
-    if (contact->kind == CSCD_CONTACT_VF)
-        return any_pair_ignored(&d->options, vertex_star(d->mesh, contact->a),
-                                (triangle_list){&contact->b, 1});
-    return any_pair_ignored(&d->options, edge_star(d->mesh, contact->a), edge_star(d->mesh, contact->b));
+static bool left_out(const exclusions *e, const cscd_contact *contact) {
+    return exclusions_any(e) && exclusions_cover_features(e, contact->kind, contact->a, contact->b);
 }
 
 /* A contact, and its time as a number. */
@@ -128,7 +100,7 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
         add_counters(lane, counters);
         for (size_t j = 0; j < lane->count; j++) {
             const cscd_contact *contact = &lane->contacts[j];
-            if (ignored(d, contact)) continue;
+            if (left_out(&d->exclusions, contact)) continue;
             *(contact->kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
             counters->bounded += contact->bounded;
             keys[kept++] = (sort_key){bits_of(contact->toi), contact};

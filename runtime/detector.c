@@ -42,6 +42,9 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown start %d", (int)options->start);
     if ((unsigned)options->volume > CSCD_VOLUME_KDOP14)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown volume %d", (int)options->volume);
+    if (!(options->step_factor > 0.0 && options->step_factor < 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "step_factor is %g, expected a number in (0,1)",
+                            options->step_factor);
     return check_separation(context, options);
 }
 
@@ -116,10 +119,11 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->published_rules = PUBLISHED_ALL;
     d->limit.distance = chosen.min_separation;
     d->limit.tolerance = chosen.tolerance > 0.0 ? chosen.tolerance : 1e-6 * chosen.min_separation;
-    status = allocate_parts(d, plan);
+    status = exclusions_create(mesh, &chosen, &d->exclusions);
+    if (status == CSCD_OK && allocate_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
-        return context_out_of_memory(context);
+        return status;
     }
     *out = d;
     return CSCD_OK;
@@ -127,7 +131,11 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
 
 static void free_lanes(cscd_detector *d) {
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        if (d->contact_lanes != NULL) context_free(d->context, d->contact_lanes[i].contacts);
+        if (d->contact_lanes != NULL) {
+            context_free(d->context, d->contact_lanes[i].contacts);
+            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_VF].pairs);
+            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_EE].pairs);
+        }
         if (d->intersection_lanes != NULL) context_free(d->context, d->intersection_lanes[i].items);
     }
     context_free(d->context, d->contact_lanes);
@@ -142,6 +150,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     forest_free(&d->forest);
+    exclusions_free(context, &d->exclusions);
     representatives_free(context, &d->representatives);
     orphan_sets_free(context, &d->orphans);
     patches_free(context, &d->patches);
@@ -157,6 +166,7 @@ void cscd_detector_destroy(cscd_detector *d) {
                       d->crossing,
                       d->contacts_seen,
                       d->guarantees,
+                      d->reached,
                       d};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
 }

@@ -3,6 +3,7 @@
 #define CSCD_DETECTOR_H
 
 #include "runtime/culling.h"
+#include "runtime/exclusions.h"
 #include "runtime/narrow_phase.h"
 #include "runtime/patches.h"
 #include "runtime/start_state.h"
@@ -36,6 +37,7 @@ struct cscd_detector {
     separation limit; /* of the options, the default tolerance filled in */
     uint8_t published_rules;
 
+    exclusions exclusions;
     culling culling;
     start_states starts;
     bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
@@ -59,6 +61,7 @@ struct cscd_detector {
     intersection_lane *intersection_lanes;
 
     result_buffer contacts, intersections;
+    double *reached; /* positions, of the step that cscd_detector_max_step tries; NULL before the first */
 
     cscd_timings timings;
     cscd_counters counters;

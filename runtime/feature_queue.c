@@ -105,10 +105,30 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
     }
 }
 
+static void collect(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                    contact_lane *lane) {
+    candidate_list *list = &lane->candidates[kind];
+    if (list->count + pairs->count > list->capacity) {
+        size_t capacity = 2 * list->capacity + FEATURE_QUEUE_CAPACITY;
+        uint32_t(*grown)[2] =
+            context_grow(interval->mesh->context, list->pairs, list->count, capacity, sizeof *list->pairs);
+        lane->out_of_memory |= grown == NULL;
+        if (grown == NULL) return;
+        list->pairs = grown;
+        list->capacity = capacity;
+    }
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        list->pairs[list->count][0] = pairs->a[i];
+        list->pairs[list->count++][1] = pairs->b[i];
+    }
+}
+
 static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
                    contact_lane *lane) {
     feature_pairs pairs = {list->a, list->b, list->count};
-    if (interval->limit.distance > 0.0)
+    if (interval->collecting)
+        collect(interval, kind, &pairs, lane);
+    else if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else
         decide_by_levels(interval, kind, &pairs, lane);

@@ -16,6 +16,7 @@ void contact_lane_reset(contact_lane *lane) {
     lane->separations = 0;
     lane->out_of_memory = false;
     lane->queue.vf.count = lane->queue.ee.count = 0;
+    lane->candidates[CSCD_CONTACT_VF].count = lane->candidates[CSCD_CONTACT_EE].count = 0;
 }
 
 static bool make_room(cscd_context *context, contact_lane *lane) {

@@ -24,7 +24,14 @@ typedef struct swept_interval {
                              * theirs, and orphans are tested apart */
     bool closing;           /* with culling: the pairs reached are those that it culled before */
     separation limit;       /* distance 0: a contact is touching */
+    bool collecting;        /* pairs of features are not tested, but become the lanes' candidates */
 } swept_interval;
+
+/* Pairs of features, as in a feature_list. */
+typedef struct candidate_list {
+    uint32_t (*pairs)[2];
+    size_t count, capacity;
+} candidate_list;
 
 /* What one thread finds. */
 typedef struct contact_lane {
@@ -35,6 +42,7 @@ typedef struct contact_lane {
     uint64_t separations;                     /* tests for minimum separation */
     bool out_of_memory;
     feature_queue queue;
+    candidate_list candidates[2]; /* by cscd_contact_kind */
 } contact_lane;
 
 void contact_lane_reset(contact_lane *lane);

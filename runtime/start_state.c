@@ -16,11 +16,12 @@ cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
     s.positions = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
     s.moved = context_allocate(mesh->context, mesh->component_count, sizeof *s.moved);
     s.triangles = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.triangles);
+    s.saved = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.saved);
     s.of = context_allocate(mesh->context, mesh->component_count, sizeof *s.of);
     s.queue = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.queue);
     s.largest = context_allocate(mesh->context, mesh->component_count, sizeof *s.largest);
-    if (s.positions == NULL || s.moved == NULL || s.triangles == NULL || s.of == NULL || s.queue == NULL ||
-        s.largest == NULL) {
+    if (s.positions == NULL || s.moved == NULL || s.triangles == NULL || s.saved == NULL || s.of == NULL ||
+        s.queue == NULL || s.largest == NULL) {
         start_states_destroy(&s);
         return CSCD_OUT_OF_MEMORY;
     }
@@ -29,7 +30,7 @@ cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
 }
 
 void start_states_destroy(start_states *s) {
-    void *blocks[] = {s->positions, s->moved, s->triangles, s->of, s->queue, s->largest};
+    void *blocks[] = {s->positions, s->moved, s->triangles, s->saved, s->of, s->queue, s->largest};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(s->context, blocks[i]);
     *s = (start_states){0};
 }
@@ -203,6 +204,15 @@ void start_states_end(start_states *s, const double *x, const bool *lost) {
     }
     s->counted &= !any;
     remember(s, x);
+}
+
+void start_states_save(start_states *s) {
+    memcpy(s->saved, s->triangles, s->mesh->triangle_count * sizeof *s->saved);
+}
+
+void start_states_restore(start_states *s) {
+    memcpy(s->triangles, s->saved, s->mesh->triangle_count * sizeof *s->saved);
+    s->counted = false;
 }
 
 void start_states_forget(start_states *s) {

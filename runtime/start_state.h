@@ -37,6 +37,7 @@ typedef struct start_states {
     uint8_t *triangles;    /* triangle_state, of each */
     component_start *of;   /* per component; up to date after start_states_count */
     bool counted;          /* they are */
+    uint8_t *saved;        /* states as they were when start_states_save was called */
     uint32_t *queue;       /* scratch, per triangle */
     free_patch *largest;   /* scratch, per component */
     double share_worth_it; /* of a component, clean: with less neither culling nor a check pays */
@@ -82,6 +83,11 @@ static inline void start_states_taint(start_states *s, uint32_t triangle) {
 /* The interval ends at x, and all triangles in contact were tainted, but for components that are lost: what
  * becomes of those is UNKNOWN. All others that were free or clean still are. */
 void start_states_end(start_states *s, const double *x, const bool *lost);
+
+/* For an interval whose end may not be where the vertices go: before its contacts are looked at, and, if they
+ * do not go there, afterwards; then what the contacts have tainted is as before. */
+void start_states_save(start_states *s);
+void start_states_restore(start_states *s);
 
 /* Nothing is known of the end of the interval. */
 void start_states_forget(start_states *s);

@@ -116,12 +116,12 @@ static void sort_intersections(cscd_intersection *items, void *scratch, size_t c
     }
 }
 
-static bool ignored(const cscd_detector_options *options, cscd_intersection pair) {
-    return options->ignore != NULL && options->ignore(options->ignore_user, pair.a, pair.b);
+static bool left_out(const exclusions *e, cscd_intersection pair, const double *positions) {
+    return exclusions_any(e) && exclusions_cover_triangles(e, pair.a, pair.b, positions);
 }
 
 /* Joins the lanes' lists, leaves out what is to be ignored, sorts. */
-static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
+static cscd_status collect(cscd_detector *d, const double *positions, cscd_intersections *out) {
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->intersection_lanes[i].count;
     cscd_status status =
@@ -133,7 +133,7 @@ static cscd_status collect(cscd_detector *d, cscd_intersections *out) {
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
         const intersection_lane *lane = &d->intersection_lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            if (!ignored(&d->options, lane->items[j])) items[kept++] = lane->items[j];
+            if (!left_out(&d->exclusions, lane->items[j], positions)) items[kept++] = lane->items[j];
         }
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
@@ -184,7 +184,7 @@ cscd_status static_check_suspects(cscd_detector *detector, const double *positio
 
 static cscd_status check_moment(moment *now) {
     cscd_detector *d = now->detector;
-    cscd_status status = upkeep_move_to(d, now->positions);
+    cscd_status status = upkeep_move_to(d, now->positions, 0.0);
     if (status != CSCD_OK) return status;
     memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
@@ -205,7 +205,7 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
     moment now = {detector, positions, TRAVERSAL_KEPT};
     cscd_intersections result;
     status = check_moment(&now);
-    if (status == CSCD_OK) status = collect(detector, &result);
+    if (status == CSCD_OK) status = collect(detector, positions, &result);
     if (status != CSCD_OK) return context_out_of_memory(context);
     timer_lap(&since, &spent);
     detector->timings.check_ms = spent;

@@ -187,3 +187,56 @@ bool triangles_intersect(const uint32_t a[3], const uint32_t b[3], const double 
     if (shared_count == 2) return hinge_is_folded(&ta, &tb);
     return edges_meet_faces(&ta, &tb);
 }
+
+/* ---- names -------------------------------------------------------------------------------------------- */
+
+static bool same_name_in(const uint32_t *list, int count, uint32_t vertex, const uint32_t *names) {
+    for (int i = 0; i < count; i++) {
+        if (names[list[i]] == names[vertex]) return true;
+    }
+    return false;
+}
+
+static struct triangle load_by_names(const uint32_t triangle[3], const uint32_t other[3],
+                                     const uint32_t *names, const double *positions) {
+    struct triangle t;
+
+    for (int i = 0; i < 3; i++) {
+        t.corner[i] = positions + 3 * (size_t)triangle[i];
+        t.shared[i] = same_name_in(other, 3, triangle[i], names);
+    }
+    return t;
+}
+
+/* A corner, or an edge of two corners, that shares no name with the face, meets it. A corner of the same name
+ * need not lie in the plane of the face. */
+static bool free_part_meets(const struct triangle *t, const struct triangle *face) {
+    int side[3];
+
+    for (int i = 0; i < 3; i++)
+        side[i] = orient3d(face->corner[0], face->corner[1], face->corner[2], t->corner[i]);
+    for (int i = 0; i < 3; i++) {
+        if (!t->shared[i] && point_in_triangle(t->corner[i], face)) return true;
+    }
+    return free_edge_meets(t, side, face);
+}
+
+static bool free_edges_meet(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
+                            const double *positions) {
+    for (int k = 0; k < 9; k++) {
+        const uint32_t p[2] = {a[k / 3], a[(k / 3 + 1) % 3]}, q[2] = {b[k % 3], b[(k % 3 + 1) % 3]};
+
+        if (same_name_in(q, 2, p[0], names) || same_name_in(q, 2, p[1], names)) continue;
+        if (segments_meet(positions + 3 * (size_t)p[0], positions + 3 * (size_t)p[1],
+                          positions + 3 * (size_t)q[0], positions + 3 * (size_t)q[1]))
+            return true;
+    }
+    return false;
+}
+
+bool triangles_intersect_by_names(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
+                                  const double *positions) {
+    struct triangle ta = load_by_names(a, b, names, positions), tb = load_by_names(b, a, names, positions);
+
+    return free_part_meets(&ta, &tb) || free_part_meets(&tb, &ta) || free_edges_meet(a, b, names, positions);
+}

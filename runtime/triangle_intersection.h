@@ -10,4 +10,8 @@
  * a, b: vertex indices of two different triangles; positions: packed xyz of the whole mesh. */
 bool triangles_intersect(const uint32_t a[3], const uint32_t b[3], const double *positions);
 
+/* The same where vertices with the same name count as one, wherever they are. */
+bool triangles_intersect_by_names(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
+                                  const double *positions);
+
 #endif

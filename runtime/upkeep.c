@@ -81,8 +81,8 @@ static cscd_status move(cscd_detector *d, const double *x0, const double *x1, do
     return CSCD_OK;
 }
 
-cscd_status upkeep_move_to(cscd_detector *d, const double *positions) {
-    return move(d, positions, positions, 0.0);
+cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance) {
+    return move(d, positions, positions, distance);
 }
 
 cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {

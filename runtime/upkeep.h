@@ -13,6 +13,6 @@
 cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance);
 
 /* To a moment. */
-cscd_status upkeep_move_to(cscd_detector *d, const double *positions);
+cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance);
 
 #endif
