@@ -1,6 +1,6 @@
 /* Records bodies that meet and never pass through each other, by incremental potential contact: a model and
  * its frames. */
-#include "models/ipc/solver.h"
+#include "models/potential/solver.h"
 #include "models/softbody/motion.h"
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache_write.h"
@@ -53,13 +53,13 @@ static void print_summary(const ipc_solver *p, const motion *m) {
     printf("%s: %s\n", scene->name, scene->text);
     printf("  %u frames of %u triangles, %g s each; %u springs\n", m->frame_count, p->shape.triangle_count,
            scene->step_seconds * scene->steps, p->springs.count);
-    printf(
-        "  a time step: %.1f Newton iterations (%u steps stopped at the bound), %.2f motions of obstacles\n",
-        each(s->newton, s->steps), s->unfinished, each(s->advances, s->steps));
+    printf("  a time step: %.1f Newton iterations (%u steps stopped at the bound), %.2f of them with "
+           "obstacles\n",
+           each(s->newton, s->steps), s->unfinished, each(s->driven, s->steps));
     printf(
         "  a Newton iteration: %.0f conjugate gradients, %.0f candidates, %.2f trials of %.0f near pairs\n",
         each(s->conjugate_gradients, s->newton), each(s->candidates, s->newton), each(s->trials, s->newton),
-        each(s->near, s->trials + s->advances));
+        each(s->near, s->trials));
     printf("  lines limited by contact: %u of %u; least distance %.2g, reach %g, never below %g\n", s->cut,
            s->newton, s->least_distance, scene->barrier.reach, scene->min_separation);
     printf("  from frame to frame: contacts in %u of %u intervals, crossing in %u of %u frames\n",

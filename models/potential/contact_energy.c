@@ -1,6 +1,6 @@
 /* The barrier's energy over all pairs of features that are near, as a list of terms. */
-#include "models/ipc/contact_energy.h"
-#include "models/ipc/barrier.h"
+#include "models/potential/contact_energy.h"
+#include "models/potential/barrier.h"
 #include "models/shapes/body.h"
 #include "models/softbody/vector.h"
 

@@ -3,8 +3,8 @@
 #ifndef CSCD_MODELS_IPC_SOLVER_H
 #define CSCD_MODELS_IPC_SOLVER_H
 
-#include "models/ipc/newton_system.h"
-#include "models/ipc/scenes.h"
+#include "models/potential/newton_system.h"
+#include "models/potential/scenes.h"
 
 /* Sums over all time steps so far. */
 typedef struct ipc_statistics {
@@ -16,9 +16,9 @@ typedef struct ipc_statistics {
     uint64_t conjugate_gradients; /* iterations */
     uint64_t candidates;          /* of all lines */
     uint64_t near;                /* pairs nearer than the reach, at all points evaluated */
-    uint32_t advances;            /* motions of obstacles, pieces of one time step's counted each */
+    uint32_t driven;              /* Newton iterations in which obstacles moved */
     double least_distance;        /* of any pair at any point reached; INFINITY: none was near */
-    double detect_ms, total_ms;   /* within cscd; all of it */
+    double detect_ms, total_ms;   /* within cscd; all of it; set by _advance */
 } ipc_statistics;
 
 typedef struct ipc_solver {
@@ -35,8 +35,9 @@ typedef struct ipc_solver {
     ipc_system system;
 
     /* The time step under way. */
-    double *before, *predicted, *target; /* its start; without forces from inside; ends of lines */
-    double *gradient, *direction, *trial;
+    double *before, *predicted; /* its start; its end without forces from inside */
+    double *gradient, *direction;
+    double *end, *trial;                   /* of the line; what was verified on it */
     ipc_contacts contacts, trial_contacts; /* at positions; at trial */
     double energy;                         /* of what is minimised, at positions */
     double to_travel;                      /* share of the obstacles' travel at the end of the step */
@@ -54,7 +55,8 @@ void ipc_solver_free(ipc_solver *p);
 cscd_status ipc_solver_advance(ipc_solver *p);
 
 void ipc_solver_begin_step(ipc_solver *p);
-/* Moves the obstacles on, if they have not arrived, then one Newton iteration. */
+/* One Newton iteration: a direction, and a step along it. While obstacles are on their way they are part of
+ * the direction, and the step is the longest that is free of contact; else the energy falls. */
 cscd_status ipc_solver_iterate(ipc_solver *p, bool *done);
 void ipc_solver_end_step(ipc_solver *p);
 

@@ -1,5 +1,5 @@
 /* The scenes of the IPC solver: which bodies, of what, between which obstacles. */
-#include "models/ipc/scenes.h"
+#include "models/potential/scenes.h"
 #include "models/shapes/outline.h"
 #include "models/shapes/revolution.h"
 #include "models/shapes/rings.h"

@@ -1,5 +1,5 @@
 /* The linear system of a Newton step, never assembled, and its solution by conjugate gradients. */
-#include "models/ipc/newton_system.h"
+#include "models/potential/newton_system.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>
@@ -106,10 +106,10 @@ static void precondition(ipc_system *s) {
 
 uint32_t ipc_system_solve(ipc_system *s, const double *gradient, double tolerance, uint32_t most, double *x) {
     uint32_t count = s->vertex_count * 3, iteration = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        x[i] = 0.0;
-        s->residual[i] = s->inertia[i / 3] > 0.0 ? -gradient[i] : 0.0;
-    }
+    for (uint32_t i = 0; i < count; i++) x[i] = s->inertia[i / 3] > 0.0 ? 0.0 : x[i];
+    ipc_system_product(s, x, s->product);
+    for (uint32_t i = 0; i < count; i++)
+        s->residual[i] = s->inertia[i / 3] > 0.0 ? -gradient[i] - s->product[i] : 0.0;
     precondition(s);
     memcpy(s->search, s->preconditioned, count * sizeof *s->search);
     double size = inner(s, s->residual, s->preconditioned), enough = tolerance * tolerance * size;

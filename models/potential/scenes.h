@@ -2,8 +2,8 @@
 #ifndef CSCD_MODELS_IPC_SCENES_H
 #define CSCD_MODELS_IPC_SCENES_H
 
-#include "models/ipc/contact_energy.h"
-#include "models/ipc/springs.h"
+#include "models/potential/contact_energy.h"
+#include "models/potential/springs.h"
 
 /* Closed bodies where they begin, at rest. An obstacle moves along `travel` and back in travel_seconds,
  * evenly but for its turning points, again and again. */

@@ -1,6 +1,6 @@
 /* The barrier of incremental potential contact: an energy that rises without bound as a distance goes to 0.
  */
-#include "models/ipc/barrier.h"
+#include "models/potential/barrier.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* Elasticity of closed bodies by springs: along the edges of the surface, and across the inside as struts. */
-#include "models/ipc/springs.h"
+#include "models/potential/springs.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>

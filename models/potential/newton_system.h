@@ -2,8 +2,8 @@
 #ifndef CSCD_MODELS_NEWTON_SYSTEM_H
 #define CSCD_MODELS_NEWTON_SYSTEM_H
 
-#include "models/ipc/contact_energy.h"
-#include "models/ipc/springs.h"
+#include "models/potential/contact_energy.h"
+#include "models/potential/springs.h"
 
 /* inertia + springs + contacts, a positive definite matrix on the vertices whose inertia is above 0; the
  * others do not move. */
@@ -24,12 +24,14 @@ void ipc_system_free(ipc_system *s);
 /* The matrix at these positions, with these contacts, which are referred to. */
 void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *contacts);
 
-/* out = matrix * x; 0 at vertices that do not move. */
+/* out = matrix * x, 0 at vertices without inertia. */
 void ipc_system_product(const ipc_system *s, const double *x, double *out);
 
-/* x: approximately the solution of matrix * x = -gradient, from 0 on, until the residual in the
- * preconditioner's norm has fallen to `tolerance` of what it was, or `most` iterations: wherever it stops, x
- * leads down. Preconditioned by the inverses of the 3 x 3 blocks on the diagonal. Returns the iterations. */
+/* x: on entry, how far each vertex without inertia goes; on return, besides, approximately the solution of
+ * matrix * x = -gradient at the others, from 0 on, until the residual in the preconditioner's norm has fallen
+ * to `tolerance` of what it was, or `most` iterations: where no vertex without inertia moves, x leads down
+ * wherever that stops. Preconditioned by the inverses of the 3 x 3 blocks on the diagonal. Returns the
+ * iterations. */
 uint32_t ipc_system_solve(ipc_system *s, const double *gradient, double tolerance, uint32_t most, double *x);
 
 #endif

@@ -1,5 +1,5 @@
 /* What the IPC solver is made of: one mesh of all objects, masses, springs, the detector and its line. */
-#include "models/ipc/solver.h"
+#include "models/potential/solver.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -38,11 +38,21 @@ static void add_object(ipc_solver *p, const ipc_object *object, uint32_t first_v
 }
 
 static void allocate(ipc_solver *p) {
-    double **arrays[] = {&p->positions, &p->velocities, &p->travels,   &p->before, &p->predicted,
-                         &p->target,    &p->gradient,   &p->direction, &p->trial};
+    double **arrays[] = {&p->positions, &p->velocities, &p->travels, &p->before, &p->predicted,
+                         &p->gradient,  &p->direction,  &p->end,     &p->trial};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         *arrays[i] = body_allocate(p->shape.vertex_count, 3 * sizeof(double));
     p->inertia = body_allocate(p->shape.vertex_count, sizeof *p->inertia);
+}
+
+/* Later ones come with each line. */
+static cscd_status find_first_contacts(ipc_solver *p) {
+    const ipc_barrier_options *barrier = &p->scene->barrier;
+    cscd_proximities near;
+    cscd_status status = cscd_detector_near(p->detector, p->positions, barrier->reach, &near);
+    if (status == CSCD_OK)
+        ipc_contacts_find(&p->contacts, p->mesh, p->shape.positions, p->positions, &near, barrier);
+    return status;
 }
 
 cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, cscd_context *context,
@@ -59,6 +69,7 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
         first_vertex += objects[i].shape.vertex_count;
     }
     cscd_status status = open_detector(objects, count, context, &p);
+    if (status == CSCD_OK) status = find_first_contacts(&p);
     for (uint32_t i = 0; i < count; i++) body_free(&objects[i].shape);
     if (status != CSCD_OK) {
         ipc_solver_free(&p);
@@ -77,8 +88,8 @@ void ipc_solver_free(ipc_solver *p) {
     ipc_contacts_free(&p->contacts);
     ipc_contacts_free(&p->trial_contacts);
     ipc_springs_free(&p->springs);
-    double *arrays[] = {p->positions, p->velocities, p->travels,   p->before, p->predicted,
-                        p->target,    p->gradient,   p->direction, p->trial,  p->inertia};
+    double *arrays[] = {p->positions, p->velocities, p->travels, p->before, p->predicted,
+                        p->gradient,  p->direction,  p->end,     p->trial,  p->inertia};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
     body_free(&p->shape);
     *p = (ipc_solver){0};

@@ -1,5 +1,5 @@
 /* Time steps of implicit Euler as minimisations by Newton's method, along lines that stay free of contact. */
-#include "models/ipc/solver.h"
+#include "models/potential/solver.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>
@@ -28,39 +28,31 @@ double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc
     return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
 }
 
-static void find_gradient(ipc_solver *p) {
+/* The way left to go for each obstacle; 0 for bodies. */
+static void aim_obstacles(ipc_solver *p) {
+    p->arrived = true;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) {
+        bool given = p->inertia[i / 3] == 0.0;
+        p->direction[i] =
+            given ? p->shape.positions[i] + p->to_travel * p->travels[i] - p->positions[i] : 0.0;
+        p->arrived = p->arrived && p->direction[i] == 0.0;
+    }
+}
+
+/* Newton's: how bodies go with the obstacles that press them is in the Hessian of the barrier. Returns the
+ * slope of the energy along it. */
+static double find_direction(ipc_solver *p) {
+    double slope = 0.0;
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->gradient[i] = p->inertia[i / 3] * (p->positions[i] - p->predicted[i]);
     ipc_springs_add_gradient(&p->springs, p->positions, p->gradient);
     ipc_contacts_add_gradient(&p->contacts, p->gradient);
-}
-
-static void find_contacts(ipc_solver *p, const cscd_proximities *near, const double *positions,
-                          ipc_contacts *contacts) {
-    ipc_contacts_find(contacts, p->mesh, p->shape.positions, positions, near, &p->scene->barrier);
-    p->statistics.near += near->count;
-}
-
-/* As far towards where they are to be as they meet nothing, while the bodies stay; the energy is then that of
- * another problem. */
-static cscd_status move_obstacles(ipc_solver *p) {
-    cscd_proximities near;
-    cscd_free_step step = {.length = 1.0};
-    double since = now_ms();
-    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
-        p->target[i] =
-            p->inertia[i / 3] > 0.0 ? p->positions[i] : p->shape.positions[i] + p->to_travel * p->travels[i];
-    cscd_status status = cscd_detector_max_step(p->detector, p->positions, p->target, p->target, &step);
-    if (status == CSCD_OK)
-        status = cscd_detector_near(p->detector, p->target, p->scene->barrier.reach, &near);
-    p->statistics.detect_ms += now_ms() - since;
-    if (status != CSCD_OK) return status;
-    memcpy(p->positions, p->target, (size_t)p->shape.vertex_count * 3 * sizeof *p->positions);
-    p->statistics.advances++;
-    p->arrived = !step.limited;
-    find_contacts(p, &near, p->positions, &p->contacts);
-    p->energy = ipc_solver_energy(p, p->positions, &p->contacts);
-    return CSCD_OK;
+    ipc_system_set(&p->system, p->positions, &p->contacts);
+    aim_obstacles(p);
+    p->statistics.conjugate_gradients +=
+        ipc_system_solve(&p->system, p->gradient, solve_tolerance, GRADIENTS_MOST, p->direction);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) slope += p->gradient[i] * p->direction[i];
+    return slope;
 }
 
 /* The energy at the trial point, `length` along the line. */
@@ -70,7 +62,8 @@ static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
     cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
     p->statistics.detect_ms += now_ms() - since;
     if (status != CSCD_OK) return status;
-    find_contacts(p, &near, p->trial, &p->trial_contacts);
+    ipc_contacts_find(&p->trial_contacts, p->mesh, p->shape.positions, p->trial, &near, &p->scene->barrier);
+    p->statistics.near += near.count;
     p->statistics.trials++;
     *energy = ipc_solver_energy(p, p->trial, &p->trial_contacts);
     return CSCD_OK;
@@ -86,15 +79,16 @@ static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
 
 static cscd_status begin_line(ipc_solver *p) {
     double since = now_ms();
-    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) p->target[i] = p->positions[i] + p->direction[i];
-    cscd_status status = cscd_line_begin(p->line, p->positions, p->target, p->scene->barrier.reach);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) p->end[i] = p->positions[i] + p->direction[i];
+    cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
     p->statistics.candidates += status == CSCD_OK ? cscd_line_candidate_count(p->line) : 0;
     p->statistics.detect_ms += now_ms() - since;
     return status;
 }
 
 /* From the longest step that is free of contact on backwards, until the energy has fallen by enough (Armijo's
- * rule). What is evaluated is what the library has verified. *found false: no step leads down. */
+ * rule); while obstacles move, which may do work, the longest. What is evaluated is what the library has
+ * verified. *found false: no step leads down. */
 static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
     double longest = 1.0;
     cscd_status status = begin_line(p);
@@ -105,7 +99,7 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
         if (status == CSCD_OK) status = evaluate(p, step.length, &energy);
         if (status != CSCD_OK) return status;
         p->statistics.cut += i == 0 && step.limited;
-        *found = energy <= p->energy + least_gain * step.length * slope;
+        *found = !p->arrived || energy <= p->energy + least_gain * step.length * slope;
         if (*found) p->energy = energy;
         longest = 0.5 * step.length;
     }
@@ -131,18 +125,12 @@ static double farthest(const ipc_solver *p) {
 }
 
 cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
-    cscd_status status = p->arrived ? CSCD_OK : move_obstacles(p);
-    if (status != CSCD_OK) return status;
-    double slope = 0.0;
     bool found = false;
-    find_gradient(p);
-    ipc_system_set(&p->system, p->positions, &p->contacts);
-    p->statistics.conjugate_gradients +=
-        ipc_system_solve(&p->system, p->gradient, solve_tolerance, GRADIENTS_MOST, p->direction);
-    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) slope += p->gradient[i] * p->direction[i];
-    status = search_line(p, slope, &found);
+    double slope = find_direction(p);
+    cscd_status status = search_line(p, slope, &found);
     if (status != CSCD_OK) return status;
     p->statistics.newton++;
+    p->statistics.driven += !p->arrived;
     if (found) accept(p);
     *done = p->arrived && (!found || farthest(p) < done_share * p->scene->barrier.reach);
     return CSCD_OK;
@@ -151,7 +139,6 @@ cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
 void ipc_solver_begin_step(ipc_solver *p) {
     double step = p->scene->step_seconds;
     p->to_travel = ipc_scene_travelled(p->scene, p->time + step);
-    p->arrived = false;
     memcpy(p->before, p->positions, (size_t)p->shape.vertex_count * 3 * sizeof *p->before);
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->predicted[i] =
