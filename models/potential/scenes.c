@@ -57,7 +57,7 @@ static uint32_t make_press(uint32_t triangle_count, ipc_object objects[IPC_OBJEC
         high = fmax(high, objects[0].shape.positions[v * 3 + 2]);
     }
     objects[1] = make_plate(low - 0.13, 0.0);
-    objects[2] = make_plate(high + 0.13, -1.75);
+    objects[2] = make_plate(high + 0.13, -2.1);
     return 3;
 }
 
@@ -65,9 +65,9 @@ const ipc_scene ipc_scenes[] = {
     {
         .name = "rings",
         .text = "a chain of linked rings hangs from the first one and swings",
-        .triangle_count = 2400,
+        .triangle_count = 3600,
         .make = make_rings,
-        .stuff = {.density = 1.0, .membrane = 400.0, .solid = 2000.0},
+        .stuff = {.density = 1.0, .membrane = 800.0, .solid = 4000.0},
         .gravity = 10.0,
         .barrier = {.reach = 0.02, .stiffness = 400.0},
         .min_separation = 2e-5,
@@ -79,7 +79,7 @@ const ipc_scene ipc_scenes[] = {
     {
         .name = "press",
         .text = "a coil is pressed between two plates, turn onto turn, and let go",
-        .triangle_count = 3000,
+        .triangle_count = 5000,
         .make = make_press,
         .stuff = {.density = 1.0, .membrane = 3000.0, .solid = 15000.0},
         .gravity = 1.0,

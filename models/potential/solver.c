@@ -28,13 +28,17 @@ double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc
     return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
 }
 
-/* The way left to go for each obstacle; 0 for bodies. */
+/* Where an obstacle's coordinate i is to be at the end of the time step. */
+static double goal(const ipc_solver *p, uint32_t i) {
+    return p->shape.positions[i] + p->to_travel * p->travels[i];
+}
+
+/* The way left to go for each obstacle. */
 static void aim_obstacles(ipc_solver *p) {
     p->arrived = true;
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) {
-        bool given = p->inertia[i / 3] == 0.0;
-        p->direction[i] =
-            given ? p->shape.positions[i] + p->to_travel * p->travels[i] - p->positions[i] : 0.0;
+        if (p->inertia[i / 3] > 0.0) continue;
+        p->direction[i] = goal(p, i) - p->positions[i];
         p->arrived = p->arrived && p->direction[i] == 0.0;
     }
 }
@@ -79,7 +83,8 @@ static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
 
 static cscd_status begin_line(ipc_solver *p) {
     double since = now_ms();
-    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) p->end[i] = p->positions[i] + p->direction[i];
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal(p, i);
     cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
     p->statistics.candidates += status == CSCD_OK ? cscd_line_candidate_count(p->line) : 0;
     p->statistics.detect_ms += now_ms() - since;
@@ -131,6 +136,7 @@ cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
     if (status != CSCD_OK) return status;
     p->statistics.newton++;
     p->statistics.driven += !p->arrived;
+    p->statistics.unfinished += !found;
     if (found) accept(p);
     *done = p->arrived && (!found || farthest(p) < done_share * p->scene->barrier.reach);
     return CSCD_OK;
@@ -143,6 +149,7 @@ void ipc_solver_begin_step(ipc_solver *p) {
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->predicted[i] =
             p->positions[i] + step * p->velocities[i] - (i % 3 == 2 ? step * step * p->scene->gravity : 0.0);
+    p->energy = ipc_solver_energy(p, p->positions, &p->contacts);
 }
 
 void ipc_solver_end_step(ipc_solver *p) {

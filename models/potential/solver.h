@@ -8,11 +8,11 @@
 
 /* Sums over all time steps so far. */
 typedef struct ipc_statistics {
-    uint32_t steps;               /* time steps */
-    uint32_t newton;              /* Newton iterations: each one line */
-    uint32_t trials;              /* points on lines at which the energy was evaluated */
-    uint32_t cut;                 /* lines that contact limited to less than all of the Newton step */
-    uint32_t unfinished;          /* time steps that ended at the bound on iterations */
+    uint32_t steps;      /* time steps */
+    uint32_t newton;     /* Newton iterations: each one line */
+    uint32_t trials;     /* points on lines at which the energy was evaluated */
+    uint32_t cut;        /* lines that contact limited to less than all of the Newton step */
+    uint32_t unfinished; /* time steps that ended at the bound on iterations, or where no step led down */
     uint64_t conjugate_gradients; /* iterations */
     uint64_t candidates;          /* of all lines */
     uint64_t near;                /* pairs nearer than the reach, at all points evaluated */
