@@ -142,22 +142,26 @@ static void springs_have_their_gradient(void **state) {
     body_free(&b);
 }
 
-/* One spring: stretched, its block is the derivative of the force; pressed, what is left is along it. */
-static void spring_blocks_are_semidefinite(void **state) {
+/* One spring: stretched, its Hessian is the derivative of the force; pressed, what is left is along it. */
+static void spring_hessians_are_semidefinite(void **state) {
     (void)state;
     ipc_spring spring = {0, 1, 1.0, 3.0};
     const ipc_springs springs = {&spring, 1, 1};
     for (int stretched = 0; stretched < 2; stretched++) {
-        double along[3] = {0.6, 0.0, 0.8}, aside[3] = {0.0, 1.0, 0.0}, length = stretched ? 1.7 : 0.6;
-        double x[6] = {0.1, 0.2, 0.3}, force[3];
-        ipc_block block;
+        const double along[6] = {0.6, 0.0, 0.8}, aside[6] = {0.0, 1.0, 0.0}, length = stretched ? 1.7 : 0.6;
+        double x[6] = {0.1, 0.2, 0.3}, force[6] = {0.0}, other[6] = {0.0}, turned[6] = {0.0};
+        ipc_spring_hessian hessian;
         for (int k = 0; k < 3; k++) x[3 + k] = x[k] + length * along[k];
-        ipc_springs_blocks(&springs, x, &block);
-        ipc_block_product(&block, along, force);
-        for (int k = 0; k < 3; k++) assert_close(force[k], 3.0 * along[k], 1e-12);
-        ipc_block_product(&block, aside, force);
-        for (int k = 0; k < 3; k++)
-            assert_close(force[k], (stretched ? 3.0 * (1.0 - 1.0 / length) : 0.0) * aside[k], 1e-12);
+        ipc_springs_hessians(&springs, x, &hessian);
+        ipc_springs_add_product(&springs, &hessian, along, force);
+        ipc_springs_add_product(&springs, &hessian, aside, other);
+        for (int k = 0; k < 3; k++) {
+            double expected = (stretched ? 3.0 * (1.0 - 1.0 / length) : 0.0) * aside[k];
+            assert_close(force[k], 3.0 * along[k], 1e-12);
+            assert_close(force[3 + k], -3.0 * along[k], 1e-12);
+            assert_close(other[k], expected, 1e-12);
+            assert_close(other[3 + k], -expected, 1e-12);
+        }
         if (!stretched) continue;
         double gradient[2][6] = {{0.0}};
         for (int side = 0; side < 2; side++) {
@@ -166,11 +170,8 @@ static void spring_blocks_are_semidefinite(void **state) {
             there[0] += side == 0 ? -1e-6 : 1e-6;
             ipc_springs_add_gradient(&springs, there, gradient[side]);
         }
-        ipc_block_product(&block, (double[3]){1.0, 0.0, 0.0}, force);
-        for (int k = 0; k < 3; k++) {
-            assert_close((gradient[1][k] - gradient[0][k]) / 2e-6, force[k], 1e-8);
-            assert_close((gradient[1][3 + k] - gradient[0][3 + k]) / 2e-6, -force[k], 1e-8);
-        }
+        ipc_springs_add_product(&springs, &hessian, (const double[6]){1.0}, turned);
+        for (int k = 0; k < 6; k++) assert_close((gradient[1][k] - gradient[0][k]) / 2e-6, turned[k], 1e-8);
     }
 }
 
@@ -308,7 +309,7 @@ int main(void) {
         cmocka_unit_test(mollifier_goes_from_none_to_all),
         cmocka_unit_test(springs_hold_the_body),
         cmocka_unit_test(springs_have_their_gradient),
-        cmocka_unit_test(spring_blocks_are_semidefinite),
+        cmocka_unit_test(spring_hessians_are_semidefinite),
         cmocka_unit_test(near_pairs_have_their_gradient),
         cmocka_unit_test(nearly_parallel_edges_have_their_gradient),
         cmocka_unit_test(near_pairs_have_their_curvature),

@@ -7,7 +7,7 @@
 
 ipc_system ipc_system_make(uint32_t vertex_count, const double *inertia, const ipc_springs *springs) {
     ipc_system s = {.vertex_count = vertex_count, .inertia = inertia, .springs = *springs};
-    s.blocks = body_allocate(springs->count, sizeof *s.blocks);
+    s.hessians = body_allocate(springs->count, sizeof *s.hessians);
     s.inverses = body_allocate(vertex_count, sizeof *s.inverses);
     s.residual = body_allocate(vertex_count, 3 * sizeof *s.residual);
     s.preconditioned = body_allocate(vertex_count, 3 * sizeof *s.preconditioned);
@@ -17,17 +17,13 @@ ipc_system ipc_system_make(uint32_t vertex_count, const double *inertia, const i
 }
 
 void ipc_system_free(ipc_system *s) {
-    free(s->blocks);
+    free(s->hessians);
     free(s->inverses);
     free(s->residual);
     free(s->preconditioned);
     free(s->search);
     free(s->product);
     *s = (ipc_system){0};
-}
-
-static void add_block(ipc_block *sum, const ipc_block *block) {
-    for (int i = 0; i < 6; i++) sum->m[i] += block->m[i];
 }
 
 static void add_outer(ipc_block *sum, double factor, const double n[3]) {
@@ -37,6 +33,13 @@ static void add_outer(ipc_block *sum, double factor, const double n[3]) {
     sum->m[3] += factor * n[1] * n[1];
     sum->m[4] += factor * n[1] * n[2];
     sum->m[5] += factor * n[2] * n[2];
+}
+
+static void add_spring(ipc_block *sum, const ipc_spring_hessian *h) {
+    add_outer(sum, h->along, h->n);
+    sum->m[0] += h->aside;
+    sum->m[3] += h->aside;
+    sum->m[5] += h->aside;
 }
 
 /* By cofactors; the block is positive definite. */
@@ -51,14 +54,14 @@ static void invert(ipc_block *block) {
 
 void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *contacts) {
     s->contacts = contacts;
-    ipc_springs_blocks(&s->springs, positions, s->blocks);
+    ipc_springs_hessians(&s->springs, positions, s->hessians);
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         double inertia = s->inertia[v];
         s->inverses[v] = (ipc_block){{inertia, 0.0, 0.0, inertia, 0.0, inertia}};
     }
     for (uint32_t i = 0; i < s->springs.count; i++) {
-        add_block(&s->inverses[s->springs.items[i].a], &s->blocks[i]);
-        add_block(&s->inverses[s->springs.items[i].b], &s->blocks[i]);
+        add_spring(&s->inverses[s->springs.items[i].a], &s->hessians[i]);
+        add_spring(&s->inverses[s->springs.items[i].b], &s->hessians[i]);
     }
     for (size_t i = 0; i < contacts->count; i++) {
         const ipc_contact *c = &contacts->items[i];
@@ -75,14 +78,7 @@ void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *
 
 void ipc_system_product(const ipc_system *s, const double *x, double *out) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) out[i] = s->inertia[i / 3] * x[i];
-    for (uint32_t i = 0; i < s->springs.count; i++) {
-        const ipc_spring *spring = &s->springs.items[i];
-        double apart[3], force[3];
-        difference(x + (size_t)spring->a * 3, x + (size_t)spring->b * 3, apart);
-        ipc_block_product(&s->blocks[i], apart, force);
-        add_scaled(out + (size_t)spring->a * 3, 1.0, force);
-        add_scaled(out + (size_t)spring->b * 3, -1.0, force);
-    }
+    ipc_springs_add_product(&s->springs, s->hessians, x, out);
     ipc_contacts_add_product(s->contacts, x, out);
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->inertia[v] == 0.0) memset(out + (size_t)v * 3, 0, 3 * sizeof *out);
@@ -100,8 +96,13 @@ static void add(const ipc_system *s, double *a, double factor, const double *b) 
 }
 
 static void precondition(ipc_system *s) {
-    for (uint32_t v = 0; v < s->vertex_count; v++)
-        ipc_block_product(&s->inverses[v], s->residual + (size_t)v * 3, s->preconditioned + (size_t)v * 3);
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        const double *m = s->inverses[v].m, *x = s->residual + (size_t)v * 3;
+        double *out = s->preconditioned + (size_t)v * 3;
+        out[0] = m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
+        out[1] = m[1] * x[0] + m[3] * x[1] + m[4] * x[2];
+        out[2] = m[2] * x[0] + m[4] * x[1] + m[5] * x[2];
+    }
 }
 
 uint32_t ipc_system_solve(ipc_system *s, const double *gradient, double tolerance, uint32_t most, double *x) {

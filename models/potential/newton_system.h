@@ -5,6 +5,11 @@
 #include "models/potential/contact_energy.h"
 #include "models/potential/springs.h"
 
+/* A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz. */
+typedef struct ipc_block {
+    double m[6];
+} ipc_block;
+
 /* inertia + springs + contacts, a positive definite matrix on the vertices whose inertia is above 0; the
  * others do not move. */
 typedef struct ipc_system {
@@ -12,8 +17,8 @@ typedef struct ipc_system {
     const double *inertia; /* per vertex: mass / (time step)^2 */
     ipc_springs springs;   /* shared */
     const ipc_contacts *contacts;
-    ipc_block *blocks;   /* per spring */
-    ipc_block *inverses; /* per vertex, of the matrix's diagonal */
+    ipc_spring_hessian *hessians; /* per spring */
+    ipc_block *inverses;          /* per vertex, of the matrix's diagonal */
     double *residual, *preconditioned, *search, *product;
 } ipc_system;
 

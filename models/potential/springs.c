@@ -182,25 +182,28 @@ void ipc_springs_add_gradient(const ipc_springs *springs, const double *position
     }
 }
 
-void ipc_block_product(const ipc_block *block, const double x[3], double out[3]) {
-    const double *m = block->m;
-    out[0] = m[0] * x[0] + m[1] * x[1] + m[2] * x[2];
-    out[1] = m[1] * x[0] + m[3] * x[1] + m[4] * x[2];
-    out[2] = m[2] * x[0] + m[4] * x[1] + m[5] * x[2];
-}
-
-/* stiffness * (n n^T + (1 - rest / length) (I - n n^T)), the second factor not below 0. */
-void ipc_springs_blocks(const ipc_springs *springs, const double *positions, ipc_block *blocks) {
+void ipc_springs_hessians(const ipc_springs *springs, const double *positions, ipc_spring_hessian *hessians) {
     for (uint32_t i = 0; i < springs->count; i++) {
         const ipc_spring *s = &springs->items[i];
-        double n[3], length = spring_length(s, positions, n);
-        double aside = length > s->rest ? s->stiffness * (1.0 - s->rest / length) : 0.0;
-        double along = s->stiffness - aside, *m = blocks[i].m;
-        m[0] = along * n[0] * n[0] + aside;
-        m[1] = along * n[0] * n[1];
-        m[2] = along * n[0] * n[2];
-        m[3] = along * n[1] * n[1] + aside;
-        m[4] = along * n[1] * n[2];
-        m[5] = along * n[2] * n[2] + aside;
+        ipc_spring_hessian *h = &hessians[i];
+        double length = spring_length(s, positions, h->n);
+        h->aside = length > s->rest ? s->stiffness * (1.0 - s->rest / length) : 0.0;
+        h->along = s->stiffness - h->aside;
+    }
+}
+
+void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessian *hessians, const double *x,
+                             double *out) {
+    for (uint32_t i = 0; i < springs->count; i++) {
+        const ipc_spring_hessian *h = &hessians[i];
+        size_t a = (size_t)springs->items[i].a * 3, b = (size_t)springs->items[i].b * 3;
+        double apart[3];
+        difference(x + a, x + b, apart);
+        double along = h->along * dot(h->n, apart);
+        for (int k = 0; k < 3; k++) {
+            double force = along * h->n[k] + h->aside * apart[k];
+            out[a + (size_t)k] += force;
+            out[b + (size_t)k] -= force;
+        }
     }
 }

@@ -31,17 +31,18 @@ void ipc_springs_free(ipc_springs *springs);
 double ipc_springs_energy(const ipc_springs *springs, const double *positions);
 void ipc_springs_add_gradient(const ipc_springs *springs, const double *positions, double *gradient);
 
-/* A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz. */
-typedef struct ipc_block {
-    double m[6];
-} ipc_block;
+/* A spring's Hessian: the block B = along * n n^T + aside * I at (a, a) and (b, b), -B at (a, b) and (b, a).
+ * Without what would make it indefinite: a spring that is pressed pushes aside, too. */
+typedef struct ipc_spring_hessian {
+    double n[3], along, aside;
+} ipc_spring_hessian;
 
-/* out = block * x */
-void ipc_block_product(const ipc_block *block, const double x[3], double out[3]);
+/* One for each spring. */
+void ipc_springs_hessians(const ipc_springs *springs, const double *positions, ipc_spring_hessian *hessians);
 
-/* Per spring the block B of its Hessian, B at (a, a) and (b, b) and -B at (a, b) and (b, a), without what
- * would make it indefinite: a spring that is pressed pushes aside, too. */
-void ipc_springs_blocks(const ipc_springs *springs, const double *positions, ipc_block *blocks);
+/* out += Hessian * x */
+void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessian *hessians, const double *x,
+                             double *out);
 
 /* The area that belongs to each vertex: a third of its triangles'. */
 void ipc_vertex_areas(const body *b, double *areas);
