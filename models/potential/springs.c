@@ -46,14 +46,41 @@ static double ray_length(const body *b, uint32_t triangle, const double from[3],
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && length > 0.0 ? length : INFINITY;
 }
 
+/* Spheres around the triangles, most of which a ray passes by. */
+typedef struct sphere {
+    double centre[3], squared_radius;
+} sphere;
+
+static sphere *triangle_spheres(const body *b) {
+    sphere *spheres = body_allocate(b->triangle_count, sizeof *spheres);
+    for (uint32_t t = 0; t < b->triangle_count; t++) {
+        for (uint32_t k = 0; k < 3; k++) add_scaled(spheres[t].centre, 1.0 / 3.0, corner_of(b, t, k));
+        for (uint32_t k = 0; k < 3; k++) {
+            double away[3];
+            difference(corner_of(b, t, k), spheres[t].centre, away);
+            spheres[t].squared_radius = fmax(spheres[t].squared_radius, 1.0001 * dot(away, away));
+        }
+    }
+    return spheres;
+}
+
+static bool passes_by(const sphere *s, const double from[3], const double direction[3]) {
+    double offset[3];
+    difference(s->centre, from, offset);
+    double along = dot(offset, direction), squared = dot(direction, direction);
+    return (dot(offset, offset) - s->squared_radius) * squared > along * along;
+}
+
 /* The vertex next to where the ray from a vertex comes to the surface, the vertex itself where it does not.
  */
-static uint32_t opposite_vertex(const body *b, uint32_t vertex, const double direction[3]) {
+static uint32_t opposite_vertex(const body *b, const sphere *spheres, uint32_t vertex,
+                                const double direction[3]) {
     const double *from = b->positions + (size_t)vertex * 3;
     uint32_t hit = UINT32_MAX, nearest = vertex;
     double least = INFINITY, end[3] = {from[0], from[1], from[2]};
     for (uint32_t t = 0; t < b->triangle_count; t++) {
         const uint32_t *v = b->triangles + (size_t)t * 3;
+        if (passes_by(&spheres[t], from, direction)) continue;
         if (v[0] == vertex || v[1] == vertex || v[2] == vertex) continue;
         double length = ray_length(b, t, from, direction);
         if (!(length < least)) continue;
@@ -93,6 +120,7 @@ static void add_spring(ipc_springs *springs, const body *b, uint32_t v, uint32_t
 static void add_struts(ipc_springs *springs, const body *b, double solid) {
     double *normals = body_allocate(b->vertex_count, 3 * sizeof *normals);
     double *areas = body_allocate(b->vertex_count, sizeof *areas);
+    sphere *spheres = triangle_spheres(b);
     ipc_vertex_areas(b, areas);
     for (uint32_t t = 0; t < b->triangle_count; t++) {
         double normal[3];
@@ -112,12 +140,13 @@ static void add_struts(ipc_springs *springs, const body *b, double solid) {
             double inward[3] = {-normal[0], -normal[1], -normal[2]};
             add_scaled(inward, tilt * leans[i][0], one);
             add_scaled(inward, tilt * leans[i][1], other);
-            uint32_t w = opposite_vertex(b, v, inward);
+            uint32_t w = opposite_vertex(b, spheres, v, inward);
             if (w != v) add_spring(springs, b, v, w, 0.0, solid * areas[v] / STRUTS);
         }
     }
     free(normals);
     free(areas);
+    free(spheres);
 }
 
 static int by_ends(const void *p, const void *q) {
