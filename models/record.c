@@ -98,7 +98,7 @@ static bool record(const scene *s, const char *folder, io_error *error) {
     recorder r;
     outputs out = {NULL, NULL, {0}};
     motion m = {.mesh = NULL};
-    if (!recorder_open(s, &r, error)) return false;
+    if (!recorder_open(s, NULL, &r, error)) return false;
     double start_energy = recorder_energy(&r), most_energy = start_energy;
     bool good = open_outputs(folder, &r, &out, error);
     for (uint32_t frame = 0; good && frame < s->frame_count; frame++) {

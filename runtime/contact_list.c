@@ -11,7 +11,8 @@ enum { CONTACTS_FOR_ALL = 4096 };
 /* What one thread copies at a time. */
 enum { CONTACTS_PER_COPY = 4096 };
 
-static bool left_out(const exclusions *e, const cscd_contact *contact) {
+bool contact_list_leaves_out(const cscd_detector *d, const cscd_contact *contact) {
+    const exclusions *e = &d->exclusions;
     return exclusions_any(e) && exclusions_cover_features(e, contact->kind, contact->a, contact->b);
 }
 
@@ -55,9 +56,7 @@ static void add_counters(const contact_lane *lane, cscd_counters *counters) {
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) counters->tests += lane->decided[i];
 }
 
-/* How many contacts each lane finds differs from run to run: without this a buffer might grow in an interval
- * like those before. */
-static cscd_status reserve_lanes(cscd_detector *d, size_t found) {
+cscd_status contact_list_reserve_lanes(cscd_detector *d, size_t found) {
     uint32_t lanes = d->traversal.busy_lanes;
     size_t wanted = lanes > 1 && found > CONTACTS_FOR_ALL ? 2 * found / lanes + CONTACTS_FOR_ALL : found;
     for (uint32_t i = 0; lanes > 1 && i < lanes; i++) {
@@ -92,7 +91,7 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
     cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
-    if (status == CSCD_OK) status = reserve_lanes(d, found);
+    if (status == CSCD_OK) status = contact_list_reserve_lanes(d, found);
     if (status != CSCD_OK) return status;
     sort_key *keys = d->contacts.scratch;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
@@ -100,7 +99,7 @@ cscd_status contact_list_collect(cscd_detector *d, cscd_counters *counters, cscd
         add_counters(lane, counters);
         for (size_t j = 0; j < lane->count; j++) {
             const cscd_contact *contact = &lane->contacts[j];
-            if (left_out(&d->exclusions, contact)) continue;
+            if (contact_list_leaves_out(d, contact)) continue;
             *(contact->kind == CSCD_CONTACT_VF ? &counters->vf : &counters->ee) += 1;
             counters->bounded += contact->bounded;
             keys[kept++] = (sort_key){bits_of(contact->toi), contact};

@@ -28,6 +28,12 @@ static cscd_status check_separation(cscd_context *context, const cscd_detector_o
     return CSCD_OK;
 }
 
+/* The default tolerance filled in. */
+static separation limit_of(const cscd_detector_options *options) {
+    double distance = options->min_separation;
+    return (separation){distance, options->tolerance > 0.0 ? options->tolerance : 1e-6 * distance};
+}
+
 static cscd_status check_options(cscd_context *context, const cscd_detector_options *options) {
     if (options->struct_size != sizeof *options)
         return context_fail(
@@ -117,8 +123,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->mesh = mesh;
     d->options = chosen;
     d->published_rules = PUBLISHED_ALL;
-    d->limit.distance = chosen.min_separation;
-    d->limit.tolerance = chosen.tolerance > 0.0 ? chosen.tolerance : 1e-6 * chosen.min_separation;
+    d->limit = limit_of(&chosen);
     status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && allocate_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     if (status != CSCD_OK) {
@@ -169,6 +174,18 @@ void cscd_detector_destroy(cscd_detector *d) {
                       d->reached,
                       d};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector_options changed = detector->options;
+    changed.min_separation = min_separation;
+    changed.tolerance = tolerance;
+    cscd_status status = check_separation(detector->context, &changed);
+    if (status != CSCD_OK) return status;
+    detector->options = changed;
+    detector->limit = limit_of(&changed);
+    return CSCD_OK;
 }
 
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count, size_t size) {

@@ -5,10 +5,21 @@
 #include "runtime/upkeep.h"
 #include "runtime/vector.h"
 #include "src/positions.h"
+#include "src/sort.h"
 
 #include <string.h>
 
-_Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact), "proximities are written where keys were");
+/* What one thread describes at a time. */
+enum { PAIRS_PER_SHARE = 4096 };
+
+/* A contact, and a part of its name as a number. */
+typedef struct name_key {
+    uint64_t key;
+    const cscd_contact *of;
+} name_key;
+
+_Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name_key) <= sizeof(cscd_contact),
+               "proximities and keys are where contacts are otherwise");
 
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
@@ -55,14 +66,48 @@ static cscd_proximity proximity_of(const cscd_mesh *mesh, const cscd_contact *at
     return p;
 }
 
+/* The lanes' contacts by (kind, a, b): first by b, then, which keeps that order, by the rest. */
+static void sort_names(name_key *keys, name_key *scratch, size_t count) {
+    for (size_t i = 0; i < count; i++) keys[i].key = keys[i].of->b;
+    sort_by_number(keys, scratch, count, sizeof *keys);
+    for (size_t i = 0; i < count; i++) keys[i].key = (uint64_t)keys[i].of->kind << 32 | keys[i].of->a;
+    sort_by_number(keys, scratch, count, sizeof *keys);
+}
+
+typedef struct description {
+    const cscd_mesh *mesh;
+    const double *positions;
+    const name_key *keys;
+    cscd_proximity *items;
+    size_t count;
+} description;
+
+static void describe_share(void *data, uint32_t index) {
+    const description *d = data;
+    size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
+    for (size_t i = begin; i < end && i < d->count; i++)
+        d->items[i] = proximity_of(d->mesh, d->keys[i].of, d->positions);
+}
+
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
-    cscd_counters counters = {.vf = 0};
-    cscd_contacts found;
-    cscd_status status = contact_list_collect(d, &counters, &found);
+    size_t found = 0, kept = 0;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
+    cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
+    if (status == CSCD_OK) status = contact_list_reserve_lanes(d, found);
     if (status != CSCD_OK) return status;
-    cscd_proximity *items = d->contacts.scratch; /* the sorted keys are of no more use */
-    for (size_t i = 0; i < found.count; i++) items[i] = proximity_of(d->mesh, &found.items[i], positions);
-    *out = (cscd_proximities){items, found.count};
+    name_key *keys = d->contacts.scratch;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        const contact_lane *lane = &d->contact_lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            keys[kept].of = &lane->contacts[j];
+            kept += !contact_list_leaves_out(d, &lane->contacts[j]);
+        }
+    }
+    sort_names(keys, keys + found, kept);
+    description all = {d->mesh, positions, keys, d->contacts.items, kept};
+    uint32_t shares = (uint32_t)((kept + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
+    parallel_run(d->context->threads, shares, describe_share, &all);
+    *out = (cscd_proximities){all.items, kept};
     return CSCD_OK;
 }
 

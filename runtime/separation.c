@@ -22,6 +22,7 @@ typedef struct local_query {
     elementary_query at;
     int first_count;        /* points of feature a */
     double scale, distance; /* distance: the limit's, scaled */
+    bool still;             /* nothing moves */
 } local_query;
 
 /* The features at one moment. */
@@ -48,7 +49,8 @@ static double query_extent(const elementary_query *query) {
 /* To an extent in [1/2, 1), so that no later product over- or underflows. The subtraction rounds: coordinates
  * are off by at most 2^-53. Scaling is exact, that of the distance too: its exponent stays within 1000. */
 static local_query localise(const elementary_query *query, int first_count, double distance) {
-    local_query local = {.first_count = first_count};
+    local_query local = {.first_count = first_count,
+                         .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
     int exponent = 0;
     frexp(query_extent(query), &exponent);
     local.scale = ldexp(1.0, -exponent);
@@ -132,10 +134,19 @@ static double time_apart(const local_query *local, const moment *m) {
     return longest;
 }
 
+/* Where nothing moves the plane across the shortest connection mostly proves all there is to prove. */
+static bool stays_apart(const local_query *local, const moment *m) {
+    separating_plane across = {.axis_count = 0};
+    if (!local->still) return false;
+    for (int k = 0; k < 3; k++) across.normal[k] = m->shortest.offset[k] / m->distance;
+    return separating_plane_holds(&m->features, &across, local->distance) >= 1.0;
+}
+
 /* From moment to moment, each as late as a plane keeps the features apart, until they are no farther apart
  * than reach. A time t + s is rounded down: times 1 - 2^-53 is the next smaller double. */
 static bool advance(const local_query *local, double reach, moment *m, bool *bounded) {
     *bounded = false;
+    if (m->distance > reach && stays_apart(local, m)) return false;
     for (int step = 0; m->distance > reach; step++) {
         double time = time_apart(local, m);
         if (time >= 1.0 - m->t) return false;

@@ -76,7 +76,7 @@ static void files_hold_the_recording(void **state) {
     io_error error;
     animation *cache;
     mesh_file mesh = read_mesh(model.text);
-    if (!recorder_open(scene_find(scene_name), &r, &error)) fail_msg("%s", error.text);
+    if (!recorder_open(scene_find(scene_name), NULL, &r, &error)) fail_msg("%s", error.text);
     assert_int_equal(mesh.vertex_count, r.shape.vertex_count);
     assert_int_equal(mesh.triangle_count, r.shape.triangle_count);
     size_t bytes = (size_t)mesh.vertex_count * 3 * sizeof *mesh.positions;

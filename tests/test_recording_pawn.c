@@ -41,7 +41,7 @@ static int record_pawn(void **state) {
     recorder r;
     io_error error;
     const scene *s = scene_find("pawn-drop");
-    if (s == NULL || s->frame_count < FRAMES || !recorder_open(s, &r, &error)) return -1;
+    if (s == NULL || s->frame_count < FRAMES || !recorder_open(s, NULL, &r, &error)) return -1;
     if (motion_begin(r.mesh, r.frame, &m.totals) != CSCD_OK) return -1;
     m.first_energy = recorder_energy(&r);
     measure_frame(&r, 0);

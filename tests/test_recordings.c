@@ -43,7 +43,7 @@ static recorder open_scene(const char *name) {
     io_error error;
     const scene *s = scene_find(name);
     if (s == NULL) fail_msg("no scene is called %s", name);
-    if (!recorder_open(s, &r, &error)) fail_msg("%s", error.text);
+    if (!recorder_open(s, NULL, &r, &error)) fail_msg("%s", error.text);
     return r;
 }
 

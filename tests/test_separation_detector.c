@@ -236,12 +236,40 @@ static void the_static_check_is_not_concerned(void **state) {
     }
 }
 
+/* One detector whose separation changes, to 0 and back, finds what new ones find; a bad one changes nothing.
+ */
+static void separation_can_change(void **state) {
+    (void)state;
+    static const double changes[] = {0.0, 0.03, 0.0, 0.2, 1e-3, 0.0};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 5, &interval);
+        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        rig changing = rig_create(&interval, 1, &options);
+        for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+            assert_int_equal(cscd_detector_set_separation(changing.detector, changes[i], 0.0), CSCD_OK);
+            assert_int_equal(cscd_detector_set_separation(changing.detector, -1.0, 0.0),
+                             CSCD_INVALID_ARGUMENT);
+            cscd_contacts found = rig_step(&changing, &interval);
+            options = within(changes[i], CSCD_METHOD_SINGLE);
+            rig fresh = rig_create(&interval, 1, &options);
+            cscd_contacts expected = rig_step(&fresh, &interval);
+            assert_int_equal(found.count, expected.count);
+            if (found.count > 0)
+                assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+            rig_destroy(&fresh);
+        }
+        rig_destroy(&changing);
+    }
+    assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_INVALID_ARGUMENT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
                                        cmocka_unit_test(same_pairs_when_scaled),
                                        cmocka_unit_test(same_bits_for_any_thread_count),
                                        cmocka_unit_test(a_larger_distance_only_adds_pairs),
                                        cmocka_unit_test(unfit_lengths_are_refused),
-                                       cmocka_unit_test(the_static_check_is_not_concerned)};
+                                       cmocka_unit_test(the_static_check_is_not_concerned),
+                                       cmocka_unit_test(separation_can_change)};
     return cmocka_run_group_tests_name("separation_detector", tests, NULL, NULL);
 }

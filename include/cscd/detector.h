@@ -86,6 +86,11 @@ CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan
                                           const cscd_detector_options *options, cscd_detector **out);
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
+/* Other values for min_separation and tolerance, as in the options, from the next call on: a solver that has
+ * to get nearer need not build another detector. What is known of starts is forgotten where culling ends. */
+CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
+                                                  double tolerance);
+
 typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact_kind;
 
 /* "vf", "ee"; static storage, never NULL. */

@@ -17,7 +17,7 @@ static cscd_status open_detector(recorder *r, const double *rest) {
     cscd_plan_options options = cscd_plan_defaults();
     options.method =
         CSCD_METHOD_KMEANS; /* a hundred times sooner ready than charge, and good for 300 steps */
-    cscd_status status = cscd_context_create(NULL, &r->context);
+    cscd_status status = r->own_context ? cscd_context_create(NULL, &r->context) : CSCD_OK;
     if (status == CSCD_OK) status = cscd_mesh_create(r->context, &desc, &r->mesh);
     if (status == CSCD_OK) status = cscd_plan_create(r->mesh, rest, &options, &r->plan);
     if (status == CSCD_OK) status = cscd_detector_create(r->mesh, r->plan, NULL, &r->detector);
@@ -31,8 +31,8 @@ static void take_frame(recorder *r) {
     body_round(&rounded);
 }
 
-bool recorder_open(const scene *s, recorder *out, io_error *error) {
-    recorder r = {.scene = s, .around = s->around};
+bool recorder_open(const scene *s, cscd_context *context, recorder *out, io_error *error) {
+    recorder r = {.scene = s, .around = s->around, .context = context, .own_context = context == NULL};
     if (!body_make(s->kind, 0, &r.shape, error)) return false;
     size_t bytes = (size_t)r.shape.vertex_count * 3 * sizeof *r.frame;
     r.frame = body_allocate(bytes, 1);
@@ -57,7 +57,7 @@ void recorder_close(recorder *r) {
     cscd_detector_destroy(r->detector);
     cscd_plan_destroy(r->plan);
     cscd_mesh_destroy(r->mesh);
-    cscd_context_destroy(r->context);
+    if (r->own_context) cscd_context_destroy(r->context);
     body_free(&r->shape);
     free(r->frame);
     free(r->start);
@@ -72,6 +72,7 @@ bool recorder_advance(recorder *r, io_error *error) {
         soft_body_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
         cscd_status status = cscd_detector_step(r->detector, r->start, r->soft.vertices, &found);
         if (!explain(r, status, error)) return false;
+        r->detect_ms += cscd_detector_timings(r->detector).total_ms;
         self_contacts_add(&r->contacts, &found, r->start, r->soft.vertices);
     }
     take_frame(r);
