@@ -13,12 +13,14 @@ typedef struct ipc_statistics {
     uint32_t trials;     /* points on lines at which the energy was evaluated */
     uint32_t cut;        /* lines that contact limited to less than all of the Newton step */
     uint32_t unfinished; /* time steps that ended at the bound on iterations, or where no step led down */
-    uint64_t conjugate_gradients; /* iterations */
-    uint64_t candidates;          /* of all lines */
-    uint64_t near;                /* pairs nearer than the reach, at all points evaluated */
-    uint32_t driven;              /* Newton iterations in which obstacles moved */
-    double least_distance;        /* of any pair at any point reached; INFINITY: none was near */
-    double detect_ms, total_ms;   /* within cscd; all of it; set by _advance */
+    uint64_t conjugate_gradients;         /* iterations */
+    uint64_t candidates;                  /* of all lines */
+    uint64_t near;                        /* pairs nearer than the reach, at all points evaluated */
+    uint32_t driven;                      /* Newton iterations in which obstacles moved */
+    double least_distance;                /* of any pair at any point reached; INFINITY: none was near */
+    double begin_ms, certify_ms, near_ms; /* in cscd_line_begin, _max_step, _near; */
+    double detect_ms;                     /* the three together */
+    double total_ms;                      /* all of ipc_solver_advance */
 } ipc_statistics;
 
 typedef struct ipc_solver {
