@@ -37,8 +37,9 @@ LEVEL_scalar := -DSIMD_LEVEL=0
 LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 
-# -ffp-contract=off: error bounds are derived for separate multiplications and additions.
-CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden \
+# -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: the same objects make
+# both libraries, and run no slower for it.
+CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
@@ -64,18 +65,23 @@ V ?= 0
 Q := $(if $(filter 1,$(V)),,@)
 say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 
+# The header says which version this is, and nothing else does.
+VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
+MAJOR   := $(firstword $(subst ., ,$(VERSION)))
+
 objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(BUILD)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
 TOOL_OBJECTS := $(call objects,$(TOOL_SOURCES))
 LIBRARY := $(BUILD)/libcscd.a
+SHARED  := $(BUILD)/libcscd.so.$(VERSION)
 TOOL    := $(BUILD)/cscd
 TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
 MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -85,7 +91,28 @@ all: packages
 tool: $(TOOL)
 	@if [ "$(BUILD)" = build/release ]; then ln -sfn $(TOOL) cscd; fi
 
-library: $(LIBRARY)
+library: $(LIBRARY) $(SHARED)
+
+# Installs what is built, and builds only what is not; needs no network and no package that `make` does not.
+PREFIX     ?= /usr/local
+BINDIR     ?= $(PREFIX)/bin
+LIBDIR     ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+MANDIR     ?= $(PREFIX)/share/man
+INSTALLER = BUILD='$(BUILD)' VERSION='$(VERSION)' STATIC_LIBS='$(strip $(CORE_LIBS)) -pthread' \
+            POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR='$(DESTDIR)' \
+            BINDIR='$(BINDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' MANDIR='$(MANDIR)' src/packaging/install.sh
+install: $(TOOL) $(LIBRARY) $(SHARED)
+	@$(INSTALLER) install
+
+uninstall:
+	@$(INSTALLER) uninstall
+
+# The functions of the library as HTML, from the headers' comments; a warning of doxygen is an error.
+reference:
+	@GSL=$(GSL) .ci/packages reference
+	@mkdir -p build/reference
+	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
 
 # Everything that the build or the tests need and this machine lacks.
 packages:
@@ -111,7 +138,7 @@ gallery: models
 test: packages
 	@$(MAKE) --no-print-directory test-run
 
-test-run: tool $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
+test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
@@ -171,7 +198,9 @@ help:
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
-	@echo 'make           build the tool (./cscd) and build/release/libcscd.a'
+	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
+	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
+	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
@@ -189,6 +218,20 @@ $(LIBRARY): $(CORE_OBJECTS)
 	$(Q)objcopy --localize-hidden $(BUILD)/cscd.o
 	@rm -f $@
 	$(Q)ar rcs $@ $(BUILD)/cscd.o
+
+# The shared library names what it needs itself, so that a user links -lcscd alone. The sanitizers' own functions come
+# with the program.
+SHARED_FLAGS := -shared -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--as-needed \
+                $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
+$(SHARED): $(CORE_OBJECTS) $(BUILD)/cscd.map
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,--version-script,$(BUILD)/cscd.map -o $@ $(CORE_OBJECTS) $(CORE_LIBS)
+	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
+	@ln -sfn libcscd.so.$(MAJOR) $(BUILD)/libcscd.so
+
+$(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
+	@mkdir -p $(@D)
+	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
 # The tool lives on the public API alone, so it links the library and not its objects.
 $(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)

@@ -199,6 +199,20 @@ void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) 
     memcpy(vertices, mesh->edges[edge], sizeof mesh->edges[edge]);
 }
 
+void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]) {
+    memcpy(edges, mesh->triangle_edges[triangle], sizeof mesh->triangle_edges[triangle]);
+}
+
+const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count) {
+    *count = mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+    return mesh->vertex_stars + mesh->vertex_star_offsets[vertex];
+}
+
+const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count) {
+    *count = edge_star_size(mesh, edge);
+    return mesh->edge_stars + mesh->edge_star_offsets[edge];
+}
+
 uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
     return mesh->component_count;
 }

@@ -38,11 +38,13 @@ static void check_edges(const cscd_mesh *mesh, const shape *s) {
         assert_true(before[0] < v[0] || (before[0] == v[0] && before[1] < v[1]));
     }
     for (uint32_t t = 0; t < s->triangle_count; t++) {
-        uint32_t v[3];
+        uint32_t v[3], edges[3], edge[2];
         cscd_mesh_triangle(mesh, t, v);
+        cscd_mesh_triangle_edges(mesh, t, edges);
         assert_memory_equal(v, s->triangles[t], sizeof v);
         for (int i = 0; i < 3; i++) {
-            uint32_t a = v[i], b = v[(i + 1) % 3], *edge = mesh->edges[mesh->triangle_edges[t][i]];
+            uint32_t a = v[i], b = v[(i + 1) % 3];
+            cscd_mesh_edge(mesh, edges[i], edge);
             assert_true(edge[0] == (a < b ? a : b) && edge[1] == (a < b ? b : a));
         }
     }
@@ -50,22 +52,22 @@ static void check_edges(const cscd_mesh *mesh, const shape *s) {
 
 /* The triangles that contain the feature, all of them, ascending. */
 static void check_stars(const cscd_mesh *mesh, const shape *s) {
-    uint32_t next = 0;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
-        assert_int_equal(mesh->vertex_star_offsets[v], next);
+        uint32_t count, next = 0;
+        const uint32_t *star = cscd_mesh_vertex_triangles(mesh, v, &count);
         for (uint32_t t = 0; t < s->triangle_count; t++) {
-            if (has_vertex(s, v, t)) assert_int_equal(mesh->vertex_stars[next++], t);
+            if (has_vertex(s, v, t)) assert_true(next < count && star[next++] == t);
         }
-        assert_int_equal(mesh->vertex_star_offsets[v + 1], next);
+        assert_int_equal(next, count);
     }
-    next = 0;
-    for (uint32_t e = 0; e < mesh->edge_count; e++) {
-        assert_int_equal(mesh->edge_star_offsets[e], next);
+    for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {
+        uint32_t edge[2], count, next = 0;
+        const uint32_t *star = cscd_mesh_edge_triangles(mesh, e, &count);
+        cscd_mesh_edge(mesh, e, edge);
         for (uint32_t t = 0; t < s->triangle_count; t++) {
-            if (shared_by(s, mesh->edges[e], t) == 2) assert_int_equal(mesh->edge_stars[next++], t);
+            if (shared_by(s, edge, t) == 2) assert_true(next < count && star[next++] == t);
         }
-        assert_int_equal(mesh->edge_star_offsets[e + 1], next);
-        assert_true(edge_star_size(mesh, e) > 0);
+        assert_true(next > 0 && next == count);
     }
 }
 

@@ -60,6 +60,14 @@ CSCD_API void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint3
 CSCD_API uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh);
 CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
 
+/* The triangle's edges: from its vertex 0 to 1, 1 to 2, 2 to 0. */
+CSCD_API void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]);
+
+/* The triangles that contain a vertex or an edge, ascending, *count of them. They live as long as the mesh.
+ */
+CSCD_API const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count);
+CSCD_API const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count);
+
 /* A component: triangles connected through shared vertices. Numbered by their first triangle. */
 typedef struct cscd_component {
     uint32_t vertex_count, edge_count, triangle_count;

@@ -14,20 +14,7 @@ typedef struct surface_point {
     double weights[3];
 } surface_point;
 
-/* Edges are sorted by their vertices. */
-static uint32_t find_edge(const cscd_mesh *mesh, uint32_t v, uint32_t w) {
-    uint32_t low = 0, high = cscd_mesh_edge_count(mesh), smaller = v < w ? v : w, larger = v < w ? w : v;
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2, found[2];
-        cscd_mesh_edge(mesh, middle, found);
-        bool beyond = found[0] > smaller || (found[0] == smaller && found[1] > larger);
-        *(beyond ? &high : &low) = middle;
-    }
-    return low;
-}
-
 self_contacts self_contacts_make(const cscd_mesh *mesh, const double *rest, double near) {
-    uint32_t triangle_count = cscd_mesh_triangle_count(mesh), edge_count = cscd_mesh_edge_count(mesh);
     self_contacts s = {.mesh = mesh,
                        .near = near,
                        .gap = near / 40.0,
@@ -36,27 +23,19 @@ self_contacts self_contacts_make(const cscd_mesh *mesh, const double *rest, doub
                        .friction = 0.5};
     size_t bytes = (size_t)cscd_mesh_vertex_count(mesh) * 3 * sizeof *rest;
     s.rest = memcpy(body_allocate(bytes, 1), rest, bytes);
-    s.triangle_edges = body_allocate(triangle_count, sizeof *s.triangle_edges);
-    s.edge_triangles = body_allocate(edge_count, sizeof *s.edge_triangles);
-    memset(s.edge_triangles, 0xff, edge_count * sizeof *s.edge_triangles);
-    for (uint32_t t = 0; t < triangle_count; t++) {
-        uint32_t v[3];
-        cscd_mesh_triangle(mesh, t, v);
-        for (int i = 0; i < 3; i++) {
-            uint32_t edge = find_edge(mesh, v[i], v[(i + 1) % 3]);
-            s.triangle_edges[t][i] = edge;
-            s.edge_triangles[edge][s.edge_triangles[edge][0] != UINT32_MAX] = t;
-        }
-    }
     return s;
 }
 
 void self_contacts_free(self_contacts *s) {
     free(s->rest);
-    free(s->triangle_edges);
-    free(s->edge_triangles);
     free(s->pairs);
     *s = (self_contacts){0};
+}
+
+/* The two triangles at an edge: the body is closed. */
+static const uint32_t *triangles_at(const self_contacts *s, uint32_t edge) {
+    uint32_t count;
+    return cscd_mesh_edge_triangles(s->mesh, edge, &count);
 }
 
 /* Not normalized: twice the area. */
@@ -86,7 +65,7 @@ static bool outward_normal(const self_contacts *s, const double *positions, cons
     cross(along_a, along_b, out);
     for (int i = 0; i < 4; i++) {
         double normal[3];
-        triangle_normal(s->mesh, positions, s->edge_triangles[i < 2 ? pair->a : pair->b][i % 2], normal);
+        triangle_normal(s->mesh, positions, triangles_at(s, i < 2 ? pair->a : pair->b)[i % 2], normal);
         if (normalize(normal)) add_scaled(facing, i < 2 ? -0.25 : 0.25, normal);
     }
     if (norm(out) < 0.1 * norm(along_a) * norm(along_b) || !normalize(out)) return false;
@@ -183,8 +162,10 @@ static bool find_below(const self_contacts *s, const double *positions, held_pai
     double sum = 0.0;
     for (int i = 0; i < 3; i++) sum += below->weights[i] = fmax(below->weights[i], 0.0);
     for (int i = 0; i < 3; i++) below->weights[i] /= sum;
-    const uint32_t *beside = s->edge_triangles[s->triangle_edges[pair->b][(over + 1) % 3]];
-    uint32_t next = beside[0] == pair->b ? beside[1] : beside[0], v[3];
+    uint32_t edges[3], v[3];
+    cscd_mesh_triangle_edges(s->mesh, pair->b, edges);
+    const uint32_t *beside = triangles_at(s, edges[(over + 1) % 3]);
+    uint32_t next = beside[0] == pair->b ? beside[1] : beside[0];
     cscd_mesh_triangle(s->mesh, next, v);
     pair->b = next;
     return v[0] != pair->a && v[1] != pair->a && v[2] != pair->a;

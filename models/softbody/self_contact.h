@@ -16,9 +16,7 @@ typedef struct held_pair {
 
 typedef struct self_contacts {
     const cscd_mesh *mesh;
-    double *rest;                  /* the vertices at rest */
-    uint32_t (*triangle_edges)[3]; /* from corner 0 to 1, 1 to 2, 2 to 0 */
-    uint32_t (*edge_triangles)[2];
+    double *rest;     /* the vertices at rest */
     held_pair *pairs; /* after self_contacts_add sorted by (kind, a, b), each once */
     size_t count, capacity;
     double near;     /* pairs nearer than this at rest: the lattice keeps them apart, or nothing can */
