@@ -2,6 +2,7 @@
  * energy falls, links hold each other, and the motion is repeatable. */
 #include "models/potential/solver.h"
 #include "models/softbody/vector.h"
+#include "tests/support/random_stream.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -201,6 +202,24 @@ static void the_press_arrives_and_the_coil_gives_way(void **state) {
     cscd_context_destroy(context);
 }
 
+/* Vertices fly apart in all directions, so fast that Newton steps go too far. */
+static void the_energy_falls_however_wild_the_motion(void **state) {
+    (void)state;
+    cscd_context *context = open_context(1);
+    ipc_solver p = open_scene(&extents[1], context);
+    judges j = call_judges(&p);
+    random_stream random = stream_start(7);
+    double *from = body_allocate(p.shape.vertex_count, 3 * sizeof *from);
+    for (uint32_t i = 0; i < p.shape.vertex_count * 3; i++)
+        p.velocities[i] = p.inertia[i / 3] > 0.0 ? stream_between(&random, -60.0, 60.0) : 0.0;
+    for (int step = 0; step < 2; step++) step_and_judge(&p, &j, from);
+    assert_true(p.statistics.trials > p.statistics.newton && p.statistics.cut > 0);
+    free(from);
+    dismiss(&j);
+    ipc_solver_free(&p);
+    cscd_context_destroy(context);
+}
+
 static double *positions_after(const struct extent *e, uint32_t threads, size_t *size) {
     cscd_context *context = open_context(threads);
     ipc_solver p = open_scene(e, context);
@@ -268,6 +287,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(links_bear_each_other),
         cmocka_unit_test(the_press_arrives_and_the_coil_gives_way),
+        cmocka_unit_test(the_energy_falls_however_wild_the_motion),
         cmocka_unit_test(motion_is_the_same_for_any_number_of_threads),
         cmocka_unit_test(scenes_begin_apart),
         cmocka_unit_test(obstacles_travel_there_and_back),

@@ -30,7 +30,7 @@ typedef struct ipc_solver {
     cscd_detector *detector;
     cscd_line *line;
     double time;
-    double *positions, *velocities; /* where the vertices are now; of obstacles, velocities are 0 */
+    double *positions, *velocities; /* now; of obstacles, velocities are 0. The pointers change with steps */
     double *travels;                /* per vertex, 0 for bodies */
     double *inertia;                /* per vertex: mass / (time step)^2; 0 for obstacles */
     ipc_springs springs;
