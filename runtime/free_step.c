@@ -37,12 +37,39 @@ static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
         vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b, how);
 }
 
-/* Contacts of an interval that nothing moves in. */
-static cscd_status check_start(cscd_detector *d, const motion *m, motion_test *test, void *of) {
+/* A motion and its test. */
+typedef struct trial {
+    const motion *of;
+    motion_test *test;
+    void *data;
+    bool touches;
+    cscd_contact first; /* if it does */
+} trial;
+
+static cscd_status try_between(trial *t, const double *from, const double *to) {
     cscd_contacts found;
-    cscd_status status = test(of, m, m->x0, &found);
-    if (status != CSCD_OK || found.count == 0) return status;
-    return fail_in_contact(d, &found.items[0]);
+    cscd_status status = t->test(t->data, from, to, &found);
+    if (status != CSCD_OK) return status;
+    t->touches = found.count > 0;
+    if (t->touches) t->first = found.items[0];
+    return CSCD_OK;
+}
+
+/* With min_separation, pairs that are just farther apart than that at the end of a motion, but within the
+ * tolerance, are not found in it, and would be at the start of the next: so they count at the end. */
+static cscd_status try_step(const cscd_detector *d, trial *t, const double *end) {
+    cscd_status status = try_between(t, t->of->x0, end);
+    if (status != CSCD_OK || t->touches || d->limit.distance == 0.0) return status;
+    status = try_between(t, end, end);
+    t->first.toi = 1.0;
+    return status;
+}
+
+/* Contacts of an interval that nothing moves in. */
+static cscd_status check_start(cscd_detector *d, trial *t) {
+    cscd_status status = try_between(t, t->of->x0, t->of->x0);
+    if (status != CSCD_OK || !t->touches) return status;
+    return fail_in_contact(d, &t->first);
 }
 
 /* Shorter than the step at hand, for a contact was found at this share of it. */
@@ -52,20 +79,18 @@ static double cut_for(const cscd_detector *d, double time) {
 
 /* A step of step_factor times the first contact's time mostly is free. Where its rounded end, or a time of 0,
  * brings contacts of its own, steps shrink ever faster. */
-static cscd_status shorten(cscd_detector *d, const motion *m, motion_test *test, void *of,
-                           cscd_contacts found, double *reached, cscd_free_step *step) {
+static cscd_status shorten(cscd_detector *d, trial *t, double *reached, double *length) {
     cscd_status status = CSCD_OK;
-    double cut = cut_for(d, found.items[0].toi), shrink = 0.25;
-    bool start_checked = false, at_once = found.items[0].toi == 0.0;
+    double shrink = 0.25;
+    bool start_checked = false, at_once = t->first.toi == 0.0;
     for (;;) {
-        if (at_once && !start_checked) status = check_start(d, m, test, of);
+        if (at_once && !start_checked) status = check_start(d, t);
         if (status != CSCD_OK) return status;
         start_checked = at_once;
-        step->length = larger(step->length * cut, shortest);
-        motion_at(m, step->length, reached);
-        status = test(of, m, reached, &found);
-        if (status != CSCD_OK || found.count == 0) return status;
-        cut = smaller(cut_for(d, found.items[0].toi), shrink);
+        motion_at(t->of, *length, reached);
+        status = try_step(d, t, reached);
+        if (status != CSCD_OK || !t->touches) return status;
+        *length = larger(*length * smaller(cut_for(d, t->first.toi), shrink), shortest);
         shrink *= shrink;
         at_once = true;
     }
@@ -74,14 +99,17 @@ static cscd_status shorten(cscd_detector *d, const motion *m, motion_test *test,
 cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, motion_test *test, void *of,
                            double *reached, cscd_free_step *out) {
     cscd_free_step step = {.length = longest};
-    cscd_contacts found;
+    trial t = {.of = m, .test = test, .data = of};
     motion_at(m, longest, reached);
-    cscd_status status = test(of, m, reached, &found);
-    if (status == CSCD_OK && found.count > 0) {
+    cscd_status status = try_step(d, &t, reached);
+    if (status == CSCD_OK && t.touches) {
         step.limited = true;
-        step.limit = found.items[0];
+        step.limit = t.first;
         step.limit.toi *= longest;
-        status = shorten(d, m, test, of, found, reached, &step);
+        double cut = longest * cut_for(d, 0.0);
+        if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* no more, by any rounding */
+        step.length = larger(cut, shortest);
+        status = shorten(d, &t, reached, &step.length);
     }
     if (status == CSCD_OK) *out = step;
     return status;

@@ -15,8 +15,8 @@ typedef struct motion {
  * becomes 0. */
 void motion_at(const motion *m, double length, double *out);
 
-/* Finds contacts of the vertices' motion from m->x0 to `end`, the first one among them. */
-typedef cscd_status motion_test(void *of, const motion *m, const double *end, cscd_contacts *out);
+/* Finds contacts of the vertices' motion between two moments on it, the first one among them. */
+typedef cscd_status motion_test(void *of, const double *from, const double *to, cscd_contacts *out);
 
 /* The longest step of those tried, at most `longest`, whose end, in `reached`, is found to be reached without
  * contact. IN_CONTACT: none is. */

@@ -12,8 +12,8 @@ struct cscd_line {
     double reach;
     bool begun;
     candidates candidates;
-    uint8_t *states; /* of the triangles at x0 */
-    bool states_known;
+    uint8_t *states;            /* of the triangles at x0 */
+    bool states_known, vouched; /* as in start_states */
 };
 
 static motion motion_of(const cscd_line *line) {
@@ -71,6 +71,7 @@ static double rounding_on(const cscd_line *line) {
 static void remember_states(cscd_line *line) {
     start_states *s = &line->detector->starts;
     line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
+    line->vouched = s->vouched;
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
 
@@ -78,7 +79,7 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     uint32_t vertices = d->mesh->vertex_count;
-    cscd_status status = reach == 0.0 ? CSCD_OK : near_check_distance(d->context, reach);
+    cscd_status status = reach == 0.0 ? CSCD_OK : near_check_distance(d->context, reach, "reach");
     if (status == CSCD_OK) status = positions_check(d->context, x0, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
     if (status != CSCD_OK) return status;
@@ -129,7 +130,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     cscd_status status = check_length(line, length, "cscd_line_near");
-    if (status == CSCD_OK) status = near_check_distance(d->context, distance);
+    if (status == CSCD_OK) status = near_check_distance(d->context, distance, "distance");
     if (status != CSCD_OK) return status;
     if (out == NULL) return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_near: out is NULL");
     if (distance > line->reach)
@@ -138,7 +139,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
                             distance, line->reach);
     motion m = motion_of(line);
     motion_at(&m, length, line->reached);
-    interval_search search = interval_search_begin(d, line->reached, line->reached, near_limit(distance));
+    interval_search search = near_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = near_collect(d, line->reached, &found);
@@ -149,10 +150,10 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
 
-static cscd_status test_motion(void *of, const motion *m, const double *end, cscd_contacts *out) {
+static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     const cscd_line *line = of;
     cscd_counters counters = {.vf = 0};
-    interval_search search = interval_search_begin(line->detector, m->x0, end, line->detector->limit);
+    interval_search search = interval_search_begin(line->detector, from, to, line->detector->limit);
     cscd_status status = candidates_test(&line->candidates, &search);
     return status == CSCD_OK ? contact_list_collect(line->detector, &counters, out) : status;
 }
@@ -171,6 +172,7 @@ static void take_step(cscd_line *line) {
     bool *lost = d->culled; /* scratch between steps */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) lost[c] = false;
     memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
+    d->starts.vouched |= line->vouched;
     d->starts.counted = false;
     start_states_count(&d->starts);
     start_states_end(&d->starts, line->reached, lost);

@@ -31,12 +31,12 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
 }
 
 /* The vertices do not go to the end of the try before. */
-static cscd_status try_motion(void *of, const motion *m, const double *end, cscd_contacts *out) {
+static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     tries *t = of;
     step_outcome found;
     if (t->any) step_withdraw(t->detector);
     t->any = true;
-    cscd_status status = step_find(t->detector, m->x0, end, CSCD_MODE_EARLIEST, true, &found);
+    cscd_status status = step_find(t->detector, from, to, CSCD_MODE_EARLIEST, true, &found);
     if (status != CSCD_OK) return status;
     add_timings(&t->timings, &found.timings);
     add_counters(&t->counters, &found.counters);
@@ -53,7 +53,7 @@ static cscd_status check_arguments(cscd_detector *d, const double *x0, const dou
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_detector_max_step: method %s loses contacts and certifies nothing",
                             cscd_method_name(method));
-    return step_check_positions(d, x0, x1);
+    return step_check_positions(d, x0, x1, "x0", "x1");
 }
 
 static cscd_status make_room(cscd_detector *d) {

@@ -23,14 +23,10 @@ _Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name
 
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
-cscd_status near_check_distance(cscd_context *context, double distance) {
+cscd_status near_check_distance(cscd_context *context, double distance, const char *name) {
     if (distance >= 0x1p-300 && distance <= 0x1p300) return CSCD_OK;
-    return context_fail(context, CSCD_INVALID_ARGUMENT,
-                        "distance is %g, expected a length from 2^-300 to 2^300", distance);
-}
-
-separation near_limit(double distance) {
-    return (separation){distance, relative_tolerance * distance};
+    return context_fail(context, CSCD_INVALID_ARGUMENT, "%s is %g, expected a length from 2^-300 to 2^300",
+                        name, distance);
 }
 
 /* From the point that v names on b, or u and v on the face, to the one on a: by differences, so that it is as
@@ -52,18 +48,17 @@ static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, co
     return largest * sqrt(vector_dot(scaled, scaled));
 }
 
-static cscd_proximity proximity_of(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
-    cscd_proximity p;
-    memset(&p, 0, sizeof p); /* padding too: lists are compared bit for bit */
-    p.kind = at->kind;
-    p.a = at->a;
-    p.b = at->b;
-    p.distance = distance_between(mesh, at, x);
-    p.u = at->u;
-    p.v = at->v;
-    memcpy(p.point, at->point, sizeof p.point);
-    memcpy(p.normal, at->normal, sizeof p.normal);
-    return p;
+/* In place, for a copy need not keep the padding. */
+static void describe(const cscd_mesh *mesh, const cscd_contact *at, const double *x, cscd_proximity *p) {
+    memset(p, 0, sizeof *p); /* padding too: lists are compared bit for bit */
+    p->kind = at->kind;
+    p->a = at->a;
+    p->b = at->b;
+    p->distance = distance_between(mesh, at, x);
+    p->u = at->u;
+    p->v = at->v;
+    memcpy(p->point, at->point, sizeof p->point);
+    memcpy(p->normal, at->normal, sizeof p->normal);
 }
 
 /* The lanes' contacts by (kind, a, b): first by b, then, which keeps that order, by the rest. */
@@ -86,7 +81,7 @@ static void describe_share(void *data, uint32_t index) {
     const description *d = data;
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < d->count; i++)
-        d->items[i] = proximity_of(d->mesh, d->keys[i].of, d->positions);
+        describe(d->mesh, d->keys[i].of, d->positions, &d->items[i]);
 }
 
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
@@ -111,9 +106,16 @@ cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximi
     return CSCD_OK;
 }
 
+interval_search near_search(cscd_detector *d, const double *positions, double distance) {
+    separation limit = {distance, relative_tolerance * distance};
+    interval_search search = interval_search_begin(d, positions, positions, limit);
+    search.interval.at_rest = true;
+    return search;
+}
+
 static cscd_status find_near(cscd_detector *d, const double *positions, double distance,
                              cscd_proximities *out) {
-    interval_search search = interval_search_begin(d, positions, positions, near_limit(distance));
+    interval_search search = near_search(d, positions, distance);
     cscd_status status = CSCD_OK;
     if (d->options.method == CSCD_METHOD_BRUTE) {
         status = interval_search_by_brute_force(&search);
@@ -129,7 +131,7 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_near: out is NULL");
-    cscd_status status = near_check_distance(context, distance);
+    cscd_status status = near_check_distance(context, distance, "distance");
     if (status == CSCD_OK)
         status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;

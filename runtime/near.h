@@ -4,11 +4,11 @@
 
 #include "runtime/interval_search.h"
 
-/* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
-cscd_status near_check_distance(cscd_context *context, double distance);
+/* Is this a distance that can be asked for? INVALID_ARGUMENT names the argument and says why not. */
+cscd_status near_check_distance(cscd_context *context, double distance, const char *name);
 
-/* The limit under which a search of the interval from positions to the same positions finds them. */
-separation near_limit(double distance);
+/* A search of that moment, begun. */
+interval_search near_search(cscd_detector *d, const double *positions, double distance);
 
 /* Of that search, in the detector's buffer. */
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out);

@@ -236,17 +236,18 @@ void step_withdraw(cscd_detector *d) {
 
 /* What was seen last has been checked then. States are of the start from here on; without culling they matter
  * only if a static check has left some. */
-cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end) {
+cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
+                                 const char *start_name, const char *end_name) {
     uint32_t vertices = d->mesh->vertex_count;
     cscd_status status = CSCD_OK;
     if (end == NULL || start == NULL || !start_states_hold(&d->starts, start)) {
-        status = positions_check(d->context, start, vertices, "start");
-        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "end");
+        status = positions_check(d->context, start, vertices, start_name);
+        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, end_name);
         if (status == CSCD_OK && (detector_culls(d) || d->starts.known))
             start_states_begin(&d->starts, start);
         return status;
     }
-    return positions_check(d->context, end, vertices, "end");
+    return positions_check(d->context, end, vertices, end_name);
 }
 
 cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
@@ -255,7 +256,7 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
     double since = timer_now_ms();
-    cscd_status status = step_check_positions(detector, start, end);
+    cscd_status status = step_check_positions(detector, start, end, "start", "end");
     if (status != CSCD_OK) return status;
 
     step_outcome found;

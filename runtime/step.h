@@ -11,8 +11,9 @@ typedef struct step_outcome {
     cscd_counters counters;
 } step_outcome;
 
-/* May positions hold this, and is what is known of triangles known of the start? */
-cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end);
+/* May positions hold this, and is what is known of triangles known of the start? Names are the arguments'. */
+cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
+                                 const char *start_name, const char *end_name);
 
 /* Finds the contacts between x0 and x1, both checked, that the mode promises, and what it could promise of
  * each component. Then either the vertices go to x1, or, after a rehearsal, they do not. */

@@ -1,0 +1,32 @@
+/* What a step that is certified free of contact must be, by brute force. */
+#ifndef CSCD_TEST_FREE_STEP_CHECK_H
+#define CSCD_TEST_FREE_STEP_CHECK_H
+
+#include "tests/support/rig.h"
+
+/* A call of cscd_detector_max_step or cscd_line_max_step, and what it gave. `before` it the step and the end
+ * were filled by free_step_prepare. */
+typedef struct free_step_call {
+    const double *x0, *x1;
+    double longest, step_factor;
+    cscd_status status;
+    cscd_free_step step;
+    double end[SCENE_VERTICES_MAX * 3];
+} free_step_call;
+
+void free_step_prepare(const double *x0, const double *x1, double longest, double step_factor,
+                       free_step_call *call);
+
+/* A detector of method BRUTE, with the lengths of the options of the detector that is to be checked. */
+rig free_step_reference(const scene *s, const cscd_detector_options *options);
+
+/* x0 + length (x1 - x0), rounded as documented. */
+void free_step_positions(const rig *r, const double *x0, const double *x1, double length, double *out);
+
+/* Asserts all that the call promises; `called` is the context that it was made in. False: IN_CONTACT. */
+bool free_step_check(const rig *reference, const cscd_context *called, const free_step_call *call);
+
+/* Does the mesh neither cross itself nor have a triangle without area? */
+bool free_step_embedded(const rig *reference, const double *positions);
+
+#endif

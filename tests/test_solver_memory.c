@@ -1,0 +1,212 @@
+/* What solvers ask for when memory runs out, at every allocation, and that a steady state takes none. */
+#include "cscd/cscd.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/rig.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene interval; /* large; one test at a time */
+
+static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_ICCD,
+                                      CSCD_METHOD_BRUTE};
+enum { METHOD_COUNT = sizeof methods / sizeof *methods };
+
+static const double distance = 0.3;
+
+typedef struct counted {
+    counting_allocator counter;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+} counted;
+
+static void counted_create(counted *c, cscd_method method, uint32_t threads) {
+    c->counter = counting_allocator_start();
+    cscd_context_options context_options = cscd_context_defaults();
+    context_options.allocator = counting_allocator_interface(&c->counter);
+    context_options.thread_count = threads;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
+    cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+    assert_int_equal(cscd_context_create(&context_options, &c->context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(c->context, &desc, &c->mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(c->mesh, NULL, &options, &c->detector), CSCD_OK);
+}
+
+static void counted_destroy(counted *c) {
+    cscd_detector_destroy(c->detector);
+    cscd_mesh_destroy(c->mesh);
+    cscd_context_destroy(c->context);
+    assert_int_equal(c->counter.live, 0);
+}
+
+/* A spike that goes through the far wall. */
+static void make_limited(void) {
+    for (uint64_t seed = 1;; seed++) {
+        scene_make(SCENE_SPIKE, seed, &interval);
+        rig r = rig_create(&interval, 1, NULL);
+        size_t count = rig_step(&r, &interval).count;
+        rig_destroy(&r);
+        if (count > 0) return;
+    }
+}
+
+/* What was asked, and what came of it; untouched where the call fails. */
+typedef struct answer {
+    cscd_free_step step;
+    double end[SCENE_VERTICES_MAX * 3];
+    size_t near, candidates;
+} answer;
+
+typedef cscd_status question(counted *c, answer *out);
+
+static cscd_status ask_near(counted *c, answer *out) {
+    cscd_proximities found = {NULL, 4711};
+    cscd_status status = cscd_detector_near(c->detector, interval.x0, distance, &found);
+    assert_true(status == CSCD_OK || found.count == 4711);
+    out->near = found.count;
+    return status;
+}
+
+static cscd_status ask_max_step(counted *c, answer *out) {
+    return cscd_detector_max_step(c->detector, interval.x0, interval.x1, out->end, &out->step);
+}
+
+/* The whole life of a line; a call that fails is made again at once, and must then succeed. */
+static cscd_status ask_line(counted *c, answer *out) {
+    cscd_line *line = NULL;
+    cscd_proximities found = {NULL, 4711};
+    cscd_status status = cscd_line_create(c->detector, &line), first = status;
+    assert_true(status == CSCD_OK || line == NULL);
+    if (status != CSCD_OK) return status;
+    status = cscd_line_begin(line, interval.x0, interval.x1, distance);
+    if (status != CSCD_OK) {
+        assert_int_equal(cscd_line_max_step(line, 1.0, NULL, &out->step), CSCD_INVALID_ARGUMENT);
+        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, distance), CSCD_OK);
+        first = status;
+    }
+    out->candidates = cscd_line_candidate_count(line);
+    status = cscd_line_near(line, 0.25, distance, &found);
+    if (status != CSCD_OK) {
+        assert_true(found.count == 4711);
+        assert_int_equal(cscd_line_near(line, 0.25, distance, &found), CSCD_OK);
+        first = status;
+    }
+    out->near = found.count;
+    status = cscd_line_max_step(line, 1.0, out->end, &out->step);
+    cscd_line_destroy(line);
+    return first == CSCD_OK ? status : first;
+}
+
+/* Each allocation fails once; the same question then has the same answer as ever. */
+static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
+    static answer good, other;
+    size_t failures = 0;
+    counted c;
+    memset(&good, 0, sizeof good);
+    counted_create(&c, method, threads);
+    assert_int_equal(ask(&c, &good), CSCD_OK);
+    counted_destroy(&c);
+    for (bool failed = true; failed; failures += failed) {
+        memset(&other, 0, sizeof other);
+        counted_create(&c, method, threads);
+        c.counter.fail_at = c.counter.calls + failures;
+        cscd_status status = ask(&c, &other);
+        failed = status != CSCD_OK;
+        if (failed) {
+            assert_int_equal(status, CSCD_OUT_OF_MEMORY);
+            assert_int_equal(ask(&c, &other), CSCD_OK);
+        }
+        assert_true(other.step.length == good.step.length && other.near == good.near &&
+                    other.candidates == good.candidates);
+        assert_memory_equal(other.end, good.end, sizeof good.end);
+        counted_destroy(&c);
+    }
+    return failures;
+}
+
+static void memory_may_run_out(void **state) {
+    (void)state;
+    static question *const questions[] = {ask_near, ask_max_step, ask_line};
+    size_t failures = 0;
+    make_limited();
+    for (int q = 0; q < 3; q++) {
+        for (int m = 0; m < METHOD_COUNT; m++) failures += fail_each(questions[q], methods[m], 1);
+    }
+    failures += fail_each(ask_line, CSCD_METHOD_SINGLE, 3);
+    print_message("  %zu failures\n", failures);
+    assert_true(failures > 100);
+}
+
+/* A failed step leaves what is known of the start: the next one checks it once, and no more. */
+static void states_outlast_a_failure(void **state) {
+    (void)state;
+    static double end[SCENE_VERTICES_MAX * 3];
+    make_limited();
+    bool failed = true;
+    for (size_t n = 0; failed; n++) {
+        counted c;
+        cscd_contacts found;
+        cscd_intersections crossing;
+        cscd_free_step step;
+        counted_create(&c, CSCD_METHOD_SINGLE, 1);
+        assert_int_equal(cscd_detector_check(c.detector, interval.x0, &crossing), CSCD_OK);
+        c.counter.fail_at = c.counter.calls + n;
+        failed = cscd_detector_max_step(c.detector, interval.x0, interval.x1, end, &step) != CSCD_OK;
+        const double *at = failed ? interval.x0 : end;
+        c.counter.fail_at = SIZE_MAX;
+        assert_int_equal(cscd_detector_step(c.detector, at, interval.x1, &found), CSCD_OK);
+        assert_true(found.count > 0);
+        assert_int_equal(cscd_detector_counters(c.detector).static_checks, 0);
+        assert_int_equal(cscd_detector_counters(c.detector).clean, interval.triangle_count);
+        counted_destroy(&c);
+    }
+}
+
+/* A round as a solver makes them. */
+static void ask_all(counted *c, cscd_line *line, double *x) {
+    cscd_free_step step;
+    cscd_proximities found;
+    memcpy(x, interval.x0, interval.vertex_count * sizeof(double[3]));
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(cscd_detector_near(c->detector, x, distance, &found), CSCD_OK);
+        assert_int_equal(cscd_detector_max_step(c->detector, x, interval.x1, NULL, &step), CSCD_OK);
+        assert_int_equal(cscd_line_begin(line, x, interval.x1, distance), CSCD_OK);
+        assert_int_equal(cscd_line_near(line, 0.5, 0.5 * distance, &found), CSCD_OK);
+        assert_int_equal(cscd_line_max_step(line, 0.7, x, &step), CSCD_OK);
+    }
+}
+
+static void steady_state_allocates_nothing(void **state) {
+    (void)state;
+    static double x[SCENE_VERTICES_MAX * 3];
+    make_limited();
+    for (int m = 0; m < METHOD_COUNT; m++) {
+        counted c;
+        cscd_line *line = NULL;
+        size_t calls = 0;
+        counted_create(&c, methods[m], 2);
+        assert_int_equal(cscd_line_create(c.detector, &line), CSCD_OK);
+        for (int round = 0; round < 10; round++) {
+            ask_all(&c, line, x);
+            if (round == 1) calls = c.counter.calls;
+        }
+        assert_int_equal(c.counter.calls, calls);
+        cscd_line_destroy(line);
+        counted_destroy(&c);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_may_run_out),
+                                       cmocka_unit_test(states_outlast_a_failure),
+                                       cmocka_unit_test(steady_state_allocates_nothing)};
+    return cmocka_run_group_tests_name("solver_memory", tests, NULL, NULL);
+}
