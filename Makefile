@@ -123,11 +123,11 @@ demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
 
-# The recordings, and every shape at its default size: about 20 s, once.
+# The recordings, and every shape at its default size: about half a minute, once.
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/shape
+build/models/made: $(BUILD)/models/record $(BUILD)/models/shape $(BUILD)/models/ipc
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 
