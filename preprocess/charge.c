@@ -19,10 +19,15 @@ typedef struct workspace {
 /* Of cscd_plan_create; the rest goes to the regions. */
 static const double part_of_call = 0.95;
 
+/* Triangles of a component that are charged: of an obstacle, which is not cut, none. */
+static uint32_t charged_triangles(const cscd_mesh *mesh, uint32_t component) {
+    return component_is_obstacle(mesh, component) ? 0 : mesh->components[component].triangle_count;
+}
+
 static uint32_t largest_component(const cscd_mesh *mesh) {
     uint32_t largest = 0;
     for (uint32_t c = 0; c < mesh->component_count; c++) {
-        uint32_t count = mesh->components[c].triangle_count;
+        uint32_t count = charged_triangles(mesh, c);
         largest = count > largest ? count : largest;
     }
     return largest;
@@ -90,8 +95,9 @@ static cscd_status solve_components(workspace *work, const cscd_mesh *mesh, cons
     cscd_status status = CSCD_OK;
     double whole = 0.0, done = 0.0;
     for (uint32_t c = 0; c < mesh->component_count; c++)
-        whole += charge_system_work(mesh->components[c].triangle_count);
+        whole += charge_system_work(charged_triangles(mesh, c));
     for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
+        if (charged_triangles(mesh, c) == 0) continue;
         double begin = part_of_call * done / whole;
         done += charge_system_work(mesh->components[c].triangle_count);
         progress_part(mesh->context, begin, part_of_call * done / whole);
