@@ -1,6 +1,6 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results up to rounding.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
@@ -16,10 +16,11 @@ BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
 OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
+OPTIMISE_tsan     := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
 # The scalar twin: what the vector units compute must not differ from it.
 OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
 ifeq ($(OPTIMISE_$(CONFIG)),)
-$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize or scalar)
+$(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
 endif
 
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-prototypes -Wvla
@@ -81,7 +82,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -122,11 +123,11 @@ demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
 
-# The recordings, and every shape at its default size: about 35 s, once.
+# The recordings, and every shape at its default size: about a minute, once.
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/shape
+build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/shape
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 
@@ -140,6 +141,14 @@ test: packages
 
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
+
+# The tests that use threads, under the thread sanitizer.
+THREAD_TESTS := $(addprefix $(BUILD)/tests/test_,threads traversal progress parallel_for contexts)
+test-threads: packages
+	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
+
+test-threads-run: $(THREAD_TESTS)
+	@BUILD=$(BUILD) TSAN_OPTIONS=halt_on_error=1 tests/run.sh $(THREAD_TESTS)
 
 # Random queries against the exact oracle; 0 is no limit.
 SECONDS ?= 60
@@ -167,7 +176,7 @@ bench: packages
 # The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
 performance: packages
 	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
-	@for program in machine scaling threads motion cloth; do \
+	@for program in machine scaling threads motion cloth topology; do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
 # The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
@@ -198,11 +207,12 @@ help:
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
+	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
-	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth (PERFORMANCE=--quick)'
+	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
@@ -275,8 +285,8 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 
 # Programs on bodies that deform, of any size; the public API alone.
 DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
-                     src/cli/provenance.c src/cli/progress.c src/timer.c
-DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth)
+                     benchmarks/scene_files.c src/cli/provenance.c src/cli/progress.c src/timer.c
+DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness)
 $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
               $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'

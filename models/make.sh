@@ -9,3 +9,4 @@ for name in $("$BUILD/models/shape" --help | awk '$2 ~ /^[0-9]+$/ && $3 ~ /^[0-9
 done
 "$BUILD/models/record" all "$folder"
 "$BUILD/models/cloth" all "$folder"
+"$BUILD/models/ipc" all "$folder"

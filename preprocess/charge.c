@@ -16,10 +16,18 @@ typedef struct workspace {
     charge_system system;
 } workspace;
 
+/* Of cscd_plan_create; the rest goes to the regions. */
+static const double part_of_call = 0.95;
+
+/* Triangles of a component that are charged: of an obstacle, which is not cut, none. */
+static uint32_t charged_triangles(const cscd_mesh *mesh, uint32_t component) {
+    return component_is_obstacle(mesh, component) ? 0 : mesh->components[component].triangle_count;
+}
+
 static uint32_t largest_component(const cscd_mesh *mesh) {
     uint32_t largest = 0;
     for (uint32_t c = 0; c < mesh->component_count; c++) {
-        uint32_t count = mesh->components[c].triangle_count;
+        uint32_t count = charged_triangles(mesh, c);
         largest = count > largest ? count : largest;
     }
     return largest;
@@ -77,8 +85,25 @@ static cscd_status solve_component(workspace *work, const cscd_mesh *mesh, const
     uint32_t begin = work->offsets[component], count = work->offsets[component + 1] - begin;
     cscd_status status =
         charge_system_collect(&work->system, mesh, positions, component, work->triangles + begin, count);
-    if (status == CSCD_OK) status = charge_system_solve(&work->system, mesh->context, timings);
+    if (status == CSCD_OK) status = charge_system_solve(&work->system, timings);
     if (status == CSCD_OK) store_component(work);
+    return status;
+}
+
+static cscd_status solve_components(workspace *work, const cscd_mesh *mesh, const double *positions,
+                                    charge_timings *timings) {
+    cscd_status status = CSCD_OK;
+    double whole = 0.0, done = 0.0;
+    for (uint32_t c = 0; c < mesh->component_count; c++)
+        whole += charge_system_work(charged_triangles(mesh, c));
+    for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++) {
+        if (charged_triangles(mesh, c) == 0) continue;
+        double begin = part_of_call * done / whole;
+        done += charge_system_work(mesh->components[c].triangle_count);
+        progress_part(mesh->context, begin, part_of_call * done / whole);
+        status = solve_component(work, mesh, positions, c, timings);
+    }
+    progress_part(mesh->context, part_of_call, 1.0);
     return status;
 }
 
@@ -109,8 +134,7 @@ cscd_status charge_solve_within(const cscd_mesh *mesh, const double *positions, 
     if (memory == NULL) return context_out_of_memory(context);
     lay_out(&work, mesh, memory);
     sort_by_component(&work, mesh);
-    for (uint32_t c = 0; c < mesh->component_count && status == CSCD_OK; c++)
-        status = solve_component(&work, mesh, positions, c, &spent);
+    status = solve_components(&work, mesh, positions, &spent);
     if (status == CSCD_OK) {
         memcpy(density, work.density, mesh->triangle_count * sizeof *density);
         memcpy(capacitance, work.capacitance, mesh->component_count * sizeof *capacitance);

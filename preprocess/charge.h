@@ -21,7 +21,8 @@ size_t charge_memory(const cscd_mesh *mesh);
  *
  * OUT_OF_MEMORY: charge_memory exceeds what the system has available (the sentence gives both), or an
  * allocation failed. INVALID_ARGUMENT: positions; two triangles with one centroid, or so near to each other
- * that their charges cannot be told apart. The same inputs and thread count give the same bits. */
+ * that their charges cannot be told apart. CANCELLED: the context's progress function said so. The same
+ * inputs give the same bits, for any thread count and whoever runs the tasks. */
 cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double *density, double *capacitance,
                          charge_timings *timings);
 

@@ -31,6 +31,7 @@ static void potentials_of_source(const charge_system *system, uint32_t k, uint32
 static void assemble_columns(void *data, uint32_t task) {
     charge_system *system = data;
     uint32_t n = system->count, first = task * COLUMNS_PER_TASK;
+    if (!progress_go_on(system->context, (double)first / n)) return;
     for (uint32_t k = first; k < n && k < first + COLUMNS_PER_TASK; k++) {
         float *column = system->matrix + (size_t)k * n;
         for (uint32_t begin = 0; begin < n; begin += POINTS_PER_BLOCK) {
@@ -47,6 +48,7 @@ static void assemble_columns(void *data, uint32_t task) {
 static void evaluate_residual(void *data, uint32_t task) {
     charge_system *system = data;
     uint32_t begin = task * POINTS_PER_BLOCK, size = block_size(system, begin);
+    if (!progress_go_on(system->context, (double)begin / system->count)) return;
     double sums[POINTS_PER_BLOCK] = {0.0}, potentials[POINTS_PER_BLOCK];
     for (uint32_t k = 0; k < system->count; k++) {
         potentials_of_source(system, k, begin, size, potentials);
@@ -57,10 +59,10 @@ static void evaluate_residual(void *data, uint32_t task) {
 
 /* Solves for the residual and adds the solution to the charges. Returns the largest correction of a density
  * over the largest density. */
-static double apply_correction(charge_system *system, uint32_t thread_count) {
+static double apply_correction(charge_system *system) {
     uint32_t n = system->count;
     for (uint32_t k = 0; k < n; k++) system->correction[k] = (float)system->residual[k];
-    dense_substitute(system->matrix, n, system->pivots, system->correction, thread_count);
+    dense_substitute(system->matrix, n, system->pivots, system->correction);
     double change = 0.0, largest = DBL_MIN;
     for (uint32_t k = 0; k < n; k++) {
         double correction = (double)system->correction[k], area = system->sources[k].area;
@@ -89,46 +91,83 @@ static uint32_t most_dependent_triangle(const charge_system *system) {
     return system->points[i].triangle;
 }
 
-static cscd_status fail_singular(const charge_system *system, cscd_context *context) {
+static cscd_status fail_singular(const charge_system *system) {
     return context_fail(
-        context, CSCD_INVALID_ARGUMENT,
+        system->context, CSCD_INVALID_ARGUMENT,
         "charge: the charges of component %u cannot be told apart in its %u equations, least of "
         "all that of triangle %u: some triangles there lie (almost) on each other or on one "
         "line; move or remove them",
         system->component, system->count, most_dependent_triangle(system));
 }
 
+/* In ns on one thread, by estimate: entries take some 10 each, in the matrix and in three residuals, and a
+ * multiplication of the factors a hundredth. */
+static double entries_work(double n) {
+    return 10.0 * n * n;
+}
+
+static double factors_work(double n) {
+    return n * n * n / 300.0;
+}
+
+double charge_system_work(uint32_t count) {
+    return 4.0 * entries_work(count) + factors_work(count);
+}
+
+/* Begin and end are parts of the work. */
+static void enter_stage(const charge_system *system, const char *name, double begin, double end) {
+    double work = charge_system_work(system->count);
+    progress_stage(system->context, name, begin / work, end / work);
+}
+
+static cscd_status assemble(charge_system *system) {
+    enter_stage(system, "charge: matrix", 0.0, entries_work(system->count));
+    parallel_run(system->context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns,
+                 system);
+    return progress_status(system->context);
+}
+
+static cscd_status factor(charge_system *system, uint32_t *zero_pivot) {
+    double begin = entries_work(system->count);
+    enter_stage(system, "charge: factors", begin, begin + factors_work(system->count));
+    return dense_factor(system->context, system->matrix, system->count, system->pivots, zero_pivot);
+}
+
 /* Iterative refinement. Each step shrinks the error by about condition number * 2^-24, so from two steps the
  * next one is known: change * (change / change before). */
-static cscd_status refine(charge_system *system, cscd_context *context) {
-    uint32_t thread_count = parallel_thread_count(context->threads);
-    double before = 1.0;
+static cscd_status refine(charge_system *system) {
+    parallel *threads = system->context->threads;
+    double before = 1.0, work = charge_system_work(system->count);
     for (uint32_t k = 0; k < system->count; k++) {
         system->charges[k] = 0.0;
         system->residual[k] = 1.0;
     }
-    apply_correction(system, thread_count);
+    apply_correction(system);
     for (int i = 0; i < CORRECTIONS_MAX; i++) {
-        parallel_run(context->threads, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
-        double change = apply_correction(system, thread_count);
+        double left = 3.0 - i > 1.0 ? 3.0 - i : 1.0; /* mostly it takes three */
+        enter_stage(system, "charge: refinement", work - left * entries_work(system->count),
+                    work - (left - 1.0) * entries_work(system->count));
+        parallel_run(threads, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
+        cscd_status status = progress_status(system->context);
+        if (status != CSCD_OK) return status;
+        double change = apply_correction(system);
         double rate = change / before;
         if (!(rate < 0.5)) break;
         if (change * rate < TOLERANCE) return CSCD_OK;
         before = change;
     }
-    return fail_singular(system, context);
+    return fail_singular(system);
 }
 
-cscd_status charge_system_solve(charge_system *system, cscd_context *context, charge_timings *timings) {
+cscd_status charge_system_solve(charge_system *system, charge_timings *timings) {
     if (system->count == 0) return CSCD_OK;
+    uint32_t zero_pivot = 0;
     double clock = timer_now_ms();
-    parallel_run(context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns, system);
+    cscd_status status = assemble(system);
     timer_lap(&clock, &timings->assembly_ms);
-    uint32_t zero_pivot =
-        dense_factor(system->matrix, system->count, system->pivots, parallel_thread_count(context->threads));
+    if (status == CSCD_OK) status = factor(system, &zero_pivot);
     timer_lap(&clock, &timings->factor_ms);
-    if (zero_pivot != 0) return fail_singular(system, context);
-    cscd_status status = refine(system, context);
+    if (status == CSCD_OK) status = zero_pivot == 0 ? refine(system) : fail_singular(system);
     timer_lap(&clock, &timings->refine_ms);
     return status;
 }

@@ -126,6 +126,7 @@ static void add_unknown(charge_system *system, const double corners[3][3], const
 cscd_status charge_system_collect(charge_system *system, const cscd_mesh *mesh, const double *positions,
                                   uint32_t component, const uint32_t *triangles, uint32_t triangle_count) {
     double middle[3];
+    system->context = mesh->context;
     system->component = component;
     system->count = 0;
     find_frame(system, mesh, positions, triangles, triangle_count, middle);

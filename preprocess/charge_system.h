@@ -15,6 +15,7 @@ typedef struct charge_point {
 /* Unknown k is the charge on a triangle, or on all triangles that coincide with it. Lengths are scaled by a
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. */
 typedef struct charge_system {
+    cscd_context *context;
     uint32_t component, count;  /* of unknowns */
     uint32_t point_count;       /* of triangles with an area */
     double scale;               /* scaled length / length */
@@ -36,7 +37,10 @@ size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *mem
 cscd_status charge_system_collect(charge_system *system, const cscd_mesh *mesh, const double *positions,
                                   uint32_t component, const uint32_t *triangles, uint32_t triangle_count);
 
-/* Assembles, factors and solves; adds to timings. */
-cscd_status charge_system_solve(charge_system *system, cscd_context *context, charge_timings *timings);
+/* What a system of so many unknowns costs, to be compared with others. */
+double charge_system_work(uint32_t count);
+
+/* Assembles, factors and solves; adds to timings. CANCELLED: nothing is solved. */
+cscd_status charge_system_solve(charge_system *system, charge_timings *timings);
 
 #endif

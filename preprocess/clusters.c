@@ -26,7 +26,8 @@ cscd_status clusters_find(const cscd_mesh *mesh, const dual_graph *graph, const 
         context_free(context, marked);
         return context_out_of_memory(context);
     }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) marked[t] = equalized[t] <= threshold;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        marked[t] = equalized[t] <= threshold && !triangle_of_obstacle(mesh, t);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (!marked[t]) continue;
         uint32_t first = found.offsets[found.count];

@@ -106,19 +106,19 @@ static void share_out(work *w, uint32_t k) {
 }
 
 /* labels become numbers over all components. */
-static void find_centroids(work *w, uint32_t seed) {
+static cscd_status find_centroids(work *w, uint32_t seed) {
     for (uint32_t c = 0; c < w->mesh->component_count; c++) {
-        lloyd l = {w->positions,
-                   w->used + w->used_offsets[c],
-                   vertices_of(w, c),
-                   w->shares[c],
-                   w->centroids + (size_t)w->firsts[c] * 3,
-                   w->labels,
-                   w->counts,
-                   w->queue};
-        lloyd_run(&l, (uint64_t)seed << 32 | c);
+        lloyd l = {w->mesh->context,  w->positions, w->used + w->used_offsets[c],
+                   vertices_of(w, c), w->shares[c], w->centroids + (size_t)w->firsts[c] * 3,
+                   w->labels,         w->counts,    w->queue};
+        double used = w->used_offsets[w->mesh->component_count];
+        progress_stage(w->mesh->context, "k-means", 0.8 * w->used_offsets[c] / used,
+                       0.8 * w->used_offsets[c + 1] / used);
+        cscd_status status = lloyd_run(&l, (uint64_t)seed << 32 | c);
+        if (status != CSCD_OK) return status;
         for (uint32_t i = 0; i < l.point_count; i++) w->labels[l.points[i]] += w->firsts[c];
     }
+    return CSCD_OK;
 }
 
 static double squared_distance(const double a[3], const double b[3]) {
@@ -231,7 +231,9 @@ cscd_status regions_kmeans(const cscd_mesh *mesh, const double *positions, uint3
     if (status == CSCD_OK) {
         list_vertices(&w);
         share_out(&w, k);
-        find_centroids(&w, seed);
+        status = find_centroids(&w, seed);
+    }
+    if (status == CSCD_OK) {
         find_anchors(&w);
         measure_edges(&w);
         assign_triangles(&w);

@@ -1,8 +1,9 @@
 /* Lloyd's iteration: k centroids of a set of points. */
 #include "preprocess/lloyd.h"
 
-#include <stdbool.h>
 #include <string.h>
+
+enum { POINTS_PER_LOOK = 1024 };
 
 /* splitmix64 */
 static uint64_t next_random(uint64_t *state) {
@@ -37,9 +38,11 @@ static uint32_t nearest_centroid(const lloyd *l, const double p[3]) {
     return nearest;
 }
 
-static bool assign(const lloyd *l, bool first_round) {
-    bool changed = first_round;
+static bool assign(const lloyd *l, int round) {
+    bool changed = round == 0;
     for (uint32_t i = 0; i < l->point_count; i++) {
+        double share = (round + (double)i / l->point_count) / LLOYD_ROUNDS_MAX;
+        if (i % POINTS_PER_LOOK == 0 && !progress_go_on(l->context, share)) return false;
         uint32_t v = l->points[i], nearest = nearest_centroid(l, l->positions + (size_t)v * 3);
         changed = changed || nearest != l->clusters[v];
         l->clusters[v] = nearest;
@@ -61,7 +64,8 @@ static void move_centroids(const lloyd *l) {
     }
 }
 
-void lloyd_run(const lloyd *l, uint64_t seed) {
+cscd_status lloyd_run(const lloyd *l, uint64_t seed) {
     begin(l, seed);
-    for (int round = 0; round < LLOYD_ROUNDS_MAX && assign(l, round == 0); round++) move_centroids(l);
+    for (int round = 0; round < LLOYD_ROUNDS_MAX && assign(l, round); round++) move_centroids(l);
+    return progress_status(l->context);
 }

@@ -2,12 +2,13 @@
 #ifndef CSCD_LLOYD_H
 #define CSCD_LLOYD_H
 
-#include <stdint.h>
+#include "src/context.h"
 
 enum { LLOYD_ROUNDS_MAX = 200 };
 
 /* A set of points among positions, and where the result goes. */
 typedef struct lloyd {
+    cscd_context *context;
     const double *positions;
     const uint32_t *points; /* indices into positions */
     uint32_t point_count, k;
@@ -19,7 +20,7 @@ typedef struct lloyd {
 
 /* Begins with k different points, 1 <= k <= point_count, and runs until no point changes its cluster, or for
  * LLOYD_ROUNDS_MAX rounds. A point goes to the first of its nearest centroids; an empty cluster keeps its
- * centroid. */
-void lloyd_run(const lloyd *l, uint64_t seed);
+ * centroid. CANCELLED: the clusters mean nothing. */
+cscd_status lloyd_run(const lloyd *l, uint64_t seed);
 
 #endif

@@ -49,9 +49,14 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
 void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
                       contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
-    for (uint32_t t = lane_index; t < mesh->triangle_count && !lane->out_of_memory; t += lane_count)
+    double rows = (double)mesh->triangle_count + mesh->edge_count;
+    for (uint32_t t = lane_index; t < mesh->triangle_count && !lane->out_of_memory; t += lane_count) {
+        if (!progress_go_on(mesh->context, t / rows)) break;
         test_face(interval, t, lane);
-    for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count)
+    }
+    for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count) {
+        if (!progress_go_on(mesh->context, ((double)mesh->triangle_count + e) / rows)) break;
         test_edge(interval, e, lane);
+    }
     narrow_phase_finish(interval, lane);
 }

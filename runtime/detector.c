@@ -98,6 +98,7 @@ static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
+    if (status == CSCD_OK) status = call_create(d);
     if (status != CSCD_OK) return status;
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
     d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
@@ -151,6 +152,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d == NULL) return;
     cscd_context *context = d->context;
     free_lanes(d);
+    call_free(d);
     if (d->traversal.lanes != NULL) traversal_destroy(&d->traversal);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);

@@ -26,11 +26,12 @@ cscd_status interval_search_lanes_status(const cscd_detector *d) {
 /* Lanes search and test in turn: each takes of both what it finds, and nobody waits for anybody else's. */
 static void search_and_test(void *data, uint32_t index) {
     interval_search *search = data;
+    cscd_context *context = search->detector->context;
     traversal *t = &search->detector->traversal;
     traversal_lane *batch = &t->lanes[index];
     contact_lane *lane = &search->detector->contact_lanes[index];
     double begin = timer_now_ms(), spent = 0.0;
-    while (!lane->out_of_memory && traversal_fill(t, index)) {
+    while (!lane->out_of_memory && progress_go_on(context, traversal_done(t)) && traversal_fill(t, index)) {
         batch->pairs_found += batch->pair_count;
         narrow_phase_test(&search->interval, batch->pairs, batch->pair_count, lane);
     }
@@ -57,6 +58,8 @@ static void share_out(interval_search *search, double together_ms) {
 cscd_status interval_search_traverse(interval_search *search, traversal_pass pass) {
     cscd_detector *d = search->detector;
     double since = timer_now_ms(), together = 0.0;
+    bool last = pass == TRAVERSAL_FRESH;
+    progress_stage(d->context, last ? "further passes" : "traversal", last ? 0.9 : 0.3, last ? 1.0 : 0.9);
     traversal_begin(&d->traversal, &d->forest, pass);
     timer_lap(&since, &search->timings.traversal_ms);
     parallel_run(d->context->threads, d->traversal.busy_lanes, search_and_test, search);
@@ -64,7 +67,8 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
     share_out(search, together);
     search->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
     cscd_status status = traversal_status(&d->traversal);
-    return status == CSCD_OK ? interval_search_lanes_status(d) : status;
+    if (status == CSCD_OK) status = interval_search_lanes_status(d);
+    return status == CSCD_OK ? progress_status(d->context) : status;
 }
 
 /* ---- without pairs of adjacent triangles --------------------------------------------------------------- */
@@ -123,7 +127,9 @@ static void test_share(void *data, uint32_t index) {
 cscd_status interval_search_by_brute_force(interval_search *search) {
     cscd_detector *d = search->detector;
     double since = timer_now_ms();
+    progress_stage(d->context, "brute force", 0.0, 1.0);
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, search);
     timer_lap(&since, &search->timings.contact_ms);
-    return interval_search_lanes_status(d);
+    cscd_status status = interval_search_lanes_status(d);
+    return status == CSCD_OK ? progress_status(d->context) : status;
 }

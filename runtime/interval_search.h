@@ -15,7 +15,7 @@ typedef struct interval_search {
 interval_search interval_search_begin(cscd_detector *detector, const double *x0, const double *x1,
                                       separation limit);
 
-/* Tests the pairs of one pass of the traversal. */
+/* Tests the pairs of one pass of the traversal. CANCELLED, as all below may be: not all of them. */
 cscd_status interval_search_traverse(interval_search *search, traversal_pass pass);
 
 /* Tests all pairs but those within components that are culled, for which the flags answer. Where nothing is

@@ -89,8 +89,9 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
     double distance = larger(d->limit.distance, reach) + rounding_on(line);
+    call_begin(d);
     status = candidates_collect(d, line->x0, line->x1, distance, &line->candidates);
-    if (status != CSCD_OK) return context_out_of_memory(d->context);
+    if (status != CSCD_OK) return call_fail(d, status);
     line->begun = true;
     return CSCD_OK;
 }

@@ -11,6 +11,7 @@ typedef struct tries {
     cscd_timings timings;
     cscd_counters counters;
     bool any;
+    double done; /* by estimate, of all tries */
 } tries;
 
 static void add_timings(cscd_timings *sum, const cscd_timings *more) {
@@ -36,6 +37,8 @@ static cscd_status try_motion(void *of, const double *from, const double *to, cs
     step_outcome found;
     if (t->any) step_withdraw(t->detector);
     t->any = true;
+    progress_part(t->detector->context, t->done, 0.5 + 0.5 * t->done);
+    t->done = 0.5 + 0.5 * t->done;
     cscd_status status = step_find(t->detector, from, to, CSCD_MODE_EARLIEST, true, &found);
     if (status != CSCD_OK) return status;
     add_timings(&t->timings, &found.timings);
@@ -71,12 +74,13 @@ cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, co
     motion m = {detector->mesh->vertex_count, x0, x1};
     tries t = {.detector = detector, .timings = {.check_ms = detector->timings.check_ms}};
     cscd_free_step step;
+    call_begin(detector);
     status = make_room(detector);
     if (status == CSCD_OK)
         status = free_step_find(detector, &m, 1.0, try_motion, &t, detector->reached, &step);
     if (status != CSCD_OK) {
         if (t.any) step_withdraw(detector);
-        return status == CSCD_IN_CONTACT ? status : context_out_of_memory(detector->context);
+        return call_fail(detector, status);
     }
     step_take(detector, detector->reached);
     if (end != NULL) memcpy(end, detector->reached, m.vertex_count * sizeof(double[3]));

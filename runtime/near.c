@@ -139,8 +139,9 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
         status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     cscd_proximities found;
+    call_begin(detector);
     status = find_near(detector, positions, distance, &found);
-    if (status != CSCD_OK) return context_out_of_memory(context);
+    if (status != CSCD_OK) return call_fail(detector, status);
     *out = found;
     return CSCD_OK;
 }

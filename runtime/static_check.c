@@ -150,6 +150,7 @@ static cscd_status find_intersections(moment *now) {
     forest_skip_adjacent(&d->forest, NULL);
     traversal_begin(&d->traversal, &d->forest, now->pass);
     for (bool more = true; more;) {
+        if (!progress_go_on(d->context, traversal_done(&d->traversal))) break;
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;
         parallel_run(d->context->threads, d->traversal.lane_count, test_batch, now);
@@ -157,7 +158,7 @@ static cscd_status find_intersections(moment *now) {
             if (d->intersection_lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
         }
     }
-    return CSCD_OK;
+    return progress_status(d->context); /* before anybody believes that nothing more was found */
 }
 
 /* What the lanes hold, ignored pairs among it, is what triangles are judged by. */
@@ -176,6 +177,7 @@ static void record_starts(const moment *now) {
 
 cscd_status static_check_suspects(cscd_detector *detector, const double *positions) {
     moment now = {detector, positions, TRAVERSAL_SUSPECTS};
+    progress_stage(detector->context, "start", 0.0, 0.3);
     forest_mark_suspects(&detector->forest, detector->suspects);
     cscd_status status = find_intersections(&now);
     if (status == CSCD_OK) record_starts(&now);
@@ -204,9 +206,11 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
 
     moment now = {detector, positions, TRAVERSAL_KEPT};
     cscd_intersections result;
+    call_begin(detector);
+    progress_stage(context, "static check", 0.0, 1.0);
     status = check_moment(&now);
     if (status == CSCD_OK) status = collect(detector, positions, &result);
-    if (status != CSCD_OK) return context_out_of_memory(context);
+    if (status != CSCD_OK) return call_fail(detector, status);
     timer_lap(&since, &spent);
     detector->timings.check_ms = spent;
     *out = result;

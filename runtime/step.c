@@ -260,8 +260,9 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     if (status != CSCD_OK) return status;
 
     step_outcome found;
+    call_begin(detector);
     status = step_find(detector, start, end, detector->options.mode, false, &found);
-    if (status != CSCD_OK) return context_out_of_memory(context);
+    if (status != CSCD_OK) return call_fail(detector, status);
     step_take(detector, end);
     timer_lap(&since, &found.timings.total_ms);
     found.timings.check_ms = detector->timings.check_ms;

@@ -86,15 +86,21 @@ void traversal_begin(traversal *t, const forest *f, traversal_pass pass) {
         memset(lane->cache.tags, 0, sizeof lane->cache.tags);
     }
     t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
-    t->busy_lanes = f->leaf_count < SHARED_LEAVES_MIN ? 1 : t->lane_count;
-    if (t->busy_lanes > 1) t->lanes[0].out_of_memory = !spread(t);
+    bool large = f->leaf_count >= SHARED_LEAVES_MIN;
+    t->busy_lanes = large ? t->lane_count : 1;
+    if (large && (t->lane_count > 1 || progress_wanted(t->context))) t->lanes[0].out_of_memory = !spread(t);
+}
+
+double traversal_done(const traversal *t) {
+    uint32_t taken = atomic_load(&t->next_share);
+    return t->share_count > 0 ? (double)taken / t->share_count : 0.0;
 }
 
 /* Many at first, for neighbours have leaves in common, and then fewer and fewer. */
 static bool take_shares(traversal *t, traversal_lane *lane) {
     uint32_t next = atomic_load(&t->next_share), count;
     do {
-        if (next >= t->share_count) return false;
+        if (next >= t->share_count || !progress_go_on(t->context, traversal_done(t))) return false;
         count = (t->share_count - next) / (4 * t->busy_lanes) + 1;
     } while (!atomic_compare_exchange_weak(&t->next_share, &next, next + count));
     if (!make_room(t->context, lane, count)) {

@@ -72,8 +72,8 @@ void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
 
 /* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
  * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and
- * nothing is left that is not in the hands of another lane. The union of all batches, and the sum of
- * boxes_tested, are the same for any lane count. */
+ * nothing is left that is not in the hands of another lane, or the call is cancelled. The union of all
+ * batches, and the sum of boxes_tested, are the same for any lane count. */
 bool traversal_fill(traversal *t, uint32_t lane);
 
 /* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
@@ -82,6 +82,9 @@ cscd_status traversal_status(const traversal *t);
 /* All lanes at once, and batches as full as they get; *more is false when every batch is empty. Between two
  * rounds the caller consumes the batches. */
 cscd_status traversal_round(traversal *t, bool *more);
+
+/* The share that lanes have taken, by block pairs; 0 as long as it is not known. */
+double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);
 

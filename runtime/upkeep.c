@@ -67,6 +67,7 @@ static bool rebuild(cscd_detector *d, const double *positions) {
     forest_free(&d->forest);
     d->forest = fresh;
     d->rebuilt = true;
+    d->rebuilds++;
     return true;
 }
 
@@ -76,8 +77,12 @@ static cscd_status move(cscd_detector *d, const double *x0, const double *x1, do
         cscd_status status = build(d, x0, &d->forest);
         if (status != CSCD_OK) return status;
     }
+    if (fresh) { /* judged by volumes as wide as those of steps */
+        forest_move(&d->forest, x0, x1, d->limit.distance);
+        d->spread_when_built = spread_of(&d->forest);
+        if (distance == d->limit.distance) return CSCD_OK;
+    }
     forest_move(&d->forest, x0, x1, distance);
-    if (fresh) d->spread_when_built = spread_of(&d->forest);
     return CSCD_OK;
 }
 
@@ -87,10 +92,17 @@ cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double dis
 
 cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
     cscd_status status = move(d, x0, x1, distance);
+    if (distance != d->limit.distance) return status;
     if (status != CSCD_OK || ++d->intervals_unlooked < (uint32_t)LOOK_EVERY << d->useless_rebuilds)
         return status;
     tree_spread spread = spread_of(&d->forest);
     d->intervals_unlooked = 0;
+    if (d->in_vain.done) {
+        d->rebuilt = true;
+        d->useless_rebuilds = d->in_vain.useless_rebuilds;
+        d->in_vain.done = false;
+        return CSCD_OK;
+    }
     if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return CSCD_OK;
     forest_move(&d->forest, x0, x1, distance);
     d->spread_when_built = spread_of(&d->forest);

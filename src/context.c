@@ -1,4 +1,4 @@
-/* What every object shares: the allocator, the threads, the sentence behind the last failure. */
+/* What every object shares: the allocator, the threads, progress, the sentence behind the last failure. */
 #include "src/context.h"
 
 #include "src/processor.h"
@@ -50,12 +50,14 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     memset(context, 0, sizeof *context);
     context->allocator = chosen.allocator;
     context->bytes = sizeof *context;
+    context->progress = progress_of(chosen.progress);
     context->simd = chosen.simd != CSCD_SIMD_AUTO ? chosen.simd : processor_best_simd();
     if (pthread_mutex_init(&context->allocator_lock, NULL) != 0) {
         chosen.allocator.release(chosen.allocator.user, context, sizeof *context);
         return CSCD_SYSTEM_ERROR;
     }
-    cscd_status status = parallel_create(context, chosen.thread_count, &context->threads);
+    cscd_status status =
+        parallel_create(context, chosen.thread_count, chosen.parallel_for, &context->threads);
     if (status != CSCD_OK) {
         cscd_context_destroy(context);
         return status;
@@ -130,4 +132,8 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 cscd_status context_out_of_memory(cscd_context *context) {
     return context_fail(context, CSCD_OUT_OF_MEMORY,
                         "out of memory with %zu bytes in use; nothing was changed", context->bytes);
+}
+
+cscd_status context_explain(cscd_context *context, cscd_status status) {
+    return status == CSCD_CANCELLED ? progress_status(context) : context_out_of_memory(context);
 }

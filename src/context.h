@@ -1,9 +1,10 @@
-/* What every object shares: the allocator, the threads, the sentence behind the last failure. */
+/* What every object shares: the allocator, the threads, progress, the sentence behind the last failure. */
 #ifndef CSCD_CONTEXT_H
 #define CSCD_CONTEXT_H
 
 #include "cscd/cscd.h"
 #include "src/parallel.h"
+#include "src/progress.h"
 
 #include <pthread.h>
 
@@ -12,6 +13,7 @@ struct cscd_context {
     pthread_mutex_t allocator_lock;
     size_t bytes;
     parallel *threads;
+    progress progress;
     cscd_simd simd; /* never AUTO */
     char detail[512];
 };
@@ -33,5 +35,8 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 
 /* The same words for every allocation that failed. */
 cscd_status context_out_of_memory(cscd_context *context);
+
+/* For functions below which nobody wrote a sentence: status is CANCELLED, or an allocation failed. */
+cscd_status context_explain(cscd_context *context, cscd_status status);
 
 #endif

@@ -1,4 +1,4 @@
-/* A fixed crew of threads that runs independent tasks; results never depend on who ran which. */
+/* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #include "src/parallel.h"
 
 #include "src/context.h"
@@ -35,8 +35,9 @@ typedef struct helper {
 } helper;
 
 struct parallel {
-    uint32_t thread_count; /* the caller included */
-    uint32_t started;      /* helpers that were really started */
+    uint32_t thread_count;  /* the caller included */
+    cscd_parallel_for host; /* run NULL: the crew's own threads */
+    uint32_t started;       /* helpers that were really started */
     helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
@@ -173,7 +174,8 @@ static cscd_status start_helpers(parallel *threads) {
     return CSCD_OK;
 }
 
-cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parallel **out) {
+cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_parallel_for host,
+                            parallel **out) {
     if (thread_count == 0) {
         long processors = sysconf(_SC_NPROCESSORS_ONLN);
         thread_count = processors < 1 ? 1 : processors > 256 ? 256 : (uint32_t)processors;
@@ -181,6 +183,7 @@ cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parall
     parallel *threads = context_allocate(context, 1, sizeof *threads);
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
+    threads->host = host;
     threads->patience_ms = thread_count <= processors_for_us() ? patience_ms : 0.0;
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
@@ -188,7 +191,8 @@ cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parall
     threads->helpers = context_allocate(context, thread_count, sizeof *threads->helpers);
     threads->ranges = context_allocate(context, thread_count, sizeof *threads->ranges);
     bool allocated = threads->helpers != NULL && threads->ranges != NULL;
-    cscd_status status = allocated ? start_helpers(threads) : CSCD_OUT_OF_MEMORY;
+    cscd_status status = allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK && host.run == NULL) status = start_helpers(threads);
     if (status != CSCD_OK) {
         parallel_destroy(context, threads);
         return status;
@@ -244,6 +248,10 @@ static void close_gate(parallel *threads) {
 }
 
 void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
+    if (threads->host.run != NULL && task_count > 1) {
+        threads->host.run(threads->host.user, task_count, task, data);
+        return;
+    }
     if (threads->started == 0 || task_count < 2) {
         for (uint32_t i = 0; i < task_count; i++) task(data, i);
         return;

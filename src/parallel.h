@@ -1,4 +1,4 @@
-/* A fixed crew of threads that runs independent tasks; results never depend on who ran which. */
+/* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #ifndef CSCD_PARALLEL_H
 #define CSCD_PARALLEL_H
 
@@ -11,12 +11,16 @@ enum { CACHE_LINE_SIZE = 64 };
 typedef struct parallel parallel;
 typedef void parallel_task(void *data, uint32_t task);
 
-/* thread_count includes the caller; 0 means one per processor. */
-cscd_status parallel_create(cscd_context *context, uint32_t thread_count, parallel **out);
+/* thread_count includes the caller; 0 means one per processor. With host.run no thread is started. */
+cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_parallel_for host,
+                            parallel **out);
 void parallel_destroy(cscd_context *context, parallel *threads);
+
+/* Into how many lanes work is cut that keeps something per lane. */
 uint32_t parallel_thread_count(const parallel *threads);
 
-/* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. */
+/* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. The host may
+ * run them one after the other, so a task never waits for another one, and never calls this. */
 void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data);
 
 #endif

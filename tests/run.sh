@@ -45,7 +45,8 @@ for program in "$@"; do
     [ "${bad:-0}" = 0 ] || failures="$failures $name"
 done
 
-if [ "$(basename "$BUILD")" = sanitize ]; then
+configuration=$(basename "$BUILD")
+if [ "$configuration" = sanitize ] || [ "$configuration" = tsan ]; then
     echo 'data to develop against: compared by the other configurations, too slow in this one'
 elif [ -d ../shared/data ] && [ -f tests/check_shared.py ]; then
     echo 'data to develop against: found, comparing'

@@ -178,16 +178,20 @@ static void lloyd_on_a_line(void **state) {
     uint32_t points[10], clusters[12], scratch[10];
     for (uint32_t i = 0; i < 12; i++) positions[i * 3] = i < 5 ? i : i < 10 ? 100.0 + i : 1e9;
     for (uint32_t i = 0; i < 10; i++) points[i] = i;
+    cscd_context *context = NULL;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     for (uint64_t seed = 0; seed < 50; seed++) {
         double centroids[6];
         uint64_t counts[2];
         memset(clusters, 0xff, sizeof clusters);
-        lloyd_run(&(lloyd){positions, points, 10, 2, centroids, clusters, counts, scratch}, seed);
+        lloyd l = {context, positions, points, 10, 2, centroids, clusters, counts, scratch};
+        assert_int_equal(lloyd_run(&l, seed), CSCD_OK);
         uint32_t low = centroids[0] < centroids[3] ? 0 : 1;
         assert_true(centroids[low * 3] == 2.0 && centroids[3 - low * 3] == 107.0);
         for (uint32_t i = 0; i < 12; i++)
             assert_int_equal(clusters[i], i < 5 ? low : i < 10 ? 1 - low : UINT32_MAX);
     }
+    cscd_context_destroy(context);
 }
 
 static void zero_is_refused(void **state) {

@@ -92,7 +92,7 @@ static cscd_detector *culling_detector(const ways *w, int way) {
 }
 
 static ways ways_create(uint64_t seed) {
-    ways w = {NULL};
+    ways w = {.context = NULL};
     random_stream random = stream_start(seed ^ 0x5eed);
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = 1 + (uint32_t)(seed % 3);

@@ -235,6 +235,41 @@ static void obstacles_cost_nothing(void **state) {
     tear_down(&s);
 }
 
+/* A plan by charge neither charges nor cuts an obstacle, and other objects are cut as they are alone. */
+static void obstacles_are_not_planned(void **state) {
+    (void)state;
+    for (int i = 0; i < OBJECTS; i++) scene_make(SCENE_BENT_CAPSULE, (uint64_t)i, &objects[i]);
+    static double x[3 * SCENE_VERTICES_MAX * 3];
+    uint32_t vertices = 0;
+    for (int i = 0; i < OBJECTS; i++) {
+        memcpy(x + vertices * 3, objects[i].x0, objects[i].vertex_count * sizeof(double[3]));
+        vertices += objects[i].vertex_count;
+    }
+    setting s = set_up(2, CSCD_METHOD_NONE, 1), all = set_up(0, CSCD_METHOD_NONE, 1);
+    cscd_plan *plan = NULL, *whole = NULL;
+    assert_int_equal(cscd_plan_create(s.mesh, x, NULL, &plan), CSCD_OK);
+    assert_int_equal(cscd_plan_create(all.mesh, x, NULL, &whole), CSCD_OK);
+    for (uint32_t i = 0; i < OBJECTS; i++) {
+        cscd_object o = cscd_mesh_object(s.mesh, i);
+        assert_true((cscd_plan_capacitance(plan, i) > 0.0) == !o.obstacle);
+        for (uint32_t t = o.first_triangle; t < o.first_triangle + o.triangle_count; t++) {
+            double charge = o.obstacle ? 0.0 : cscd_plan_triangle_charge(whole, t);
+            assert_true(cscd_plan_triangle_charge(plan, t) == charge);
+            assert_true(!o.obstacle || cscd_plan_triangle_region(plan, t) ==
+                                           cscd_plan_triangle_region(plan, o.first_triangle));
+        }
+    }
+    cscd_plan_destroy(plan);
+    cscd_plan_destroy(whole);
+    tear_down(&s);
+    tear_down(&all);
+    setting none = set_up(7, CSCD_METHOD_NONE, 1);
+    assert_int_equal(cscd_plan_create(none.mesh, x, NULL, &plan), CSCD_OK);
+    assert_int_equal(cscd_plan_region_count(plan), OBJECTS);
+    cscd_plan_destroy(plan);
+    tear_down(&none);
+}
+
 /* ---- layouts ------------------------------------------------------------------------------------------- */
 
 /* Rows of seven floats, unaligned; columns of doubles; packed doubles. */
@@ -283,10 +318,10 @@ static void bad_views_are_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(features_follow_each_other), cmocka_unit_test(a_mesh_is_one_object),
-        cmocka_unit_test(mistakes_name_the_object),   cmocka_unit_test(obstacles_meet_only_others),
-        cmocka_unit_test(obstacles_cost_nothing),     cmocka_unit_test(positions_come_in_any_layout),
-        cmocka_unit_test(bad_views_are_named),
+        cmocka_unit_test(features_follow_each_other),   cmocka_unit_test(a_mesh_is_one_object),
+        cmocka_unit_test(mistakes_name_the_object),     cmocka_unit_test(obstacles_meet_only_others),
+        cmocka_unit_test(obstacles_cost_nothing),       cmocka_unit_test(obstacles_are_not_planned),
+        cmocka_unit_test(positions_come_in_any_layout), cmocka_unit_test(bad_views_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -177,6 +177,23 @@ static void an_interrupt_keeps_what_is_written(void **state) {
     recorded_free(&scene);
 }
 
+/* In the midst of seconds of work: it stops at once, and there is no plan, half or whole. */
+static void an_interrupted_preprocess_writes_nothing(void **state) {
+    (void)state;
+    recorded scene = recorded_fold(70, 70, 1);
+    temp_path model = recorded_write_mesh(&folder, "wide.obj", &scene, 0);
+    temp_path plan = temp_file_path(&folder, "wide.plan.ply");
+    recorded_free(&scene);
+    tool_process process = run_tool_start((const char *const[]){"preprocess", model.text, NULL});
+    usleep(700 * 1000);
+    kill(process.pid, SIGINT);
+    tool_run run = run_tool_finish(&process);
+    assert_int_equal(run.code, 130);
+    assert_non_null(strstr(run.error, "interrupted; no plan was written"));
+    assert_int_equal(size_of(plan.text), 0);
+    tool_run_free(&run);
+}
+
 #if defined(__SANITIZE_ADDRESS__)
 /* The sanitizer keeps freed memory: there is nothing to measure, but the replays must run all the same. */
 static void compare_peaks(const char *model, const char *short_cache, const char *long_cache) {
@@ -229,6 +246,7 @@ int main(void) {
         cmocka_unit_test(a_frame_of_another_size_keeps_the_intervals_before),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(an_interrupt_keeps_what_is_written),
+        cmocka_unit_test(an_interrupted_preprocess_writes_nothing),
         cmocka_unit_test(memory_does_not_grow_with_the_frames),
     };
     return cmocka_run_group_tests_name("tool_stop", tests, make_files, remove_files);

@@ -43,7 +43,8 @@ typedef struct cscd_plan_options {
 CSCD_API cscd_plan_options cscd_plan_defaults(void);
 
 /* Cuts the mesh, at rest in positions, into regions. CHARGE solves a dense system: 4 bytes per pair of
- * triangles of a component, and time with the cube. OUT_OF_MEMORY: the sentence gives the amount. */
+ * triangles of a component, and time with the cube. OUT_OF_MEMORY: the sentence gives the amount. Obstacles
+ * are neither charged nor cut. */
 CSCD_API cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions,
                                       const cscd_plan_options *options, cscd_plan **out);
 CSCD_API void cscd_plan_destroy(cscd_plan *plan);

@@ -102,16 +102,19 @@ static bool save(const preprocess_options *o, const recording *r, const double *
     return saved;
 }
 
+enum { PERCENT = 100 };
+
+static bool show_progress(void *user, const char *stage, double fraction) {
+    progress_update(user, (uint32_t)(fraction * PERCENT), PERCENT, stage);
+    return !interrupted();
+}
+
 static bool make(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
-    char text[80];
-    progress shown;
-    progress_begin(&shown, o->quiet);
-    snprintf(text, sizeof text, "preprocess: %u triangles, method %s", cscd_mesh_triangle_count(r->mesh),
-             cscd_method_name(o->plan.method));
-    progress_say(&shown, text);
     cscd_status status = cscd_plan_create(r->mesh, positions, &o->plan, &plan);
-    progress_end(&shown);
+    progress_end(o->source.progress.user);
+    if (status == CSCD_CANCELLED)
+        return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
     if (status != CSCD_OK)
         return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
     bool saved = save(o, r, positions, plan, error);
@@ -123,9 +126,13 @@ static bool make(const preprocess_options *o, recording *r, const double *positi
     return saved;
 }
 
-static int run(const preprocess_options *o) {
+static int run(preprocess_options *o) {
     recording r;
     io_error error = {""};
+    progress shown;
+    interrupt_catch();
+    progress_begin(&shown, o->quiet);
+    o->source.progress = (cscd_progress){show_progress, &shown};
     if (!recording_open(&o->source, &r, &error)) return fail_input("%s", error.text);
     if (!o->quiet) recording_warn(&r);
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r.mesh) * 3 * sizeof *positions);
@@ -134,7 +141,9 @@ static int run(const preprocess_options *o) {
            make(o, &r, positions, &error);
     free(positions);
     recording_close(&r);
-    return made ? EXIT_RAN : fail_input("%s", error.text);
+    if (made) return EXIT_RAN;
+    fail_input("%s", error.text);
+    return interrupted() ? EXIT_INTERRUPTED : EXIT_BAD_INPUT;
 }
 
 static bool parse_share(const char *text, double *out) {

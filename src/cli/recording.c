@@ -31,6 +31,7 @@ static bool create_mesh(const recording_options *options, recording *r, io_error
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = options->thread_count;
     context_options.simd = options->simd;
+    context_options.progress = options->progress;
     cscd_status status = cscd_context_create(&context_options, &r->context);
     if (status == CSCD_SYSTEM_ERROR)
         return io_fail(error, "the system refused to start %u threads; give --threads a smaller number",

@@ -16,6 +16,7 @@ typedef struct recording_options {
     double weld_epsilon;
     uint32_t thread_count;
     cscd_simd simd;
+    cscd_progress progress; /* of the context; NULL: none */
 } recording_options;
 
 typedef struct recording {

@@ -101,9 +101,13 @@ static bool open_outputs(replay *r, io_error *error) {
 /* Opens everything that can fail before the work begins. */
 static bool begin(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    recording_options source = {o->model_path, o->frame_paths,  o->frame_path_count,
-                                o->weld,       o->weld_epsilon, o->thread_count,
-                                o->simd};
+    recording_options source = {.model_path = o->model_path,
+                                .frame_paths = o->frame_paths,
+                                .frame_path_count = o->frame_path_count,
+                                .weld = o->weld,
+                                .weld_epsilon = o->weld_epsilon,
+                                .thread_count = o->thread_count,
+                                .simd = o->simd};
     return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
            prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
            prepare_detector(r, error) && open_outputs(r, error);

@@ -33,7 +33,7 @@ static void build(forest_rig *r, const double *positions, int axis_count) {
 }
 
 bool forest_rig_create(const scene *s, forest_setup setup, forest_rig *out) {
-    forest_rig r = {NULL};
+    forest_rig r = {.context = NULL};
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = setup.thread_count;
     options.simd = setup.simd;

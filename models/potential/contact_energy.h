@@ -1,0 +1,48 @@
+/* The barrier's energy over all pairs of features that are near, as a list of terms. */
+#ifndef CSCD_MODELS_CONTACT_ENERGY_H
+#define CSCD_MODELS_CONTACT_ENERGY_H
+
+#include "cscd/cscd.h"
+
+/* One pair. Its Hessian is taken as curvature * g g^T, where g, the gradient of the distance, is weights[i] *
+ * normal at vertex i: see ipc_contacts_find. */
+typedef struct ipc_contact {
+    uint32_t vertices[4];
+    double weights[4], normal[3];
+    double gradient[4][3]; /* of the energy */
+    double energy, curvature;
+} ipc_contact;
+
+/* Grows from {0}; ipc_contacts_free takes it back. */
+typedef struct ipc_contacts {
+    ipc_contact *items;
+    size_t count, capacity;
+    double energy, least_distance; /* the sum; INFINITY without pairs */
+} ipc_contacts;
+
+typedef struct ipc_barrier_options {
+    double reach;     /* pairs nearer than this repel */
+    double stiffness; /* kappa: the factor of the barrier */
+} ipc_barrier_options;
+
+/* The terms of `near`, found at `positions`. Every pair of features counts, also where several share one
+ * nearest point on their boundaries: the sum is then continuous, for each distance is, while a list without
+ * repetitions would jump where a nearest point passes from a face to its edge.
+ *
+ * The gradient is exact: how the nearest points slide along the features does not change the distance to
+ * first order. The Hessian leaves out that they slide and the normal turns, slope * (Hessian of the
+ * distance), which only ever takes curvature away while the features are convex and the slope negative; so
+ * what is left is positive semidefinite, and the directions that come of it lead down. Pairs of edges that
+ * are nearly parallel, whose nearest points jump, fade out; pairs of vertices and faces take over there.
+ * `rest` gives the edges' lengths by which nearly is judged. */
+void ipc_contacts_find(ipc_contacts *contacts, const cscd_mesh *mesh, const double *rest,
+                       const double *positions, const cscd_proximities *near,
+                       const ipc_barrier_options *options);
+void ipc_contacts_free(ipc_contacts *contacts);
+
+void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient);
+
+/* out += Hessian * x */
+void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out);
+
+#endif

@@ -1,0 +1,166 @@
+/* Every call of the API that takes long, one after the other, and a digest of what each gave. */
+#include "tests/support/workload.h"
+
+#include <math.h>
+#include <string.h>
+
+void workload_tube(sequence *out, int rings, int segments, uint32_t frame_count) {
+    scene_clear(&out->shape);
+    scene_add_capsule(&out->shape, 6.0, 0.5, rings, segments);
+    out->frame_count = frame_count;
+    for (uint32_t f = 0; f < frame_count; f++) {
+        double time = 0.3 * f;
+        for (uint32_t v = 0; v < out->shape.vertex_count; v++) {
+            const double *rest = out->shape.x0 + (size_t)v * 3;
+            double bend = 1.2 * time * rest[2], *x = out->frames[f] + (size_t)v * 3;
+            x[0] = rest[0] * cos(bend) + (1.0 - cos(bend)) * 1.5;
+            x[1] = rest[1];
+            x[2] = rest[2] + sin(bend) * (1.5 - rest[0]) - 0.8 * time * rest[2];
+        }
+    }
+}
+
+typedef struct run {
+    const workload *w;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_detector *detector;
+    cscd_line *line;
+    workload_result result;
+} run;
+
+/* FNV-1a */
+static void digest(run *r, const void *data, size_t size) {
+    const unsigned char *bytes = data;
+    uint64_t *hash = &r->result.digests[r->result.call_count];
+    for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
+}
+
+static bool again(run *r, cscd_status status) {
+    return r->w->again != NULL && r->w->again(r->w->user, r->context, status);
+}
+
+static void end_call(run *r, cscd_status status) {
+    digest(r, &status, sizeof status);
+    r->result.failed |= status != CSCD_OK && status != CSCD_IN_CONTACT;
+    if (r->result.call_count + 1 < WORKLOAD_CALLS_MAX) r->result.call_count++;
+}
+
+static void make_plan(run *r) {
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = r->w->plan;
+    cscd_status status;
+    do {
+        status = cscd_plan_create(r->mesh, r->w->sequence->shape.x0, &options, &r->plan);
+    } while (again(r, status));
+    for (uint32_t t = 0; status == CSCD_OK && t < r->w->sequence->shape.triangle_count; t++) {
+        double charge = cscd_plan_triangle_charge(r->plan, t);
+        uint32_t region = cscd_plan_triangle_region(r->plan, t);
+        digest(r, &charge, sizeof charge);
+        digest(r, &region, sizeof region);
+    }
+    end_call(r, status);
+}
+
+static void step(run *r, const double *x0, const double *x1) {
+    cscd_contacts found = {NULL, 0};
+    cscd_status status;
+    do {
+        status = cscd_detector_step(r->detector, x0, x1, &found);
+    } while (again(r, status));
+    cscd_counters counters = cscd_detector_counters(r->detector);
+    digest(r, found.items, found.count * sizeof *found.items);
+    digest(r, &counters, sizeof counters);
+    for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
+        cscd_guarantee g = cscd_detector_guarantee(r->detector, c);
+        digest(r, &g.complete, sizeof g.complete);
+        digest(r, &g.reason, sizeof g.reason);
+    }
+    r->result.contacts += found.count;
+    r->result.rebuilds += counters.rebuilds;
+    r->result.culled += counters.plus + counters.minus;
+    end_call(r, status);
+}
+
+static void check(run *r, const double *x) {
+    cscd_intersections found = {NULL, 0, 0, 0};
+    cscd_status status;
+    do {
+        status = cscd_detector_check(r->detector, x, &found);
+    } while (again(r, status));
+    digest(r, found.items, found.count * sizeof *found.items);
+    digest(r, &found.zero_area_triangles, sizeof found.zero_area_triangles);
+    end_call(r, status);
+}
+
+static void near(run *r, const double *x) {
+    cscd_proximities found = {NULL, 0};
+    cscd_status status;
+    do {
+        status = cscd_detector_near(r->detector, x, 0.05, &found);
+    } while (again(r, status));
+    digest(r, found.items, found.count * sizeof *found.items);
+    end_call(r, status);
+}
+
+static bool refuses_max_step(cscd_method method) {
+    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
+}
+
+static void max_step(run *r, const double *x0, const double *x1) {
+    static _Thread_local double end[SCENE_VERTICES_MAX * 3];
+    cscd_free_step found = {.length = 0.0};
+    cscd_status status;
+    if (refuses_max_step(r->w->options.method)) return;
+    do {
+        status = cscd_detector_max_step(r->detector, x0, x1, end, &found);
+    } while (again(r, status));
+    digest(r, &found.length, sizeof found.length);
+    if (status == CSCD_OK) {
+        cscd_counters counters = cscd_detector_counters(r->detector);
+        r->result.rebuilds += counters.rebuilds;
+        digest(r, &counters, sizeof counters);
+        digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
+    }
+    end_call(r, status);
+}
+
+static void begin_line(run *r, const double *x0, const double *x1) {
+    cscd_status status;
+    do {
+        status = cscd_line_begin(r->line, x0, x1, 0.05);
+    } while (again(r, status));
+    size_t count = cscd_line_candidate_count(r->line);
+    digest(r, &count, sizeof count);
+    end_call(r, status);
+}
+
+static void run_intervals(run *r) {
+    const sequence *q = r->w->sequence;
+    for (uint32_t i = 0; i + 1 < q->frame_count; i++) {
+        const double *x0 = q->frames[i], *x1 = q->frames[i + 1];
+        if (i % 4 == 3) max_step(r, x0, x1);
+        step(r, x0, x1);
+        if (i % 3 == 1) check(r, x1);
+        if (i % 5 == 2) near(r, x1);
+        if (i % 5 == 3) begin_line(r, x0, x1);
+    }
+}
+
+workload_result workload_run(cscd_context *context, const workload *w) {
+    run r = {.w = w, .context = context};
+    const scene *shape = &w->sequence->shape;
+    cscd_mesh_desc desc = {shape->vertex_count, shape->triangle_count, shape->triangles};
+    r.result.failed = cscd_mesh_create(context, &desc, &r.mesh) != CSCD_OK;
+    if (!r.result.failed && w->plan != CSCD_METHOD_AUTO) make_plan(&r);
+    if (!r.result.failed)
+        r.result.failed = cscd_detector_create(r.mesh, r.plan, &w->options, &r.detector) != CSCD_OK ||
+                          cscd_line_create(r.detector, &r.line) != CSCD_OK;
+    if (!r.result.failed) run_intervals(&r);
+    cscd_line_destroy(r.line);
+    cscd_detector_destroy(r.detector);
+    cscd_plan_destroy(r.plan);
+    cscd_mesh_destroy(r.mesh);
+    return r.result;
+}

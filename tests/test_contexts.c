@@ -1,0 +1,113 @@
+/* Contexts are independent: several threads of a host, each with one of its own, at the same time. */
+#include "cscd/cscd.h"
+#include "tests/support/workload.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+__attribute__((weak)) void openblas_set_num_threads(int count);
+__attribute__((weak)) int openblas_get_num_threads(void);
+
+enum { HOSTS = 3, ROUNDS = 2 };
+
+/* One thread of the host, and what it does with its context. */
+typedef struct worker {
+    pthread_t thread;
+    workload work;
+    uint32_t thread_count;
+    workload_result result; /* of the last round */
+} worker;
+
+static cscd_context *make_context(uint32_t thread_count) {
+    cscd_context *context = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    return cscd_context_create(&options, &context) == CSCD_OK ? context : NULL;
+}
+
+static void *work(void *argument) {
+    worker *w = argument;
+    for (int i = 0; i < ROUNDS; i++) {
+        cscd_context *context = make_context(w->thread_count);
+        w->result = (workload_result){.failed = true};
+        if (context != NULL) w->result = workload_run(context, &w->work);
+        cscd_context_destroy(context);
+    }
+    return NULL;
+}
+
+/* All at once give what each alone gives. */
+static void compare(worker workers[HOSTS]) {
+    for (int i = 0; i < HOSTS; i++)
+        assert_int_equal(pthread_create(&workers[i].thread, NULL, work, &workers[i]), 0);
+    for (int i = 0; i < HOSTS; i++) assert_int_equal(pthread_join(workers[i].thread, NULL), 0);
+    for (int i = 0; i < HOSTS; i++) {
+        cscd_context *context = make_context(1);
+        assert_non_null(context);
+        workload_result alone = workload_run(context, &workers[i].work);
+        cscd_context_destroy(context);
+        assert_false(alone.failed);
+        assert_false(workers[i].result.failed);
+        assert_int_equal(workers[i].result.call_count, alone.call_count);
+        assert_memory_equal(workers[i].result.digests, alone.digests,
+                            alone.call_count * sizeof *alone.digests);
+    }
+}
+
+static worker *make_workers(sequence **shapes) {
+    worker *workers = calloc(HOSTS, sizeof *workers);
+    *shapes = calloc(HOSTS, sizeof **shapes);
+    assert_non_null(workers);
+    assert_non_null(*shapes);
+    for (int i = 0; i < HOSTS; i++) {
+        workers[i].work = (workload){.sequence = &(*shapes)[i], .options = cscd_detector_defaults()};
+        workers[i].thread_count = 1 + (uint32_t)i % 2;
+    }
+    return workers;
+}
+
+static void steps_and_checks(void **state) {
+    sequence *shapes;
+    worker *workers = make_workers(&shapes);
+    (void)state;
+    for (int i = 0; i < HOSTS; i++) {
+        sequence_make(SEQUENCE_SCENE, (uint64_t)i + 7, 12, &shapes[i]);
+        workers[i].work.options.method = i == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
+        workers[i].work.plan = i == 2 ? CSCD_METHOD_KMEANS : CSCD_METHOD_AUTO;
+    }
+    compare(workers);
+    free(workers);
+    free(shapes);
+}
+
+/* OpenBLAS has one thread count for the process: it is the host's before and after. */
+static void plans_by_charge(void **state) {
+    sequence *shapes;
+    worker *workers = make_workers(&shapes);
+    bool counts = openblas_set_num_threads != NULL && openblas_get_num_threads != NULL;
+    int threads = counts ? openblas_get_num_threads() : 0;
+    (void)state;
+    for (int i = 0; i < HOSTS; i++) {
+        workload_tube(&shapes[i], 28 + 2 * i, 16, 1);
+        workers[i].work.plan = workers[i].work.options.method = CSCD_METHOD_CHARGE;
+    }
+    for (int count = 1; count <= 2; count++) {
+        if (counts) openblas_set_num_threads(count);
+        compare(workers);
+        if (counts) assert_int_equal(openblas_get_num_threads(), count);
+    }
+    if (counts) openblas_set_num_threads(threads);
+    free(workers);
+    free(shapes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_and_checks), cmocka_unit_test(plans_by_charge)};
+    return cmocka_run_group_tests_name("contexts", tests, NULL, NULL);
+}

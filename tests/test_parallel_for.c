@@ -1,0 +1,154 @@
+/* The host's own parallel loop: the same results as with threads of the context's own, which it does not
+ * start.
+ */
+#include "cscd/cscd.h"
+#include "tests/support/workload.h"
+
+#include <dirent.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static sequence q; /* large; one test at a time */
+
+static uint32_t threads_of_process(void) {
+    DIR *folder = opendir("/proc/self/task");
+    assert_non_null(folder);
+    uint32_t count = 0;
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) count += entry->d_name[0] != '.';
+    closedir(folder);
+    return count;
+}
+
+/* ---- loops of hosts ------------------------------------------------------------------------------------ */
+
+typedef void task_function(void *data, uint32_t index);
+
+typedef struct host {
+    uint32_t runs, tasks, most_threads;
+} host;
+
+static void count_run(host *h, uint32_t task_count) {
+    h->runs++;
+    h->tasks += task_count;
+}
+
+/* On the calling thread, backwards. */
+static void run_backwards(void *user, uint32_t task_count, task_function *task, void *data) {
+    host *h = user;
+    count_run(h, task_count);
+    uint32_t threads = h->runs % 64 == 1 ? threads_of_process() : 0;
+    h->most_threads = threads > h->most_threads ? threads : h->most_threads;
+    for (uint32_t i = task_count; i-- > 0;) task(data, i);
+}
+
+typedef struct share {
+    task_function *task;
+    void *data;
+    uint32_t task_count;
+    atomic_uint next;
+} share;
+
+static void *take_tasks(void *argument) {
+    share *s = argument;
+    for (uint32_t i; (i = atomic_fetch_add(&s->next, 1)) < s->task_count;) s->task(s->data, i);
+    return NULL;
+}
+
+enum { HOST_THREADS = 3 };
+
+/* On threads of the host's; the calling one only waits. */
+static void run_elsewhere(void *user, uint32_t task_count, task_function *task, void *data) {
+    pthread_t threads[HOST_THREADS];
+    share s = {.task = task, .data = data, .task_count = task_count};
+    count_run(user, task_count);
+    for (int i = 0; i < HOST_THREADS; i++) {
+        if (pthread_create(&threads[i], NULL, take_tasks, &s) != 0) fail_msg("no thread");
+    }
+    for (int i = 0; i < HOST_THREADS; i++) pthread_join(threads[i], NULL);
+}
+
+/* ---- results ------------------------------------------------------------------------------------------- */
+
+static workload_result run_with(uint32_t thread_count, cscd_parallel_for loop, const workload *w) {
+    cscd_context *context = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    options.parallel_for = loop;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    workload_result result = workload_run(context, w);
+    cscd_context_destroy(context);
+    assert_false(result.failed);
+    return result;
+}
+
+static void compare(const workload *w) {
+    static const uint32_t counts[] = {1, 2, 3, 8};
+    static workload_result expected, found;
+    expected = run_with(1, (cscd_parallel_for){NULL, NULL}, w);
+    for (uint32_t i = 0; i < 4; i++) {
+        for (int loop = 0; loop < 3; loop++) {
+            host h = {0, 0, 0};
+            cscd_parallel_for loops[] = {{NULL, NULL}, {run_backwards, &h}, {run_elsewhere, &h}};
+            uint32_t threads = threads_of_process();
+            found = run_with(counts[i], loops[loop], w);
+            assert_int_equal(found.call_count, expected.call_count);
+            assert_memory_equal(found.digests, expected.digests, found.call_count * sizeof *found.digests);
+            if (counts[i] > 1) assert_int_equal(h.runs > 0, loop > 0);
+            if (loop == 1 && h.runs > 0) assert_int_equal(h.most_threads, threads);
+        }
+    }
+}
+
+static void steps_are_the_same(void **state) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_ICCD};
+    (void)state;
+    workload_tube(&q, 36, 18, 5);
+    for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        workload w = {.sequence = &q, .options = cscd_detector_defaults()};
+        w.options.method = methods[i];
+        compare(&w);
+    }
+}
+
+/* Charges and regions, bit for bit: the factors are cut into the same tasks for any number of threads. */
+static void plans_are_the_same(void **state) {
+    (void)state;
+    workload_tube(&q, 36, 18, 1);
+    workload w = {.sequence = &q, .plan = CSCD_METHOD_CHARGE, .options = cscd_detector_defaults()};
+    assert_true(q.shape.triangle_count > 3 * 256); /* several panels */
+    compare(&w);
+}
+
+/* ---- the context --------------------------------------------------------------------------------------- */
+
+static void thread_count_is_how_work_is_cut(void **state) {
+    cscd_context *context = NULL;
+    host h = {0, 0, 0};
+    cscd_context_options options = cscd_context_defaults();
+    (void)state;
+    options.parallel_for = (cscd_parallel_for){run_backwards, &h};
+    options.thread_count = 5;
+    uint32_t threads = threads_of_process();
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    assert_int_equal(cscd_context_thread_count(context), 5);
+    assert_int_equal(threads_of_process(), threads);
+    cscd_context_destroy(context);
+    options.thread_count = 0;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    assert_true(cscd_context_thread_count(context) >= 1);
+    cscd_context_destroy(context);
+    assert_int_equal(h.runs, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(steps_are_the_same),
+                                       cmocka_unit_test(plans_are_the_same),
+                                       cmocka_unit_test(thread_count_is_how_work_is_cut)};
+    return cmocka_run_group_tests_name("parallel_for", tests, NULL, NULL);
+}
