@@ -7,9 +7,9 @@
 
 struct component_start;
 
-/* What a call that fails puts back; without a progress function nothing, and no memory is taken. Trees that it
- * has built anew stay, and what is known of them: the repetition, when it comes to look at them, finds them as
- * good as new. */
+/* What a call that fails puts back; without a progress function nothing, and no memory is taken. Trees that
+ * it has built anew stay, and what is known of them: the repetition, when it comes to look at them, finds
+ * them as good as new. */
 typedef struct call_memory {
     uint8_t *triangles;         /* states at the start, and */
     struct component_start *of; /* what goes with them, per component */

@@ -9,7 +9,7 @@
 struct cscd_line {
     cscd_detector *detector;
     double *x0, *x1, *reached; /* positions */
-    double reach, covered; /* covered: candidates are all pairs that come so near each other */
+    double reach, covered;     /* covered: candidates are all pairs that come so near each other */
     bool begun;
     candidates candidates;
     uint8_t *states;            /* of the triangles at x0 */

@@ -25,7 +25,8 @@ static const double relative_tolerance = 0x1p-21; /* half of what is promised: t
 
 cscd_status near_check_distance(cscd_context *context, double distance) {
     if (distance >= 0x1p-300 && distance <= 0x1p300) return CSCD_OK;
-    return context_fail(context, CSCD_INVALID_ARGUMENT, "distance is %g, expected a length from 2^-300 to 2^300", distance);
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
 
 /* From the point that v names on b, or u and v on the face, to the one on a: by differences, so that it is as

@@ -184,7 +184,8 @@ cscd_status static_check_suspects(cscd_detector *detector, const double *positio
     return status;
 }
 
-/* Nothing is recorded before nothing can fail any more: states and the positions that they are of go together.
+/* Nothing is recorded before nothing can fail any more: states and the positions that they are of go
+ * together.
  */
 static cscd_status check_moment(moment *now, cscd_intersections *out) {
     cscd_detector *d = now->detector;

@@ -89,7 +89,8 @@ cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double dis
     return move(d, positions, positions, distance);
 }
 
-/* Compares the trees, moved as for a step, with what they were when they were built, and builds them anew if need be. */
+/* Compares the trees, moved as for a step, with what they were when they were built, and builds them anew if
+ * need be. */
 static void look(cscd_detector *d, const double *x0, const double *x1) {
     tree_spread spread = spread_of(&d->forest);
     d->intervals_unlooked = 0;

@@ -243,9 +243,8 @@ static void steady_state_allocates_nothing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_may_run_out),
-                                       cmocka_unit_test(states_outlast_a_failure),
-                                       cmocka_unit_test(a_failed_check_tells_nothing),
-                                       cmocka_unit_test(steady_state_allocates_nothing)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(memory_may_run_out), cmocka_unit_test(states_outlast_a_failure),
+        cmocka_unit_test(a_failed_check_tells_nothing), cmocka_unit_test(steady_state_allocates_nothing)};
     return cmocka_run_group_tests_name("solver_memory", tests, NULL, NULL);
 }

@@ -214,7 +214,8 @@ static void bodies_change_places(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulled_flat), cmocka_unit_test(lines_build_anew),
+        cmocka_unit_test(pulled_flat),
+        cmocka_unit_test(lines_build_anew),
         cmocka_unit_test(flat_stays),
         cmocka_unit_test(bodies_change_places),
     };
