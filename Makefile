@@ -123,11 +123,11 @@ demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
 
-# The recordings, and every shape at its default size: about half a minute, once.
+# The recordings, and every shape at its default size: about a minute, once.
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/shape $(BUILD)/models/ipc
+build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/shape
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 
@@ -176,7 +176,7 @@ bench: packages
 # The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
 performance: packages
 	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
-	@for program in machine scaling threads motion cloth topology; do \
+	@for program in machine scaling threads motion cloth topology callers; do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
 # The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
@@ -286,7 +286,7 @@ $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJ
 # Programs on bodies that deform, of any size; the public API alone.
 DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
                      benchmarks/scene_files.c src/cli/provenance.c src/cli/progress.c src/timer.c
-DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness)
+DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness callers)
 $(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
               $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'

@@ -7,13 +7,13 @@ images=$2
 tool=$BUILD/cscd
 mkdir -p "$images"
 
-strip() { # strip NAME VIEW COLUMNS FRAMES: contacts on the body, with what it falls onto
+strip() { # strip NAME VIEW COLUMNS FRAMES [OPTIONS]: contacts on the body, with what it falls onto
     scenery=$models/$1-scenery
     moving=
     [ ! -e "$scenery.pc2" ] || moving="--scenery-frames $scenery.pc2"
     # shellcheck disable=SC2086
     "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$4" --columns "$3" --colour contacts --size 300x225 \
-        --view "$2" --scenery "$scenery.obj" $moving -o "$images/$1.png"
+        --view "$2" --scenery "$scenery.obj" $moving ${5:-} -o "$images/$1.png"
 }
 
 for name in pawn dumbbell figure; do
@@ -31,6 +31,9 @@ strip dumbbell-stairs 25,14 4 0:143:13
 strip dumbbell-stairs-free 25,14 4 0:140:20
 strip figure-balls 25,14 4 12:144:12
 strip figure-balls-free 25,14 4 12:138:18
+strip cloth-drape 20,20 4 0:319:29
+strip sleeve 20,12 4 0:239:21
+strip bag 20,15 4 0:259:23 '--weld exact'
 "$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --frame 84 --colour contacts --view 0,10 --size 900x560 \
     --scenery "$models/pawn-drop-scenery.obj" -o "$images/pawn-contacts.png"
 whole() { # whole NAME VIEW FRAMES: obstacles are part of the model

@@ -8,4 +8,5 @@ for name in $("$BUILD/models/shape" --help | awk '$2 ~ /^[0-9]+$/ && $3 ~ /^[0-9
     "$BUILD/models/shape" "$name" "$folder/$name.obj"
 done
 "$BUILD/models/record" all "$folder"
+"$BUILD/models/cloth" all "$folder"
 "$BUILD/models/ipc" all "$folder"

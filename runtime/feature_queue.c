@@ -91,56 +91,55 @@ static void decide_by_levels(const swept_interval *interval, cscd_contact_kind k
     decide_one_by_one(interval, kind, pairs, lane);
 }
 
-static void test_separations(const swept_interval *interval, cscd_contact_kind kind,
-                             const feature_pairs *pairs, contact_lane *lane) {
+/* The nearest points of lane i at the start. */
+static elementary_hit nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                     const nearness_outcomes *near, uint32_t i) {
+    elementary_hit hit = {.u = near->u[i], .v = near->v[i]};
+    bool vf = kind == CSCD_CONTACT_VF;
+    const double *first = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][0]) * 3;
+    const double *second = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][1]) * 3;
+    for (int k = 0; k < 3; k++) {
+        hit.point[k] = first[k] + (vf ? 0.0 : hit.u * (second[k] - first[k])) - 0.5 * near->offset[k][i];
+        hit.normal[k] = near->offset[k][i] / near->distance[i];
+    }
+    return hit;
+}
+
+/* Eight at a time; keeps the pairs that the kernel leaves open. */
+static void decide_nearness(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                            contact_lane *lane) {
+    const kernels *table = kernels_of(interval->mesh->context);
+    nearness_kernel *kernel = kind == CSCD_CONTACT_VF ? table->nearness_vf : table->nearness_ee;
+    feature_source source = feature_queue_source(interval);
+    uint32_t kept = 0;
+    if (pairs->count > 0) repeat_last(pairs);
+    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
+        nearness_outcomes near;
+        uint32_t real = lanes_from(pairs, i);
+        kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);
+        for (uint32_t lanes = real & near.hits; lanes != 0; lanes &= lanes - 1) {
+            uint32_t at = (uint32_t)__builtin_ctz(lanes);
+            elementary_hit hit = nearest_points(interval, kind, pairs->a[i + at], &near, at);
+            add_contact(interval, kind, pairs, i + at, &hit, false, lane);
+        }
+        kept = keep_lanes(pairs, i, real & ~near.hits & ~near.misses, kept);
+    }
+    pairs->count = kept;
+}
+
+static void test_separations(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                             contact_lane *lane) {
+    lane->separations += pairs->count;
+    decide_nearness(interval, kind, pairs, lane);
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_hit hit;
         bool bounded = false;
         narrow_phase_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        lane->separations++;
         if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &hit,
                                                                       &bounded))
             add_contact(interval, kind, pairs, i, &hit, bounded, lane);
     }
-}
-
-/* The nearest points of lane i. */
-static elementary_hit nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
-                                     const rest_outcomes *rest, uint32_t i) {
-    elementary_hit hit = {.u = rest->u[i], .v = rest->v[i]};
-    bool vf = kind == CSCD_CONTACT_VF;
-    const double *first = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][0]) * 3;
-    const double *second = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][1]) * 3;
-    for (int k = 0; k < 3; k++) {
-        hit.point[k] = first[k] + (vf ? 0.0 : hit.u * (second[k] - first[k])) - 0.5 * rest->offset[k][i];
-        hit.normal[k] = rest->offset[k][i] / rest->distance[i];
-    }
-    return hit;
-}
-
-/* Eight at a time; what the kernel leaves open one by one. */
-static void test_rest(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                      contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
-    rest_kernel *kernel = kind == CSCD_CONTACT_VF ? table->rest_vf : table->rest_ee;
-    feature_source source = feature_queue_source(interval);
-    uint32_t kept = 0;
-    if (pairs->count > 0) repeat_last(pairs);
-    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
-        rest_outcomes rest;
-        uint32_t real = lanes_from(pairs, i);
-        kernel(&source, pairs->a + i, pairs->b + i, interval->limit.distance, &rest);
-        for (uint32_t lanes = real & rest.hits; lanes != 0; lanes &= lanes - 1) {
-            uint32_t at = (uint32_t)__builtin_ctz(lanes);
-            elementary_hit hit = nearest_points(interval, kind, pairs->a[i + at], &rest, at);
-            add_contact(interval, kind, pairs, i + at, &hit, false, lane);
-        }
-        kept = keep_lanes(pairs, i, real & ~rest.hits & ~rest.misses, kept);
-    }
-    lane->separations += pairs->count - kept;
-    pairs->count = kept;
-    test_separations(interval, kind, pairs, lane);
 }
 
 static void collect(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
@@ -166,8 +165,6 @@ static void decide(const swept_interval *interval, cscd_contact_kind kind, featu
     feature_pairs pairs = {list->a, list->b, list->count};
     if (interval->collecting)
         collect(interval, kind, &pairs, lane);
-    else if (interval->at_rest)
-        test_rest(interval, kind, &pairs, lane);
     else if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else

@@ -24,9 +24,7 @@ typedef struct swept_interval {
                              * theirs, and orphans are tested apart */
     bool closing;           /* with culling: the pairs reached are those that it culled before */
     separation limit;       /* distance 0: a contact is touching */
-    bool at_rest;    /* nearness at a moment, x0, is asked for: limit.distance > 0, and of pairs between
-                      * that and the tolerance beyond it any may be reported */
-    bool collecting; /* pairs of features are not tested, but become the lanes' candidates */
+    bool collecting;        /* pairs of features are not tested, but become the lanes' candidates */
 } swept_interval;
 
 /* Pairs of features, as in a feature_list. */

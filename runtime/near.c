@@ -111,9 +111,7 @@ separation near_limit(double distance) {
 }
 
 interval_search near_search(cscd_detector *d, const double *positions, double distance) {
-    interval_search search = interval_search_begin(d, positions, positions, near_limit(distance));
-    search.interval.at_rest = true;
-    return search;
+    return interval_search_begin(d, positions, positions, near_limit(distance));
 }
 
 static cscd_status find_near(cscd_detector *d, const double *positions, double distance,

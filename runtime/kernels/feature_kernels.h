@@ -15,9 +15,9 @@ void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, co
                              root_outcomes *out);
 void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out);
-void SIMD_NAME(rest_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, double distance,
-                        rest_outcomes *out);
-void SIMD_NAME(rest_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, double distance,
-                        rest_outcomes *out);
+void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const struct separation *limit, nearness_outcomes *out);
+void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const struct separation *limit, nearness_outcomes *out);
 
 #endif

@@ -9,6 +9,7 @@ struct cscd_mesh;
 struct forest;
 struct forest_part;
 struct representatives;
+struct separation;
 struct traversal;
 struct traversal_lane;
 struct triangle_pair;
@@ -53,15 +54,16 @@ typedef struct root_outcomes {
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
-/* For eight pairs at rest: those certainly farther apart than a distance, those certainly within it, and, for
- * these, the nearest points, as parameters and as the way from b's to a's, and its length. */
-typedef struct rest_outcomes {
+/* For eight pairs: those that certainly stay farther apart than a limit's distance and tolerance, those
+ * certainly within its distance at the start, and, for these, the nearest points there, as parameters and as
+ * the way from b's to a's, and its length. */
+typedef struct nearness_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double u[KERNEL_LANES], v[KERNEL_LANES], offset[3][KERNEL_LANES], distance[KERNEL_LANES];
-} rest_outcomes;
+} nearness_outcomes;
 
-typedef void rest_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b, double distance,
-                         rest_outcomes *out);
+typedef void nearness_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             const struct separation *limit, nearness_outcomes *out);
 
 typedef struct kernels {
     const char *name;
@@ -106,8 +108,8 @@ typedef struct kernels {
     /* and where it has two, or none. */
     root_kernel *two_roots_vf, *two_roots_ee;
 
-    /* Pairs from a[0], b[0] to a[7], b[7], where source->x0 has them. */
-    rest_kernel *rest_vf, *rest_ee;
+    /* Pairs from a[0], b[0] to a[7], b[7]. */
+    nearness_kernel *nearness_vf, *nearness_ee;
 
     /* Of pairs of different triangles, in place and in any order, keeps those that may meet (see
      * runtime/triangle_intersection.h) at positions, which are as positions_check wants them; returns how

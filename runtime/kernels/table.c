@@ -20,8 +20,8 @@ const kernels SIMD_NAME(kernels) = {
     .roots_ee = SIMD_NAME(roots_ee),
     .two_roots_vf = SIMD_NAME(two_roots_vf),
     .two_roots_ee = SIMD_NAME(two_roots_ee),
-    .rest_vf = SIMD_NAME(rest_vf),
-    .rest_ee = SIMD_NAME(rest_ee),
+    .nearness_vf = SIMD_NAME(nearness_vf),
+    .nearness_ee = SIMD_NAME(nearness_ee),
     .keep_meeting = SIMD_NAME(keep_meeting),
     .keep_thin = SIMD_NAME(keep_thin),
 };

@@ -2,6 +2,7 @@
  */
 #include "runtime/kernels/feature_kernels.h"
 #include "runtime/kernels/wide_pairs.h"
+#include "runtime/separation.h"
 #include "runtime/vector.h"
 
 /* Nearest points of lanes: parameters as in cscd_contact, and the way from b's to a's. */
@@ -99,12 +100,16 @@ static inline nearest nearest_of_edges(const f64w c[3], const f64w a[3], const f
     return best;
 }
 
-/* How far the plane across the way keeps all points of the features apart. */
-static inline f64w gap_across(const nearest *n, f64w distance, int first_count, const f64w c[3],
-                              const f64w a[3], const f64w b[3]) {
-    f64w zero = f64w_all(0.0), normal[3];
-    for (int k = 0; k < 3; k++) normal[k] = n->offset[k] / distance;
-    f64w along_a = dot(normal, a), along_b = dot(normal, b), along_c = dot(normal, c);
+/* A unit vector along the way. */
+static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = n->offset[k] / distance;
+}
+
+/* How far planes across a direction keep all points of the features apart. */
+static inline f64w gap_along(const f64w direction[3], int first_count, const f64w c[3], const f64w a[3],
+                             const f64w b[3]) {
+    f64w zero = f64w_all(0.0);
+    f64w along_a = dot(direction, a), along_b = dot(direction, b), along_c = dot(direction, c);
     if (first_count == 1) return along_c - f64w_max(zero, f64w_max(along_a, along_b));
     return f64w_min(zero, along_a) - along_c - f64w_max(zero, along_b);
 }
@@ -126,45 +131,73 @@ static inline f64w to_one(f64w extent) {
     return extent;
 }
 
-/* Vectors below 1. In units of 2^-53: they are off by 1 each; the way is off by 1 + 2 + 2 for them, by 4 for
- * the products and by 6 for the sums per coordinate, its length by twice that; dots with the normal, itself
- * off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances from 2^-40 on then
- * have a normal that is right to 2^-4 of that bound. */
-static inline void decide(const wide_points *p, int first_count, int i, double limit, rest_outcomes *out) {
-    f64w a[3], b[3], c[3], error = f64w_all(0x1p-45);
+/* What lies between the points at one end: a vertex c and the triangle of a and b, or the edge a, and the
+ * edge b from c on. */
+typedef struct moment_vectors {
+    f64w a[3], b[3], c[3];
+} moment_vectors;
+
+static inline void vectors_at(f64w x[4][3], int first_count, moment_vectors *out) {
     int vf = first_count == 1;
     for (int k = 0; k < 3; k++) {
-        a[k] = p->x0[vf ? 2 : 1][k] - p->x0[vf ? 1 : 0][k];
-        b[k] = p->x0[3][k] - p->x0[vf ? 1 : 2][k];
-        c[k] = vf ? p->x0[0][k] - p->x0[1][k] : p->x0[2][k] - p->x0[0][k];
-    }
-    f64w factor = to_one(extent_of(a, b, c)), far = limit * factor;
-    for (int k = 0; k < 3; k++) {
-        a[k] *= factor;
-        b[k] *= factor;
-        c[k] *= factor;
-    }
-    nearest n = vf ? nearest_in_triangle(c, a, b) : nearest_of_edges(c, a, b);
-    f64w distance = f64w_sqrt(n.squared);
-    f64w gap = gap_across(&n, distance, first_count, c, a, b);
-    uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
-    uint32_t apart = sound & f64w_below(far, gap - error);
-    uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
-    uint32_t near = sound & ~apart & nearest_indeed & f64w_at_most(distance + error, far);
-    out->misses |= apart << i;
-    out->hits |= near << i;
-    memcpy(out->u + i, &n.u, sizeof n.u);
-    memcpy(out->v + i, &n.v, sizeof n.v);
-    distance /= factor;
-    memcpy(out->distance + i, &distance, sizeof distance);
-    for (int k = 0; k < 3; k++) {
-        n.offset[k] /= factor;
-        memcpy(out->offset[k] + i, &n.offset[k], sizeof n.offset[k]);
+        out->a[k] = x[vf ? 2 : 1][k] - x[vf ? 1 : 0][k];
+        out->b[k] = x[3][k] - x[vf ? 1 : 2][k];
+        out->c[k] = vf ? x[0][k] - x[1][k] : x[2][k] - x[0][k];
     }
 }
 
+static inline void multiply(moment_vectors *v, f64w factor) {
+    for (int k = 0; k < 3; k++) {
+        v->a[k] *= factor;
+        v->b[k] *= factor;
+        v->c[k] *= factor;
+    }
+}
+
+static inline void keep(const nearest *n, f64w distance, f64w factor, int i, nearness_outcomes *out) {
+    memcpy(out->u + i, &n->u, sizeof n->u);
+    memcpy(out->v + i, &n->v, sizeof n->v);
+    distance /= factor;
+    memcpy(out->distance + i, &distance, sizeof distance);
+    for (int k = 0; k < 3; k++) {
+        f64w offset = n->offset[k] / factor;
+        memcpy(out->offset[k] + i, &offset, sizeof offset);
+    }
+}
+
+/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the way is off by 1 + 2 + 2 for
+ * them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with the
+ * direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
+ * from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the gap is the
+ * least of differences that are linear in time, so it is least at an end. Pairs that come within the
+ * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
+ * (SEPARATION_FINEST). */
+static inline void decide(wide_points *p, int first_count, int i, const separation *limit,
+                          nearness_outcomes *out) {
+    moment_vectors start, end;
+    f64w error = f64w_all(0x1p-45), direction[3];
+    vectors_at(p->x0, first_count, &start);
+    vectors_at(p->x1, first_count, &end);
+    f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
+    f64w factor = to_one(extent), near = limit->distance * factor;
+    f64w far = near + limit->tolerance * factor + 0x1p-40;
+    multiply(&start, factor);
+    multiply(&end, factor);
+    nearest n = first_count == 1 ? nearest_in_triangle(start.c, start.a, start.b)
+                                 : nearest_of_edges(start.c, start.a, start.b);
+    f64w distance = f64w_sqrt(n.squared);
+    direction_of(&n, distance, direction);
+    f64w gap = gap_along(direction, first_count, start.c, start.a, start.b);
+    f64w gap_at_end = gap_along(direction, first_count, end.c, end.a, end.b);
+    uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
+    uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
+    out->misses |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
+    out->hits |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
+    keep(&n, distance, factor, i, out);
+}
+
 static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                              int first_count, double limit, rest_outcomes *out) {
+                              int first_count, const separation *limit, nearness_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
         wide_points points;
@@ -173,12 +206,12 @@ static inline void decide_all(const feature_source *source, const uint32_t *a, c
     }
 }
 
-void SIMD_NAME(rest_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b, double distance,
-                        rest_outcomes *out) {
-    decide_all(source, a, b, 1, distance, out);
+void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const separation *limit, nearness_outcomes *out) {
+    decide_all(source, a, b, 1, limit, out);
 }
 
-void SIMD_NAME(rest_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b, double distance,
-                        rest_outcomes *out) {
-    decide_all(source, a, b, 2, distance, out);
+void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const separation *limit, nearness_outcomes *out) {
+    decide_all(source, a, b, 2, limit, out);
 }
