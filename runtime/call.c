@@ -28,9 +28,6 @@ void call_begin(cscd_detector *d) {
     memcpy(before->of, s->of, d->mesh->component_count * sizeof *s->of);
     before->vouched = s->vouched;
     before->intervals_unlooked = d->intervals_unlooked;
-    before->useless_rebuilds = d->useless_rebuilds;
-    before->rebuilds = d->rebuilds;
-    before->in_vain = d->in_vain;
 }
 
 static void put_back(cscd_detector *d) {
@@ -40,10 +37,7 @@ static void put_back(cscd_detector *d) {
     memcpy(s->of, before->of, d->mesh->component_count * sizeof *s->of);
     s->vouched = before->vouched;
     s->counted = false;
-    bool rebuilt = d->rebuilds != before->rebuilds;
-    d->in_vain = rebuilt ? (vain_rebuild){true, d->useless_rebuilds} : before->in_vain;
     d->intervals_unlooked = before->intervals_unlooked;
-    d->useless_rebuilds = before->useless_rebuilds;
 }
 
 cscd_status call_fail(cscd_detector *d, cscd_status status) {

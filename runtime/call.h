@@ -7,20 +7,14 @@
 
 struct component_start;
 
-/* Whether trees were built anew by a call that failed. They stay: its repetition, when it comes to look at
- * them, goes on from there, and so gives what it would have given without the failure. */
-typedef struct vain_rebuild {
-    bool done;
-    uint32_t useless_rebuilds; /* as they were after it */
-} vain_rebuild;
-
-/* What a call that fails puts back; without a progress function nothing, and no memory is taken. */
+/* What a call that fails puts back; without a progress function nothing, and no memory is taken. Trees that
+ * it has built anew stay, and what is known of them: the repetition, when it comes to look at them, finds
+ * them as good as new. */
 typedef struct call_memory {
     uint8_t *triangles;         /* states at the start, and */
     struct component_start *of; /* what goes with them, per component */
     bool vouched;
-    uint32_t intervals_unlooked, useless_rebuilds, rebuilds;
-    vain_rebuild in_vain;
+    uint32_t intervals_unlooked;
 } call_memory;
 
 cscd_status call_create(cscd_detector *d);

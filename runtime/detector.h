@@ -53,9 +53,7 @@ struct cscd_detector {
     forest forest;                 /* of the interval or moment at hand */
     tree_spread spread_when_built; /* and how good it is: see upkeep.h */
     uint32_t intervals_unlooked, useless_rebuilds;
-    uint32_t rebuilds;
     bool rebuilt; /* in the interval at hand */
-    vain_rebuild in_vain;
     call_memory before;
     representatives representatives;
     orphan_sets orphans; /* once an interval without culling has come, unless there are too many */

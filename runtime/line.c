@@ -9,7 +9,7 @@
 struct cscd_line {
     cscd_detector *detector;
     double *x0, *x1, *reached; /* positions */
-    double reach;
+    double reach, covered;     /* covered: candidates are all pairs that come so near each other */
     bool begun;
     candidates candidates;
     uint8_t *states;            /* of the triangles at x0 */
@@ -75,11 +75,17 @@ static void remember_states(cscd_line *line) {
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
 
+static cscd_status check_reach(cscd_context *context, double reach) {
+    if (reach == 0.0 || (reach >= 0x1p-300 && reach <= 0x1p300)) return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "cscd_line_begin: reach is %g, expected 0 or a length from 2^-300 to 2^300", reach);
+}
+
 cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1, double reach) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     uint32_t vertices = d->mesh->vertex_count;
-    cscd_status status = reach == 0.0 ? CSCD_OK : near_check_distance(d->context, reach, "reach");
+    cscd_status status = check_reach(d->context, reach);
     if (status == CSCD_OK) status = positions_check(d->context, x0, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
     if (status != CSCD_OK) return status;
@@ -88,9 +94,9 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     memcpy(line->x0, x0, vertices * sizeof(double[3]));
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
-    double distance = larger(d->limit.distance, reach) + rounding_on(line);
+    line->covered = larger(d->limit.distance, reach);
     call_begin(d);
-    status = candidates_collect(d, line->x0, line->x1, distance, &line->candidates);
+    status = candidates_collect(d, line->x0, line->x1, line->covered + rounding_on(line), &line->candidates);
     if (status != CSCD_OK) return call_fail(d, status);
     line->begun = true;
     return CSCD_OK;
@@ -131,7 +137,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     cscd_status status = check_length(line, length, "cscd_line_near");
-    if (status == CSCD_OK) status = near_check_distance(d->context, distance, "distance");
+    if (status == CSCD_OK) status = near_check_distance(d->context, distance);
     if (status != CSCD_OK) return status;
     if (out == NULL) return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_near: out is NULL");
     if (distance > line->reach)
@@ -166,10 +172,11 @@ static bool lanes_are_empty(const cscd_detector *d) {
     return true;
 }
 
-/* Without any contact, pairs that are left out among them, triangles are what they were. */
+/* Without any contact, pairs that are left out among them, triangles are what they were. With a separation
+ * that the detector got since the line began, the lanes are those of the end only. */
 static void take_step(cscd_line *line) {
     cscd_detector *d = line->detector;
-    if (!line->states_known || !lanes_are_empty(d)) return;
+    if (!line->states_known || !detector_culls(d) || !lanes_are_empty(d)) return;
     bool *lost = d->culled; /* scratch between steps */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) lost[c] = false;
     memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
@@ -179,10 +186,21 @@ static void take_step(cscd_line *line) {
     start_states_end(&d->starts, line->reached, lost);
 }
 
+/* cscd_detector_set_separation may have been called since. */
+static cscd_status check_covered(const cscd_line *line) {
+    double distance = line->detector->limit.distance;
+    if (distance <= line->covered) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "cscd_line_max_step: min_separation is %g since the line was begun, and its "
+                        "candidates reach to %g only; call cscd_line_begin again",
+                        distance, line->covered);
+}
+
 cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     cscd_status status = check_begun(line, "cscd_line_max_step");
+    if (status == CSCD_OK) status = check_covered(line);
     if (status != CSCD_OK) return status;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_max_step: out is NULL");

@@ -23,10 +23,10 @@ _Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name
 
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
-cscd_status near_check_distance(cscd_context *context, double distance, const char *name) {
+cscd_status near_check_distance(cscd_context *context, double distance) {
     if (distance >= 0x1p-300 && distance <= 0x1p300) return CSCD_OK;
-    return context_fail(context, CSCD_INVALID_ARGUMENT, "%s is %g, expected a length from 2^-300 to 2^300",
-                        name, distance);
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
 
 /* From the point that v names on b, or u and v on the face, to the one on a: by differences, so that it is as
@@ -132,7 +132,7 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_near: out is NULL");
-    cscd_status status = near_check_distance(context, distance, "distance");
+    cscd_status status = near_check_distance(context, distance);
     if (status == CSCD_OK)
         status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;

@@ -4,8 +4,8 @@
 
 #include "runtime/interval_search.h"
 
-/* Is this a distance that can be asked for? INVALID_ARGUMENT names the argument and says why not. */
-cscd_status near_check_distance(cscd_context *context, double distance, const char *name);
+/* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
+cscd_status near_check_distance(cscd_context *context, double distance);
 
 /* Within this distance pairs are reported; between that and the tolerance beyond it they may be. */
 separation near_limit(double distance);

@@ -184,12 +184,16 @@ cscd_status static_check_suspects(cscd_detector *detector, const double *positio
     return status;
 }
 
-static cscd_status check_moment(moment *now) {
+/* Nothing is recorded before nothing can fail any more: states and the positions that they are of go
+ * together.
+ */
+static cscd_status check_moment(moment *now, cscd_intersections *out) {
     cscd_detector *d = now->detector;
     cscd_status status = upkeep_move_to(d, now->positions, 0.0);
     if (status != CSCD_OK) return status;
     memset(d->suspects, true, d->mesh->triangle_count * sizeof *d->suspects);
     status = find_intersections(now);
+    if (status == CSCD_OK) status = collect(d, now->positions, out);
     if (status != CSCD_OK) return status;
     if (!start_states_hold(&d->starts, now->positions)) start_states_begin(&d->starts, now->positions);
     record_starts(now);
@@ -208,8 +212,7 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
     cscd_intersections result;
     call_begin(detector);
     progress_stage(context, "static check", 0.0, 1.0);
-    status = check_moment(&now);
-    if (status == CSCD_OK) status = collect(detector, positions, &result);
+    status = check_moment(&now, &result);
     if (status != CSCD_OK) return call_fail(detector, status);
     timer_lap(&since, &spent);
     detector->timings.check_ms = spent;

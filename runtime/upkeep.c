@@ -67,7 +67,6 @@ static bool rebuild(cscd_detector *d, const double *positions) {
     forest_free(&d->forest);
     d->forest = fresh;
     d->rebuilt = true;
-    d->rebuilds++;
     return true;
 }
 
@@ -90,25 +89,25 @@ cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double dis
     return move(d, positions, positions, distance);
 }
 
-cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    cscd_status status = move(d, x0, x1, distance);
-    if (distance != d->limit.distance) return status;
-    if (status != CSCD_OK || ++d->intervals_unlooked < (uint32_t)LOOK_EVERY << d->useless_rebuilds)
-        return status;
+/* Compares the trees, moved as for a step, with what they were when they were built, and builds them anew if
+ * need be. */
+static void look(cscd_detector *d, const double *x0, const double *x1) {
     tree_spread spread = spread_of(&d->forest);
     d->intervals_unlooked = 0;
-    if (d->in_vain.done) {
-        d->rebuilt = true;
-        d->useless_rebuilds = d->in_vain.useless_rebuilds;
-        d->in_vain.done = false;
-        return CSCD_OK;
-    }
-    if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return CSCD_OK;
-    forest_move(&d->forest, x0, x1, distance);
+    if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return;
+    forest_move(&d->forest, x0, x1, d->limit.distance);
     d->spread_when_built = spread_of(&d->forest);
     if (beyond(spread, d->spread_when_built, of_use))
         d->useless_rebuilds = 0;
     else if (d->useless_rebuilds < USELESS_MAX)
         d->useless_rebuilds++;
+}
+
+cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
+    bool due = ++d->intervals_unlooked >= (uint32_t)LOOK_EVERY << d->useless_rebuilds;
+    cscd_status status = move(d, x0, x1, due ? d->limit.distance : distance);
+    if (status != CSCD_OK || !due) return status;
+    look(d, x0, x1);
+    if (distance != d->limit.distance) forest_move(&d->forest, x0, x1, distance);
     return CSCD_OK;
 }

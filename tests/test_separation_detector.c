@@ -1,6 +1,7 @@
 /* Minimum separation through the detector: every method equals brute force, any thread count gives the same
  * bits, and a larger distance only adds pairs. */
 #include "cscd/cscd.h"
+#include "tests/support/free_step_check.h"
 #include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
@@ -263,6 +264,77 @@ static void separation_can_change(void **state) {
     assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_INVALID_ARGUMENT);
 }
 
+/* A line's candidates serve separations up to the one that it was begun with, or its reach; a larger one is
+ * refused. */
+static void lines_follow_what_they_can(void **state) {
+    (void)state;
+    static const double changes[] = {0.0, 1e-3, 0.03, 0.2};
+    static free_step_call call;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 6, &interval);
+        cscd_detector_options options = within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
+        rig r = rig_create(&interval, 1, &options);
+        cscd_line *line = NULL;
+        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03),
+                         CSCD_OK);
+        for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+            options.min_separation = changes[i];
+            assert_int_equal(cscd_detector_set_separation(r.detector, changes[i], 0.0), CSCD_OK);
+            free_step_prepare(interval.x0, interval.x1, 1.0, options.step_factor, &call);
+            call.status = cscd_line_max_step(line, 1.0, call.end, &call.step);
+            assert_true((call.status == CSCD_INVALID_ARGUMENT) == (changes[i] > 0.03));
+            if (call.status == CSCD_INVALID_ARGUMENT) {
+                assert_non_null(strstr(cscd_context_detail(r.context), "cscd_line_begin again"));
+                continue;
+            }
+            rig reference = free_step_reference(&interval, &options);
+            free_step_check(&reference, r.context, &call);
+            rig_destroy(&reference);
+        }
+        cscd_line_destroy(line);
+        rig_destroy(&r);
+    }
+}
+
+static bool ignore_all(void *user, uint32_t a, uint32_t b) {
+    (void)user;
+    return a < b;
+}
+
+/* A line that was begun without separation, and goes through what is left out with one: what the detector
+ * knew of its start is not known of its end. */
+static void a_start_behind_a_wall_is_not_clean(void **state) {
+    (void)state;
+    cscd_intersections crossing;
+    cscd_contacts found;
+    cscd_free_step step;
+    size_t through = 0;
+    for (uint64_t seed = 1; seed < 12; seed++) {
+        scene_make(SCENE_SPIKE, seed, &interval);
+        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        options.ignore = ignore_all;
+        rig r = rig_create(&interval, 1, &options), plain = rig_create(&interval, 1, NULL);
+        cscd_line *line = NULL;
+        assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &crossing), CSCD_OK);
+        through += crossing.count > 0;
+        bool embedded = crossing.count == 0;
+        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK);
+        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, 1e-6), CSCD_OK);
+        assert_int_equal(cscd_detector_set_separation(r.detector, 1e-6, 0.0), CSCD_OK);
+        assert_int_equal(cscd_line_max_step(line, 1.0, NULL, &step), CSCD_OK);
+        assert_false(step.limited);
+        assert_int_equal(cscd_detector_set_separation(r.detector, 0.0, 0.0), CSCD_OK);
+        assert_int_equal(cscd_detector_step(r.detector, interval.x1, interval.x1, &found), CSCD_OK);
+        assert_true(embedded || !cscd_detector_guarantee(r.detector, 0).start_embedded);
+        cscd_line_destroy(line);
+        rig_destroy(&plain);
+        rig_destroy(&r);
+    }
+    assert_true(through > 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
                                        cmocka_unit_test(same_pairs_when_scaled),
@@ -270,6 +342,8 @@ int main(void) {
                                        cmocka_unit_test(a_larger_distance_only_adds_pairs),
                                        cmocka_unit_test(unfit_lengths_are_refused),
                                        cmocka_unit_test(the_static_check_is_not_concerned),
-                                       cmocka_unit_test(separation_can_change)};
+                                       cmocka_unit_test(separation_can_change),
+                                       cmocka_unit_test(lines_follow_what_they_can),
+                                       cmocka_unit_test(a_start_behind_a_wall_is_not_clean)};
     return cmocka_run_group_tests_name("separation_detector", tests, NULL, NULL);
 }

@@ -27,11 +27,20 @@ typedef struct counted {
     cscd_detector *detector;
 } counted;
 
+static bool go_on(void *user, const char *stage, double fraction) {
+    (void)user;
+    (void)stage;
+    (void)fraction;
+    return true;
+}
+
+/* With a progress function, so that what a failed call has changed is put back. */
 static void counted_create(counted *c, cscd_method method, uint32_t threads) {
     c->counter = counting_allocator_start();
     cscd_context_options context_options = cscd_context_defaults();
     context_options.allocator = counting_allocator_interface(&c->counter);
     context_options.thread_count = threads;
+    context_options.progress.report = go_on;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
     cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
@@ -170,6 +179,35 @@ static void states_outlast_a_failure(void **state) {
     }
 }
 
+/* What is known of one moment is not taken for what is known of another one whose check has failed: a start
+ * that crosses is never culled. */
+static void a_failed_check_tells_nothing(void **state) {
+    (void)state;
+    make_limited();
+    rig plain = rig_create(&interval, 1, NULL);
+    cscd_contacts expected;
+    cscd_intersections crossing;
+    assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &crossing), CSCD_OK);
+    assert_true(crossing.count > 0);
+    assert_int_equal(cscd_detector_step(plain.detector, interval.x1, interval.x0, &expected), CSCD_OK);
+    bool failed = true;
+    for (size_t n = 0; failed; n++) {
+        counted c;
+        cscd_contacts found;
+        counted_create(&c, CSCD_METHOD_SINGLE, 1);
+        assert_int_equal(cscd_detector_check(c.detector, interval.x0, &crossing), CSCD_OK);
+        c.counter.fail_at = c.counter.calls + n;
+        failed = cscd_detector_check(c.detector, interval.x1, &crossing) != CSCD_OK;
+        c.counter.fail_at = SIZE_MAX;
+        assert_int_equal(cscd_detector_step(c.detector, interval.x1, interval.x0, &found), CSCD_OK);
+        assert_false(cscd_detector_guarantee(c.detector, 0).start_embedded);
+        assert_int_equal(found.count, expected.count);
+        assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+        counted_destroy(&c);
+    }
+    rig_destroy(&plain);
+}
+
 /* A round as a solver makes them. */
 static void ask_all(counted *c, cscd_line *line, double *x) {
     cscd_free_step step;
@@ -205,8 +243,8 @@ static void steady_state_allocates_nothing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_may_run_out),
-                                       cmocka_unit_test(states_outlast_a_failure),
-                                       cmocka_unit_test(steady_state_allocates_nothing)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(memory_may_run_out), cmocka_unit_test(states_outlast_a_failure),
+        cmocka_unit_test(a_failed_check_tells_nothing), cmocka_unit_test(steady_state_allocates_nothing)};
     return cmocka_run_group_tests_name("solver_memory", tests, NULL, NULL);
 }

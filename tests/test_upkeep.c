@@ -104,6 +104,31 @@ static void pulled_flat(void **state) {
     close_run(&fresh);
 }
 
+/* Lines alone keep the trees as steps do. */
+static void lines_build_anew(void **state) {
+    run r, fresh;
+    cscd_line *line = NULL;
+    (void)state;
+    make_strip();
+    open_run(&r, 1);
+    assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+    for (uint32_t frame = 0; frame < FRAMES; frame++) {
+        pose((double)frame / FRAMES, before);
+        pose((frame + 1.0) / FRAMES, after);
+        assert_int_equal(cscd_line_begin(line, &before[0][0], &after[0][0], 0.01), CSCD_OK);
+    }
+    cscd_counters last = step(&r);
+    open_run(&fresh, 1);
+    cscd_counters best = step(&fresh);
+    print_message("%llu boxes, %llu with new trees\n", (unsigned long long)last.boxes_tested,
+                  (unsigned long long)best.boxes_tested);
+    assert_int_equal(last.rebuilds, 0);
+    assert_true(last.boxes_tested * 4 <= best.boxes_tested * 5);
+    cscd_line_destroy(line);
+    close_run(&r);
+    close_run(&fresh);
+}
+
 /* What only moves and bends keeps its trees. */
 static void flat_stays(void **state) {
     run r;
@@ -190,6 +215,7 @@ static void bodies_change_places(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pulled_flat),
+        cmocka_unit_test(lines_build_anew),
         cmocka_unit_test(flat_stays),
         cmocka_unit_test(bodies_change_places),
     };

@@ -66,11 +66,11 @@ typedef struct cscd_parallel_for {
     void *user;
 } cscd_parallel_for;
 
-/* Called now and then, at most every few milliseconds, by functions that take long (cscd_plan_create, _step,
- * _check, _near, _max_step, cscd_line_begin), on the thread that called them: stage is a word or two of
- * static storage; fraction, in [0,1], an estimate of how much of the call is done, which never falls during
- * it. False cancels the call, which then fails with CSCD_CANCELLED. It must not call cscd with objects of the
- * same context. */
+/* Called now and then, at most every few milliseconds, by functions that take long (cscd_plan_create,
+ * cscd_line_begin, and of the detector _step, _check, _near and _max_step), on the thread that called them; a
+ * call that is sooner done is not heard of. stage is a word or two of static storage; fraction, in [0,1], an
+ * estimate of how much of the call is done, which never falls during it. False cancels the call, which then
+ * fails with CSCD_CANCELLED. It must not call cscd with objects of the same context. */
 typedef struct cscd_progress {
     bool (*report)(void *user, const char *stage, double fraction);
     void *user;
@@ -79,7 +79,7 @@ typedef struct cscd_progress {
 typedef struct cscd_context_options {
     uint32_t struct_size;           /* set by cscd_context_defaults */
     uint32_t thread_count;          /* 0 = one per processor; default 1; at most 256. With parallel_for: into
-                                     * how many tasks that take long work is cut, and no thread is started */
+                                     * how many tasks long work is cut, so set it, too; no thread is started */
     cscd_simd simd;                 /* default AUTO; INVALID_ARGUMENT where the processor has it not */
     cscd_allocator allocator;       /* default: aligned_alloc and free */
     cscd_parallel_for parallel_for; /* default NULL: threads of the context's own */
@@ -87,7 +87,11 @@ typedef struct cscd_context_options {
 } cscd_context_options;
 
 CSCD_API cscd_context_options cscd_context_defaults(void);
+
+/* Fails without a sentence, there being no context: INVALID_ARGUMENT, OUT_OF_MEMORY or SYSTEM_ERROR. */
 CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
+
+/* After all that was created from it. */
 CSCD_API void cscd_context_destroy(cscd_context *context);
 
 /* The sentence behind the last failure in this context, "" if none. Valid until the next call. */

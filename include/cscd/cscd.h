@@ -13,7 +13,8 @@
  *   timings     milliseconds of wall clock
  *   errors      functions that can fail return cscd_status and leave *out untouched unless CSCD_OK;
  *               cscd_context_detail then says in a sentence what is wrong, where, and what to do (a NULL
- *               context, mesh or detector has no place for a sentence)
+ *               context, mesh, detector or line has no place for a sentence). Functions that cannot fail
+ *               want an object, and numbers below its counts
  *   ownership   the library copies what it is given; a _create has one _destroy; destroy in reverse
  *               order of creation; destroying NULL does nothing
  *   threads     an object, and what was created from it, is used by one thread at a time; separate

@@ -19,6 +19,7 @@ typedef enum cscd_mode {
                         * checked, so over a recording ALL costs less. See cscd_detector_guarantee */
 } cscd_mode;
 
+/* "all", "earliest"; static storage, never NULL. from_name leaves *out untouched when it returns false. */
 CSCD_API const char *cscd_mode_name(cscd_mode mode);
 CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
 
@@ -80,17 +81,19 @@ typedef struct cscd_detector_options {
 
 CSCD_API cscd_detector_options cscd_detector_defaults(void);
 
-/* plan: NULL, or one of the mesh; the detector copies what it needs. CHARGE and KMEANS
- * want a plan of that method; the others take any, or none. */
+/* The mesh lives as long as its detectors. plan: NULL, or one of the mesh; the detector copies what it needs.
+ * CHARGE and KMEANS want a plan of that method; the others take any, or none. */
 CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
 /* Other values for min_separation and tolerance, as in the options, from the next call on: a solver that has
- * to get nearer need not build another detector. What is known of starts is forgotten where culling ends. */
+ * to get nearer need not build another detector. What is known of starts is forgotten where culling ends. A
+ * line begun with less must begin again before its next max_step, which else is INVALID_ARGUMENT. */
 CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
                                                   double tolerance);
 
+/* A vertex and a face, or two edges. */
 typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact_kind;
 
 /* "vf", "ee"; static storage, never NULL. */
@@ -101,9 +104,9 @@ CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
  *   EE  a < b edges: (1-u) a0 + u a1 and (1-v) b0 + v b1 */
 typedef struct cscd_contact {
     cscd_contact_kind kind;
-    uint32_t a, b;
-    double toi; /* in [0,1] */
-    double u, v;
+    uint32_t a, b;    /* vertex and triangle, or edges, in the mesh's numbering */
+    double toi;       /* in [0,1], not after the true time */
+    double u, v;      /* in [0,1], up to rounding */
     double point[3];  /* midpoint of the two points named by u and v at toi */
     double normal[3]; /* unit, against the motion of a relative to b; 0 where the features have none; with
                        * min_separation from b's nearest point to a's, unless the features touch */
@@ -111,7 +114,8 @@ typedef struct cscd_contact {
                        * early, and the pair may stay farther apart than min_separation */
 } cscd_contact;
 
-/* Sorted by (toi, kind, a, b). Owned by the detector, valid until its next call. */
+/* Sorted by (toi, kind, a, b). Owned by the detector, valid until the next call of it or of one of its lines.
+ */
 typedef struct cscd_contacts {
     const cscd_contact *items;
     size_t count;

@@ -43,6 +43,8 @@ typedef struct cscd_object {
 
 /* 1 for a mesh of cscd_mesh_create. */
 CSCD_API uint32_t cscd_mesh_object_count(const cscd_mesh *mesh);
+
+/* Objects are numbered as given; object < object_count. */
 CSCD_API cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object);
 
 /* The object of a vertex; vertex < vertex_count. */
@@ -56,8 +58,10 @@ CSCD_API uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh);
 /* The triangle's three vertices as given; triangle < triangle_count. */
 CSCD_API void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]);
 
-/* Edges are numbered by (smaller vertex, larger vertex), each once; edge < edge_count. */
+/* Edges are numbered in the order of (smaller vertex, larger vertex), each once. */
 CSCD_API uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh);
+
+/* The edge's vertices, the smaller one first; edge < edge_count. */
 CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]);
 
 /* The triangle's edges: from its vertex 0 to 1, 1 to 2, 2 to 0. */
@@ -68,7 +72,8 @@ CSCD_API void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle,
 CSCD_API const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count);
 CSCD_API const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count);
 
-/* A component: triangles connected through shared vertices. Numbered by their first triangle. */
+/* A component: triangles connected through shared vertices, so it lies in one object. Numbered by their first
+ * triangle. */
 typedef struct cscd_component {
     uint32_t vertex_count, edge_count, triangle_count;
     uint32_t open_edges;            /* in one triangle only */
@@ -85,6 +90,8 @@ typedef struct cscd_component {
 
 CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
+
+/* The component of a triangle; triangle < triangle_count. */
 CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
 
 /* A hash of the vertex count and the triangles in their order, not of positions: plans fit where it is equal.
@@ -99,12 +106,13 @@ typedef enum cscd_scalar { CSCD_SCALAR_DOUBLE, CSCD_SCALAR_FLOAT } cscd_scalar;
 typedef struct cscd_view {
     const void *data;
     cscd_scalar scalar;
-    size_t stride;            /* 0: three scalars; of a matrix by columns one scalar, and as */
-    size_t coordinate_stride; /* its height in bytes; 0: one scalar */
+    size_t stride;            /* 0: three scalars; of a matrix whose columns are x, y, z: one scalar, */
+    size_t coordinate_stride; /* and a column's size in bytes here; 0: one scalar */
 } cscd_view;
 
-/* Copies positions in any layout, one view per object, to the packed doubles that all other functions take:
- * vertex_count * 3 of them. Floats are widened, which is exact. */
+/* Copies positions in any layout, one view per object (a mesh of cscd_mesh_create is one object), to the
+ * packed doubles that all other functions take: vertex_count * 3 of them. Floats are widened, which is exact.
+ */
 CSCD_API cscd_status cscd_mesh_pack(const cscd_mesh *mesh, const cscd_view *views, double *positions);
 
 #ifdef __cplusplus

@@ -47,6 +47,8 @@ CSCD_API cscd_plan_options cscd_plan_defaults(void);
  * are neither charged nor cut. */
 CSCD_API cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions,
                                       const cscd_plan_options *options, cscd_plan **out);
+
+/* A detector keeps nothing of its plan, so this may be before or after the detector's end. */
 CSCD_API void cscd_plan_destroy(cscd_plan *plan);
 
 /* A region: connected triangles of one component, and the point that they are seen from. */
@@ -70,9 +72,14 @@ typedef struct cscd_plan_parts {
 CSCD_API cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
                                                  const cscd_plan_parts *parts, cscd_plan **out);
 
+/* The method that its regions are of. */
 CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
+
+/* Regions of all components together; region < region_count. */
 CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
 CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
+
+/* The region of a triangle. */
 CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
 
 /* Charge per area at potential 1 of the triangle's component, in Gaussian units; 0 without CHARGE. */

@@ -35,7 +35,8 @@ typedef struct cscd_proximity {
     double normal[3]; /* unit, from b's nearest point to a's; where they touch, across both, or 0 */
 } cscd_proximity;
 
-/* Sorted by (kind, a, b). Owned by the detector or line, valid until its next call. */
+/* Sorted by (kind, a, b). Owned by the detector, also if a line asked: valid until the next call of the
+ * detector or of one of its lines. */
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
@@ -65,8 +66,8 @@ typedef struct cscd_free_step {
  * closed body that is free of self-contact at x0 is so at `end`, and the detector knows: the next step from
  * there needs no check of its start. IN_CONTACT: x0 touches itself already, or with min_separation is not
  * farther apart than that and its tolerance; the sentence names a pair, and nothing is written. Culls, as
- * _step does in mode EARLIEST; BRUTE, PUBLISHED and ICCD_PUBLISHED certify nothing and are refused but for
- * BRUTE. Timings and counters are of the whole call, guarantees of the last step. */
+ * _step does in mode EARLIEST; methods PUBLISHED and ICCD_PUBLISHED certify nothing and are refused. Timings
+ * and counters are of the whole call, guarantees of the motion tried last, which is the one returned. */
 CSCD_API cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, const double *x1,
                                             double *end, cscd_free_step *out);
 

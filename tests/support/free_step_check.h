@@ -4,8 +4,8 @@
 
 #include "tests/support/rig.h"
 
-/* A call of cscd_detector_max_step or cscd_line_max_step, and what it gave. `before` it the step and the end
- * were filled by free_step_prepare. */
+/* A call of cscd_detector_max_step or cscd_line_max_step, and what it gave. free_step_prepare has filled the
+ * step and the end before it. */
 typedef struct free_step_call {
     const double *x0, *x1;
     double longest, step_factor;

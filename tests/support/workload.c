@@ -37,6 +37,15 @@ static void digest(run *r, const void *data, size_t size) {
     for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
 }
 
+/* But rebuilds: trees that a failed call has built anew are there when it is repeated. */
+static void digest_counters(run *r) {
+    cscd_counters counters = cscd_detector_counters(r->detector);
+    r->result.rebuilds += counters.rebuilds;
+    r->result.culled += counters.plus + counters.minus;
+    counters.rebuilds = 0;
+    digest(r, &counters, sizeof counters);
+}
+
 static bool again(run *r, cscd_status status) {
     return r->w->again != NULL && r->w->again(r->w->user, r->context, status);
 }
@@ -69,17 +78,14 @@ static void step(run *r, const double *x0, const double *x1) {
     do {
         status = cscd_detector_step(r->detector, x0, x1, &found);
     } while (again(r, status));
-    cscd_counters counters = cscd_detector_counters(r->detector);
     digest(r, found.items, found.count * sizeof *found.items);
-    digest(r, &counters, sizeof counters);
+    digest_counters(r);
     for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
         cscd_guarantee g = cscd_detector_guarantee(r->detector, c);
         digest(r, &g.complete, sizeof g.complete);
         digest(r, &g.reason, sizeof g.reason);
     }
     r->result.contacts += found.count;
-    r->result.rebuilds += counters.rebuilds;
-    r->result.culled += counters.plus + counters.minus;
     end_call(r, status);
 }
 
@@ -118,9 +124,7 @@ static void max_step(run *r, const double *x0, const double *x1) {
     } while (again(r, status));
     digest(r, &found.length, sizeof found.length);
     if (status == CSCD_OK) {
-        cscd_counters counters = cscd_detector_counters(r->detector);
-        r->result.rebuilds += counters.rebuilds;
-        digest(r, &counters, sizeof counters);
+        digest_counters(r);
         digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
     }
     end_call(r, status);
