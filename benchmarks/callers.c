@@ -1,6 +1,7 @@
 /* What detection costs three solvers: its share of a simulation step, its latency, what it allocates. */
 #include "benchmarks/options.h"
 #include "models/potential/solver.h"
+#include "models/recording/allocation_count.h"
 #include "models/softbody/recorder.h"
 #include "models/textile/cloth_simulation.h"
 #include "src/timer.h"
@@ -121,25 +122,15 @@ static const caller_kind kinds[] = {
 typedef struct samples {
     uint32_t count;
     double detect[FRAMES_MAX], total[FRAMES_MAX];
-    size_t first_calls, calls[PARTS]; /* of the allocator: in the first frame; in each part of the rest */
+    uint64_t first_calls, calls[PARTS]; /* of the allocator: in the first frame; in each part of the rest */
 } samples;
 
-static void *count_allocate(void *user, size_t size, size_t alignment) {
-    ++*(size_t *)user;
-    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-}
-
-static void count_release(void *user, void *block, size_t size) {
-    (void)user;
-    (void)size;
-    free(block);
-}
-
-static bool run_frames(const caller_kind *kind, caller *c, const size_t *calls, samples *s, io_error *error) {
+static bool run_frames(const caller_kind *kind, caller *c, const uint64_t *calls, samples *s,
+                       io_error *error) {
     progress shown;
     progress_begin(&shown, false);
     for (uint32_t i = 0; i < s->count; i++) {
-        size_t calls_before = *calls;
+        uint64_t calls_before = *calls;
         double detect_before = c->detect_ms, begin = timer_now_ms();
         progress_update(&shown, i, s->count, kind->scene_name);
         if (!kind->advance(c, error)) return false;
@@ -155,10 +146,10 @@ static bool measure(const caller_kind *kind, const bench_options *o, samples *s,
                     io_error *error) {
     cscd_context_options options = cscd_context_defaults();
     cscd_context *context = NULL;
-    size_t calls = 0;
+    uint64_t calls = 0;
     options.thread_count = o->thread_count;
     options.simd = o->simd;
-    options.allocator = (cscd_allocator){count_allocate, count_release, &calls};
+    options.allocator = allocation_count_interface(&calls);
     if (cscd_context_create(&options, &context) != CSCD_OK) return io_fail(error, "no context");
     caller *c = calloc(1, sizeof *c);
     if (c == NULL) exit(1);
@@ -199,7 +190,7 @@ static void print_row(const caller_kind *kind, uint32_t triangle_count, samples 
     qsort(s->total, s->count, sizeof *s->total, compare_doubles);
     double values[4] = {percentile(s->detect, s->count, 0.5), percentile(s->detect, s->count, 0.99),
                         percentile(s->total, s->count, 0.5), percentile(s->total, s->count, 0.99)};
-    printf("  %-9s %-12s %9u %6u %6.0f %% %8.2f %8.2f %9.2f %9.2f %6zu %6zu %6zu %6zu\n", kind->name,
+    printf("  %-9s %-12s %9u %6u %6.0f %% %8.2f %8.2f %9.2f %9.2f %6llu %6llu %6llu %6llu\n", kind->name,
            kind->scene_name, triangle_count, s->count, 100.0 * share, values[0], values[1], values[2],
            values[3], s->first_calls, s->calls[0], s->calls[1], s->calls[2]);
     fflush(stdout);
