@@ -190,9 +190,10 @@ static void print_row(const caller_kind *kind, uint32_t triangle_count, samples 
     qsort(s->total, s->count, sizeof *s->total, compare_doubles);
     double values[4] = {percentile(s->detect, s->count, 0.5), percentile(s->detect, s->count, 0.99),
                         percentile(s->total, s->count, 0.5), percentile(s->total, s->count, 0.99)};
-    printf("  %-9s %-12s %9u %6u %6.0f %% %8.2f %8.2f %9.2f %9.2f %6llu %6llu %6llu %6llu\n", kind->name,
+    printf("  %-9s %-12s %9u %6u %6.0f %% %8.2f %8.2f %9.2f %9.2f %6u %6u %6u %6u\n", kind->name,
            kind->scene_name, triangle_count, s->count, 100.0 * share, values[0], values[1], values[2],
-           values[3], s->first_calls, s->calls[0], s->calls[1], s->calls[2]);
+           values[3], (uint32_t)s->first_calls, (uint32_t)s->calls[0], (uint32_t)s->calls[1],
+           (uint32_t)s->calls[2]);
     fflush(stdout);
     if (out->file == NULL) return;
     json_break_line(out);
