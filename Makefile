@@ -54,6 +54,11 @@ TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
 CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
 TEST_SOURCES    := $(filter-out $(if $(filter 0,$(GSL)),tests/test_gsl.c),$(wildcard tests/test_*.c))
+# ONLY="near line": the tests with one of these words in their names.
+ONLY ?=
+ifneq ($(strip $(ONLY)),)
+TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),$(wildcard tests/test_*$(word)*.c))))
+endif
 FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
@@ -206,7 +211,7 @@ help:
 	@echo 'make demo      a soft pawn falls and bows: simulate it, find where it hits itself, draw it'
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
-	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined)'
+	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined; ONLY="near line": those of these names)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
