@@ -11,28 +11,25 @@ CSCD_QUERIES=$BUILD/benchmarks/queries
 CSCD_METHODS=$BUILD/benchmarks/methods
 export CSCD_TOOL CSCD_MODELS CSCD_QUERIES CSCD_METHODS
 
-log=$(mktemp) || exit 1
-trap 'rm -f "$log"' EXIT
+logs=$(mktemp -d) || exit 1
+trap 'rm -rf "$logs"' EXIT
 passed=0
 failed=0
 failures=''
 
-# total WORD: the N of cmocka's line `[  WORD  ] N test(s)`, empty when there is none.
+# total WORD LOG: the N of cmocka's line `[  WORD  ] N test(s)`, empty when there is none.
 total() {
-    sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" "$log" | tail -1
+    sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" "$2" | tail -1
 }
 
-for program in "$@"; do
-    name=$(basename "$program")
-    case $program in
-    /*) ;;
-    *) program=./$program ;;
-    esac
-    "$program" >"$log" 2>&1
-    status=$?
+# add_up PROGRAM: shows what it printed, and counts it.
+add_up() {
+    name=$(basename "$1")
+    log=$logs/$name
     cat "$log"
-    good=$(total PASSED)
-    bad=$(total FAILED)
+    status=$(cat "$log.status")
+    good=$(total PASSED "$log")
+    bad=$(total FAILED "$log")
     if [ -z "$good$bad" ]; then
         echo "$name: ended with status $status and printed no totals"
         bad=1
@@ -43,7 +40,25 @@ for program in "$@"; do
     passed=$((passed + ${good:-0}))
     failed=$((failed + ${bad:-0}))
     [ "${bad:-0}" = 0 ] || failures="$failures $name"
+}
+
+# As many at a time as there are processors; shown in order, each as soon as it and those before it have ended.
+{
+    printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
+    case $1 in /*) program=$1 ;; *) program=./$1 ;; esac
+    log=$2/$(basename "$1")
+    "$program" >"$log" 2>&1
+    echo "$?" >"$log.part"
+    mv "$log.part" "$log.status"' sh PROGRAM "$logs"
+    : >"$logs/.all"
+} &
+for program in "$@"; do
+    log=$logs/$(basename "$program")
+    while [ ! -e "$log.status" ] && [ ! -e "$logs/.all" ]; do sleep 0.1; done
+    [ -e "$log.status" ] || { echo unknown >"$log.status" && : >>"$log"; }
+    add_up "$program"
 done
+wait
 
 configuration=$(basename "$BUILD")
 if [ "$configuration" = sanitize ] || [ "$configuration" = tsan ]; then
