@@ -68,6 +68,9 @@ static void test_ee(const swept_interval *interval, const uint32_t pair[2], cont
     narrow_phase_test_ee(interval, pair[0], pair[1], lane);
 }
 
+/* The host is asked after so many candidates. */
+enum { CANDIDATES_AT_ONCE = 1024 };
+
 /* A lane's share of either list. */
 static void test_share(void *data, uint32_t index) {
     const testing *t = data;
@@ -78,8 +81,11 @@ static void test_share(void *data, uint32_t index) {
         const candidate_list *list = &t->candidates->lists[kind];
         size_t begin = list->count * index / d->traversal.lane_count;
         size_t end = list->count * (index + 1) / d->traversal.lane_count;
-        for (size_t i = begin; i < end && !lane->out_of_memory; i++)
+        for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+            double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
+            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(d->context, share)) return;
             (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
+        }
     }
     narrow_phase_finish(interval, lane);
 }
@@ -87,6 +93,8 @@ static void test_share(void *data, uint32_t index) {
 cscd_status candidates_test(const candidates *c, interval_search *search) {
     cscd_detector *d = search->detector;
     testing t = {c, search};
+    progress_stage(d->context, "candidates", 0.0, 1.0);
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, &t);
-    return interval_search_lanes_status(d);
+    cscd_status status = interval_search_lanes_status(d);
+    return status == CSCD_OK ? progress_status(d->context) : status;
 }

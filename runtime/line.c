@@ -11,6 +11,7 @@ struct cscd_line {
     double *x0, *x1, *reached; /* positions */
     double reach, covered;     /* covered: candidates are all pairs that come so near each other */
     bool begun;
+    double done; /* of the step at hand, by estimate: each try takes half of what is left */
     candidates candidates;
     uint8_t *states;            /* of the triangles at x0 */
     bool states_known, vouched; /* as in start_states */
@@ -144,13 +145,14 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_line_near: distance is %g, but the line was begun with a reach of %g",
                             distance, line->reach);
+    call_begin(d);
     motion m = motion_of(line);
     motion_at(&m, length, line->reached);
     interval_search search = near_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = near_collect(d, line->reached, &found);
-    if (status != CSCD_OK) return context_out_of_memory(d->context);
+    if (status != CSCD_OK) return call_fail(d, status);
     *out = found;
     return CSCD_OK;
 }
@@ -158,8 +160,10 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 /* ---- steps --------------------------------------------------------------------------------------------- */
 
 static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
-    const cscd_line *line = of;
+    cscd_line *line = of;
     cscd_counters counters = {.vf = 0};
+    progress_part(line->detector->context, line->done, 0.5 + 0.5 * line->done);
+    line->done = 0.5 + 0.5 * line->done;
     interval_search search = interval_search_begin(line->detector, from, to, line->detector->limit);
     cscd_status status = candidates_test(&line->candidates, &search);
     return status == CSCD_OK ? contact_list_collect(line->detector, &counters, out) : status;
@@ -207,10 +211,12 @@ cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, csc
     if (!(longest > 0.0 && longest <= 1.0))
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_line_max_step: longest is %g, expected a number in (0,1]", longest);
+    call_begin(d);
+    line->done = 0.0;
     motion m = motion_of(line);
     cscd_free_step step;
     status = free_step_find(d, &m, longest, test_motion, line, line->reached, &step);
-    if (status != CSCD_OK) return status == CSCD_IN_CONTACT ? status : context_out_of_memory(d->context);
+    if (status != CSCD_OK) return call_fail(d, status);
     take_step(line);
     if (end != NULL) memcpy(end, line->reached, m.vertex_count * sizeof(double[3]));
     *out = step;

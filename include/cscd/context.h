@@ -67,10 +67,10 @@ typedef struct cscd_parallel_for {
 } cscd_parallel_for;
 
 /* Called now and then, at most every few milliseconds, by functions that take long (cscd_plan_create,
- * cscd_line_begin, and of the detector _step, _check, _near and _max_step), on the thread that called them; a
- * call that is sooner done is not heard of. stage is a word or two of static storage; fraction, in [0,1], an
- * estimate of how much of the call is done, which never falls during it. False cancels the call, which then
- * fails with CSCD_CANCELLED. It must not call cscd with objects of the same context. */
+ * of the detector _step, _check, _near and _max_step, of a line _begin, _near and _max_step), on the thread
+ * that called them; a call that is sooner done is not heard of. stage is a word or two of static storage;
+ * fraction, in [0,1], an estimate of how much of the call is done, which never falls during it. False cancels
+ * the call, which then fails with CSCD_CANCELLED. It must not call cscd with objects of the same context. */
 typedef struct cscd_progress {
     bool (*report)(void *user, const char *stage, double fraction);
     void *user;

@@ -140,6 +140,27 @@ static void begin_line(run *r, const double *x0, const double *x1) {
     end_call(r, status);
 }
 
+/* Two lengths and two moments of the line begun last. */
+static void ask_line(run *r) {
+    static _Thread_local double end[SCENE_VERTICES_MAX * 3];
+    for (int i = 0; i < 2; i++) {
+        cscd_free_step step = {.length = 0.0};
+        cscd_proximities found = {NULL, 0};
+        cscd_status status;
+        do {
+            status = cscd_line_max_step(r->line, i == 0 ? 1.0 : 0.3, end, &step);
+        } while (again(r, status));
+        digest(r, &step.length, sizeof step.length);
+        if (status == CSCD_OK) digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
+        end_call(r, status);
+        do {
+            status = cscd_line_near(r->line, 0.6 * i, 0.05, &found);
+        } while (again(r, status));
+        digest(r, found.items, found.count * sizeof *found.items);
+        end_call(r, status);
+    }
+}
+
 static void run_intervals(run *r) {
     const sequence *q = r->w->sequence;
     for (uint32_t i = 0; i + 1 < q->frame_count; i++) {
@@ -148,7 +169,10 @@ static void run_intervals(run *r) {
         step(r, x0, x1);
         if (i % 3 == 1) check(r, x1);
         if (i % 5 == 2) near(r, x1);
-        if (i % 5 == 3) begin_line(r, x0, x1);
+        if (i % 5 == 3) {
+            begin_line(r, x0, x1);
+            ask_line(r);
+        }
     }
 }
 
