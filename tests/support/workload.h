@@ -27,7 +27,7 @@ typedef struct workload_result {
 } workload_result;
 
 /* Plan and detector, then over the sequence's intervals steps and, now and then, a static check, what is
- * near, the longest step and a line's beginning. Asserts nothing, so any thread may run it. */
+ * near, the longest step, and lines. Asserts nothing, so any thread may run it. */
 workload_result workload_run(cscd_context *context, const workload *w);
 
 #endif
