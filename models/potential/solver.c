@@ -1,10 +1,10 @@
 /* Time steps of implicit Euler as minimisations by Newton's method, along lines that stay free of contact. */
 #include "models/potential/solver.h"
+#include "models/recording/clock.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { NEWTON_MOST = 60, GRADIENTS_MOST = 400, HALVINGS_MOST = 40 };
 
@@ -12,15 +12,9 @@ enum { NEWTON_MOST = 60, GRADIENTS_MOST = 400, HALVINGS_MOST = 40 };
  * done: no vertex would move farther than this share of the barrier's reach. */
 static const double solve_tolerance = 3e-2, least_gain = 1e-4, done_share = 0.05;
 
-static double now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
-
 /* Time in cscd since then: of a stage and in all. */
 static void add_detection(ipc_solver *p, double since, double *stage) {
-    double spent = now_ms() - since;
+    double spent = clock_now_ms() - since;
     *stage += spent;
     p->statistics.detect_ms += spent;
 }
@@ -69,7 +63,7 @@ static double find_direction(ipc_solver *p) {
 /* The energy at the trial point, `length` along the line. */
 static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
     cscd_proximities near;
-    double since = now_ms();
+    double since = clock_now_ms();
     cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
     add_detection(p, since, &p->statistics.near_ms);
     if (status != CSCD_OK) return status;
@@ -82,7 +76,7 @@ static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
 
 /* Certified: p->trial is what the library verified, at most `longest` along the line. */
 static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
-    double since = now_ms();
+    double since = clock_now_ms();
     cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
     add_detection(p, since, &p->statistics.certify_ms);
     return status;
@@ -91,7 +85,7 @@ static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
 static cscd_status begin_line(ipc_solver *p) {
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal(p, i);
-    double since = now_ms();
+    double since = clock_now_ms();
     cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
     add_detection(p, since, &p->statistics.begin_ms);
     if (status == CSCD_OK) p->statistics.candidates += cscd_line_candidate_count(p->line);
@@ -168,7 +162,7 @@ void ipc_solver_end_step(ipc_solver *p) {
 }
 
 cscd_status ipc_solver_advance(ipc_solver *p) {
-    double since = now_ms();
+    double since = clock_now_ms();
     bool done = false;
     cscd_status status = CSCD_OK;
     ipc_solver_begin_step(p);
@@ -176,6 +170,6 @@ cscd_status ipc_solver_advance(ipc_solver *p) {
     if (status != CSCD_OK) return status;
     p->statistics.unfinished += !done;
     ipc_solver_end_step(p);
-    p->statistics.total_ms += now_ms() - since;
+    p->statistics.total_ms += clock_now_ms() - since;
     return CSCD_OK;
 }

@@ -1,10 +1,10 @@
 /* Cloth that nothing passes through: a solver for cloth on the public API of cscd alone, frame by frame. */
 #include "models/textile/cloth_simulation.h"
+#include "models/recording/clock.h"
 #include "models/softbody/vector.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* In spacings. Flat cloth has no features nearer than 0.7 that do not share a vertex. */
 static const double thickness = 0.3, separation = 0.03, reach = 0.45;
@@ -18,12 +18,6 @@ double cloth_thickness(const cloth_simulation *c) {
 
 double cloth_separation(const cloth_simulation *c) {
     return ldexp(c->safe.separation, -2 * (int)c->safe.counts.tightest);
-}
-
-static double now_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 static bool explain(const cloth_simulation *c, cscd_status status, io_error *error) {
@@ -137,19 +131,19 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3,
            free_size = (size_t)c->garment.vertex_count * 3;
     cloth_statistics *s = &c->statistics;
-    double begin = now_ms(), length;
+    double begin = clock_now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
     cscd_proximities near;
     cscd_status status = cscd_detector_near(c->safe.detector, c->start, reach * c->spacing, &near);
-    s->near_ms += now_ms() - begin;
+    s->near_ms += clock_now_ms() - begin;
     if (!explain(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);
     want(c);
 
-    double found = now_ms();
+    double found = clock_now_ms();
     uint64_t steps_before = c->safe.counts.steps;
     status = safe_motion_find(&c->safe, c->start, c->positions, &length);
-    s->step_ms += now_ms() - found;
+    s->step_ms += clock_now_ms() - found;
     if (!explain(c, status, error)) return false;
     for (size_t i = 0; i < free_size; i++)
         c->velocities[i] += (c->positions[i] - c->target[i]) / c->scene->frame_seconds;
@@ -160,6 +154,6 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     s->motion = c->safe.counts;
     if (s->motion.steps - steps_before > s->most_rounds) s->most_rounds = s->motion.steps - steps_before;
     s->waited += 1.0 - length;
-    s->total_ms += now_ms() - begin;
+    s->total_ms += clock_now_ms() - begin;
     return true;
 }
