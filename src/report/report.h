@@ -8,10 +8,10 @@
 typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
 
 enum {
-    REPORT_POSITIONS_MAX = 4000000,       /* of vertices, over all frames kept, the scenery's included */
-    REPORT_INTERVAL_CONTACTS_MAX = 4000,  /* kept of one interval: the earliest */
-    REPORT_CONTACTS_MAX = 100000,         /* kept in all: the first */
-    REPORT_MARKS_MAX = 16 * 1024 * 1024,  /* bytes of orientations, and of detector points: else left out */
+    REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
+    REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
+    REPORT_CONTACTS_MAX = 100000,        /* kept in all: the first */
+    REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
 };
 
 /* A surface that is only drawn. */
@@ -31,8 +31,8 @@ typedef struct report_options {
     bool oriented;         /* the detector's method has detector points and orientations */
     report_scenery scenery;
 
-    /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those of
-     * a, those of b. NULL: the file has the mesh's own numbers. */
+    /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those
+     * of a, those of b. NULL: the file has the mesh's own numbers. */
     void (*file_vertices)(void *user, const cscd_contact *contact, uint32_t vertices[4]);
     void *file_vertices_user;
 } report_options;
