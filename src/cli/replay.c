@@ -95,7 +95,7 @@ static bool open_outputs(replay *r, io_error *error) {
     if (r->options->contacts_path != NULL &&
         !contact_file_open(r->options->contacts_path, r->options->min_separation > 0.0, &r->contacts, error))
         return false;
-    return summary_open(r->options->json_path, r->recording.mesh, &r->summary, error);
+    return summary_open(r->options->json_path, false, r->recording.mesh, &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
@@ -254,7 +254,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};
-    written = summary_close(r->summary, &ending, error) && written;
+    written = summary_close(r->summary, &ending, NULL, error) && written;
     r->summary = NULL;
     return written;
 }
