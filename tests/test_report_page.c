@@ -1,4 +1,5 @@
-/* What a report holds, read back: scene, plan and frames of every kind of report, and names that are markup. */
+/* What a report holds, read back: scene, plan and frames of every kind of report, and names that are markup.
+ */
 #include "src/report/template.h"
 #include "tests/support/page_reader.h"
 #include "tests/support/report_rig.h"
