@@ -101,6 +101,7 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_integer(out, "triangles", cscd_mesh_triangle_count(mesh));
     json_integer(out, "components", cscd_mesh_component_count(mesh));
     json_number(out, "unit", r->unit);
+    json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
     json_integer(out, "first", r->options.first);
     json_integer(out, "last", r->last);
     write_frames(out, r, true);
