@@ -30,6 +30,7 @@ typedef struct report_options {
     int up_axis;           /* which points up: 1 for y; anything else is z */
     uint32_t first, last;  /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
     bool oriented;         /* the detector's method has detector points and orientations */
+    int up_axis;           /* of the picture: 1: y, 2: z; 0 stands for z */
     report_scenery scenery;
 
     /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those
