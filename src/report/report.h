@@ -27,7 +27,6 @@ typedef struct report_options {
     const char *title, *generator;
     const cscd_mesh *mesh; /* NULL for REPORT_COMPARE, which shows no surface */
     const cscd_plan *plan; /* NULL: none */
-    int up_axis;           /* which points up: 1 for y; anything else is z */
     uint32_t first, last;  /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
     bool oriented;         /* the detector's method has detector points and orientations */
     int up_axis;           /* of the picture: 1: y, 2: z; 0 stands for z */
