@@ -44,7 +44,7 @@ CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-cont
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
-TOOL_LIBS  := -lpng -lz $(CORE_LIBS)
+TOOL_LIBS  := -lpng -lz -ljson-c $(CORE_LIBS)
 TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 
 CORE_SOURCES    := $(filter-out runtime/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c, \
