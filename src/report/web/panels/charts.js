@@ -54,7 +54,7 @@ export function create(container, report, store, player) {
   if (container.hidden) return;
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
-  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map(createFigure);
+  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) => createFigure({ ...figure, first, last }));
   const band = compares ? null : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
   let plots = [];
   let hovered = null;

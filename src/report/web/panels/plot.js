@@ -108,14 +108,14 @@ export function createPlot(host, plot) {
       },
       axes: axes(plot.format, logarithmic),
       series: seriesOptions(plot),
+      hooks: { ready: [moveLines], setScale: [moveLines] },
     };
     chart = new uPlot(options, data(), host);
     chart.over.append(hoverLine, timeLine);
-    moveLines();
   }
 
   function moveLine(line, at) {
-    const inside = at !== null && at >= first + range[0] && at <= first + range[1];
+    const inside = chart.status === 1 && at !== null && at >= first + range[0] && at <= first + range[1];
     line.hidden = !inside;
     if (inside) line.style.transform = `translateX(${chart.valToPos(at, 'x')}px)`;
   }
@@ -143,7 +143,6 @@ export function createPlot(host, plot) {
     setRange(begin, end) {
       range = [begin, end];
       chart.setData(data());
-      moveLines();
     },
     setLogarithmic(on) {
       logarithmic = on;
@@ -153,7 +152,6 @@ export function createPlot(host, plot) {
       if (chart.width === width()) return;
       chart.setSize({ width: width(), height });
       chart.setData(data());
-      moveLines();
     },
     /** After a change of theme. */
     recolour: () => chart.redraw(false, true),
