@@ -26,7 +26,7 @@ function createTable() {
     element('th', { scope: 'col', text: 'no.' }),
     element('th', { scope: 'col', text: 'kind' }),
     element('th', { scope: 'col', text: 'features' }),
-    element('th', { scope: 'col', class: 'number' }, toi),
+    element('th', { scope: 'col' }, toi),
     element('th', { scope: 'col', text: 'position x, y, z' }));
   const table = element('table', { 'aria-label': 'Contacts of this interval' }, element('thead', {}, head), element('tbody'));
   return { table, toi };
@@ -35,7 +35,7 @@ function createTable() {
 function makeRow(select) {
   const button = element('button', { type: 'button' });
   const kind = element('td', {}, element('span'), element('span'));
-  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td', { class: 'number' }), element('td', { class: 'number' }));
+  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td'), element('td'));
   row.addEventListener('click', () => select(Number(row.dataset.contact)));
   return row;
 }

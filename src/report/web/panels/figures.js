@@ -36,8 +36,8 @@ function contactFigure({ summary: { summary } }, first, last, find) {
   return {
     title: 'Contacts per interval', summary: words, stacked: true, height: 112, read: integer, format: tick,
     series: [
-      { label: 'VF', colour: '--vf', line: '--vf-line', values: vf },
-      { label: 'EE', colour: '--ee', line: '--ee-line', values: ee },
+      { label: 'VF', colour: '--vf-area', values: vf },
+      { label: 'EE', colour: '--ee-area', values: ee },
     ],
     total: both,
   };

@@ -52,13 +52,13 @@ function columnsOf(plot, from, to, pixels) {
 
 function seriesOptions({ series, stacked }) {
   const steps = uPlot.paths.stepped({ align: 1 });
-  const options = series.map(({ label, colour, line, dash }) => ({
+  const options = series.map(({ label, colour, dash }) => ({
     label,
     paths: steps,
     points: { show: false },
-    width: stacked ? 1 : 2,
+    width: stacked ? 0 : 1.75,
     dash,
-    stroke: () => colourOf(line ?? colour),
+    stroke: () => colourOf(colour),
     fill: stacked ? () => colourOf(colour) : undefined,
   }));
   return [{}, ...(stacked ? options.reverse() : options)];
@@ -77,7 +77,7 @@ function axes(format, logarithmic) {
 /**
  * @param {HTMLElement} host
  * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
- *          series: {label: string, colour: string, line?: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
+ *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
  *   values: of interval first, first + 1, ...
  */
 export function createPlot(host, plot) {
