@@ -1,5 +1,6 @@
 /** What the colours and marks mean, in words and numbers, over the view. */
 
+import { onCalmly } from '../controls/calm.js';
 import { element } from '../controls/dom.js';
 import { intervalOf } from '../data/report.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
@@ -133,6 +134,6 @@ export function createLegend(container, scene, store, painter) {
     box.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };
-  store.on(['time', 'colour', 'contacts'], show);
+  onCalmly(store, ['time', 'colour', 'contacts'], show);
   show(store.get());
 }

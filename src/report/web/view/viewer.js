@@ -6,11 +6,12 @@ import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
 import { onClick, pickTriangle } from './picking.js';
-import { Resolution } from './resolution.js';
+import { Resolution, rendersInSoftware } from './resolution.js';
 import { Space, sphereOf } from './space.js';
 import { Surface } from './surface.js';
 
 const SCENERY = { light: [214, 216, 220], dark: [84, 88, 98] };
+const GROUND = { light: '#f1f3f6', dark: '#1b212b' };
 const FAR_TRAVELLED = 2.5; // body lengths
 
 export class Viewer {
@@ -31,19 +32,22 @@ export class Viewer {
 
   makeRenderer() {
     const canvas = document.createElement('canvas');
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power', stencil: false });
+    const software = rendersInSoftware();
+    const context = canvas.getContext('webgl2', { alpha: false, antialias: !software, stencil: false });
+    this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are as on the screen throughout
     this.canvas = canvas;
     for (const [name, value] of [['role', 'img'], ['aria-label', '3D view'], ['tabindex', '0']]) {
       canvas.setAttribute(name, value);
     }
     this.container.append(canvas);
-    this.resolution = new Resolution(this);
+    this.resolution = new Resolution(this, software);
   }
 
   makeScene() {
     const { data } = this;
     this.space = new Space(data.positions);
+    this.space.setUp(this.store.get().up === 'y');
     this.scene = new Scene();
     this.painter = new Painter(data);
     this.body = new Surface(data);
@@ -78,6 +82,7 @@ export class Viewer {
     redraw(['time'], () => this.resolution.moving());
     redraw(['colour', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
     redraw(['theme'], () => this.setTheme());
+    redraw(['up'], () => this.setUp());
     new ResizeObserver(() => this.resize()).observe(this.container);
     onClick(this.canvas, (x, y) => this.pick(x, y));
     this.canvas.addEventListener('keydown', (event) => {
@@ -124,8 +129,8 @@ export class Viewer {
     this.invalidate();
   }
 
-  setUp(yUp) {
-    this.space.setUp(yUp);
+  setUp() {
+    this.space.setUp(this.store.get().up === 'y');
     this.measure();
     this.home();
   }
@@ -136,8 +141,7 @@ export class Viewer {
 
   setTheme() {
     const { theme } = this.store.get();
-    const ground = getComputedStyle(this.container).getPropertyValue('--view-ground').trim();
-    this.scene.background = new Color().setStyle(ground || (theme === 'dark' ? '#15181e' : '#f4f5f7'), LinearSRGBColorSpace);
+    this.scene.background = new Color().setStyle(GROUND[theme], LinearSRGBColorSpace);
     if (this.scenery !== null) {
       const colour = SCENERY[theme];
       const rgb = new Uint8Array(this.data.scenery.triangles.length);
