@@ -1,11 +1,11 @@
 /** The contacts of the current interval: which features meet, when and where. */
+import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from './dom.js';
 import { counted, decimal, integer } from './format.js';
 import { extent, finder, intervalAt } from './intervalof.js';
 import { createRows } from './rows.js';
 
 const KINDS = ['VF', 'EE'];
-const PLAYING_PAUSE = 200; /* milliseconds between two lists while playing */
 
 function featureWords(contacts, contact) {
   const numbers = contacts.fileVertices ?? contacts.vertices;
@@ -14,10 +14,10 @@ function featureWords(contacts, contact) {
 }
 
 /** Decimals that tell positions apart: six digits of the largest coordinate. */
-function positionDecimals(points) {
+function positionDecimals(points, unit) {
   let largest = 0;
   for (const value of points) largest = Math.max(largest, Math.abs(value));
-  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest || 1))));
+  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest * unit || 1))));
 }
 
 function createTable() {
@@ -26,7 +26,7 @@ function createTable() {
     element('th', { scope: 'col', text: 'no.' }),
     element('th', { scope: 'col', text: 'kind' }),
     element('th', { scope: 'col', text: 'features' }),
-    element('th', { scope: 'col', class: 'number' }, toi),
+    element('th', { scope: 'col' }, toi),
     element('th', { scope: 'col', text: 'position x, y, z' }));
   const table = element('table', { 'aria-label': 'Contacts of this interval' }, element('thead', {}, head), element('tbody'));
   return { table, toi };
@@ -35,12 +35,12 @@ function createTable() {
 function makeRow(select) {
   const button = element('button', { type: 'button' });
   const kind = element('td', {}, element('span'), element('span'));
-  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td', { class: 'number' }), element('td', { class: 'number' }));
+  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td'), element('td'));
   row.addEventListener('click', () => select(Number(row.dataset.contact)));
   return row;
 }
 
-function fillRow(row, contacts, contact, number, decimals) {
+function fillRow(row, { contacts, unit, decimals }, contact, number) {
   const [first, kind, features, toi, position] = row.cells;
   const button = first.firstChild;
   row.dataset.contact = String(contact);
@@ -52,7 +52,7 @@ function fillRow(row, contacts, contact, number, decimals) {
   features.title = features.textContent;
   setText(toi, decimal(contacts.toi[contact], 6));
   toi.title = toi.dataset.value = String(contacts.toi[contact]);
-  const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)];
+  const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)].map((value) => value * unit);
   setText(position, point.map((value) => value.toFixed(decimals)).join(', '));
   position.title = position.dataset.value = point.join(' ');
 }
@@ -104,7 +104,8 @@ export function create(container, report, store, player) {
   const [first, last] = extent(report);
   const find = finder(report.summaries[0]?.summary);
   const order = { kind: 'all', descending: false };
-  const decimals = positionDecimals(contacts.point);
+  const { unit } = report.scene;
+  const data = { contacts, unit, decimals: positionDecimals(contacts.point, unit) };
   const counts = createCounts();
   const { table, toi } = createTable();
   const scroll = element('div', { class: 'scroll' }, table);
@@ -114,7 +115,6 @@ export function create(container, report, store, player) {
   let begin = 0;
   let current = -1;
   let listed = -1;
-  let pending = 0;
 
   const select = (contact) => player.select(contact);
   const rows = createRows(scroll, table, {
@@ -123,7 +123,7 @@ export function create(container, report, store, player) {
     make: () => makeRow(select),
     fill(row, index) {
       const contact = shown[index];
-      fillRow(row, contacts, contact, contact - begin + 1, decimals);
+      fillRow(row, data, contact, contact - begin + 1);
       row.setAttribute('aria-current', String(store.get().selected === contact));
     },
   });
@@ -138,7 +138,7 @@ export function create(container, report, store, player) {
     empty.say(shown.length === 0 && kept > 0 ? 'No contact of this kind in this interval.' : none, before, after);
   }
 
-  function list(keepPlace = false) {
+  function list() {
     listed = current;
     const range = contacts.range(current);
     begin = range[0];
@@ -146,28 +146,15 @@ export function create(container, report, store, player) {
     sayWhatIsMissing(range[1] - begin, find(current));
     scroll.hidden = shown.length === 0;
     empty.box.hidden = shown.length > 0;
-    if (!keepPlace) rows.toTop();
+    rows.toTop();
     rows.show(shown.length);
   }
 
-  function listSoon() {
-    if (pending === 0) {
-      pending = setTimeout(() => {
-        pending = 0;
-        if (listed !== current) list();
-      }, PLAYING_PAUSE);
-    }
-  }
-
-  function update({ time, playing }) {
-    const interval = intervalAt(time, first, last);
-    if (interval !== current) {
-      current = interval;
-      counts.say(find(interval));
-    }
+  function update({ time }) {
+    current = intervalAt(time, first, last);
     if (listed === current) return;
-    if (playing) listSoon();
-    else list();
+    counts.say(find(current));
+    list();
   }
 
   function follow({ selected }) {
@@ -187,7 +174,7 @@ export function create(container, report, store, player) {
     list();
   });
   container.append(heading('Contacts of this interval', counts.box), element('div', { class: 'section-head' }, filter), capped, empty.box, scroll);
-  store.on(['time', 'playing'], update);
+  onCalmly(store, ['time'], update);
   store.on(['selected'], follow);
-  update({ ...store.get(), playing: false });
+  update(store.get());
 }
