@@ -14,6 +14,30 @@ ARGUMENTS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--ena
              "--disable-dev-shm-usage", "--no-first-run", "--disable-extensions", "--disable-background-networking",
              "--disable-component-update", "--force-color-profile=srgb", f"--window-size={WIDTH},{HEIGHT}"]
 BAD_LEVELS = {"WARNING", "SEVERE"}
+# What a table says: a cell that spans rows is in each of them, and hidden rows are left out.
+CELLS = """
+const contentOf = (cell) => {
+  const exact = cell.dataset.value;
+  return exact === undefined || exact.trim() === '' || Number.isNaN(Number(exact)) ? cell.textContent.trim() : Number(exact);
+};
+const cellsOf = (table) => {
+  const rows = [], spanning = [];
+  for (const row of table.rows) {
+    if (row.getAttribute('aria-hidden') === 'true') continue;
+    const cells = [...row.cells], out = [];
+    for (let column = 0; cells.length > 0 || spanning[column]?.rows > 0; column++) {
+      if (spanning[column]?.rows > 0) spanning[column].rows--;
+      else {
+        const cell = cells.shift();
+        spanning[column] = {rows: cell.rowSpan - 1, content: contentOf(cell)};
+      }
+      out.push(spanning[column].content);
+    }
+    rows.push(out);
+  }
+  return rows;
+};
+"""
 
 
 class Failure(AssertionError):
@@ -204,10 +228,7 @@ class Page:
 
     def table(self, name):
         """The rows of a table, the header first: of each cell its text, or the exact number that it carries."""
-        return self.script(
-            "return [...arguments[0].rows].map((row) => [...row.cells].map((cell) =>"
-            " cell.dataset.value === undefined ? cell.textContent.trim() : Number(cell.dataset.value)));",
-            self.element("table", name))
+        return self.script(CELLS + "return cellsOf(arguments[0]);", self.element("table", name))
 
     def markers(self):
         return self.script("return window.cscd.viewer.markers();")

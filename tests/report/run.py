@@ -54,6 +54,7 @@ class Context:
         """Of the page that is open: no complaint on the console, nothing fetched."""
         if self._page is not None and self._page.path is not None:
             self._page.check_quiet()
+            self._page.path = None
 
     def close(self):
         if self._page is not None:
@@ -64,11 +65,11 @@ def run(scenario, context, log_path):
     """The seconds it took; the log is written whole, at the end."""
     start = time.monotonic()
     text = ""
-    try:
-        scenario(context)
-        context.check_quiet()
-    except Exception:  # whatever it is, the next scenario runs
-        text = traceback.format_exc()
+    for step in (lambda: scenario(context), context.check_quiet):
+        try:
+            step()
+        except Exception:  # whatever it is, the next scenario runs
+            text += traceback.format_exc()
     with open(log_path, "w", encoding="utf-8") as file:
         file.write(text)
     print(f"{'FAILED' if text else 'passed'} {scenario.__name__} ({time.monotonic() - start:.1f} s)", flush=True)

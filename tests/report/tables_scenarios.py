@@ -2,7 +2,7 @@
 import json
 
 from controls_scenarios import busiest, open_pawn
-from page import expect, expect_equal
+from page import CELLS, expect, expect_equal
 from report_file import Report
 
 STAGES = (("BVH update", "update_ms"), ("traversal", "traversal_ms"), ("contact", "contact_ms"), ("proof", "proof_ms"),
@@ -43,10 +43,9 @@ def check_interval(header, row, interval):
 
 def shown_intervals(page):
     """The rows that are in the document, by frame; the table brings others when it is scrolled."""
-    rows = page.script(
-        "return [...arguments[0].rows].filter((row) => row.dataset.frame !== undefined).map((row) =>"
-        " [Number(row.dataset.frame), [...row.cells].map((cell) => cell.dataset.value === undefined ?"
-        " cell.textContent.trim() : Number(cell.dataset.value))]);", page.element("table", "Intervals"))
+    rows = page.script(CELLS + "return [...arguments[0].tBodies[0].rows].filter((row) => row.dataset.frame !== undefined)"
+                       ".map((row) => [Number(row.dataset.frame), [...row.cells].map(contentOf)]);",
+                       page.element("table", "Intervals"))
     return {frame: cells for frame, cells in rows}
 
 
