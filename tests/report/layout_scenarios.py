@@ -52,6 +52,7 @@ def narrow_windows_have_every_control(context):
 
 def fine_screens_get_fine_pictures(context):
     _, page = open_pawn(context, ratio=2)
+    page.rest()
     width, client = page.script("const c = arguments[0]; return [c.width, c.getBoundingClientRect().width];",
                                 page.element("image", "3D view"))
     expect(abs(width - 2 * client) <= 2, f"{width} pixels for {client} of the page, at two a pixel")

@@ -105,6 +105,13 @@ class Page:
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()));")
 
+    def rest(self):
+        """Until the view is drawn as finely as the screen is; in motion it may be coarser."""
+        canvas = self.element("image", "3D view")
+        finest = "return arguments[0].width >= Math.floor(arguments[0].clientWidth * devicePixelRatio);"
+        self.wait(lambda: self.script(finest, canvas), "the view stays coarse")
+        self.settle()
+
     def wait(self, condition, text, seconds=10.0):
         """Until condition() is true; it is asked often."""
         end = time.monotonic() + seconds

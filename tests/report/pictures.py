@@ -63,7 +63,7 @@ class Pictures:
     def view(self, name=None):
         """Keeps the 3D view for comparisons, and saves it when it has a name. Its pixels are those of the page."""
         self.page.script("window.scrollTo(0, 0);")
-        self.page.settle()
+        self.page.rest()
         left, top, width, height = self.page.view_box()
         data = self._capture({"x": left, "y": top, "width": width, "height": height, "scale": 1})
         if name is not None:
