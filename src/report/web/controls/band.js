@@ -1,0 +1,53 @@
+/** The states of all intervals as a strip along the slider, with a tick where there are contacts. */
+
+import { element } from './dom.js';
+
+/** Told apart by height as well as by colour. */
+const STATES = {
+  clean: { colour: [0, 158, 115], height: 0.25 },
+  contact: { colour: [230, 159, 0], height: 0.6 },
+  penetrating: { colour: [213, 94, 0], height: 1 },
+  unknown: { colour: [140, 140, 140], height: 0.6 },
+};
+
+const stateOf = (row) => STATES[row?.state] ?? STATES.unknown;
+
+/** Contacts are ticks above the strip, higher for more of them. */
+function drawTicks(context, counts, place, height, ink) {
+  const most = Math.max(1, ...counts);
+  context.fillStyle = ink;
+  counts.forEach((count, i) => {
+    if (count === 0) return;
+    const tall = Math.max(2, height * Math.sqrt(count / most));
+    context.fillRect(place(i), height - tall, Math.max(1, place(i + 1) - place(i) - 0.5), tall);
+  });
+}
+
+export function createBand(report, store, player) {
+  const canvas = element('canvas', { class: 'band', 'aria-hidden': 'true' });
+  const rows = new Map((report.summaries[0]?.summary.intervals ?? []).map((row) => [row.frame, row]));
+  const intervals = player.last - player.first;
+
+  function draw() {
+    const density = window.devicePixelRatio || 1;
+    const { clientWidth, clientHeight } = canvas;
+    if (clientWidth === 0) return;
+    canvas.width = Math.round(clientWidth * density);
+    canvas.height = Math.round(clientHeight * density);
+    const context = canvas.getContext('2d');
+    context.scale(density, density);
+    const place = (i) => (i / intervals) * clientWidth;
+    const strip = Math.min(6, clientHeight / 2);
+    const ink = getComputedStyle(canvas).color;
+    drawTicks(context, [...player.counts], place, clientHeight - strip - 1, ink);
+    for (let i = 0; i < intervals; i++) {
+      const { colour, height } = stateOf(rows.get(player.first + i));
+      context.fillStyle = `rgb(${colour.join(' ')})`;
+      context.fillRect(place(i), clientHeight - strip * height, place(i + 1) - place(i) + 0.3, strip * height);
+    }
+  }
+
+  new ResizeObserver(draw).observe(canvas);
+  store.on(['theme'], () => requestAnimationFrame(draw));
+  return canvas;
+}

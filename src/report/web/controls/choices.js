@@ -1,0 +1,100 @@
+/** What the view shows: one colouring, and the marks over it. */
+
+import { element } from './dom.js';
+
+export const COLOURS = [
+  { value: 'plain', name: 'Plain' },
+  { value: 'charge', name: 'Charge', array: 'charge' },
+  { value: 'equalized', name: 'Equalized charge', array: 'equalized' },
+  { value: 'region', name: 'Region', array: 'region' },
+  { value: 'orientation', name: 'Orientation', array: 'orientation' },
+  { value: 'heat', name: 'Contact heat', array: 'heat' },
+];
+
+const NO_PLAN = 'The recording was searched without regions, so the report has none';
+const REASONS = {
+  charge: 'The report has no charge: the mesh is not closed, or the method needs none',
+  equalized: 'The report has no charge: the mesh is not closed, or the method needs none',
+  region: NO_PLAN,
+  orientation: 'The report has no orientations: the method has none, or the recording is too long to keep them',
+  heat: 'The report has no contacts: nothing was replayed',
+};
+
+/** @returns {{key: string, name: string, letter: string, missing: string|null}[]} */
+export function marksOf(scene) {
+  const noContacts = scene.contacts === null ? REASONS.heat : null;
+  const noPoints = scene.detectorPoints === null && scene.plan === null ? NO_PLAN : null;
+  return [
+    { key: 'contacts', name: 'Contacts', letter: 'C', missing: noContacts },
+    { key: 'trail', name: 'Trail', letter: 'T', missing: noContacts, title: 'Contacts of the 8 intervals before, fading' },
+    { key: 'through', name: 'Through the surface', letter: 'X', missing: noContacts, title: 'Hidden contacts, faintly' },
+    { key: 'points', name: 'Detector points', letter: 'D', missing: noPoints, title: 'From where each region is seen' },
+    { key: 'cuts', name: 'Region cuts', letter: 'R', missing: scene.region === null ? NO_PLAN : null },
+    { key: 'edges', name: 'Edges', letter: 'E', missing: null },
+    {
+      key: 'scenery',
+      name: 'Surroundings',
+      letter: 'B',
+      missing: scene.scenery === null ? 'The report was written without --scenery' : null,
+    },
+  ];
+}
+
+export const colourMissing = (scene, { array, value }) =>
+  array !== undefined && scene[array] === null ? REASONS[value] : null;
+
+function choice(input, name, key, title) {
+  const label = element('label', { class: 'choice', title }, input, name);
+  if (input.disabled) label.setAttribute('data-disabled', '');
+  label.append(element('kbd', { 'aria-hidden': 'true' }, key));
+  return label;
+}
+
+function colourChoices(scene, store) {
+  const group = element('fieldset', { class: 'choices', role: 'radiogroup', 'aria-label': 'Colour by' });
+  group.append(element('legend', {}, 'Colour by'));
+  COLOURS.forEach((colour, i) => {
+    const missing = colourMissing(scene, colour);
+    const input = element('input', {
+      type: 'radio',
+      name: 'colour',
+      value: colour.value,
+      'aria-label': colour.name,
+      disabled: missing !== null,
+      title: missing,
+    });
+    const update = (state) => {
+      input.checked = state.colour === colour.value;
+    };
+    input.addEventListener('change', () => store.set({ colour: colour.value }));
+    store.on(['colour'], update);
+    update(store.get());
+    group.append(choice(input, colour.name, String(i + 1), missing));
+  });
+  return group;
+}
+
+function markChoices(scene, store) {
+  const group = element('fieldset', { class: 'choices', 'aria-label': 'Show' });
+  group.append(element('legend', {}, 'Show'));
+  for (const { key, name, letter, missing, title = null } of marksOf(scene)) {
+    const input = element('input', {
+      type: 'checkbox',
+      'aria-label': name,
+      disabled: missing !== null,
+      title: missing ?? title,
+    });
+    const update = (state) => {
+      input.checked = missing === null && state[key];
+    };
+    input.addEventListener('change', () => store.set({ [key]: input.checked }));
+    store.on([key], update);
+    update(store.get());
+    group.append(choice(input, name, letter, missing ?? title));
+  }
+  return group;
+}
+
+export function createChoices(container, scene, store) {
+  container.append(colourChoices(scene, store), markChoices(scene, store));
+}

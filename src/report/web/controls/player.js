@@ -1,0 +1,112 @@
+/** Moves the time: playing, steps, jumps. All of them through the store. */
+
+const SPEEDS = [1, 2, 5, 10, 15, 24, 30, 60];
+
+/** Contacts an interval, as the summary counts them, and where there are any. */
+function contactCounts(report) {
+  const { first, last } = report.scene;
+  const counts = new Uint32Array(Math.max(0, last - first));
+  for (const row of report.summaries[0]?.summary.intervals ?? []) {
+    if (row.frame >= first && row.frame < last) counts[row.frame - first] = row.vf + row.ee;
+  }
+  return counts;
+}
+
+export function createPlayer(report, store) {
+  const { first, last } = report.scene;
+  const counts = contactCounts(report);
+  const withContacts = [];
+  counts.forEach((count, i) => {
+    if (count > 0) withContacts.push(first + i);
+  });
+  let most = null;
+  for (const frame of withContacts) if (most === null || counts[frame - first] > counts[most - first]) most = frame;
+
+  let request = null;
+  let then = 0;
+
+  function advance(now) {
+    request = null;
+    const state = store.get();
+    if (!state.playing) return;
+    const elapsed = Math.min(now - then, 250); // a page in the background does not leap
+    then = now;
+    let time = state.time + Math.max(0, elapsed / 1000) * state.speed;
+    if (time >= last) {
+      if (!state.loop) {
+        store.set({ time: last, playing: false });
+        return;
+      }
+      time = first + ((time - first) % (last - first));
+    }
+    store.set({ time, selected: null });
+    request = requestAnimationFrame(advance);
+  }
+
+  store.on(['playing'], ({ playing }) => {
+    if (playing && request === null) {
+      then = performance.now();
+      request = requestAnimationFrame(advance);
+    }
+  });
+
+  const clamp = (time) => Math.min(last, Math.max(first, time));
+  const show = (time) => store.set({ time: clamp(time), playing: false, selected: null });
+  const player = {
+    first,
+    last,
+    speeds: SPEEDS,
+    counts,
+    withContacts,
+    most,
+    play() {
+      if (last === first) return;
+      store.set(store.get().time >= last ? { time: first, playing: true, selected: null } : { playing: true });
+    },
+    pause() {
+      store.set({ playing: false, time: store.get().time });
+    },
+    toggle() {
+      if (store.get().playing) player.pause();
+      else player.play();
+    },
+    stepTo: show,
+    toFirst: () => show(first),
+    toLast: () => show(last),
+    previous: () => show(Math.ceil(store.get().time) - 1),
+    next: () => show(Math.floor(store.get().time) + 1),
+    /** null where there is none. */
+    frameWithContactsBefore: (time) => withContacts.findLast((frame) => frame < Math.floor(time)) ?? null,
+    frameWithContactsAfter: (time) => withContacts.find((frame) => frame > Math.floor(time)) ?? null,
+    previousWithContacts() {
+      const frame = player.frameWithContactsBefore(store.get().time);
+      if (frame !== null) show(frame);
+    },
+    nextWithContacts() {
+      const frame = player.frameWithContactsAfter(store.get().time);
+      if (frame !== null) show(frame);
+    },
+    toMost() {
+      if (most !== null) show(most);
+    },
+    /** To the moment of one contact; null selects none. */
+    select(contact) {
+      if (contact === null) {
+        store.set({ selected: null });
+        return;
+      }
+      const { interval, toi } = report.scene.contacts;
+      store.set({ selected: contact, time: clamp(interval[contact] + toi[contact]), playing: false });
+    },
+    faster: () => changeSpeed(1),
+    slower: () => changeSpeed(-1),
+  };
+
+  function changeSpeed(direction) {
+    const { speed } = store.get();
+    const next = direction > 0 ? SPEEDS.find((value) => value > speed) : SPEEDS.findLast((value) => value < speed);
+    if (next !== undefined) store.set({ speed: next });
+  }
+
+  return player;
+}

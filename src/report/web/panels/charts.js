@@ -1,0 +1,116 @@
+/** The charts under the view: they show every interval, move with the playback, and a click on them goes there. */
+import { element, heading } from './dom.js';
+import { createFigure } from './figure.js';
+import { compareFigures, replayFigures } from './figures.js';
+import { extent, finder, intervalAt } from './intervalof.js';
+import { followPointer } from './pointer.js';
+import { createStateBand } from './stateband.js';
+
+const ZOOMED_FROM = 60; /* fewer intervals need no zoom */
+
+/** What is shown of a long recording, as numbers of intervals. */
+function createRange(count, changed) {
+  let [begin, end] = [0, count];
+  const clamp = (from, length) => {
+    const size = Math.max(20, Math.min(count, Math.round(length)));
+    begin = Math.max(0, Math.min(count - size, Math.round(from)));
+    end = begin + size;
+    changed(begin, end);
+  };
+  return {
+    get: () => [begin, end],
+    all: () => clamp(0, count),
+    /** About a moment, which keeps its place. */
+    scale(factor, at) {
+      const share = at >= begin && at <= end ? (at - begin) / (end - begin) : 0.5;
+      const length = (end - begin) * factor;
+      clamp((at >= begin && at <= end ? at : (begin + end) / 2) - share * length, length);
+    },
+    /** Turns the page when playing leaves it. */
+    contain(at) {
+      if (at >= begin && at <= end) return;
+      clamp(at < begin ? at - (end - begin) * 0.9 : at - (end - begin) * 0.1, end - begin);
+    },
+  };
+}
+
+function rangeButtons(range, moment) {
+  const button = (text, label, act) => element('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
+  return element('span', { class: 'chart-range' },
+    button('−', 'Zoom charts out', () => range.scale(2, moment())),
+    button('+', 'Zoom charts in', () => range.scale(0.5, moment())),
+    button('All', 'All intervals in the charts', () => range.all()));
+}
+
+function logarithmicSwitch(plots) {
+  const box = element('input', { type: 'checkbox', onchange: () => plots().forEach((plot) => plot.setLogarithmic(box.checked)) });
+  return element('label', { class: 'choice' }, box, 'Logarithmic');
+}
+
+export function create(container, report, store, player) {
+  const [first, last] = extent(report);
+  const count = last - first;
+  container.hidden = report.kind === 'preprocess' || count < 1;
+  if (container.hidden) return;
+  const compares = report.kind === 'compare';
+  const finders = report.summaries.map(({ summary }) => finder(summary));
+  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map(createFigure);
+  const band = compares ? null : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
+  let plots = [];
+  let hovered = null;
+  let read = -1;
+
+  const moment = () => store.get().time - first;
+  const range = createRange(count, (begin, end) => {
+    plots.forEach((plot) => plot.setRange(begin, end));
+    band?.setRange(begin, end);
+  });
+
+  function readValues() {
+    const interval = hovered ?? intervalAt(store.get().time, first, last) - first;
+    if (interval === read) return;
+    read = interval;
+    figures.forEach((figure) => figure.show(interval));
+  }
+
+  function hover(interval) {
+    hovered = interval;
+    plots.forEach((plot) => plot.setHover(interval === null ? null : first + interval + 0.5));
+    readValues();
+  }
+
+  function go(interval) {
+    if (player) player.stepTo(first + interval);
+    else store.set({ time: first + interval });
+  }
+
+  function follow({ time }) {
+    range.contain(time - first);
+    plots.forEach((plot) => plot.setTime(time));
+    band?.setTime(time - first);
+    readValues();
+  }
+
+  function draw() {
+    plots = figures.map((figure) => figure.draw());
+    for (const surface of [...plots.map(({ over }) => over), ...(band ? [band.track] : [])])
+      followPointer(surface, { range: range.get, hover, go });
+    band?.draw();
+    follow(store.get());
+  }
+
+  const beside = [element('span', { class: 'quiet', text: 'of each interval, by its first frame; click or drag to go there' })];
+  if (compares) beside.push(logarithmicSwitch(() => plots));
+  if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
+  container.append(heading('Charts', ...beside), ...(band ? [band.box] : []), ...figures.map(({ box }) => box));
+  draw();
+  new ResizeObserver(() => {
+    plots.forEach((plot) => plot.resize());
+    band?.draw();
+  }).observe(container);
+  store.on(['time'], follow);
+  store.on(['theme'], () => requestAnimationFrame(() => {
+    plots.forEach((plot) => plot.recolour());
+    band?.draw();
+  }));
+}

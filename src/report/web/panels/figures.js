@@ -1,0 +1,78 @@
+/** Which charts there are, and their numbers. */
+import { counted, decimal, integer, milliseconds, significant } from './format.js';
+import { lineOf, lineStyle, nameOf } from './palette.js';
+import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
+
+const column = (first, last, find, value) => Array.from({ length: last - first }, (_, i) => {
+  const interval = find(first + i);
+  return interval ? value(interval) : null;
+});
+
+function largest(values) {
+  let at = 0;
+  for (let i = 1; i < values.length; i++) if ((values[i] ?? -1) > (values[at] ?? -1)) at = i;
+  return at;
+}
+
+const millisecondsWithUnit = (value) => `${milliseconds(value)} ms`;
+
+const tick = (value) => (value >= 10000 ? `${significant(value / 1000, 4)}k` : significant(value, 6));
+
+function stageFigure({ summary: { summary } }, first, last, find) {
+  const total = column(first, last, find, ({ ms }) => ms.total);
+  const stages = stagesOf(summary.method).map((stage) => ({ ...stage, values: column(first, last, find, ({ ms }) => ms[stage.key]) }));
+  const other = { ...OTHER, values: column(first, last, find, ({ ms }) => otherMilliseconds(ms)) };
+  const words = `mean ${milliseconds(summary.total_ms.mean)} ms, maximum ${milliseconds(summary.total_ms.max)} ms (frame ${first + largest(total)})`;
+  return { title: 'Milliseconds per stage', summary: words, stacked: true, height: 132, read: millisecondsWithUnit, format: tick, series: [...stages, other], total };
+}
+
+function contactFigure({ summary: { summary } }, first, last, find) {
+  const vf = column(first, last, find, (interval) => interval.vf);
+  const ee = column(first, last, find, (interval) => interval.ee);
+  const both = vf.map((value, i) => (value === null ? null : value + ee[i]));
+  const most = largest(both);
+  const words = summary.vf + summary.ee === 0 ? 'none'
+    : `${integer(summary.vf)} VF and ${integer(summary.ee)} EE in ${counted(summary.intervals_with_contact, 'interval')}, at most ${integer(both[most])} (frame ${first + most})`;
+  return {
+    title: 'Contacts per interval', summary: words, stacked: true, height: 112, read: integer, format: tick,
+    series: [
+      { label: 'VF', colour: '--vf', line: '--vf-line', values: vf },
+      { label: 'EE', colour: '--ee', line: '--ee-line', values: ee },
+    ],
+    total: both,
+  };
+}
+
+function pairFigure({ summary: { summary } }, first, last, find) {
+  const values = column(first, last, find, ({ pcp }) => pcp);
+  const words = `mean ${decimal(summary.pcp.mean, 1)}, maximum ${integer(summary.pcp.max)} (frame ${first + largest(values)})`;
+  return {
+    title: 'Pairs per interval (#PCPs)', summary: words, stacked: true, height: 112, read: integer, format: tick,
+    series: [{ label: 'triangle pairs whose volumes overlap', colour: '#009e73', values }],
+  };
+}
+
+/** Of one replay. Values that an interval lacks, of a replay that was stopped, count as 0 in a stack. */
+export function replayFigures(report, first, last, [find]) {
+  return [stageFigure, contactFigure, pairFigure].map((make) => make(report.summaries[0], first, last, find));
+}
+
+function compareFigure(report, first, last, finders, { title, value, read, words }) {
+  const series = report.summaries.map((_, index) => ({
+    ...lineStyle(index),
+    label: nameOf(report, index),
+    mark: lineOf(index),
+    values: column(first, last, finders[index], value),
+  }));
+  const summary = report.summaries.map(({ summary: run }, index) => `${nameOf(report, index)} ${words(run.summary)}`).join(' · ');
+  return { title, summary, stacked: false, height: 190, read, format: tick, series };
+}
+
+/** Of several: a line each. */
+export function compareFigures(report, first, last, finders) {
+  return [
+    { title: 'Milliseconds per interval', value: ({ ms }) => ms.total, read: millisecondsWithUnit, words: ({ total_ms: total }) => `mean ${milliseconds(total.mean)} ms` },
+    { title: 'Contacts per interval', value: ({ vf, ee }) => vf + ee, read: integer, words: ({ vf, ee }) => `${integer(vf + ee)} in all` },
+    { title: 'Pairs per interval (#PCPs)', value: ({ pcp }) => pcp, read: integer, words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}` },
+  ].map((figure) => compareFigure(report, first, last, finders, figure));
+}

@@ -1,0 +1,47 @@
+/** Numbers as the page writes them: counts in full, measurements with enough digits. */
+
+const THIN = '\u202f';
+
+const group = (digits) => digits.replace(/\B(?=(\d{3})+(?!\d))/g, THIN);
+
+/** A count, never rounded. */
+export function integer(value) {
+  return group(String(value));
+}
+
+/** With this many decimals; a value that these would hide keeps two significant digits. */
+export function decimal(value, decimals) {
+  if (value !== 0 && Math.abs(value) < 10 ** -decimals) return significant(value, 2);
+  const [whole, rest] = value.toFixed(decimals).split('.');
+  return rest === undefined ? group(whole) : `${group(whole)}.${rest}`;
+}
+
+export function significant(value, digits) {
+  return String(Number(value.toPrecision(digits)));
+}
+
+export function milliseconds(value) {
+  return value === 0 ? '0' : decimal(value, 3);
+}
+
+export function percent(share) {
+  return `${decimal(100 * share, 1)}${THIN}%`;
+}
+
+/** "1 contact", "2 contacts". */
+export function counted(count, one, many = `${one}s`) {
+  return `${integer(count)} ${count === 1 ? one : many}`;
+}
+
+/** "3, 7 to 9 and 12" for ascending numbers; after `most` ranges how many follow. */
+export function ranges(numbers, most = 12) {
+  const parts = [];
+  for (let i = 0; i < numbers.length; i++) {
+    const from = numbers[i];
+    while (i + 1 < numbers.length && numbers[i + 1] === numbers[i] + 1) i++;
+    parts.push(from === numbers[i] ? `${from}` : `${from} to ${numbers[i]}`);
+  }
+  if (parts.length > most) return `${parts.slice(0, most).join(', ')} and ${parts.length - most} more ranges`;
+  if (parts.length < 2) return parts.join('');
+  return `${parts.slice(0, -1).join(', ')} and ${parts[parts.length - 1]}`;
+}

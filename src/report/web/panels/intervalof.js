@@ -1,0 +1,29 @@
+/** Which interval a moment belongs to, and what the summary says of it. */
+
+/** The first and last frame of what the report tells. */
+export function extent(report) {
+  if (report.scene) return [report.scene.first, report.scene.last];
+  let first = Infinity;
+  let last = -Infinity;
+  for (const { summary } of report.summaries) {
+    for (const { frame } of summary.intervals) {
+      first = Math.min(first, frame);
+      last = Math.max(last, frame + 1);
+    }
+  }
+  return first < last ? [first, last] : [0, 0];
+}
+
+export function intervalAt(time, first, last) {
+  return Math.max(first, Math.min(Math.floor(time), last - 1));
+}
+
+/** frame -> the interval's record, or undefined where the replay did not come that far. */
+export function finder(summary) {
+  const intervals = summary?.intervals ?? [];
+  const first = intervals[0]?.frame ?? 0;
+  const contiguous = intervals.every(({ frame }, i) => frame === first + i);
+  if (contiguous) return (frame) => intervals[frame - first];
+  const byFrame = new Map(intervals.map((interval) => [interval.frame, interval]));
+  return (frame) => byFrame.get(frame);
+}

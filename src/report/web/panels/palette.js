@@ -1,0 +1,52 @@
+/** Colours and dashes that tell replays apart, and the regions' colours in tables. */
+import { element } from './dom.js';
+
+const HUES = [
+  [86, 180, 233], [230, 159, 0], [0, 158, 115], [213, 94, 0], [240, 228, 66], [0, 114, 178], [204, 121, 167],
+];
+
+/** As the tool's pictures: the hues, lighter, darker, and again. */
+export function regionColour(region) {
+  const hue = HUES[region % HUES.length];
+  const round = Math.floor(region / HUES.length) % 3;
+  if (round === 0) return hue;
+  return hue.map((value) => Math.round(round === 1 ? (value + 255) / 2 : (value * 112) / 256));
+}
+
+/* Of Okabe and Ito's, without the yellow, which is lost on white. */
+const LINES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a94a0'];
+const DASHES = [[], [7, 3], [2, 2], [9, 3, 2, 3], [4, 4]];
+
+export function lineStyle(index) {
+  return { colour: LINES[index % LINES.length], dash: DASHES[index % DASHES.length] };
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+/** A short piece of the line that stands for a replay. */
+export function lineOf(index) {
+  const { colour, dash } = lineStyle(index);
+  const svg = document.createElementNS(SVG, 'svg');
+  const line = document.createElementNS(SVG, 'line');
+  const place = { x1: 0, x2: 24, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.5, 'stroke-dasharray': dash.join(' ') || 'none' };
+  for (const [name, value] of Object.entries(place)) line.setAttribute(name, String(value));
+  svg.setAttribute('class', 'dash');
+  svg.setAttribute('width', '24');
+  svg.setAttribute('height', '8');
+  svg.setAttribute('aria-hidden', 'true');
+  svg.append(line);
+  return svg;
+}
+
+export function swatch(colour) {
+  const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
+  made.style.background = colour;
+  return made;
+}
+
+/** The name of a replay; its number too where names repeat. */
+export function nameOf(report, index) {
+  const { name } = report.summaries[index];
+  const same = report.summaries.filter((other) => other.name === name).length;
+  return same > 1 ? `${name} (${index + 1})` : name;
+}

@@ -1,0 +1,161 @@
+/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top of it. */
+import uPlot from 'uplot';
+import { element } from './dom.js';
+
+export const LEFT = 52;
+export const RIGHT = 12;
+
+const AXIS_FONT = '11px system-ui, sans-serif';
+
+const token = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** A colour or the name of one of the page's own. */
+const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
+
+/**
+ * At most one value a pixel: of the intervals that share one, the one of which `weight` is largest.
+ * @returns {number[]} the intervals kept, ascending
+ */
+export function thin(from, to, pixels, weight) {
+  const count = to - from;
+  const kept = [];
+  const buckets = Math.min(count, Math.max(1, pixels));
+  for (let bucket = 0; bucket < buckets; bucket++) {
+    const begin = from + Math.floor((bucket * count) / buckets);
+    const end = from + Math.floor(((bucket + 1) * count) / buckets);
+    let best = begin;
+    for (let i = begin + 1; i < end; i++) if (!(weight(i) <= weight(best))) best = i;
+    kept.push(best);
+  }
+  return kept;
+}
+
+/** Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. */
+function columnsOf(plot, from, to, pixels) {
+  const { first, series, stacked } = plot;
+  const count = to - from;
+  const buckets = Math.min(count, Math.max(1, pixels));
+  const x = Array.from({ length: buckets }, (_, bucket) => first + from + Math.floor((bucket * count) / buckets));
+  x.push(first + to);
+  const at = (values, kept) => {
+    const column = kept.map((i) => values[i]);
+    column.push(column[column.length - 1]);
+    return column;
+  };
+  if (!stacked) return [x, ...series.map(({ values }) => at(values, thin(from, to, pixels, (i) => values[i] ?? -1)))];
+  const total = (i) => series.reduce((sum, { values }) => sum + values[i], 0);
+  const kept = thin(from, to, pixels, total);
+  const sums = new Float64Array(kept.length + 1);
+  const columns = series.map(({ values }) => at(values, kept).map((value, i) => (sums[i] += value)));
+  return [x, ...columns.reverse()];
+}
+
+function seriesOptions({ series, stacked }) {
+  const steps = uPlot.paths.stepped({ align: 1 });
+  const options = series.map(({ label, colour, line, dash }) => ({
+    label,
+    paths: steps,
+    points: { show: false },
+    width: stacked ? 1 : 2,
+    dash,
+    stroke: () => colourOf(line ?? colour),
+    fill: stacked ? () => colourOf(colour) : undefined,
+  }));
+  return [{}, ...(stacked ? options.reverse() : options)];
+}
+
+function axes(format, logarithmic) {
+  const common = { font: AXIS_FONT, stroke: () => token('--quiet'), ticks: { show: false } };
+  return [
+    { ...common, size: 22, gap: 3, space: 56, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
+      grid: { show: false }, values: (_, splits) => splits.map((value) => (Number.isInteger(value) ? String(value) : '')) },
+    { ...common, size: LEFT, gap: 5, space: logarithmic ? 18 : 26, grid: { stroke: () => token('--grid'), width: 1 },
+      values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))) },
+  ];
+}
+
+/**
+ * @param {HTMLElement} host
+ * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
+ *          series: {label: string, colour: string, line?: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
+ *   values: of interval first, first + 1, ...
+ */
+export function createPlot(host, plot) {
+  const { first, last, height } = plot;
+  const timeLine = element('div', { class: 'time-line' });
+  const hoverLine = element('div', { class: 'hover-line', hidden: true });
+  let range = [0, last - first];
+  let logarithmic = false;
+  let chart = null;
+  let time = first;
+  let hover = null;
+
+  const width = () => Math.max(160, host.clientWidth);
+  const data = () => columnsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
+
+  function build() {
+    chart?.destroy();
+    const options = {
+      width: width(),
+      height,
+      padding: [6, RIGHT, 0, 0],
+      legend: { show: false },
+      cursor: { show: false },
+      select: { show: false },
+      scales: {
+        x: { time: false, range: () => [first + range[0], first + range[1]] },
+        y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, high > 0 ? high * 1.04 : 1] },
+      },
+      axes: axes(plot.format, logarithmic),
+      series: seriesOptions(plot),
+    };
+    chart = new uPlot(options, data(), host);
+    chart.over.append(hoverLine, timeLine);
+    moveLines();
+  }
+
+  function moveLine(line, at) {
+    const inside = at !== null && at >= first + range[0] && at <= first + range[1];
+    line.hidden = !inside;
+    if (inside) line.style.transform = `translateX(${chart.valToPos(at, 'x')}px)`;
+  }
+
+  function moveLines() {
+    moveLine(timeLine, time);
+    moveLine(hoverLine, hover);
+  }
+
+  build();
+  return {
+    get over() {
+      return chart.over;
+    },
+    setTime(at) {
+      time = at;
+      moveLine(timeLine, time);
+    },
+    /** The interval that the pointer is on, or null. */
+    setHover(interval) {
+      hover = interval;
+      moveLine(hoverLine, hover);
+    },
+    /** Shows the intervals from begin to end, counted from the first. */
+    setRange(begin, end) {
+      range = [begin, end];
+      chart.setData(data());
+      moveLines();
+    },
+    setLogarithmic(on) {
+      logarithmic = on;
+      build();
+    },
+    resize() {
+      if (chart.width === width()) return;
+      chart.setSize({ width: width(), height });
+      chart.setData(data());
+      moveLines();
+    },
+    /** After a change of theme. */
+    recolour: () => chart.redraw(false, true),
+  };
+}

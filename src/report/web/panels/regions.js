@@ -1,0 +1,62 @@
+/** The plan's regions and what preprocessing measured. */
+import { element, heading, numberCell } from './dom.js';
+import { counted, decimal, integer, percent, significant } from './format.js';
+import { regionColour, swatch } from './palette.js';
+
+function regionRow(region, index, area) {
+  const name = element('th', { scope: 'row' }, swatch(`rgb(${regionColour(index).join(' ')})`), ` ${index}`);
+  const share = area > 0 ? region.area / area : 0;
+  const point = region.detector_point;
+  return element('tr', {}, name,
+    numberCell(integer(region.component), region.component),
+    numberCell(integer(region.triangles), region.triangles),
+    numberCell(percent(share), share),
+    numberCell(percent(region.visible_share), region.visible_share),
+    element('td', { class: 'number', text: point.map((value) => significant(value, 6)).join(', '), title: point.join(' '), 'data-value': point.join(' ') }));
+}
+
+function regionTable(plan) {
+  const head = element('tr');
+  for (const [text, number, title] of [
+    ['region'], ['component', true], ['triangles', true], ['share of area', true],
+    ['visible share', true, 'Share of the region that its detector point sees at rest'],
+    ['detector point', true, 'x, y, z at rest'],
+  ]) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : undefined }));
+  const area = plan.regions.reduce((sum, region) => sum + region.area, 0);
+  const body = element('tbody', {}, ...plan.regions.map((region, index) => regionRow(region, index, area)));
+  return element('div', { class: 'scroll' }, element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body));
+}
+
+function facts(pairs, label) {
+  const body = element('tbody');
+  for (const [name, text, exact] of pairs)
+    body.append(element('tr', {}, element('th', { scope: 'row', text: name }), numberCell(text, exact)));
+  return element('table', { 'aria-label': label }, body);
+}
+
+function capacitances(values) {
+  return facts(values.map((value, component) => [
+    values.length > 1 ? `Capacitance of component ${component}` : 'Capacitance', significant(value, 6), value,
+  ]), 'Capacitances');
+}
+
+const PHASES = [['assembly_ms', 'Assembly of the matrix'], ['solve_ms', 'Solution for the charge'], ['regions_ms', 'Regions and points'], ['total_ms', 'All of preprocessing']];
+
+function phases(timings) {
+  const known = PHASES.filter(([key]) => timings[key] !== undefined);
+  return facts(known.map(([key, name]) => [name, `${decimal(timings[key], 3)} ms`, timings[key]]), 'Timings of preprocessing');
+}
+
+export function create(container, report) {
+  const plan = report.scene?.plan;
+  container.hidden = !plan && !report.preprocess;
+  if (container.hidden) return;
+  const words = plan ? `${counted(plan.regions.length, 'region')} by ${plan.method}` : 'no plan';
+  container.append(heading('Regions', element('span', { class: 'quiet', text: words })));
+  if (plan) container.append(regionTable(plan));
+  if (plan?.capacitances?.length > 0) {
+    container.append(capacitances(plan.capacitances),
+      element('p', { class: 'quiet', text: "Capacitance: the charge at potential 1, a length in the files' unit (Gaussian units)." }));
+  }
+  if (report.preprocess?.timings) container.append(phases(report.preprocess.timings));
+}

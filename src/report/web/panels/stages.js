@@ -1,0 +1,50 @@
+/** The stages of a step, which of them a method has, and the colours of their charts. */
+
+export const STAGES = [
+  { key: 'update', label: 'BVH update', colour: '#56b4e9' },
+  { key: 'orientation', label: 'orientation', colour: '#e69f00' },
+  { key: 'contour', label: 'contour', colour: '#f0e442' },
+  { key: 'traversal', label: 'traversal', colour: '#0072b2' },
+  { key: 'contact', label: 'contact', colour: '#d55e00' },
+  { key: 'proof', label: 'proof', colour: '#cc79a7' },
+];
+
+export const OTHER = { key: 'other', label: 'other', colour: '#8a94a0' };
+
+/** As the tool's own table: X stands where the method has no such stage. */
+export function hasStage(method, key) {
+  const contours = method === 'iccd' || method === 'iccd-published';
+  const oriented = method !== 'none' && method !== 'brute' && !contours;
+  if (key === 'contour') return contours;
+  return key === 'orientation' || key === 'proof' ? oriented : true;
+}
+
+export function stagesOf(method) {
+  return STAGES.filter(({ key }) => hasStage(method, key));
+}
+
+/** What of an interval's total is no stage's: checks of the input and the steps between. */
+export function otherMilliseconds(ms) {
+  return Math.max(0, STAGES.reduce((rest, { key }) => rest - ms[key], ms.total));
+}
+
+/** In words: what an interval's guarantee promises, components with the same put together. */
+export function guaranteeInWords(guarantee) {
+  const counts = new Map();
+  for (const { mode, reason } of guarantee) {
+    const words = `${mode === 'all' ? 'all contacts' : 'not all contacts'}: ${reason}`;
+    counts.set(words, (counts.get(words) ?? 0) + 1);
+  }
+  const parts = [...counts];
+  if (parts.length === 1) return parts[0][0];
+  return parts.map(([words, count]) => `${count} of ${guarantee.length} components, ${words}`).join('; ');
+}
+
+export const STATES = ['clean', 'contact', 'penetrating', 'unknown'];
+
+export const STATE_MEANING = {
+  clean: 'no contact, and the start does not cross itself',
+  contact: 'there is contact',
+  penetrating: 'the mesh crosses itself at the start',
+  unknown: 'no contact; the start was not checked',
+};

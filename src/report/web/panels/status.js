@@ -1,0 +1,32 @@
+/** The line that says where the recording stands. */
+import { setText } from './dom.js';
+import { counted, integer } from './format.js';
+import { extent, finder, intervalAt } from './intervalof.js';
+
+function ofStill(report) {
+  if (report.kind === 'compare') return `${counted(report.summaries.length, 'replay')} compared`;
+  const { vertexCount, triangleCount, plan } = report.scene;
+  const size = `${counted(triangleCount, 'triangle')}, ${counted(vertexCount, 'vertex', 'vertices')}`;
+  return plan ? `${size}, ${counted(plan.regions.length, 'region')}` : size;
+}
+
+export function create(container, report, store) {
+  if (report.kind !== 'replay') {
+    container.textContent = ofStill(report);
+    return;
+  }
+  const [first, last] = extent(report);
+  const find = finder(report.summaries[0]?.summary);
+
+  function update({ time, playing }) {
+    container.setAttribute('aria-live', playing ? 'off' : 'polite');
+    const frame = Number.isInteger(time) ? String(time) : time.toFixed(2);
+    const parts = [`Frame ${frame} of ${first} to ${last}`];
+    const interval = find(intervalAt(time, first, last));
+    if (interval) parts.push(interval.state, `${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
+    setText(container, parts.join(' · '));
+  }
+
+  store.on(['time', 'playing'], update);
+  update(store.get());
+}

@@ -1,0 +1,138 @@
+/** What the colours and marks mean, in words and numbers, over the view. */
+
+import { element } from '../controls/dom.js';
+import { intervalOf } from '../data/report.js';
+import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
+
+const MANY = 8;
+
+const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+const short = (value) => String(Number(value.toPrecision(3))).replace('-', '−');
+const percent = (share) => `${Math.round(100 * share)}\u202f%`;
+
+function bar(map) {
+  const canvas = element('canvas', { class: 'legend-bar', width: 256, height: 1, 'aria-hidden': 'true' });
+  const context = canvas.getContext('2d');
+  for (let i = 0; i < 256; i++) {
+    context.fillStyle = css([...map.subarray(3 * i, 3 * i + 3)]);
+    context.fillRect(i, 0, 1, 1);
+  }
+  return canvas;
+}
+
+const ends = (...texts) => element('div', { class: 'legend-ends' }, ...texts.map((text) => element('span', {}, text)));
+
+function swatch(colour) {
+  const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
+  made.style.background = css(colour);
+  return made;
+}
+
+const item = (mark, ...text) => element('li', {}, mark, ' ', ...text);
+const items = (...list) => element('ul', { class: 'legend-items' }, ...list);
+const title = (text) => element('div', { class: 'legend-title' }, text);
+
+function chargeLegend(limits) {
+  const { low, high, below, above } = limits;
+  return [
+    title('Charge per area at potential 1 (Gaussian units: 1/length)'),
+    bar(VIRIDIS),
+    ends(`${below ? '≤\u202f' : ''}${short(low)}`, short((low + high) / 2), `${above ? '≥\u202f' : ''}${short(high)}`),
+    ...(below || above ? [element('p', { class: 'legend-note' }, `from ${short(limits.least)} to ${short(limits.most)}; the outermost 2\u202f% of triangles at either end share a colour`)] : []),
+  ];
+}
+
+const equalizedLegend = () => [
+  title('Rank of the charge within its component'),
+  bar(VIRIDIS),
+  ends('0 least', '0.5', '1 most'),
+];
+
+function regionLegend(plan) {
+  const rows = plan.regions.slice(0, MANY).map((region, i) => {
+    const visible = region.visible_share == null ? '' : `, ${percent(region.visible_share)} seen from its point`;
+    return item(swatch(regionColour(i)), `${i}: ${grouped(region.triangles)} triangles${visible}`);
+  });
+  const rest = plan.regions.length - rows.length;
+  return [
+    title(`${plan.regions.length} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
+    items(...rows, ...(rest > 0 ? [element('li', {}, `and ${grouped(rest)} more; colours repeat after 21`)] : [])),
+  ];
+}
+
+function orientationLegend(scene, time) {
+  const interval = intervalOf(scene, time);
+  const values = scene.orientation.at(interval);
+  const counts = [0, 0, 0];
+  for (const value of values) counts[value]++;
+  const told = scene.orientation.interval(interval);
+  return [
+    title(`Seen from the region's point, during interval ${told}`),
+    items(
+      item(swatch(ORIENTATIONS[1]), `S+ faces outwards throughout: ${grouped(counts[1])}`),
+      item(swatch(ORIENTATIONS[2]), `S− faces inwards throughout: ${grouped(counts[2])}`),
+      item(swatch(ORIENTATIONS[0]), `S0 turns, or cannot be told: ${grouped(counts[0])}`),
+    ),
+  ];
+}
+
+function heatLegend(most, info) {
+  if (most === 0) return [title('No triangle takes part in a contact')];
+  const all = info !== null && info.kept < info.found ? ' (of all found, also those not kept)' : '';
+  return [
+    title(`Contacts that a triangle takes part in, whole recording${all}`),
+    bar(HEAT),
+    ends('1', ...(most > 8 ? [grouped(Math.round(Math.sqrt(most)))] : []), grouped(most)),
+    items(item(swatch(PLAIN), 'none')),
+  ];
+}
+
+/** VF and EE of the interval, and what else is marked. */
+function marksLegend(scene, state) {
+  const rows = [];
+  if (state.contacts && scene.contacts !== null) {
+    const [begin, end] = scene.contacts.range(intervalOf(scene, state.time));
+    let edges = 0;
+    for (let contact = begin; contact < end; contact++) edges += scene.contacts.kind[contact];
+    const mark = (name) => element('span', { class: name, 'aria-hidden': 'true' });
+    rows.push(item(mark('mark-vf'), `VF, a vertex meets a face: ${grouped(end - begin - edges)}`));
+    rows.push(item(mark('mark-ee'), `EE, two edges meet: ${grouped(edges)}`));
+    const how = state.colour === 'plain' ? 'triangles that touch' : 'outlined: triangles that touch';
+    if (end > begin) rows.push(item(swatch(TOUCHING), how));
+  }
+  return rows.length > 0 ? [items(...rows)] : [];
+}
+
+function colourLegend(scene, state, painter) {
+  switch (state.colour) {
+    case 'charge':
+      return chargeLegend(painter.limits);
+    case 'equalized':
+      return equalizedLegend();
+    case 'region':
+      return regionLegend(scene.plan);
+    case 'orientation':
+      return orientationLegend(scene, state.time);
+    case 'heat':
+      return heatLegend(painter.mostHeat, scene.contactsInfo);
+    default:
+      return [];
+  }
+}
+
+/** @param {import('./paint.js').Painter} painter */
+export function createLegend(container, scene, store, painter) {
+  const box = element('div', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
+  container.append(box);
+  let shown = null;
+  const show = (state) => {
+    const key = [state.colour, state.contacts, intervalOf(scene, state.time)].join(' ');
+    if (key === shown) return;
+    shown = key;
+    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state)];
+    box.replaceChildren(...parts);
+    box.hidden = parts.length === 0;
+  };
+  store.on(['time', 'colour', 'contacts'], show);
+  show(store.get());
+}

@@ -1,0 +1,127 @@
+/** Which colour each triangle has, and which of its edges are drawn. */
+
+import { intervalOf } from '../data/report.js';
+import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step } from './colours.js';
+import { CUT, PICKED, TOUCHES } from './shading.js';
+import { contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
+
+export class Painter {
+  constructor(scene) {
+    this.scene = scene;
+    this.rgb = new Uint8Array(3 * scene.triangleCount);
+    this.flags = new Uint8Array(scene.triangleCount);
+    this.limits = scene.charge === null ? null : limitsOf(scene.charge);
+    this.mostHeat = scene.heat === null ? 0 : scene.heat.reduce((most, count) => Math.max(most, count), 0);
+    this.cuts = null;
+    this.touching = new Map();
+    this.incidence = null;
+  }
+
+  fill(colourOf) {
+    const { rgb } = this;
+    for (let t = 0; t < this.scene.triangleCount; t++) colourOf(t, rgb, 3 * t);
+  }
+
+  fillFromMap(map, placeOf) {
+    this.fill((t, rgb, at) => {
+      const from = step(placeOf(t));
+      rgb[at] = map[from];
+      rgb[at + 1] = map[from + 1];
+      rgb[at + 2] = map[from + 2];
+    });
+  }
+
+  fillFromTable(colours, indexOf) {
+    this.fill((t, rgb, at) => {
+      const colour = colours[indexOf(t)];
+      rgb[at] = colour[0];
+      rgb[at + 1] = colour[1];
+      rgb[at + 2] = colour[2];
+    });
+  }
+
+  base({ colour, time }) {
+    const { scene } = this;
+    if (colour === 'charge') {
+      const { low, high } = this.limits;
+      const scale = high > low ? 1 / (high - low) : 0;
+      this.fillFromMap(VIRIDIS, (t) => (scene.charge[t] - low) * scale);
+    } else if (colour === 'equalized') {
+      this.fillFromMap(VIRIDIS, (t) => scene.equalized[t]);
+    } else if (colour === 'region') {
+      this.fillFromTable(scene.plan.regions.map((_, region) => regionColour(region)), (t) => scene.region[t]);
+    } else if (colour === 'orientation') {
+      const orientation = scene.orientation.at(intervalOf(scene, time));
+      this.fillFromTable(ORIENTATIONS, (t) => orientation[t]);
+    } else {
+      this.fillFromTable([PLAIN], () => 0);
+      if (colour === 'heat') this.addHeat();
+    }
+  }
+
+  addHeat() {
+    const { heat } = this.scene;
+    for (let t = 0; t < heat.length; t++) {
+      if (heat[t] === 0) continue;
+      const from = step(heatPlace(heat[t], this.mostHeat));
+      this.rgb.set(HEAT.subarray(from, from + 3), 3 * t);
+    }
+  }
+
+  /** Triangles of one contact: the face and those around the vertex, or those at the two edges. */
+  trianglesOf(contact) {
+    this.incidence ??= trianglesOfVertices(this.scene);
+    return contactTriangles(this.scene, this.incidence, contact);
+  }
+
+  /** Triangles that take part in the interval's contacts; the last few intervals are remembered. */
+  touchingIn(interval) {
+    let found = this.touching.get(interval);
+    if (found === undefined) {
+      const set = new Set();
+      const [begin, end] = this.scene.contacts.range(interval);
+      for (let contact = begin; contact < end; contact++) for (const t of this.trianglesOf(contact)) set.add(t);
+      found = [...set];
+      if (this.touching.size > 64) this.touching.clear();
+      this.touching.set(interval, found);
+    }
+    return found;
+  }
+
+  mark({ colour, contacts, cuts, selected, triangle, time }) {
+    const { scene, flags, rgb } = this;
+    flags.fill(0);
+    let lines = false;
+    if (cuts && scene.region !== null) {
+      this.cuts ??= cutEdges(scene, CUT);
+      flags.set(this.cuts);
+      lines = true;
+    }
+    const flag = (bit) => (t) => {
+      flags[t] |= bit;
+      lines = true;
+    };
+    if (contacts && scene.contacts !== null) {
+      const touching = this.touchingIn(intervalOf(scene, time));
+      if (colour === 'plain') for (const t of touching) rgb.set(TOUCHING, 3 * t);
+      else touching.forEach(flag(TOUCHES));
+    }
+    if (selected !== null) this.trianglesOf(selected).forEach(flag(PICKED));
+    if (triangle !== null) flag(PICKED)(triangle);
+    return lines;
+  }
+
+  /** What the painting depends on: nothing need be painted while it stays the same. */
+  key(state) {
+    const { scene } = this;
+    const moving = state.colour === 'orientation' || (state.contacts && scene.contacts !== null);
+    const interval = moving ? intervalOf(scene, state.time) : '';
+    return [state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
+  }
+
+  /** @returns {boolean} whether some triangle has lines */
+  paint(state) {
+    this.base(state);
+    return this.mark(state);
+  }
+}

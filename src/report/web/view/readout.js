@@ -1,0 +1,42 @@
+/** What is known about the triangle that was clicked. */
+
+import { element } from '../controls/dom.js';
+import { intervalOf } from '../data/report.js';
+
+const ORIENTATIONS = ['S0, turns or cannot be told', 'S+, outwards', 'S−, inwards'];
+
+function facts(scene, t, time) {
+  const rows = [['Corners', [0, 1, 2].map((corner) => scene.triangles[3 * t + corner]).join(', ')]];
+  if (scene.component !== null && scene.componentCount > 1) rows.push(['Component', scene.component[t]]);
+  if (scene.charge !== null) rows.push(['Charge per area', `${Number(scene.charge[t].toPrecision(4))} per length`]);
+  if (scene.equalized !== null) rows.push(['Rank of the charge', scene.equalized[t].toFixed(3)]);
+  if (scene.region !== null) rows.push(['Region', scene.region[t]]);
+  if (scene.orientation !== null) {
+    rows.push(['Orientation', ORIENTATIONS[scene.orientation.at(intervalOf(scene, time))[t]]]);
+  }
+  if (scene.heat !== null) rows.push(['Contacts, all intervals', scene.heat[t]]);
+  return rows;
+}
+
+export function createReadout(container, scene, store) {
+  const box = element('div', { class: 'readout', role: 'group', 'aria-label': 'Picked triangle' });
+  box.hidden = true;
+  container.append(box);
+  const close = element('button', { type: 'button', class: 'icon', 'aria-label': 'Close', title: 'Close' }, '×');
+  close.addEventListener('click', () => store.set({ triangle: null }));
+  const show = ({ triangle, time }) => {
+    box.hidden = triangle === null;
+    if (triangle === null) return;
+    const list = element('dl', {});
+    for (const [name, value] of facts(scene, triangle, time)) {
+      list.append(element('dt', {}, name), element('dd', { class: 'number' }, String(value)));
+    }
+    box.replaceChildren(element('strong', {}, `Triangle ${triangle}`), close, list);
+  };
+  let interval = null;
+  store.on(['triangle', 'time'], (state, changed) => {
+    const now = intervalOf(scene, state.time);
+    if (changed.includes('triangle') || (now !== interval && state.triangle !== null)) show(state);
+    interval = now;
+  });
+}

@@ -1,0 +1,284 @@
+/** The 3D view: builds the scene and draws it when something has changed, never otherwise. */
+
+import { Box3, Color, LinearSRGBColorSpace, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { intervalOf } from '../data/report.js';
+import { View } from './camera.js';
+import { ContactMarks, DetectorMarks } from './markers.js';
+import { Painter } from './paint.js';
+import { onClick, pickTriangle } from './picking.js';
+import { Resolution } from './resolution.js';
+import { Space, sphereOf } from './space.js';
+import { Surface } from './surface.js';
+
+const SCENERY = { light: [214, 216, 220], dark: [84, 88, 98] };
+const FAR_TRAVELLED = 2.5; // body lengths
+
+export class Viewer {
+  /** @throws where there is no WebGL */
+  constructor(container, report, store, player) {
+    this.report = report;
+    this.data = report.scene;
+    this.store = store;
+    this.player = player;
+    this.container = container;
+    this.framesDrawn = 0;
+    this.request = null;
+    this.makeRenderer();
+    this.makeScene();
+    this.makeCamera();
+    this.listen();
+  }
+
+  makeRenderer() {
+    const canvas = document.createElement('canvas');
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power', stencil: false });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are as on the screen throughout
+    this.canvas = canvas;
+    for (const [name, value] of [['role', 'img'], ['aria-label', '3D view'], ['tabindex', '0']]) {
+      canvas.setAttribute(name, value);
+    }
+    this.container.append(canvas);
+    this.resolution = new Resolution(this);
+  }
+
+  makeScene() {
+    const { data } = this;
+    this.space = new Space(data.positions);
+    this.scene = new Scene();
+    this.painter = new Painter(data);
+    this.body = new Surface(data);
+    this.scenery = data.scenery === null ? null : new Surface(data.scenery);
+    this.contacts = new ContactMarks();
+    this.detectors = new DetectorMarks();
+    this.scene.add(this.body.mesh, this.contacts.object, this.detectors.object);
+    if (this.scenery !== null) this.scene.add(this.scenery.mesh);
+    this.setTheme();
+  }
+
+  makeCamera() {
+    this.view = new View(this.canvas, () => {
+      this.touched = true;
+      this.resolution.moving();
+      this.invalidate();
+    });
+    this.touched = false;
+    this.follows = false;
+    this.followed = null;
+    this.measure();
+    this.resize();
+    this.home();
+  }
+
+  listen() {
+    const redraw = (keys, before) =>
+      this.store.on(keys, () => {
+        before?.();
+        this.invalidate();
+      });
+    redraw(['time'], () => this.resolution.moving());
+    redraw(['colour', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
+    redraw(['theme'], () => this.setTheme());
+    new ResizeObserver(() => this.resize()).observe(this.container);
+    onClick(this.canvas, (x, y) => this.pick(x, y));
+    this.canvas.addEventListener('keydown', (event) => {
+      if (!this.view.key(event)) return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+    this.canvas.addEventListener('webglcontextrestored', () => this.invalidate());
+  }
+
+  /** What there is to see, as far as frames have been read. */
+  measure() {
+    const { data, space } = this;
+    const bodies = data.positions;
+    this.whole = space.box(bodies);
+    let longest = 0;
+    for (let i = 0; i < bodies.available; i++) longest = Math.max(longest, ...bodies.half(i));
+    const travelled = Math.max(...this.whole.getSize(new Vector3()).toArray());
+    this.travels = travelled > (FAR_TRAVELLED * 2 * longest) / space.length;
+    this.surroundings = data.scenery === null ? new Box3() : space.box(data.scenery.positions);
+  }
+
+  /** To be called when more frames have been read. */
+  framesRead() {
+    this.measure();
+    if (!this.touched) this.home();
+    this.invalidate();
+  }
+
+  home() {
+    const { data, space, view } = this;
+    this.follows = this.travels;
+    const { i } = data.positions.locate(this.store.get().time);
+    view.home(this.follows ? space.box(data.positions, i) : this.whole);
+    this.followed = this.bodyPlace();
+    this.touched = false;
+    this.onHome?.();
+    this.invalidate();
+  }
+
+  setFollows(follows) {
+    this.follows = follows;
+    this.followed = this.bodyPlace();
+    this.invalidate();
+  }
+
+  setUp(yUp) {
+    this.space.setUp(yUp);
+    this.measure();
+    this.home();
+  }
+
+  bodyPlace() {
+    return new Vector3(...this.space.toView(this.data.positions.centerAt(this.store.get().time)));
+  }
+
+  setTheme() {
+    const { theme } = this.store.get();
+    const ground = getComputedStyle(this.container).getPropertyValue('--view-ground').trim();
+    this.scene.background = new Color().setStyle(ground || (theme === 'dark' ? '#15181e' : '#f4f5f7'), LinearSRGBColorSpace);
+    if (this.scenery !== null) {
+      const colour = SCENERY[theme];
+      const rgb = new Uint8Array(this.data.scenery.triangles.length);
+      for (let i = 0; i < rgb.length; i++) rgb[i] = colour[i % 3];
+      this.scenery.paint(rgb, null);
+    }
+  }
+
+  resize() {
+    const width = Math.max(1, this.container.clientWidth);
+    const height = Math.max(1, this.container.clientHeight);
+    this.size = { width, height };
+    this.resolution.apply();
+    this.view.resize(width, height);
+    if (!this.touched) this.home();
+    this.invalidate();
+  }
+
+  invalidate() {
+    if (this.request !== null) return;
+    this.request = requestAnimationFrame(() => {
+      this.request = null;
+      this.draw();
+    });
+  }
+
+  drawNow() {
+    if (this.request !== null) cancelAnimationFrame(this.request);
+    this.request = null;
+    this.draw();
+  }
+
+  draw() {
+    const state = this.store.get();
+    this.update(state);
+    this.renderer.render(this.scene, this.view.camera);
+    this.framesDrawn++;
+    this.resolution.drawn();
+  }
+
+  /** Brings what is in the scene to the state. */
+  update(state) {
+    const { body, scenery, space, view } = this;
+    body.setTime(state.time);
+    space.place(body);
+    if (scenery !== null) {
+      scenery.mesh.visible = state.scenery;
+      if (state.scenery) {
+        scenery.setTime(state.time);
+        space.place(scenery);
+      }
+    }
+    if (this.follows) {
+      const place = this.bodyPlace();
+      view.shift(place.clone().sub(this.followed));
+      this.followed = place;
+    }
+    this.updatePaint(state);
+    this.updateMarks(state);
+    view.clip(sphereOf(this.whole, state.scenery ? this.surroundings : new Box3()));
+    view.camera.updateMatrixWorld();
+  }
+
+  updatePaint(state) {
+    const key = this.painter.key(state);
+    if (key !== this.painted) {
+      this.painted = key;
+      this.linesMarked = this.painter.paint(state);
+      this.body.paint(this.painter.rgb, this.painter.flags);
+    }
+    this.body.setLines(state.edges || this.linesMarked);
+    const { uniforms } = this.body.lined;
+    uniforms.edges.value = state.edges ? 0.45 : 0;
+    uniforms.density.value = this.resolution.ratio;
+  }
+
+  updateMarks(state) {
+    const { data, space } = this;
+    const interval = intervalOf(data, state.time);
+    this.contacts.setState(data, state, space.toView);
+    this.detectors.setState(data, state.points ? this.detectorPoints(interval, state.time - interval) : null, space.toView);
+    const pixel = (2 * Math.tan((this.view.camera.fov * Math.PI) / 360)) / this.size.height;
+    for (const marks of [this.contacts, this.detectors]) marks.setScale(this.resolution.ratio, pixel);
+  }
+
+  /** Those of the plan where the recording has none. */
+  detectorPoints(interval, fraction) {
+    const { data } = this;
+    if (data.detectorPoints !== null) return data.detectorPoints(interval, fraction);
+    return Float64Array.from(data.plan?.regions.flatMap((region) => region.detector_point) ?? []);
+  }
+
+  /** The triangle at a point of the canvas, in CSS pixels. */
+  triangleAt(x, y) {
+    const ray = new Raycaster();
+    const point = new Vector2((2 * x) / this.size.width - 1, 1 - (2 * y) / this.size.height);
+    this.update(this.store.get());
+    ray.setFromCamera(point, this.view.camera);
+    const from = this.space.fromView(ray.ray.origin).map((value, axis) => value - this.body.center[axis]);
+    return pickTriangle(this.body.local, this.data.triangles, from, this.space.direction(ray.ray.direction));
+  }
+
+  /** A mark goes before the surface. */
+  pick(x, y) {
+    const near = this.markers()
+      .map(({ contact, screen }) => ({ contact, distance: Math.hypot(screen[0] - x, screen[1] - y) }))
+      .filter(({ distance }) => distance < 9)
+      .sort((a, b) => a.distance - b.distance);
+    if (near.length > 0) this.player.select(near[0].contact);
+    else this.store.set({ triangle: this.triangleAt(x, y) });
+  }
+
+  /** Frames the contacts of the interval, or the selected one and its triangles. */
+  zoomToContacts() {
+    const { data, painter, space } = this;
+    const { selected, time } = this.store.get();
+    const interval = intervalOf(data, time);
+    const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
+    if (begin === end) return;
+    const box = new Box3();
+    const add = (point) => box.expandByPoint(new Vector3(...space.toView(point)));
+    for (let contact = begin; contact < end; contact++) {
+      add(data.contacts.point.subarray(3 * contact, 3 * contact + 3));
+      for (const t of painter.trianglesOf(contact)) {
+        for (let corner = 0; corner < 3; corner++) add(data.positions.vertexAt(data.triangles[3 * t + corner], time));
+      }
+    }
+    this.view.frame(box.expandByScalar(0.35 * box.getSize(new Vector3()).length()));
+    this.touched = true;
+    this.invalidate();
+  }
+
+  /** What is marked, and where on the canvas (CSS pixels). */
+  markers() {
+    const { data, size, space, view } = this;
+    this.update(this.store.get());
+    return this.contacts.marked.map(({ contact, interval, age }) => {
+      const position = [...data.contacts.point.subarray(3 * contact, 3 * contact + 3)];
+      const seen = new Vector3(...space.toView(position)).project(view.camera);
+      const screen = [((seen.x + 1) / 2) * size.width, ((1 - seen.y) / 2) * size.height];
+      return { contact, kind: data.contacts.kind[contact] === 0 ? 'vf' : 'ee', interval, position, screen, age };
+    });
+  }
+}
