@@ -61,6 +61,13 @@ class Context:
             self._page.close()
 
 
+def told(error):
+    """What went wrong and, below this program, where. Browsers' errors end in addresses that say nothing."""
+    where = [f"  {frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}: {frame.line}\n"
+             for frame in traceback.extract_tb(error.__traceback__)[1:]]
+    return f"{type(error).__name__}: {str(error).split('Stacktrace:')[0].strip()}\n" + "".join(where)
+
+
 def run(scenario, context, log_path):
     """The seconds it took; the log is written whole, at the end."""
     start = time.monotonic()
@@ -69,7 +76,7 @@ def run(scenario, context, log_path):
         try:
             step()
         except Exception:  # whatever it is, the next scenario runs
-            text += traceback.format_exc()
+            text += told(sys.exc_info()[1])
     with open(log_path, "w", encoding="utf-8") as file:
         file.write(text)
     print(f"{'FAILED' if text else 'passed'} {scenario.__name__} ({time.monotonic() - start:.1f} s)", flush=True)

@@ -74,7 +74,7 @@ int main(void) {
         fprintf(stderr, "tests/report/run.py --list gave %zu scenarios\n", count);
         return 1;
     }
-    int failed = _cmocka_run_group_tests("report page", tests, count, run_all, remove_all);
+    int failed = _cmocka_run_group_tests("report in a browser", tests, count, run_all, remove_all);
     for (size_t i = 0; i < count; i++) free(tests[i].initial_state);
     return failed;
 }
