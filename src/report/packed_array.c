@@ -19,7 +19,7 @@ enum {
 struct packed_array {
     z_stream stream;
     growable bytes; /* of the stream so far */
-    size_t count;
+    size_t size; /* of what was added */
     bool finished;
 };
 
@@ -77,6 +77,7 @@ static bool compress_input(packed_array *array, int flush) {
 }
 
 static bool add(packed_array *array, const uint8_t *bytes, size_t size) {
+    array->size += size;
     while (size > 0) {
         size_t step = size < STEP_MAX ? size : STEP_MAX;
         array->stream.next_in = bytes;
@@ -89,7 +90,6 @@ static bool add(packed_array *array, const uint8_t *bytes, size_t size) {
 }
 
 bool packed_array_add_bytes(packed_array *array, const uint8_t *bytes, size_t count) {
-    array->count += count;
     return add(array, bytes, count);
 }
 
@@ -99,7 +99,6 @@ static void store(uint8_t *bytes, uint64_t bits, size_t size) {
 
 bool packed_array_add_u32(packed_array *array, const uint32_t *values, size_t count) {
     uint8_t chunk[CHUNK_VALUES * 4];
-    array->count += count;
     for (size_t done = 0; done < count;) {
         size_t step = count - done < CHUNK_VALUES ? count - done : CHUNK_VALUES;
         for (size_t i = 0; i < step; i++) store(chunk + 4 * i, values[done + i], 4);
@@ -119,7 +118,6 @@ bool packed_array_add_f32(packed_array *array, const float *values, size_t count
 }
 
 bool packed_array_add_f64(packed_array *array, const double *values, size_t count) {
-    array->count += count;
     for (size_t i = 0; i < count; i++) {
         uint8_t bytes[8];
         uint64_t bits;
@@ -130,8 +128,8 @@ bool packed_array_add_f64(packed_array *array, const double *values, size_t coun
     return true;
 }
 
-size_t packed_array_count(const packed_array *array) {
-    return array->count;
+size_t packed_array_size(const packed_array *array) {
+    return array->size;
 }
 
 bool packed_array_finish(packed_array *array) {

@@ -19,8 +19,8 @@ bool packed_array_add_u32(packed_array *array, const uint32_t *values, size_t co
 bool packed_array_add_f32(packed_array *array, const float *values, size_t count);
 bool packed_array_add_f64(packed_array *array, const double *values, size_t count);
 
-/* Values added so far. */
-size_t packed_array_count(const packed_array *array);
+/* Bytes added so far. */
+size_t packed_array_size(const packed_array *array);
 
 /* Ends the stream (RFC 1950); nothing can be added any more. */
 bool packed_array_finish(packed_array *array);

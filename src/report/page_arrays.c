@@ -110,3 +110,8 @@ void page_arrays_free(page_arrays *arrays) {
         if (arrays->items[i].owned) packed_array_destroy(arrays->items[i].values);
     arrays->count = 0;
 }
+
+size_t page_array_count(const page_array *array) {
+    size_t bits = strtoul(array->type + 1, NULL, 10);
+    return packed_array_size(array->values) * 8 / bits;
+}

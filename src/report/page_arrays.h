@@ -8,7 +8,7 @@
 enum { PAGE_ARRAYS_MAX = 20 };
 
 typedef struct page_array {
-    const char *name, *type;
+    const char *name, *type; /* u8, u32, f32 or f64 */
     packed_array *values;
     bool owned; /* by the list, not by the report */
 } page_array;
@@ -21,5 +21,8 @@ typedef struct page_arrays {
 /* All of them, finished. False: out of memory, and *out is to be freed all the same. */
 bool page_arrays_list(report *r, page_arrays *out);
 void page_arrays_free(page_arrays *arrays);
+
+/* Values of its type. */
+size_t page_array_count(const page_array *array);
 
 #endif

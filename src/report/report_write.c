@@ -84,7 +84,7 @@ static void write_arrays(json *out, const page_arrays *arrays) {
         json_begin_object(out, NULL);
         json_string(out, "name", arrays->items[i].name);
         json_string(out, "type", arrays->items[i].type);
-        json_integer(out, "count", packed_array_count(arrays->items[i].values));
+        json_integer(out, "count", page_array_count(&arrays->items[i]));
         json_end_object(out);
     }
     json_end_array(out);

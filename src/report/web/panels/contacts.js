@@ -14,10 +14,10 @@ function featureWords(contacts, contact) {
 }
 
 /** Decimals that tell positions apart: six digits of the largest coordinate. */
-function positionDecimals(points) {
+function positionDecimals(points, unit) {
   let largest = 0;
   for (const value of points) largest = Math.max(largest, Math.abs(value));
-  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest || 1))));
+  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest * unit || 1))));
 }
 
 function createTable() {
@@ -40,7 +40,7 @@ function makeRow(select) {
   return row;
 }
 
-function fillRow(row, contacts, contact, number, decimals) {
+function fillRow(row, { contacts, unit, decimals }, contact, number) {
   const [first, kind, features, toi, position] = row.cells;
   const button = first.firstChild;
   row.dataset.contact = String(contact);
@@ -52,7 +52,7 @@ function fillRow(row, contacts, contact, number, decimals) {
   features.title = features.textContent;
   setText(toi, decimal(contacts.toi[contact], 6));
   toi.title = toi.dataset.value = String(contacts.toi[contact]);
-  const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)];
+  const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)].map((value) => value * unit);
   setText(position, point.map((value) => value.toFixed(decimals)).join(', '));
   position.title = position.dataset.value = point.join(' ');
 }
@@ -104,7 +104,8 @@ export function create(container, report, store, player) {
   const [first, last] = extent(report);
   const find = finder(report.summaries[0]?.summary);
   const order = { kind: 'all', descending: false };
-  const decimals = positionDecimals(contacts.point);
+  const { unit } = report.scene;
+  const data = { contacts, unit, decimals: positionDecimals(contacts.point, unit) };
   const counts = createCounts();
   const { table, toi } = createTable();
   const scroll = element('div', { class: 'scroll' }, table);
@@ -123,7 +124,7 @@ export function create(container, report, store, player) {
     make: () => makeRow(select),
     fill(row, index) {
       const contact = shown[index];
-      fillRow(row, contacts, contact, contact - begin + 1, decimals);
+      fillRow(row, data, contact, contact - begin + 1);
       row.setAttribute('aria-current', String(store.get().selected === contact));
     },
   });

@@ -1,17 +1,5 @@
-/** Colours and dashes that tell replays apart, and the regions' colours in tables. */
+/** Colours and dashes that tell replays apart. */
 import { element } from './dom.js';
-
-const HUES = [
-  [86, 180, 233], [230, 159, 0], [0, 158, 115], [213, 94, 0], [240, 228, 66], [0, 114, 178], [204, 121, 167],
-];
-
-/** As the tool's pictures: the hues, lighter, darker, and again. */
-export function regionColour(region) {
-  const hue = HUES[region % HUES.length];
-  const round = Math.floor(region / HUES.length) % 3;
-  if (round === 0) return hue;
-  return hue.map((value) => Math.round(round === 1 ? (value + 255) / 2 : (value * 112) / 256));
-}
 
 /* Of Okabe and Ito's, without the yellow, which is lost on white. */
 const LINES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a94a0'];

@@ -1,12 +1,13 @@
 /** The plan's regions and what preprocessing measured. */
 import { element, heading, numberCell } from './dom.js';
 import { counted, decimal, integer, percent, significant } from './format.js';
-import { regionColour, swatch } from './palette.js';
+import { css, regionColour } from '../view/colours.js';
+import { swatch } from './palette.js';
 
-function regionRow(region, index, area) {
-  const name = element('th', { scope: 'row' }, swatch(`rgb(${regionColour(index).join(' ')})`), ` ${index}`);
+function regionRow(region, index, area, unit) {
+  const name = element('th', { scope: 'row' }, swatch(css(regionColour(index))), ` ${index}`);
   const share = area > 0 ? region.area / area : 0;
-  const point = region.detector_point;
+  const point = region.detector_point.map((value) => value * unit);
   return element('tr', {}, name,
     numberCell(integer(region.component), region.component),
     numberCell(integer(region.triangles), region.triangles),
@@ -15,7 +16,7 @@ function regionRow(region, index, area) {
     element('td', { class: 'number', text: point.map((value) => significant(value, 6)).join(', '), title: point.join(' '), 'data-value': point.join(' ') }));
 }
 
-function regionTable(plan) {
+function regionTable(plan, unit) {
   const head = element('tr');
   for (const [text, number, title] of [
     ['region'], ['component', true], ['triangles', true], ['share of area', true],
@@ -23,7 +24,7 @@ function regionTable(plan) {
     ['detector point', true, 'x, y, z at rest'],
   ]) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : undefined }));
   const area = plan.regions.reduce((sum, region) => sum + region.area, 0);
-  const body = element('tbody', {}, ...plan.regions.map((region, index) => regionRow(region, index, area)));
+  const body = element('tbody', {}, ...plan.regions.map((region, index) => regionRow(region, index, area, unit)));
   return element('div', { class: 'scroll' }, element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body));
 }
 
@@ -53,7 +54,7 @@ export function create(container, report) {
   if (container.hidden) return;
   const words = plan ? `${counted(plan.regions.length, 'region')} by ${plan.method}` : 'no plan';
   container.append(heading('Regions', element('span', { class: 'quiet', text: words })));
-  if (plan) container.append(regionTable(plan));
+  if (plan) container.append(regionTable(plan, report.scene.unit));
   if (plan?.capacitances?.length > 0) {
     container.append(capacitances(plan.capacitances),
       element('p', { class: 'quiet', text: "Capacitance: the charge at potential 1, a length in the files' unit (Gaussian units)." }));
