@@ -30,17 +30,22 @@ for (let i = 0; i < a.data.length; i += 4) {
 }
 return {all, near, pixels: a.width * a.height};
 """
-# Pixels near a colour, within `radius` of a place, and how many different colours there are.
+# How many pixels are near a colour: in the whole picture, or within `radius` of each place.
 COUNT = """
-const [name, colour, tolerance, place, radius] = arguments;
+const [name, colour, tolerance, places, radius] = arguments;
 const a = window.testPictures[name];
-let count = 0;
-for (let i = 0; i < a.data.length; i += 4) {
-  const x = (i / 4) % a.width, y = Math.floor(i / 4 / a.width);
-  if (place && Math.hypot(x + 0.5 - place[0], y + 0.5 - place[1]) > radius) continue;
-  if ([0, 1, 2].every((k) => Math.abs(a.data[i + k] - colour[k]) <= tolerance)) count++;
-}
-return count;
+const like = (x, y) => {
+  const i = 4 * (y * a.width + x);
+  return [0, 1, 2].every((k) => Math.abs(a.data[i + k] - colour[k]) <= tolerance);
+};
+const within = (left, top, right, bottom) => {
+  let count = 0;
+  for (let y = Math.max(0, Math.floor(top)); y < Math.min(a.height, bottom); y++)
+    for (let x = Math.max(0, Math.floor(left)); x < Math.min(a.width, right); x++) if (like(x, y)) count++;
+  return count;
+};
+if (places === null) return within(0, 0, a.width, a.height);
+return places.map(([x, y]) => within(x - radius, y - radius, x + radius, y + radius));
 """
 COLOURS = """
 const a = window.testPictures[arguments[0]], seen = new Set();
@@ -79,8 +84,13 @@ class Pictures:
             raise AssertionError("the pictures are not of one size")
         return found
 
-    def count(self, picture, colour, tolerance=40, place=None, radius=8.0):
-        return self.page.script(COUNT, picture, list(colour), tolerance, list(place) if place else None, radius)
+    def count(self, picture, colour, tolerance=40):
+        """Pixels of the colour."""
+        return self.page.script(COUNT, picture, list(colour), tolerance, None, 0)
+
+    def count_near(self, picture, colour, places, radius=6.0, tolerance=40):
+        """Pixels of the colour in a square about each place."""
+        return self.page.script(COUNT, picture, list(colour), tolerance, [list(place) for place in places], radius)
 
     def colours(self, picture):
         """How many colours, of 32 steps a channel."""

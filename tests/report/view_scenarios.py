@@ -76,12 +76,11 @@ def kinds_differ_in_colour_and_shape(context):
     picture = context.pictures.view("zoomed")
     markers = in_view(page, page.markers())
     expect({marker["kind"] for marker in markers} == {"vf", "ee"}, "not both kinds are in view")
-    counts = {"vf": 0, "ee": 0}
-    for marker in markers:
-        colour = VF if marker["kind"] == "vf" else EE
-        counts[marker["kind"]] += context.pictures.count(picture, colour, place=marker["screen"], radius=6) > 0
-    print(f"markers in their colour: {counts} of {len(markers)}")
-    expect(counts["vf"] > 0 and counts["ee"] > 0, f"markers that have their colour: {counts}")
+    for kind, colour in (("vf", VF), ("ee", EE)):
+        places = [marker["screen"] for marker in markers if marker["kind"] == kind]
+        found = sum(count > 0 for count in context.pictures.count_near(picture, colour, places))
+        print(f"{found} of {len(places)} {kind} markers have pixels of their colour")
+        expect(found > 0, f"no {kind} marker has its colour")
     expect(context.pictures.count(picture, VF) > 20 and context.pictures.count(picture, EE) > 20, "too few pixels")
 
 
@@ -112,12 +111,12 @@ def every_colour_is_another_picture(context):
     for i, one in enumerate(names):
         for other in names[i + 1:]:
             difference = context.pictures.difference(pictures[one], pictures[other])
-            expect(difference["all"] > 0.01 * difference["pixels"],
+            expect(difference["all"] > 0.002 * difference["pixels"],
                    f"{one} and {other} differ in {difference['all']} of {difference['pixels']} pixels only")
 
 
 def every_mark_changes_the_picture(context):
-    made, page = at_most_contacts(context)
+    _, page = at_most_contacts(context, "figure-balls")
     plain = context.pictures.view("plain")
     for name in ("Detector points", "Region cuts", "Edges", "Surroundings"):
         page.set_box(name, True)
