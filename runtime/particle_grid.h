@@ -15,8 +15,8 @@ typedef struct grid_entry {
  */
 typedef struct particle_grid {
     double origin[3], cells_per_length;
-    uint32_t mask;  /* buckets - 1 */
-    uint32_t *first; /* entries of bucket b: first[b] .. first[b + 1] */
+    uint32_t mask;     /* buckets - 1 */
+    uint32_t *first;   /* entries of bucket b: first[b] .. first[b + 1] */
     uint32_t *buckets; /* per particle */
     grid_entry *entries;
     uint32_t count, capacity;
@@ -34,8 +34,8 @@ void particle_grid_build(particle_grid *grid, const double *x, const uint32_t *v
 /* Where to look around a point; begin with particle_grid_around. */
 typedef struct grid_search {
     const particle_grid *grid;
-    uint32_t x, y, z;      /* the first of its 27 cells */
-    uint32_t row, column;  /* now: 9 rows of 3 cells */
+    uint32_t x, y, z;     /* the first of its 27 cells */
+    uint32_t row, column; /* now: 9 rows of 3 cells */
     uint32_t row_y, row_z, bucket;
     uint32_t next, end; /* entries of that bucket */
 } grid_search;

@@ -18,8 +18,7 @@ static cscd_status make_room(cscd_context *context, particle_pairs *pairs) {
     size_t capacity = pairs->capacity > 0 ? 2 * pairs->capacity : CAPACITY_LEAST;
     near_particles *scratch = context_allocate(context, capacity, sizeof *scratch);
     if (scratch == NULL) return CSCD_OUT_OF_MEMORY;
-    near_particles *items =
-        context_grow(context, pairs->items, pairs->count, capacity, sizeof *items);
+    near_particles *items = context_grow(context, pairs->items, pairs->count, capacity, sizeof *items);
     if (items == NULL) {
         context_free(context, scratch);
         return CSCD_OUT_OF_MEMORY;

@@ -79,9 +79,12 @@ static force_sum forces_at(particles *p, uint32_t i, const double x[3], bool wit
 /* The larger, the better the vertex. */
 static double worth(const particles *p, const force_sum *sum) {
     switch (p->rule) {
-    case PARTICLE_ATTRACTION: return vector_dot(sum->vector, sum->vector);
-    case PARTICLE_SCALAR: return sum->scalar;
-    case PARTICLE_POTENTIAL: return -sum->potential;
+    case PARTICLE_ATTRACTION:
+        return vector_dot(sum->vector, sum->vector);
+    case PARTICLE_SCALAR:
+        return sum->scalar;
+    case PARTICLE_POTENTIAL:
+        return -sum->potential;
     }
     return 0.0;
 }

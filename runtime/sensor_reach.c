@@ -1,14 +1,14 @@
 /* How near particles have to come for a warning, mu, and how far they feel each other, R_eff.
  *
  * Two features that touch at time t in a point p have vertices, one of each, that are near each other then:
- *   edges of lengths la and lb: choose an end X of the one at random, such that its mean is p, and so an end Y
- *   of the other. E |X - Y|^2 = Var X + Var Y <= la^2 / 4 + lb^2 / 4, since s (l - s) <= l^2 / 4. Some pair of
- *   ends is no farther apart than the mean: sqrt(la^2 + lb^2) / 2, which is 0.71 edges where all are equal;
- *   a vertex and a triangle with sides up to l: the corners, weighted so that their mean is p, have a variance
- *   of sum over i < j of w_i w_j l_ij^2 <= l^2 / 3, so some corner is within l / sqrt(3).
- * Vertices move on lines, so lengths of edges are convex in t, and are longest at the start or at the end. And
- * the two vertices' difference changes by at most D over the interval, so at the start or at the end, whichever
- * is nearer to t, it is longer by at most D / 2. That is mu: it does not say that particles find these vertices.
+ *   edges of lengths la and lb: choose an end X of the one at random, such that its mean is p, and so an end
+ * Y of the other. E |X - Y|^2 = Var X + Var Y <= la^2 / 4 + lb^2 / 4, since s (l - s) <= l^2 / 4. Some pair
+ * of ends is no farther apart than the mean: sqrt(la^2 + lb^2) / 2, which is 0.71 edges where all are equal;
+ *   a vertex and a triangle with sides up to l: the corners, weighted so that their mean is p, have a
+ * variance of sum over i < j of w_i w_j l_ij^2 <= l^2 / 3, so some corner is within l / sqrt(3). Vertices
+ * move on lines, so lengths of edges are convex in t, and are longest at the start or at the end. And the two
+ * vertices' difference changes by at most D over the interval, so at the start or at the end, whichever is
+ * nearer to t, it is longer by at most D / 2. That is mu: it does not say that particles find these vertices.
  */
 #include "runtime/sensor_reach.h"
 
@@ -106,27 +106,47 @@ static double largest_mu(const sensor_reach *reach, const cscd_partition *partit
 
 /* ---- R_eff -------------------------------------------------------------------------------------------- */
 
-typedef struct vertex_set {
-    const uint32_t *vertices;
-    uint32_t count;
-} vertex_set;
-
-/* An upper bound for the diameter: twice the farthest from the box's centre. */
-static double diameter_bound(vertex_set set, const double *x) {
-    double low[3], high[3], centre[3], farthest = 0.0;
-    for (uint32_t i = 0; i < set.count; i++) {
-        const double *at = x + (size_t)set.vertices[i] * 3;
+/* An upper bound for a diameter: twice the distance of the vertex farthest from the box's centre. */
+static double diameter_bound(const uint32_t *vertices, uint32_t count, const double *x) {
+    double low[3] = {0}, high[3] = {0}, centre[3], farthest = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double *at = x + (size_t)vertices[i] * 3;
         for (int k = 0; k < 3; k++) {
             low[k] = i == 0 ? at[k] : smaller(low[k], at[k]);
             high[k] = i == 0 ? at[k] : larger(high[k], at[k]);
         }
     }
-    if (set.count == 0) return 0.0;
     for (int k = 0; k < 3; k++) centre[k] = low[k] + (high[k] - low[k]) / 2.0;
-    for (uint32_t i = 0; i < set.count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         double d[3];
-        vector_subtract(x + (size_t)set.vertices[i] * 3, centre, d);
+        vector_subtract(x + (size_t)vertices[i] * 3, centre, d);
         farthest = larger(farthest, vector_dot(d, d));
     }
     return 2.0 * sqrt(farthest);
+}
+
+/* Two particles whose areas touch are no farther apart than the two largest diameters. */
+static double largest_two_diameters(const walk_areas *areas, const double *x0, const double *x1) {
+    double first = 0.0, second = 0.0;
+    for (uint32_t i = 0; i < areas->count; i++) {
+        const uint32_t *vertices = areas->vertices + areas->offsets[i];
+        uint32_t count = areas->offsets[i + 1] - areas->offsets[i];
+        double diameter = larger(diameter_bound(vertices, count, x0), diameter_bound(vertices, count, x1));
+        second = larger(second, smaller(first, diameter));
+        first = larger(first, diameter);
+    }
+    return first + second;
+}
+
+void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, const walk_areas *areas,
+                          const double *x0, const double *x1, double radius_given) {
+    memset(reach->parts, 0, partition->part_count * sizeof *reach->parts);
+    measure_edges(reach, partition, x0, x1);
+    for (uint32_t p = 0; p < partition->part_count; p++) {
+        reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge);
+        measure_motion(&reach->parts[p], partition, p, x0, x1);
+    }
+    reach->mu_most = largest_mu(reach, partition);
+    double automatic = radius_given > 0.0 ? 0.0 : largest_two_diameters(areas, x0, x1);
+    reach->radius = radius_given > 0.0 ? larger(radius_given, reach->mu_most) : reach->mu_most + automatic;
 }
