@@ -2,34 +2,42 @@
 #ifndef CSCD_SENSOR_AREAS_H
 #define CSCD_SENSOR_AREAS_H
 
-#include "runtime/narrow_phase.h"
+#include "runtime/swept_box.h"
 #include "src/partition.h"
 
-/* A feature's swept box, as an interval along the axis of the sweep. */
+/* A feature to sweep over, sorted by the low side of its box. */
 typedef struct area_item {
-    uint64_t key; /* orders by low */
+    uint64_t key; /* orders as that number does */
     uint32_t feature, box;
 } area_item;
 
-/* Vertices, edges or triangles of one side, sorted for the sweep. */
+/* Features of one kind and one side that reach where both sides do. */
 typedef struct area_items {
-    area_item *items;
+    area_item *items, *scratch;
     swept_box *boxes;
-    uint32_t count;
+    uint32_t count, capacity;
 } area_items;
 
-/* Workspace; what it asks for when it is created is enough for every check but one with more contacts than
- * any before it. */
+typedef struct area_list {
+    uint8_t *sides; /* per feature of the mesh, bits: of which sides it is; 0 between checks */
+    uint32_t *members;
+    uint32_t count;
+} area_list;
+
+/* Workspace, kept from one check to the next. */
 typedef struct sensor_areas {
-    cscd_context *context;
     const cscd_mesh *mesh;
-    uint8_t *vertex_sides, *edge_sides, *triangle_sides; /* bits: which sides a feature is of; 0 between */
-    uint32_t *vertices, *edges, *triangles;              /* those with a side */
-    uint32_t vertex_count, edge_count, triangle_count;
+    area_list vertices, edges, triangles;
     area_items first, second;
-    area_item *scratch;
     contact_lane *lane;
 } sensor_areas;
+
+/* Cells of two different parts, without repetition, in any order. */
+typedef struct area_query {
+    const double *start, *end;
+    const uint32_t *cells_a, *cells_b;
+    uint32_t count_a, count_b;
+} area_query;
 
 typedef struct area_verdict {
     bool contact;
@@ -37,19 +45,13 @@ typedef struct area_verdict {
     uint64_t tests;
 } area_verdict;
 
-/* Pairs of cells, any number on either side and in any order; a side may also be empty. */
-typedef struct area_query {
-    const double *start, *end;
-    const uint32_t *cells_a, *cells_b;
-    uint32_t count_a, count_b;
-} area_query;
-
 cscd_status sensor_areas_create(const cscd_mesh *mesh, sensor_areas *out);
 /* Of zeros: does nothing. */
 void sensor_areas_destroy(sensor_areas *areas);
 
-/* A side's features are those of the triangles with a vertex in one of its cells. Every pair of a vertex and
- * a face, and of two edges, one of each side, that share no vertex, is tested as by the detector, once. */
+/* A side's features are those of all triangles with a vertex in one of its cells. Every vertex and face, and
+ * every two edges, one of each side, that share no vertex and whose swept boxes meet, are tested as by the
+ * detector, once. */
 cscd_status sensor_areas_check(sensor_areas *areas, const cscd_partition *partition, const area_query *query,
                                area_verdict *out);
 

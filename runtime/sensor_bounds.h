@@ -4,7 +4,7 @@
 
 #include "src/partition.h"
 
-/* A vertex's way and, for the whole interval, how far from it its cell's triangles reach. */
+/* Around all that a cell's triangles are, at any moment: about one of its vertices, which moves linearly. */
 typedef struct cell_ball {
     double start[3], end[3];
     double radius; /* rounded up */
@@ -15,15 +15,15 @@ typedef struct part_box {
     double low[3], high[3];
 } part_box;
 
+/* Workspace. */
 typedef struct sensor_bounds {
-    cscd_context *context;
     const cscd_mesh *mesh;
-    uint64_t generation;         /* of the cells below; 0: none yet */
-    uint32_t *offsets, *corners; /* of the triangles that cell c answers for, each vertex once */
-    uint32_t *homes, *last;      /* scratch, per triangle and per vertex */
-    bool *unbounded;             /* per part: it has triangles, but no cell */
-    cell_ball *balls;            /* per cell */
-    part_box *boxes;             /* per part */
+    uint64_t generation;             /* of the partition that the lists are of; 0: of none */
+    uint32_t *offsets, *corners;     /* of the triangles that cell c answers for, each vertex once */
+    uint32_t *homes, *last, *cursor; /* scratch: per triangle its cell, per vertex, per cell */
+    bool *unbounded;                 /* per part: it has triangles, but no cell */
+    cell_ball *balls;                /* room for one per vertex */
+    part_box *boxes;                 /* per part */
 } sensor_bounds;
 
 /* Asks for all the memory that it will need. */
@@ -31,17 +31,16 @@ cscd_status sensor_bounds_create(const cscd_partition *partition, sensor_bounds 
 /* Of zeros: does nothing. */
 void sensor_bounds_destroy(sensor_bounds *bounds);
 
-/* Balls for one interval, about the vertices `centres`, one per cell: its particle's, or any other. */
+/* Balls for one interval about one vertex per cell: its particle's, or any other. */
 void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                           const double *end, const uint32_t *centres);
 
 /* True: no triangle of the one part touches one of the other at any moment of the interval of the last
- * update; parts' triangles are those of the partition. part_a != part_b. */
+ * update. part_a != part_b. */
 bool sensor_bounds_apart(const sensor_bounds *bounds, const cscd_partition *partition, uint32_t part_a,
                          uint32_t part_b);
 
-/* The same question to the parts' swept boxes, to compare with; they are for the interval of their own last
- * update. */
+/* The same question to the parts' swept boxes, to compare with; of the interval of their own last update. */
 void sensor_bounds_update_boxes(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                                 const double *end);
 bool sensor_bounds_boxes_apart(const sensor_bounds *bounds, uint32_t part_a, uint32_t part_b);

@@ -4,21 +4,28 @@
 
 #include "src/partition.h"
 
-/* What a part was when its cells were made. */
-typedef struct part_at_first {
-    uint64_t generation;   /* of these cells; 0: not yet looked at */
-    double area, estimate; /* the largest of its cells; estimates: wherever in its cell a particle may be */
-    double concave;        /* share of its inner edges' length */
-} part_at_first;
+/* A part's measures: when its cells were made, or now. */
+typedef struct part_measures {
+    double area, estimate; /* the largest of its cells */
+    double edge_squared;   /* of the longest edge at its vertices */
+    double concave;        /* share of the concave ones in the length of its inner edges */
+} part_measures;
 
+/* Of a triangle: the cross product of two sides, and its length, twice the area. */
+typedef struct facing {
+    double normal[3], length;
+} facing;
+
+/* Workspace. */
 typedef struct sensor_upkeep {
-    cscd_context *context;
     const cscd_mesh *mesh;
-    part_at_first *parts;
-    double *cell_areas;       /* per cell, as many as there are vertices */
-    double *concave, *length; /* per part: of its inner edges */
-    double *longest;          /* per part: squared, of the edges at its vertices */
-    bool *inside_out;         /* per component: closed, and its triangles face inwards */
+    uint64_t generation;        /* of the partition that `first` is of; 0: of none */
+    uint64_t *part_generations; /* of each part's cells */
+    part_measures *first, *now; /* per part */
+    double *inner, *concave;    /* per part: lengths of edges */
+    double *cell_areas;         /* room for one per vertex */
+    facing *facings;            /* per triangle */
+    bool *inside_out;           /* per component: closed, and its triangles face inwards */
 } sensor_upkeep;
 
 typedef struct upkeep_limits {
@@ -30,16 +37,18 @@ cscd_status sensor_upkeep_create(const cscd_partition *partition, sensor_upkeep 
 /* Of zeros: does nothing. */
 void sensor_upkeep_destroy(sensor_upkeep *upkeep);
 
-/* Takes the measure of parts whose cells are new since the last call, if there are any: before the first step
- * of these cells. Allocates nothing. */
+/* Before each step: takes the measure of parts whose cells are new since the last call. Their first estimate
+ * is the largest that a particle may have anywhere in its cell. */
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions);
 
-/* After sensor_upkeep_follow. particles: the vertex of each cell's; NULL: areas are not estimated. Writes a
- * reason for every part, the first of several in their order, and returns how many are not NONE. */
+/* particles: the vertex of each cell's; NULL: areas are not estimated. Writes a reason for every part, the
+ * first that holds in their order, and returns how many of them are not NONE. Allocates nothing, as the call
+ * above. */
 uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,
                              const uint32_t *particles, const upkeep_limits *limits, cscd_renewal *renewals);
 
-/* The area of the rectangle that walks in four directions span from a vertex of a cell (3.19-3.22). */
+/* The area of the rectangle that walks in four directions span from a vertex within its cell (section 3.6).
+ */
 double sensor_upkeep_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex);
 
 #endif
