@@ -62,7 +62,8 @@ static void confirms_the_contacts_and_no_others(void **state) {
         "frame,part_a,part_b,object_a,object_b,vertex_a,vertex_b,distance,time,contact,toi\n";
     assert_int_equal(strncmp(text, head, strlen(head)), 0);
     uint32_t confirmed = 0;
-    for (char *row = text + strlen(head); *row != '\0'; row = strchr(row, '\n') + 1) {
+    for (char *row = text + strlen(head), *end; (end = strchr(row, '\n')) != NULL; row = end + 1) {
+        *end = '\0';
         uint32_t frame, parts[2], objects[2], vertices[2];
         int contact;
         double distance, time, toi = -1.0;
