@@ -20,7 +20,7 @@ static const struct falling_body {
     uint32_t triangle_count;
     double scale, axis[3], degrees, place[3];
 } bodies[TUMBLE_BODIES] = {
-    {BODY_PAWN, 1400, 0.5, {1.0, 0.2, 0.0}, 70.0, {-0.75, -0.75, 1.2}},
+    {BODY_PAWN, 1400, 0.5, {1.0, 0.2, 0.0}, -70.0, {-0.75, -0.9, 1.2}},
     {BODY_DUMBBELL, 1000, 0.38, {0.0, 1.0, 0.3}, 50.0, {0.75, -0.75, 1.4}},
     {BODY_TORUS, 1200, 0.55, {1.0, 0.5, 0.0}, 40.0, {-0.75, 0.75, 1.3}},
     {BODY_CAPSULE, 700, 0.5, {0.3, 1.0, 0.0}, 60.0, {0.75, 0.75, 1.2}},
@@ -72,7 +72,7 @@ static cscd_status open_detector(tumble *t) {
 
 bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
     static const material stuff = {.density = 1.0, .young = 120.0, .poisson = 0.4, .damping = 3.0};
-    tumble t = {.context = context, .around = {.friction = 0.4, .gravity = 10.0, .tray = 1.6}};
+    tumble t = {.context = context, .around = {.friction = 0.4, .gravity = 10.0, .tray = 1.7}};
     if (!make_bodies(&t.shape, error)) return false;
     size_t count = (size_t)t.shape.vertex_count * 3;
     t.frame = body_allocate(count, sizeof *t.frame);
@@ -85,7 +85,7 @@ bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
     t.soft = soft_body_make(t.shape.positions, t.shape.vertex_count, t.shape.triangles,
                             t.shape.triangle_count, spacing, &stuff);
     t.contacts = self_contacts_make(t.mesh, t.shape.positions, 2.0 * spacing);
-    soft_body_throw(&t.soft, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 2.5});
+    soft_body_throw(&t.soft, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 1.5});
     *out = t;
     return true;
 }
