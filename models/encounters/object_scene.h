@@ -6,16 +6,17 @@
 
 enum { SCENE_OBJECTS_MAX = 8 };
 
-/* Time runs from 0 to 1. An object's middle goes between place + away, where it begins, and place, where it
- * is `visits` times, the first after 1 / (2 visits) and `late` more; it turns about an axis, and may become
- * longer and thinner, and shorter and thicker again, along its own z. */
+/* Time runs from 0 to 1. An object's middle goes to and fro between place + away, where it begins if not
+ * late, and place, which it reaches `visits` times; it turns about an axis, and may become longer and
+ * thinner, then shorter and thicker, along its own z. */
 typedef struct moving_object {
     body_kind kind;
     uint32_t triangle_count; /* 0: the default */
     double scale;
-    double place[3], away[3], visits, late;
-    double axis[3], degrees, spin; /* degrees at time 1/2, and over the whole time */
-    double stretch;                /* the share of its length that it gains and loses, once; 0: rigid */
+    double place[3], away[3], visits; /* 0: it stays at place + away */
+    double late;                      /* time after which it would begin */
+    double axis[3], degrees, spin;    /* degrees at time 1/2, and over the whole time */
+    double stretch;                   /* the share of its length that it gains and loses, once; 0: rigid */
 } moving_object;
 
 typedef struct object_scene {

@@ -71,7 +71,7 @@ static cscd_status open_detector(tumble *t) {
 }
 
 bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
-    static const material stuff = {.density = 1.0, .young = 120.0, .poisson = 0.4, .damping = 3.0};
+    static const material stuff = {.density = 1.0, .young = 250.0, .poisson = 0.4, .damping = 3.0};
     tumble t = {.context = context, .around = {.friction = 0.4, .gravity = 10.0, .tray = 1.7}};
     if (!make_bodies(&t.shape, error)) return false;
     size_t count = (size_t)t.shape.vertex_count * 3;
@@ -85,7 +85,7 @@ bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
     t.soft = soft_body_make(t.shape.positions, t.shape.vertex_count, t.shape.triangles,
                             t.shape.triangle_count, spacing, &stuff);
     t.contacts = self_contacts_make(t.mesh, t.shape.positions, 2.0 * spacing);
-    soft_body_throw(&t.soft, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 1.5});
+    soft_body_throw(&t.soft, (double[3]){0.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 2.0});
     *out = t;
     return true;
 }
