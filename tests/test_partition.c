@@ -299,7 +299,8 @@ static bool is_hull(const body *b) {
         double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (uint32_t v = 0; v < b->vertex_count; v++) {
             double distance = 0.0;
-            for (int k = 0; k < 3; k++) distance += n[k] / length * (b->positions[v * 3 + (uint32_t)k] - p[0][k]);
+            for (int k = 0; k < 3; k++)
+                distance += n[k] / length * (b->positions[v * 3 + (uint32_t)k] - p[0][k]);
             if (distance > 4e-6) return false;
         }
     }
