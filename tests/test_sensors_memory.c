@@ -113,15 +113,17 @@ static void steady_steps_allocate_nothing(void **state) {
 
 /* ---- what the work grows with ------------------------------------------------------------------------- */
 
-/* Pairs of spheres that overlap a little, far from other pairs. */
+/* Pairs of spheres that come to touch, far from other pairs. */
 static cscd_sensor_counters work_of(int pairs) {
     sensed r = {0};
     counting_allocator counter = counting_allocator_start();
     cscd_warnings found;
     scene_clear(&s);
     for (int i = 0; i < 2 * pairs; i++) {
-        const double centre[3] = {i % 2 ? 1.95 : 0.0, 40.0 * (i / 2 % 3), 40.0 * (i / 6)};
+        const double centre[3] = {i % 2 ? 2.05 : 0.0, 40.0 * (i / 2 % 3), 40.0 * (i / 6)};
+        uint32_t first = s.vertex_count;
         scene_add_sphere(&s, centre, 1.0, 4, 8);
+        for (uint32_t v = first; v < s.vertex_count; v++) s.x1[v * 3] -= i % 2 ? 0.2 : 0.0;
     }
     assert_int_equal(create(&counter, CSCD_SENSORS_CELLS, &r), CSCD_OK);
     assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x1, &found), CSCD_OK);
