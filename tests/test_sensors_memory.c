@@ -140,7 +140,7 @@ static void expect_twice(uint64_t few, uint64_t many) {
 
 static void work_grows_with_the_scene(void **state) {
     (void)state;
-    cscd_sensor_counters few = work_of(8), many = work_of(16);
+    cscd_sensor_counters few = work_of(7), many = work_of(14);
     expect_twice(few.vertices, many.vertices);
     expect_twice(few.particle_pairs, many.particle_pairs);
     expect_twice(few.tests, many.tests);
