@@ -46,6 +46,7 @@ function initialState(report) {
     selected: null,
     triangle: null,
     theme: initialTheme(),
+    up: scene?.up ?? 'z',
   };
 }
 

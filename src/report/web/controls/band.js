@@ -2,15 +2,10 @@
 
 import { element } from './dom.js';
 
-/** Told apart by height as well as by colour. */
-const STATES = {
-  clean: { colour: [0, 158, 115], height: 0.25 },
-  contact: { colour: [230, 159, 0], height: 0.6 },
-  penetrating: { colour: [213, 94, 0], height: 1 },
-  unknown: { colour: [140, 140, 140], height: 0.6 },
-};
+/** Told apart by height as well as by colour, which the style sheet has. */
+const HEIGHTS = { clean: 0.4, contact: 0.7, penetrating: 1, unknown: 0.7 };
 
-const stateOf = (row) => STATES[row?.state] ?? STATES.unknown;
+const stateOf = (row) => (row?.state in HEIGHTS ? row.state : 'unknown');
 
 /** Contacts are ticks above the strip, higher for more of them. */
 function drawTicks(context, counts, place, height, ink) {
@@ -38,12 +33,15 @@ export function createBand(report, store, player) {
     context.scale(density, density);
     const place = (i) => (i / intervals) * clientWidth;
     const strip = Math.min(6, clientHeight / 2);
-    const ink = getComputedStyle(canvas).color;
-    drawTicks(context, [...player.counts], place, clientHeight - strip - 1, ink);
+    const style = getComputedStyle(canvas);
+    const colours = {};
+    for (const state of Object.keys(HEIGHTS)) colours[state] = style.getPropertyValue(`--state-${state}`);
+    drawTicks(context, [...player.counts], place, clientHeight - strip - 1, style.color);
     for (let i = 0; i < intervals; i++) {
-      const { colour, height } = stateOf(rows.get(player.first + i));
-      context.fillStyle = `rgb(${colour.join(' ')})`;
-      context.fillRect(place(i), clientHeight - strip * height, place(i + 1) - place(i) + 0.3, strip * height);
+      const state = stateOf(rows.get(player.first + i));
+      const height = strip * HEIGHTS[state];
+      context.fillStyle = colours[state];
+      context.fillRect(place(i), clientHeight - height, place(i + 1) - place(i) + 0.3, height);
     }
   }
 

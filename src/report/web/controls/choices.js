@@ -95,6 +95,17 @@ function markChoices(scene, store) {
   return group;
 }
 
+function upSelect(store) {
+  const select = element('select', { 'aria-label': 'Up axis' });
+  for (const axis of ['z', 'y']) select.append(element('option', { value: axis }, axis));
+  select.value = store.get().up;
+  select.addEventListener('change', () => store.set({ up: select.value }));
+  store.on(['up'], ({ up }) => {
+    select.value = up;
+  });
+  return element('label', { class: 'row' }, 'Up axis', select);
+}
+
 export function createChoices(container, scene, store) {
-  container.append(colourChoices(scene, store), markChoices(scene, store));
+  container.append(colourChoices(scene, store), markChoices(scene, store), upSelect(store));
 }

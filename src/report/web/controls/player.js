@@ -2,6 +2,9 @@
 
 const SPEEDS = [1, 2, 5, 10, 15, 24, 30, 60];
 
+/** A contact at the very end of its interval is shown in that one, not in the next. */
+const WITHIN = 1 - 1e-9;
+
 /** Contacts an interval, as the summary counts them, and where there are any. */
 function contactCounts(report) {
   const { first, last } = report.scene;
@@ -96,7 +99,7 @@ export function createPlayer(report, store) {
         return;
       }
       const { interval, toi } = report.scene.contacts;
-      store.set({ selected: contact, time: clamp(interval[contact] + toi[contact]), playing: false });
+      store.set({ selected: contact, time: interval[contact] + Math.min(toi[contact], WITHIN), playing: false });
     },
     faster: () => changeSpeed(1),
     slower: () => changeSpeed(-1),

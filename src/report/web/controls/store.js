@@ -17,6 +17,7 @@
  * @property {number|null} selected a contact's number in the report
  * @property {number|null} triangle the one last clicked
  * @property {'light'|'dark'} theme
+ * @property {'z'|'y'} up which axis points up in the view
  */
 
 /** @param {State} initial */

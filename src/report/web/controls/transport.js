@@ -1,7 +1,8 @@
 /** Buttons, slider and speed of the playback, with the intervals' states along the slider. */
 
-import { button, element, icon } from './dom.js';
 import { createBand } from './band.js';
+import { onCalmly } from './calm.js';
+import { button, element, icon } from './dom.js';
 
 const GLYPHS = {
   play: 'M4 2.5v11l9-5.5z',
@@ -42,7 +43,7 @@ function stepButtons(store, player) {
     after.disabled = player.frameWithContactsAfter(time) === null;
     most.disabled = player.most === null;
   };
-  store.on(['time'], update);
+  onCalmly(store, ['time'], update);
   update(store.get());
   return { before: [first, previous], after: [next, last], contacts: [before, after, most] };
 }
@@ -93,7 +94,7 @@ function clock(store, player) {
   const update = ({ time }) => {
     output.textContent = `${Number.isInteger(time) ? time : time.toFixed(2)} / ${player.last}`;
   };
-  store.on(['time'], update);
+  onCalmly(store, ['time'], update);
   update(store.get());
   return output;
 }

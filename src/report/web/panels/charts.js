@@ -1,4 +1,5 @@
 /** The charts under the view: they show every interval, move with the playback, and a click on them goes there. */
+import { onCalmly } from '../controls/calm.js';
 import { element, heading } from './dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
@@ -54,7 +55,7 @@ export function create(container, report, store, player) {
   if (container.hidden) return;
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
-  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map(createFigure);
+  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) => createFigure({ ...figure, first, last }));
   const band = compares ? null : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
   let plots = [];
   let hovered = null;
@@ -88,7 +89,6 @@ export function create(container, report, store, player) {
     range.contain(time - first);
     plots.forEach((plot) => plot.setTime(time));
     band?.setTime(time - first);
-    readValues();
   }
 
   function draw() {
@@ -97,6 +97,7 @@ export function create(container, report, store, player) {
       followPointer(surface, { range: range.get, hover, go });
     band?.draw();
     follow(store.get());
+    readValues();
   }
 
   const beside = [element('span', { class: 'quiet', text: 'of each interval, by its first frame; click or drag to go there' })];
@@ -109,6 +110,7 @@ export function create(container, report, store, player) {
     band?.draw();
   }).observe(container);
   store.on(['time'], follow);
+  onCalmly(store, ['time'], readValues);
   store.on(['theme'], () => requestAnimationFrame(() => {
     plots.forEach((plot) => plot.recolour());
     band?.draw();

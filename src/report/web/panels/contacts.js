@@ -1,11 +1,11 @@
 /** The contacts of the current interval: which features meet, when and where. */
+import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from './dom.js';
 import { counted, decimal, integer } from './format.js';
 import { extent, finder, intervalAt } from './intervalof.js';
 import { createRows } from './rows.js';
 
 const KINDS = ['VF', 'EE'];
-const PLAYING_PAUSE = 200; /* milliseconds between two lists while playing */
 
 function featureWords(contacts, contact) {
   const numbers = contacts.fileVertices ?? contacts.vertices;
@@ -26,7 +26,7 @@ function createTable() {
     element('th', { scope: 'col', text: 'no.' }),
     element('th', { scope: 'col', text: 'kind' }),
     element('th', { scope: 'col', text: 'features' }),
-    element('th', { scope: 'col', class: 'number' }, toi),
+    element('th', { scope: 'col' }, toi),
     element('th', { scope: 'col', text: 'position x, y, z' }));
   const table = element('table', { 'aria-label': 'Contacts of this interval' }, element('thead', {}, head), element('tbody'));
   return { table, toi };
@@ -35,7 +35,7 @@ function createTable() {
 function makeRow(select) {
   const button = element('button', { type: 'button' });
   const kind = element('td', {}, element('span'), element('span'));
-  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td', { class: 'number' }), element('td', { class: 'number' }));
+  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td'), element('td'));
   row.addEventListener('click', () => select(Number(row.dataset.contact)));
   return row;
 }
@@ -115,7 +115,6 @@ export function create(container, report, store, player) {
   let begin = 0;
   let current = -1;
   let listed = -1;
-  let pending = 0;
 
   const select = (contact) => player.select(contact);
   const rows = createRows(scroll, table, {
@@ -139,7 +138,7 @@ export function create(container, report, store, player) {
     empty.say(shown.length === 0 && kept > 0 ? 'No contact of this kind in this interval.' : none, before, after);
   }
 
-  function list(keepPlace = false) {
+  function list() {
     listed = current;
     const range = contacts.range(current);
     begin = range[0];
@@ -147,28 +146,15 @@ export function create(container, report, store, player) {
     sayWhatIsMissing(range[1] - begin, find(current));
     scroll.hidden = shown.length === 0;
     empty.box.hidden = shown.length > 0;
-    if (!keepPlace) rows.toTop();
+    rows.toTop();
     rows.show(shown.length);
   }
 
-  function listSoon() {
-    if (pending === 0) {
-      pending = setTimeout(() => {
-        pending = 0;
-        if (listed !== current) list();
-      }, PLAYING_PAUSE);
-    }
-  }
-
-  function update({ time, playing }) {
-    const interval = intervalAt(time, first, last);
-    if (interval !== current) {
-      current = interval;
-      counts.say(find(interval));
-    }
+  function update({ time }) {
+    current = intervalAt(time, first, last);
     if (listed === current) return;
-    if (playing) listSoon();
-    else list();
+    counts.say(find(current));
+    list();
   }
 
   function follow({ selected }) {
@@ -188,7 +174,7 @@ export function create(container, report, store, player) {
     list();
   });
   container.append(heading('Contacts of this interval', counts.box), element('div', { class: 'section-head' }, filter), capped, empty.box, scroll);
-  store.on(['time', 'playing'], update);
+  onCalmly(store, ['time'], update);
   store.on(['selected'], follow);
-  update({ ...store.get(), playing: false });
+  update(store.get());
 }

@@ -4,19 +4,20 @@ import { swatch } from './palette.js';
 import { createPlot } from './plot.js';
 
 /**
- * @param {{title: string, summary: string, unit?: string, read: (value: number) => string, total?: ArrayLike<number>,
+ * @param {{title: string, summary: string, read: (value: number) => string, total?: ArrayLike<number>,
  *          series: object[], mark?: (index: number) => Node}} figure and what createPlot wants
  */
 export function createFigure(figure) {
   const { title, series, read, total } = figure;
   const outputs = [];
   const keys = element('ul', { class: 'chart-keys' });
-  const addKey = (mark, label) => {
+  const addKey = (mark, label, more) => {
     const output = element('output', { class: 'number', 'aria-live': 'off' });
     outputs.push(output);
-    keys.append(element('li', {}, ...mark, element('span', { text: label }), output));
+    keys.append(element('li', {}, ...mark, element('span', { text: label }), output, ...(more ? [element('small', { text: more })] : [])));
   };
-  series.forEach(({ label, colour, mark }) => addKey([mark ?? swatch(colour.startsWith('--') ? `var(${colour})` : colour)], label));
+  for (const { label, colour, mark, summary } of series)
+    addKey([mark ?? swatch(colour.startsWith('--') ? `var(${colour})` : colour)], label, summary);
   if (total) addKey([], 'total');
   const host = element('div', { class: 'plot' });
   const box = element('figure', { class: 'chart', 'aria-label': title },

@@ -36,8 +36,8 @@ function contactFigure({ summary: { summary } }, first, last, find) {
   return {
     title: 'Contacts per interval', summary: words, stacked: true, height: 112, read: integer, format: tick,
     series: [
-      { label: 'VF', colour: '--vf', line: '--vf-line', values: vf },
-      { label: 'EE', colour: '--ee', line: '--ee-line', values: ee },
+      { label: 'VF', colour: '--vf-area', values: vf },
+      { label: 'EE', colour: '--ee-area', values: ee },
     ],
     total: both,
   };
@@ -62,10 +62,10 @@ function compareFigure(report, first, last, finders, { title, value, read, words
     ...lineStyle(index),
     label: nameOf(report, index),
     mark: lineOf(index),
+    summary: words(report.summaries[index].summary.summary),
     values: column(first, last, finders[index], value),
   }));
-  const summary = report.summaries.map(({ summary: run }, index) => `${nameOf(report, index)} ${words(run.summary)}`).join(' · ');
-  return { title, summary, stacked: false, height: 190, read, format: tick, series };
+  return { title, summary: '', stacked: false, height: 190, read, format: tick, series };
 }
 
 /** Of several: a line each. */

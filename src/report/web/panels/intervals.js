@@ -1,4 +1,5 @@
 /** All intervals in one table; a row goes there. */
+import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from './dom.js';
 import { counted, decimal, integer, milliseconds } from './format.js';
 import { extent, intervalAt } from './intervalof.js';
@@ -108,6 +109,6 @@ export function create(container, report, store, player) {
   container.append(heading('Intervals', count, segments('Intervals listed', 'interval-filter',
     [['all', 'All intervals'], ['contacts', 'With contacts'], ['penetrating', 'Penetrating']], 'all', list)), scroll);
   list('all');
-  store.on(['time', 'playing'], follow);
+  onCalmly(store, ['time'], follow);
   follow({ ...store.get(), playing: false });
 }

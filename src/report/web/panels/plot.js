@@ -52,13 +52,13 @@ function columnsOf(plot, from, to, pixels) {
 
 function seriesOptions({ series, stacked }) {
   const steps = uPlot.paths.stepped({ align: 1 });
-  const options = series.map(({ label, colour, line, dash }) => ({
+  const options = series.map(({ label, colour, dash }) => ({
     label,
     paths: steps,
     points: { show: false },
-    width: stacked ? 1 : 2,
+    width: stacked ? 0 : 1.75,
     dash,
-    stroke: () => colourOf(line ?? colour),
+    stroke: () => colourOf(colour),
     fill: stacked ? () => colourOf(colour) : undefined,
   }));
   return [{}, ...(stacked ? options.reverse() : options)];
@@ -77,7 +77,7 @@ function axes(format, logarithmic) {
 /**
  * @param {HTMLElement} host
  * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
- *          series: {label: string, colour: string, line?: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
+ *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
  *   values: of interval first, first + 1, ...
  */
 export function createPlot(host, plot) {
@@ -108,14 +108,14 @@ export function createPlot(host, plot) {
       },
       axes: axes(plot.format, logarithmic),
       series: seriesOptions(plot),
+      hooks: { ready: [moveLines], setScale: [moveLines] },
     };
     chart = new uPlot(options, data(), host);
     chart.over.append(hoverLine, timeLine);
-    moveLines();
   }
 
   function moveLine(line, at) {
-    const inside = at !== null && at >= first + range[0] && at <= first + range[1];
+    const inside = chart.status === 1 && at !== null && at >= first + range[0] && at <= first + range[1];
     line.hidden = !inside;
     if (inside) line.style.transform = `translateX(${chart.valToPos(at, 'x')}px)`;
   }
@@ -143,7 +143,6 @@ export function createPlot(host, plot) {
     setRange(begin, end) {
       range = [begin, end];
       chart.setData(data());
-      moveLines();
     },
     setLogarithmic(on) {
       logarithmic = on;
@@ -153,7 +152,6 @@ export function createPlot(host, plot) {
       if (chart.width === width()) return;
       chart.setSize({ width: width(), height });
       chart.setData(data());
-      moveLines();
     },
     /** After a change of theme. */
     recolour: () => chart.redraw(false, true),

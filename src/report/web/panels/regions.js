@@ -13,7 +13,7 @@ function regionRow(region, index, area, unit) {
     numberCell(integer(region.triangles), region.triangles),
     numberCell(percent(share), share),
     numberCell(percent(region.visible_share), region.visible_share),
-    element('td', { class: 'number', text: point.map((value) => significant(value, 6)).join(', '), title: point.join(' '), 'data-value': point.join(' ') }));
+    element('td', { class: 'number', text: point.map((value) => significant(value, 5)).join(', '), title: point.join(' '), 'data-value': point.join(' ') }));
 }
 
 function regionTable(plan, unit) {

@@ -1,4 +1,5 @@
 /** The line that says where the recording stands. */
+import { onCalmly } from '../controls/calm.js';
 import { setText } from './dom.js';
 import { counted, integer } from './format.js';
 import { extent, finder, intervalAt } from './intervalof.js';
@@ -27,6 +28,6 @@ export function create(container, report, store) {
     setText(container, parts.join(' · '));
   }
 
-  store.on(['time', 'playing'], update);
+  onCalmly(store, ['time'], update);
   update(store.get());
 }

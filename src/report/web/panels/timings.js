@@ -4,7 +4,7 @@ import { decimal, integer, milliseconds } from './format.js';
 import { lineOf, nameOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
 
-const milliCell = (value) => numberCell(`${milliseconds(value)} ms`, value);
+const milliCell = (value) => numberCell(milliseconds(value), value);
 
 function cellsOf(summary, which, first) {
   const cells = STAGES.map(({ key }) => hasStage(summary.method, key)
@@ -24,8 +24,12 @@ function cellsOf(summary, which, first) {
 function methodCell(report, index) {
   const { summary: { summary } } = report.summaries[index];
   const cell = element('th', { scope: 'rowgroup', rowspan: 2 });
-  if (report.summaries.length > 1) cell.append(lineOf(index), ' ', nameOf(report, index), ' ');
-  cell.append(element('span', { class: report.summaries.length > 1 ? 'quiet' : '', text: summary.method }));
+  const several = report.summaries.length > 1;
+  if (several) {
+    cell.append(lineOf(index), ' ', nameOf(report, index));
+    cell.title = nameOf(report, index);
+  }
+  cell.append(element('span', { class: several ? 'quiet block' : '', text: summary.method }));
   return cell;
 }
 
@@ -41,12 +45,12 @@ export function create(container, report) {
   if (container.hidden) return;
   const several = report.summaries.length > 1;
   const head = element('tr', {}, element('th', { scope: 'col', text: several ? 'replay, method' : 'method' }), element('th', { scope: 'col', text: '' , 'aria-label': 'per frame' }));
-  const names = [...STAGES.map(({ label }) => label), '#PCPs', 'total', ...(several ? ['total to the first'] : []), 'check'];
+  const names = [...STAGES.map(({ label }) => label), '#PCPs', 'total', ...(several ? ['to the first'] : []), 'check'];
   for (const text of names) head.append(element('th', { scope: 'col', class: 'number', text }));
   const table = element('table', { 'aria-label': 'Timings' }, element('thead', {}, head));
   const first = several ? report.summaries[0].summary.summary : null;
   report.summaries.forEach((_, index) => table.append(rowsOf(report, index, first)));
-  container.append(heading('Timings', element('span', { class: 'quiet', text: 'per frame' })),
+  container.append(heading('Timings', element('span', { class: 'quiet', text: 'milliseconds per interval, of each stage' })),
     element('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Timings, scrolls sideways' }, table),
-    element('p', { class: 'quiet', text: 'X: not part of this method. The check is not part of the total.' }));
+    element('p', { class: 'quiet', text: 'X: not part of this method. The check of the frame at the end is not part of the total. #PCPs: potentially colliding pairs.' }));
 }

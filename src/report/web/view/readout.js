@@ -1,5 +1,6 @@
 /** What is known about the triangle that was clicked. */
 
+import { onCalmly } from '../controls/calm.js';
 import { element } from '../controls/dom.js';
 import { intervalOf } from '../data/report.js';
 
@@ -33,10 +34,5 @@ export function createReadout(container, scene, store) {
     }
     box.replaceChildren(element('strong', {}, `Triangle ${triangle}`), close, list);
   };
-  let interval = null;
-  store.on(['triangle', 'time'], (state, changed) => {
-    const now = intervalOf(scene, state.time);
-    if (changed.includes('triangle') || (now !== interval && state.triangle !== null)) show(state);
-    interval = now;
-  });
+  onCalmly(store, ['triangle', 'time'], show);
 }

@@ -1,14 +1,25 @@
 /** How many pixels are drawn: all of the screen's at rest, fewer in motion where that is too slow. */
 
-const LEAST = 0.5;
-const SLOW_MS = 24; // less than 40 frames a second
-const QUICK_MS = 14;
+const LEAST = 0.5; // pixels of the buffer for one of the page
+const SLOW_MS = 30;
+const QUICK_MS = 12;
 const REST_MS = 160;
 
+/** Without a graphics processor each pixel counts, several samples for each all the more. */
+export function rendersInSoftware() {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (context === null) throw new Error('WebGL 2 is not available');
+  const details = context.getExtension('WEBGL_debug_renderer_info');
+  const name = context.getParameter(details?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER);
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(name));
+}
+
 export class Resolution {
-  constructor(viewer) {
+  constructor(viewer, software) {
     this.viewer = viewer;
-    this.share = 1; // of the full resolution, in motion
+    this.software = software;
+    this.share = software ? 0.5 : 1; // of the full resolution, in motion
     this.inMotion = false;
     this.rest = null;
     this.last = 0;
@@ -16,8 +27,10 @@ export class Resolution {
     this.ratio = 1;
   }
 
+  /** At rest; software draws four pixels for one then, to smooth edges, and has time for it. */
   get full() {
-    return Math.min(window.devicePixelRatio || 1, 3);
+    const density = window.devicePixelRatio || 1;
+    return this.software ? Math.max(2, Math.min(density, 3)) : Math.min(density, 3);
   }
 
   apply() {
@@ -55,7 +68,8 @@ export class Resolution {
     if (!known) return;
     this.mean = this.mean === 0 ? elapsed : 0.8 * this.mean + 0.2 * elapsed;
     const next = this.mean > SLOW_MS ? this.share * 0.85 : this.mean < QUICK_MS ? this.share * 1.1 : this.share;
-    const share = Math.min(1, Math.max(LEAST / this.full, next));
+    const most = this.software ? 0.5 : 1;
+    const share = Math.min(most, Math.max(LEAST / this.full, next));
     if (Math.abs(share - this.share) < 0.01) return;
     this.share = share;
     this.mean = 0;

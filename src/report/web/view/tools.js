@@ -34,13 +34,11 @@ function tools(viewer, store) {
     update(store.get());
     row.append(zoom);
   }
-  const up = toggle('Y is up', 'Y up', 'Turn the picture so that y points up, not z', false, (on) => viewer.setUp(on));
   const follow = toggle('Follow the body', 'Follow', 'Let the view travel with the body', viewer.follows, (on) =>
     viewer.setFollows(on),
   );
   viewer.onHome = () => follow.setAttribute('aria-pressed', String(viewer.follows));
   if (data.last > data.first) row.append(follow);
-  row.append(up);
   return row;
 }
 

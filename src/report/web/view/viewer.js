@@ -6,12 +6,13 @@ import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
 import { onClick, pickTriangle } from './picking.js';
-import { Resolution } from './resolution.js';
+import { Resolution, rendersInSoftware } from './resolution.js';
 import { Space, sphereOf } from './space.js';
 import { Surface } from './surface.js';
 
-const SCENERY = { light: [214, 216, 220], dark: [84, 88, 98] };
-const FAR_TRAVELLED = 2.5; // body lengths
+const SCENERY = { light: [226, 225, 221], dark: [78, 82, 92] };
+const GROUND = { light: '#f1f3f6', dark: '#1b212b' };
+const FAR_TRAVELLED = 1.3; // body lengths
 
 export class Viewer {
   /** @throws where there is no WebGL */
@@ -31,19 +32,22 @@ export class Viewer {
 
   makeRenderer() {
     const canvas = document.createElement('canvas');
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power', stencil: false });
+    const software = rendersInSoftware();
+    const context = canvas.getContext('webgl2', { alpha: false, antialias: !software, stencil: false });
+    this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are as on the screen throughout
     this.canvas = canvas;
     for (const [name, value] of [['role', 'img'], ['aria-label', '3D view'], ['tabindex', '0']]) {
       canvas.setAttribute(name, value);
     }
     this.container.append(canvas);
-    this.resolution = new Resolution(this);
+    this.resolution = new Resolution(this, software);
   }
 
   makeScene() {
     const { data } = this;
     this.space = new Space(data.positions);
+    this.space.setUp(this.store.get().up === 'y');
     this.scene = new Scene();
     this.painter = new Painter(data);
     this.body = new Surface(data);
@@ -78,6 +82,7 @@ export class Viewer {
     redraw(['time'], () => this.resolution.moving());
     redraw(['colour', 'contacts', 'trail', 'through', 'points', 'cuts', 'edges', 'scenery', 'selected', 'triangle']);
     redraw(['theme'], () => this.setTheme());
+    redraw(['up'], () => this.setUp());
     new ResizeObserver(() => this.resize()).observe(this.container);
     onClick(this.canvas, (x, y) => this.pick(x, y));
     this.canvas.addEventListener('keydown', (event) => {
@@ -93,10 +98,9 @@ export class Viewer {
     const { data, space } = this;
     const bodies = data.positions;
     this.whole = space.box(bodies);
-    let longest = 0;
-    for (let i = 0; i < bodies.available; i++) longest = Math.max(longest, ...bodies.half(i));
-    const travelled = Math.max(...this.whole.getSize(new Vector3()).toArray());
-    this.travels = travelled > (FAR_TRAVELLED * 2 * longest) / space.length;
+    this.reach = space.reach(bodies);
+    const size = (box) => Math.max(...box.getSize(new Vector3()).toArray());
+    this.travels = size(this.whole) > FAR_TRAVELLED * size(this.reach);
     this.surroundings = data.scenery === null ? new Box3() : space.box(data.scenery.positions);
   }
 
@@ -108,11 +112,9 @@ export class Viewer {
   }
 
   home() {
-    const { data, space, view } = this;
     this.follows = this.travels;
-    const { i } = data.positions.locate(this.store.get().time);
-    view.home(this.follows ? space.box(data.positions, i) : this.whole);
     this.followed = this.bodyPlace();
+    this.view.home(this.follows ? this.reach.clone().translate(this.followed) : this.whole);
     this.touched = false;
     this.onHome?.();
     this.invalidate();
@@ -124,8 +126,8 @@ export class Viewer {
     this.invalidate();
   }
 
-  setUp(yUp) {
-    this.space.setUp(yUp);
+  setUp() {
+    this.space.setUp(this.store.get().up === 'y');
     this.measure();
     this.home();
   }
@@ -136,8 +138,7 @@ export class Viewer {
 
   setTheme() {
     const { theme } = this.store.get();
-    const ground = getComputedStyle(this.container).getPropertyValue('--view-ground').trim();
-    this.scene.background = new Color().setStyle(ground || (theme === 'dark' ? '#15181e' : '#f4f5f7'), LinearSRGBColorSpace);
+    this.scene.background = new Color().setStyle(GROUND[theme], LinearSRGBColorSpace);
     if (this.scenery !== null) {
       const colour = SCENERY[theme];
       const rgb = new Uint8Array(this.data.scenery.triangles.length);
@@ -210,7 +211,7 @@ export class Viewer {
     }
     this.body.setLines(state.edges || this.linesMarked);
     const { uniforms } = this.body.lined;
-    uniforms.edges.value = state.edges ? 0.45 : 0;
+    uniforms.edges.value = state.edges ? 0.4 : 0;
     uniforms.density.value = this.resolution.ratio;
   }
 
