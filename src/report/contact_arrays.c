@@ -2,6 +2,7 @@
 #include "src/report/contact_arrays.h"
 
 #include "src/io/growable.h"
+#include "src/report/page_coordinate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +53,7 @@ static bool keep(contact_arrays *a, const report_options *options, uint32_t inte
     cscd_stencil stencil =
         cscd_mesh_stencil(options->mesh, contact->kind, contact->a, contact->b, contact->u, contact->v);
     double point[3];
-    for (int k = 0; k < 3; k++) point[k] = contact->point[k] * scale;
+    for (int k = 0; k < 3; k++) point[k] = page_coordinate(contact->point[k], scale);
     a->kept++;
     if (a->file_vertices != NULL) {
         uint32_t vertices[4];
