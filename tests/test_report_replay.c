@@ -321,7 +321,7 @@ static void of_many_contacts_each_interval_keeps_its_share(void **state) {
     assert_int_equal(i, count);
     const json_node *contacts = json_node_member(p.scene, "contacts");
     assert_true(json_node_number(contacts, "found") == (INTERVALS - 3) * MANY);
-    assert_true(json_node_number(contacts, "kept") == count && count == REPORT_CONTACTS_MAX);
+    assert_true(json_node_number(contacts, "kept") == REPORT_CONTACTS_MAX && count == REPORT_CONTACTS_MAX);
     assert_true(json_node_number(contacts, "interval_limit") == REPORT_INTERVAL_CONTACTS_MAX);
     assert_true(json_node_number(contacts, "limit") == REPORT_CONTACTS_MAX);
     assert_int_equal(*(const uint32_t *)(const void *)heats.data, (INTERVALS - 3) * MANY); /* of the face 0 */
