@@ -1,6 +1,6 @@
 /** How many pixels are drawn: all of the screen's at rest, fewer in motion where that is too slow. */
 
-const LEAST = 0.5; // pixels of the buffer for one of the page
+const LEAST = 0.7; // pixels of the buffer for one of the page
 const SLOW_MS = 30;
 const QUICK_MS = 12;
 const REST_MS = 160;

@@ -256,6 +256,7 @@ export class Viewer {
     const { data, painter, space } = this;
     const { selected, time } = this.store.get();
     const interval = intervalOf(data, time);
+    this.update(this.store.get()); // where the view follows the body, it does so before
     const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
     if (begin === end) return;
     const box = new Box3();
