@@ -1,6 +1,6 @@
 /** The charts under the view: they show every interval, move with the playback, and a click on them goes there. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading } from './dom.js';
+import { element, heading, setText } from './dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
 import { extent, finder, intervalAt } from './intervalof.js';
@@ -60,6 +60,7 @@ export function create(container, report, store, player) {
   let plots = [];
   let hovered = null;
   let read = -1;
+  const reading = element('output', { class: 'reading', 'aria-live': 'off', title: 'The interval whose values are shown: under the pointer, else the current one' });
 
   const moment = () => store.get().time - first;
   const range = createRange(count, (begin, end) => {
@@ -71,6 +72,7 @@ export function create(container, report, store, player) {
     const interval = hovered ?? intervalAt(store.get().time, first, last) - first;
     if (interval === read) return;
     read = interval;
+    setText(reading, `frame ${first + interval}`);
     figures.forEach((figure) => figure.show(interval));
   }
 
@@ -100,7 +102,7 @@ export function create(container, report, store, player) {
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet', text: 'of each interval, by its first frame; click or drag to go there' })];
+  const beside = [element('span', { class: 'quiet', text: 'click or drag to go there; values of' }), reading];
   if (compares) beside.push(logarithmicSwitch(() => plots));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
   container.append(heading('Charts', ...beside), ...(band ? [band.box] : []), ...figures.map(({ box }) => box));

@@ -13,6 +13,11 @@ function featureWords(contacts, contact) {
   return contacts.kind[contact] === 0 ? `vertex ${a} · face ${b} ${c} ${d}` : `edge ${a} ${b} · edge ${c} ${d}`;
 }
 
+/** Whether a row needs a second line for its features. */
+function hasLongNumbers({ vertices, fileVertices }) {
+  return (fileVertices ?? vertices).some((vertex) => vertex > 9999);
+}
+
 /** Decimals that tell positions apart: six digits of the largest coordinate. */
 function positionDecimals(points, unit) {
   let largest = 0;
@@ -107,6 +112,7 @@ export function create(container, report, store, player) {
   const { unit } = report.scene;
   const data = { contacts, unit, decimals: positionDecimals(contacts.point, unit) };
   const counts = createCounts();
+  container.classList.toggle('long-numbers', hasLongNumbers(contacts));
   const { table, toi } = createTable();
   const scroll = element('div', { class: 'scroll' }, table);
   const empty = createEmpty(player);

@@ -71,8 +71,8 @@ function compareFigure(report, first, last, finders, { title, value, read, words
 /** Of several: a line each. */
 export function compareFigures(report, first, last, finders) {
   return [
-    { title: 'Milliseconds per interval', value: ({ ms }) => ms.total, read: millisecondsWithUnit, words: ({ total_ms: total }) => `mean ${milliseconds(total.mean)} ms` },
+    { title: 'Milliseconds per interval', value: ({ ms }) => ms.total, read: millisecondsWithUnit, words: ({ total_ms: total }) => `mean ${milliseconds(total.mean)}, maximum ${milliseconds(total.max)} ms` },
     { title: 'Contacts per interval', value: ({ vf, ee }) => vf + ee, read: integer, words: ({ vf, ee }) => `${integer(vf + ee)} in all` },
-    { title: 'Pairs per interval (#PCPs)', value: ({ pcp }) => pcp, read: integer, words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}` },
+    { title: 'Pairs per interval (#PCPs)', value: ({ pcp }) => pcp, read: integer, words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}, maximum ${integer(pcp.max)}` },
   ].map((figure) => compareFigure(report, first, last, finders, figure));
 }

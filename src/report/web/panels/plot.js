@@ -64,11 +64,17 @@ function seriesOptions({ series, stacked }) {
   return [{}, ...(stacked ? options.reverse() : options)];
 }
 
+/** A number at the right end would be cut. */
+function frameLabels({ scales: { x } }, splits) {
+  const room = (x.max - x.min) * 0.015;
+  return splits.map((frame) => (Number.isInteger(frame) && (frame < 1000 || frame < x.max - room) ? String(frame) : ''));
+}
+
 function axes(format, logarithmic) {
   const common = { font: AXIS_FONT, stroke: () => token('--quiet'), ticks: { show: false } };
   return [
     { ...common, size: 22, gap: 3, space: 56, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
-      grid: { show: false }, values: (_, splits) => splits.map((value) => (Number.isInteger(value) ? String(value) : '')) },
+      grid: { show: false }, values: frameLabels },
     { ...common, size: LEFT, gap: 5, space: logarithmic ? 18 : 26, grid: { stroke: () => token('--grid'), width: 1 },
       values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))) },
   ];
