@@ -44,13 +44,14 @@ CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-cont
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
-TOOL_LIBS  := -lpng $(CORE_LIBS)
+TOOL_LIBS  := -lpng -lz -ljson-c $(CORE_LIBS)
 TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 
 CORE_SOURCES    := $(filter-out runtime/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c, \
                      $(wildcard src/*.c preprocess/*.c runtime/*.c))
 KERNEL_SOURCES  := $(wildcard runtime/kernels/*.c)
 TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
+REPORT_SOURCES  := $(wildcard src/report/*.c)
 CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
 TEST_SOURCES    := $(filter-out $(if $(filter 0,$(GSL)),tests/test_gsl.c),$(wildcard tests/test_*.c))
@@ -63,7 +64,7 @@ FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
-SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(TOOL_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(TOOL_SOURCES) $(REPORT_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES)
 
 # One short line per file; V=1 shows the commands.
@@ -87,7 +88,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks lint format examples clean help fuzz-elementary FORCE
+.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -195,6 +196,12 @@ bench-plot:
 	@.ci/packages plots
 	@benchmarks/plot.sh build/bench.json docs/images
 
+# The page of the reports, bundled from its sources. The outcome is committed: only who changes them needs node.
+template:
+	@command -v node >/dev/null && command -v npm >/dev/null || { \
+	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle src/report/web' >&2; exit 1; }
+	@cd src/report/web && npm ci --no-audit --no-fund && node build.mjs
+
 lint: packages
 	@.ci/lint
 
@@ -221,6 +228,7 @@ help:
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
+	@echo 'make template  bundle the page of the reports, after changes in src/report/web (needs node and npm)'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
@@ -249,7 +257,7 @@ $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
 # The tool lives on the public API alone, so it links the library and not its objects.
-$(TOOL): $(call objects,$(CLI_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
+$(TOOL): $(call objects,$(CLI_SOURCES) $(REPORT_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
@@ -324,7 +332,7 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
 	$(Q)ar rcs $@ $^
 
 # q: objects of different folders may have one name.
-$(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(MODEL_PART_OBJECTS)
+$(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(call objects,$(REPORT_SOURCES)) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)ar qcs $@ $^
@@ -344,6 +352,9 @@ $(BUILD)/%.o: %.c
 
 # Square roots without errno and comparisons without traps: or its loops are not vectorised.
 $(BUILD)/preprocess/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
+
+# The page of the reports is a part of this object.
+$(BUILD)/src/report/template.o: src/report/template.html
 
 # Only this file depends on the commit, and only when the commit changes.
 $(BUILD)/src/cli/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'

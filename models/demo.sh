@@ -18,7 +18,8 @@ show() { # show PROGRAM ARGUMENTS...: the command, then what it says
 
 show "$build/models/record" pawn-drop "$out"
 show "$tool" preprocess "$name.obj"
-show "$tool" replay "$name.obj" "$name.pc2" --contacts "$out/contacts.csv" --json "$out/summary.json" >"$out/table.txt"
+show "$tool" replay "$name.obj" "$name.pc2" --contacts "$out/contacts.csv" --json "$out/summary.json" \
+    --report "$out/report.html" --scenery "$name-scenery.obj" >"$out/table.txt"
 cat "$out/table.txt"
 
 # The plain method without regions gives the same contacts, and brute force over all pairs of features the same
@@ -54,4 +55,5 @@ most=$(cat "$out/most.txt")
 
 echo
 echo "demo: first contact in interval $first; method none and brute force agree, CSV, JSON and table too"
+echo "      $out/report.html shows all of it: open it in a browser"
 echo "      $out/contacts.csv, summary.json; strip.png, contacts.png (interval $most, which has most), charge.png, regions.png"

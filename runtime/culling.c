@@ -9,11 +9,12 @@ static bool allocate(culling *c) {
     c->triangle_regions = context_allocate(context, triangles, sizeof *c->triangle_regions);
     c->triangle_weights = context_allocate(context, triangles, sizeof *c->triangle_weights);
     c->detector_offsets = context_allocate(context, regions, sizeof *c->detector_offsets);
+    c->detector_points = context_allocate(context, regions, sizeof *c->detector_points);
     c->facing = context_allocate(context, triangles, sizeof *c->facing);
     c->orientations = context_allocate(context, triangles, sizeof *c->orientations);
     c->earlier = context_allocate(context, triangles, sizeof *c->earlier);
     return c->triangle_regions != NULL && c->triangle_weights != NULL && c->detector_offsets != NULL &&
-           c->facing != NULL && c->orientations != NULL && c->earlier != NULL;
+           c->detector_points != NULL && c->facing != NULL && c->orientations != NULL && c->earlier != NULL;
 }
 
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out) {
@@ -37,7 +38,7 @@ cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling
 }
 
 void culling_destroy(culling *c) {
-    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets,
+    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets, c->detector_points,
                       c->facing,           c->orientations,     c->earlier};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(c->context, blocks[i]);
     *c = (culling){0};

@@ -10,12 +10,13 @@ typedef struct culling {
     const cscd_mesh *mesh;
     uint32_t region_count;
     uint32_t *triangle_regions;
-    double *triangle_weights;      /* as in the plan */
-    double (*detector_offsets)[3]; /* as in the plan */
-    uint8_t *facing;               /* of the interval at hand; ZERO where a triangle was not clean */
-    uint8_t *orientations;         /* the same, but ZERO also where contacts have tainted a triangle since */
-    uint8_t *earlier;              /* the orientations of the passes before the one at hand */
-    uint64_t plus, minus;          /* how many are facing PLUS and MINUS */
+    double *triangle_weights;        /* as in the plan */
+    double (*detector_offsets)[3];   /* as in the plan */
+    double (*detector_points)[2][3]; /* per region, at the start and at the end of the interval at hand */
+    uint8_t *facing;                 /* of the interval at hand; ZERO where a triangle was not clean */
+    uint8_t *orientations; /* the same, but ZERO also where contacts have tainted a triangle since */
+    uint8_t *earlier;      /* the orientations of the passes before the one at hand */
+    uint64_t plus, minus;  /* how many are facing PLUS and MINUS */
 } culling;
 
 /* What the detector needs of a plan, copied; without one, a region per component and the mean of its

@@ -3,6 +3,8 @@
 
 #include "runtime/representatives.h"
 
+#include <string.h>
+
 cscd_detector_options cscd_detector_defaults(void) {
     return (cscd_detector_options){.struct_size = sizeof(cscd_detector_options), .step_factor = 0.8};
 }
@@ -216,6 +218,17 @@ cscd_counters cscd_detector_counters(const cscd_detector *detector) {
 
 cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
     return detector->guarantees[component];
+}
+
+uint32_t cscd_detector_region_count(const cscd_detector *detector) {
+    return detector_region_count(detector);
+}
+
+void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
+                                double end[3]) {
+    const double(*points)[3] = (const double(*)[3])detector->culling.detector_points[region];
+    memcpy(start, points[0], sizeof(double[3]));
+    memcpy(end, points[1], sizeof(double[3]));
 }
 
 int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle) {

@@ -77,6 +77,11 @@ static inline bool detector_culls(const cscd_detector *d) {
     return by_orientation && d->limit.distance == 0.0;
 }
 
+/* The regions that orientations are of; 0: there are none. */
+static inline uint32_t detector_region_count(const cscd_detector *d) {
+    return detector_culls(d) ? d->culling.region_count : 0;
+}
+
 /* Does it look for patches that cannot touch themselves? */
 static inline bool detector_seals(const cscd_detector *d) {
     cscd_method method = d->options.method;

@@ -120,6 +120,9 @@ typedef struct forest_view {
     bool still;                          /* detector points stay where they are at the start */
 } forest_view;
 
+/* Where the detector points are at both ends of the interval moved to last, per region, up to rounding. */
+void forest_detector_points(const forest *f, const forest_view *view, double (*points)[2][3]);
+
 /* Detector points and flags of the interval moved to last; orientations: per triangle of the mesh, written
  * where they count. */
 void forest_orient(forest *f, const forest_view *view, uint8_t *orientations);

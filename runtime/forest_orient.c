@@ -22,6 +22,18 @@ static void place_detector(const forest *f, forest_part *p, const forest_view *v
     }
 }
 
+void forest_detector_points(const forest *f, const forest_view *view, double (*points)[2][3]) {
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        for (int e = 0; e < 2; e++) {
+            int end = view->still ? 0 : e;
+            for (int k = 0; k < 3; k++)
+                points[p->region][e][k] =
+                    p->origin[end][k] + p->weighted[end][k] / f->scale + view->detector_offsets[p->region][k];
+        }
+    }
+}
+
 static uint32_t component_of(const forest *f, const forest_part *p) {
     return f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
 }

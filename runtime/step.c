@@ -81,14 +81,17 @@ static void choose_culled(step_work *work) {
     }
 }
 
-static void orient(step_work *work) {
-    cscd_detector *d = work->search.detector;
-    bool still = follows(d, PUBLISHED_STILL);
-    double since = timer_now_ms();
+static forest_view view_of(const step_work *work) {
+    const cscd_detector *d = work->search.detector;
     bool all = work->all_clean || follows(d, PUBLISHED_UNPROVEN);
-    forest_view view = {d->culled, all ? NULL : d->starts.triangles,
-                        (const double(*)[3])d->culling.detector_offsets, still};
-    forest_orient(&d->forest, &view, d->culling.facing);
+    return (forest_view){d->culled, all ? NULL : d->starts.triangles,
+                         (const double(*)[3])d->culling.detector_offsets, follows(d, PUBLISHED_STILL)};
+}
+
+static void orient(step_work *work, const forest_view *view) {
+    cscd_detector *d = work->search.detector;
+    double since = timer_now_ms();
+    forest_orient(&d->forest, view, d->culling.facing);
     culling_begin(&d->culling);
     timer_lap(&since, &work->search.timings.orientation_ms);
     work->search.counters.plus = d->culling.plus;
@@ -139,8 +142,10 @@ static cscd_status find_by_trees(step_work *work) {
     if (status != CSCD_OK) return status;
     if (detector_seals(d)) return find_unsealed(work);
     choose_culled(work);
+    forest_view view = view_of(work);
+    if (detector_region_count(d) > 0) forest_detector_points(&d->forest, &view, d->culling.detector_points);
     if (!work->any_culled) return interval_search_everything(&work->search);
-    orient(work);
+    orient(work, &view);
     if (d->options.method == CSCD_METHOD_PUBLISHED) {
         interval_search_skip_adjacent(&work->search, follows(d, PUBLISHED_ADJACENT));
         return interval_search_traverse(&work->search, TRAVERSAL_KEPT);

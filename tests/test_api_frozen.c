@@ -329,6 +329,9 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
 const char *cscd_reason_text(cscd_reason reason);
 cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
 int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
+uint32_t cscd_detector_region_count(const cscd_detector *detector);
+void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
+                                double end[3]);
 cscd_timings cscd_detector_timings(const cscd_detector *detector);
 cscd_counters cscd_detector_counters(const cscd_detector *detector);
 

@@ -171,7 +171,7 @@ static void names_and_values_match(void **state) {
     assert_false(cscd_mode_from_name("some", &mode));
     assert_string_equal(cscd_method_name((cscd_method)77), "unknown");
     assert_string_equal(cscd_status_string((cscd_status)77), "unknown status");
-    assert_string_equal(cscd_version_string(), "1.0.0");
+    assert_string_equal(cscd_version_string(), "1.1.0");
 }
 
 int main(void) {

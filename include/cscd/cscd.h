@@ -34,14 +34,14 @@
 #include <cscd/solver.h>
 
 #define CSCD_VERSION_MAJOR 1
-#define CSCD_VERSION_MINOR 0
+#define CSCD_VERSION_MINOR 1
 #define CSCD_VERSION_PATCH 0
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* "1.0.0", static storage. */
+/* "1.1.0", static storage. */
 CSCD_API const char *cscd_version_string(void);
 
 #ifdef __cplusplus

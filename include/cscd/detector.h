@@ -177,6 +177,14 @@ CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, u
 /* How a triangle faced its region's detector point during the last step: 1 (S+), -1 (S-), or 0: neither
  * throughout, or it was not clean at the start. Undefined after a step that failed. */
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
+/* Regions by which the detector culls: those of its plan, or the components; 0 where it does not cull by
+ * orientation: by its method, or with min_separation. Since 1.1. */
+CSCD_API uint32_t cscd_detector_region_count(const cscd_detector *detector);
+/* Where the detector point of a region was at the start and at the end of the last step, up to rounding; in
+ * between it moved on a line. region < the count; undefined before the first step, and after one that failed.
+ * Since 1.1. */
+CSCD_API void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
+                                         double end[3]);
 
 typedef struct cscd_timings { /* of the last step; the seed of each is a stage of the pipeline */
     double update_ms;         /* BVH update: records and refit */

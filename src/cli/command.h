@@ -18,6 +18,7 @@ int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
 int command_check(int argument_count, char **arguments);
 int command_info(int argument_count, char **arguments);
+int command_report(int argument_count, char **arguments);
 int command_render(int argument_count, char **arguments);
 
 /* One line on stderr, "cscd: ..."; return the exit code that fits. */

@@ -2,6 +2,7 @@
 #include "src/cli/plan_picture.h"
 
 #include "src/picture/colour.h"
+#include "src/report/charge_rank.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,33 +13,12 @@ void plan_colour_regions(const cscd_plan *plan, uint32_t triangle_count, uint8_t
         picture_colour_category(cscd_plan_triangle_region(plan, t), colours + (size_t)t * 3);
 }
 
-typedef struct charged {
-    uint32_t component, triangle;
-    double charge;
-} charged;
-
-static int compare(const void *left, const void *right) {
-    const charged *l = left, *r = right;
-    if (l->component != r->component) return l->component < r->component ? -1 : 1;
-    if (l->charge != r->charge) return l->charge < r->charge ? -1 : 1;
-    return l->triangle < r->triangle ? -1 : l->triangle > r->triangle;
-}
-
 bool plan_colour_charge(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours, io_error *error) {
-    uint32_t count = cscd_mesh_triangle_count(mesh);
-    charged *order = malloc((size_t)count * sizeof *order);
-    if (order == NULL) return io_fail(error, "out of memory");
-    for (uint32_t t = 0; t < count; t++)
-        order[t] = (charged){cscd_mesh_triangle_component(mesh, t), t, cscd_plan_triangle_charge(plan, t)};
-    qsort(order, count, sizeof *order, compare);
-    for (uint32_t i = 0, first = 0, rank = 0; i < count; i++) {
-        if (order[i].component != order[first].component) first = rank = i;
-        if (order[i].charge != order[rank].charge) rank = i;
-        uint32_t others = cscd_mesh_component(mesh, order[i].component).triangle_count - 1;
-        picture_colour_map(others > 0 ? (double)(rank - first) / others : 0.0,
-                           colours + (size_t)order[i].triangle * 3);
-    }
-    free(order);
+    double *ranks = charge_ranks(plan, mesh);
+    if (ranks == NULL) return io_fail(error, "out of memory");
+    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++)
+        picture_colour_map(ranks[t], colours + (size_t)t * 3);
+    free(ranks);
     return true;
 }
 

@@ -3,6 +3,7 @@
 #include "src/cli/output_path.h"
 #include "src/cli/plan_choice.h"
 #include "src/cli/plan_picture.h"
+#include "src/cli/plan_report.h"
 #include "src/cli/progress.h"
 #include "src/cli/replay_options.h"
 #include "src/io/path_name.h"
@@ -22,6 +23,9 @@ static const char help[] =
     "of triangles that cannot touch. Contacts are the same with any plan and with none.\n"
     "\n"
     "  -o PLAN.ply            default: MODEL with .plan.ply for its ending, where replay looks for it\n"
+    "  --report OUT.html      also write a page that shows charge, regions and detector points in any "
+    "browser\n"
+    "  --up y|z               of the report: which axis points up (default z)\n"
     "  --method charge        cut where little charge gathers on the mesh as a conductor (default): takes\n"
     "                         4 bytes for each pair of triangles of a component, and time with the cube\n"
     "  --method kmeans:K      K regions by distance\n"
@@ -39,6 +43,9 @@ typedef struct preprocess_options {
     recording_options source;
     cscd_plan_options plan;
     const char *output_path;
+    report_request report;
+    int argument_count; /* the command line, for the provenance */
+    char **arguments;
     bool quiet;
 } preprocess_options;
 
@@ -102,6 +109,16 @@ static bool save(const preprocess_options *o, const recording *r, const double *
     return saved;
 }
 
+static bool save_report(const preprocess_options *o, const recording *r, const double *positions,
+                        const cscd_plan *plan, io_error *error) {
+    if (o->report.path == NULL) return true;
+    plan_report shown = {&o->report, o->source.model_path, r,           positions,
+                         plan,       o->argument_count,    o->arguments};
+    if (!plan_report_write(&shown, error)) return false;
+    if (!o->quiet) printf("written: %s\n", o->report.path);
+    return true;
+}
+
 enum { PERCENT = 100 };
 
 static bool show_progress(void *user, const char *stage, double fraction) {
@@ -122,6 +139,7 @@ static bool make(const preprocess_options *o, recording *r, const double *positi
         print_plan(o, r, plan);
         printf("written: %s\n", o->output_path);
     }
+    saved = saved && save_report(o, r, positions, plan, error);
     cscd_plan_destroy(plan);
     return saved;
 }
@@ -137,8 +155,8 @@ static int run(preprocess_options *o) {
     if (!o->quiet) recording_warn(&r);
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r.mesh) * 3 * sizeof *positions);
     bool made = positions != NULL || io_fail(&error, "out of memory");
-    made = made && output_path_opens(o->output_path, &error) && recording_read(&r, 0, positions, &error) &&
-           make(o, &r, positions, &error);
+    made = made && output_path_opens(o->output_path, &error) && output_path_opens(o->report.path, &error) &&
+           recording_read(&r, 0, positions, &error) && make(o, &r, positions, &error);
     free(positions);
     recording_close(&r);
     if (made) return EXIT_RAN;
@@ -165,6 +183,11 @@ static bool set_option(int id, const char *value, preprocess_options *o) {
         return parse_share(value, &o->plan.threshold);
     case 'p':
         return o->plan.published = true;
+    case 'r':
+        o->report.path = value;
+        return true;
+    case 'u':
+        return report_request_parse_up(value, &o->report.up_axis);
     case 'w':
         return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
     case 't':
@@ -183,6 +206,7 @@ static int read_options(int argument_count, char **arguments, preprocess_options
         {"seed", required_argument, NULL, 's'},    {"threshold", required_argument, NULL, 'x'},
         {"published", no_argument, NULL, 'p'},     {"weld", required_argument, NULL, 'w'},
         {"threads", required_argument, NULL, 't'}, {"quiet", no_argument, NULL, 'q'},
+        {"report", required_argument, NULL, 'r'},  {"up", required_argument, NULL, 'u'},
         {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0}};
     opterr = 0;
     optind = 1;
@@ -213,11 +237,17 @@ static int check_output(const preprocess_options *o) {
         return fail_usage("preprocess", "-o %s", error.text);
     if (stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 && !plan_file_is_plan(path))
         return fail_usage("preprocess", "-o '%s' exists and is no plan; choose another name", path);
+    const char *others[] = {o->source.model_path, path};
+    if (!report_request_is_safe(&o->report, others, 2, &error))
+        return fail_usage("preprocess", "%s", error.text);
     return EXIT_RAN;
 }
 
 int command_preprocess(int argument_count, char **arguments) {
-    preprocess_options options = {.plan = cscd_plan_defaults()};
+    preprocess_options options = {.plan = cscd_plan_defaults(),
+                                  .report.up_axis = 2,
+                                  .argument_count = argument_count,
+                                  .arguments = arguments};
     bool help_wanted = false;
     int code = read_options(argument_count, arguments, &options, &help_wanted);
     if (code != EXIT_RAN || help_wanted) return code;

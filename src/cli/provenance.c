@@ -25,6 +25,10 @@ const char *provenance_commit(void) {
     return CSCD_COMMIT;
 }
 
+void provenance_generator(char text[PROVENANCE_GENERATOR_SIZE]) {
+    snprintf(text, PROVENANCE_GENERATOR_SIZE, "cscd %s (%s)", cscd_version_string(), provenance_commit());
+}
+
 uint64_t provenance_hash(uint64_t hash, const void *bytes, size_t size) {
     const unsigned char *b = bytes;
     for (size_t i = 0; i < size; i++) hash = (hash ^ b[i]) * 0x100000001b3u;

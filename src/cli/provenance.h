@@ -10,6 +10,10 @@
 /* The commit that the tool was built from, "unknown" outside a repository. */
 const char *provenance_commit(void);
 
+/* "cscd 1.1.0 (commit)": what wrote a file. */
+enum { PROVENANCE_GENERATOR_SIZE = 80 };
+void provenance_generator(char text[PROVENANCE_GENERATOR_SIZE]);
+
 /* 64-bit FNV-1a; start with PROVENANCE_HASH_START. Names a version of an input; no protection against
  * forgery. */
 #define PROVENANCE_HASH_START 0xcbf29ce484222325u

@@ -6,6 +6,7 @@
 #include "src/cli/plan_choice.h"
 #include "src/cli/progress.h"
 #include "src/cli/replay_options.h"
+#include "src/cli/replay_report.h"
 #include "src/cli/summary.h"
 
 #include <stdio.h>
@@ -24,6 +25,7 @@ typedef struct replay {
     frame_state start_state, end_state;
     contact_file *contacts; /* NULL when not asked for */
     summary_writer *summary;
+    replay_report report;
     totals totals;
     frame_list contact_frames, crossing_frames;
     progress progress;
@@ -88,14 +90,18 @@ static bool prepare_detector(replay *r, io_error *error) {
 
 /* Asked before anything takes time, or is truncated. */
 static bool outputs_open(const replay_options *o, io_error *error) {
-    return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error);
+    return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error) &&
+           output_path_opens(o->report.path, error);
 }
 
 static bool open_outputs(replay *r, io_error *error) {
-    if (r->options->contacts_path != NULL &&
-        !contact_file_open(r->options->contacts_path, r->options->min_separation > 0.0, &r->contacts, error))
+    const replay_options *o = r->options;
+    if (o->contacts_path != NULL &&
+        !contact_file_open(o->contacts_path, o->min_separation > 0.0, &r->contacts, error))
         return false;
-    return summary_open(r->options->json_path, r->recording.mesh, &r->summary, error);
+    return replay_report_open(&r->report, &o->report, o->model_path, &r->recording, r->plan.plan, r->detector,
+                              r->first, r->last, error) &&
+           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
@@ -183,6 +189,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
                               .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,
                               .detector = r->detector,
                               .counters = cscd_detector_counters(r->detector)};
+    replay_report_add(&r->report, r->detector, &contacts, r->x1);
     if (!write_contacts(r, k, &contacts, error) || !check_frame(r, k + 1, r->x1, &r->end_state, error))
         return false;
     result.timings = cscd_detector_timings(r->detector);
@@ -197,6 +204,7 @@ static bool run_interval(replay *r, uint32_t k, io_error *error) {
 static bool run_intervals(replay *r, io_error *error) {
     if (!read_frame(r, r->first, r->x0, error) || !check_frame(r, r->first, r->x0, &r->start_state, error))
         return false;
+    replay_report_begin(&r->report, r->x0);
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
         progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;
@@ -237,6 +245,16 @@ static void print_results(const replay *r) {
     totals_print_table(t, r->plan.method);
 }
 
+/* Of what there is: not even a first frame makes no report. */
+static bool write_report(replay *r, const char *summary, io_error *error) {
+    if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
+    progress_begin(&r->progress, r->options->quiet);
+    progress_say(&r->progress, "writing the report");
+    bool written = replay_report_write(&r->report, summary, error);
+    progress_end(&r->progress);
+    return written;
+}
+
 static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     bool written = contact_file_close(r->contacts, error);
     r->contacts = NULL;
@@ -254,12 +272,16 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};
-    written = summary_close(r->summary, &ending, error) && written;
+    char *text = NULL;
+    written = summary_close(r->summary, &ending, &text, error) && written;
     r->summary = NULL;
+    written = write_report(r, text, written ? error : NULL) && written;
+    free(text);
     return written;
 }
 
 static void end(replay *r) {
+    replay_report_close(&r->report);
     cscd_detector_destroy(r->detector);
     plan_choice_free(&r->plan);
     ignore_pairs_free(&r->ignored);

@@ -18,6 +18,13 @@ static const char help[] =
     "  --contacts OUT.csv|OUT.jsonl  write each contact: frame, kind, time of impact, vertices, point, "
     "normal\n"
     "  --json OUT.json               write a summary: every interval, every frame, timings, provenance\n"
+    "  --report OUT.html             write a page that shows all of it in any browser: the motion, contacts, "
+    "charge,\n"
+    "                                regions, timings\n"
+    "  --scenery MODEL               of the report: another mesh (ground, stairs, a ball), drawn and never "
+    "tested\n"
+    "  --scenery-frames FRAMES       how it moves: a point cache or a pattern, of as many frames, or of one\n"
+    "  --up y|z                      of the report: which axis points up (default z)\n"
     "  --frames A:B                  only from frame A to frame B, both included (A: and :B are open ends)\n"
     "  --plan PLAN.ply               the regions that cscd preprocess found (default: MODEL.plan.ply if it "
     "fits,\n"
@@ -49,6 +56,10 @@ static const char help[] =
 enum option_id {
     OPTION_CONTACTS = 1,
     OPTION_JSON,
+    OPTION_REPORT,
+    OPTION_SCENERY,
+    OPTION_SCENERY_FRAMES,
+    OPTION_UP,
     OPTION_FRAMES,
     OPTION_PLAN,
     OPTION_METHOD,
@@ -70,6 +81,10 @@ enum option_id {
 static const struct option long_options[] = {
     {"contacts", required_argument, NULL, OPTION_CONTACTS},
     {"json", required_argument, NULL, OPTION_JSON},
+    {"report", required_argument, NULL, OPTION_REPORT},
+    {"scenery", required_argument, NULL, OPTION_SCENERY},
+    {"scenery-frames", required_argument, NULL, OPTION_SCENERY_FRAMES},
+    {"up", required_argument, NULL, OPTION_UP},
     {"frames", required_argument, NULL, OPTION_FRAMES},
     {"plan", required_argument, NULL, OPTION_PLAN},
     {"method", required_argument, NULL, OPTION_METHOD},
@@ -132,6 +147,17 @@ static bool set_option(int id, const char *value, replay_options *o) {
     case OPTION_JSON:
         o->json_path = value;
         return true;
+    case OPTION_REPORT:
+        o->report.path = value;
+        return true;
+    case OPTION_SCENERY:
+        o->report.scenery_path = value;
+        return true;
+    case OPTION_SCENERY_FRAMES:
+        o->report.scenery_frames_path = value;
+        return true;
+    case OPTION_UP:
+        return report_request_parse_up(value, &o->report.up_axis);
     case OPTION_FRAMES:
         return frame_range_parse(value, &o->frames);
     case OPTION_METHOD:
@@ -188,7 +214,7 @@ static int read_options(int argument_count, char **arguments, replay_options *o,
 
 /* Outputs are not inputs, and not each other. */
 static bool outputs_are_safe(const replay_options *o, const char *const *inputs, size_t input_count) {
-    const char *others[] = {o->plan_path, o->ignore_path, o->contacts_path};
+    const char *others[] = {o->plan_path, o->ignore_path, o->contacts_path, o->json_path};
     io_error error;
     if (!output_path_is_safe(o->contacts_path, inputs, input_count, &error) ||
         !output_path_is_safe(o->contacts_path, others, 2, &error)) {
@@ -200,6 +226,11 @@ static bool outputs_are_safe(const replay_options *o, const char *const *inputs,
         fail_usage("replay", "--json %s", error.text);
         return false;
     }
+    if (!report_request_is_safe(&o->report, inputs, input_count, &error) ||
+        !report_request_is_safe(&o->report, others, 4, &error)) {
+        fail_usage("replay", "%s", error.text);
+        return false;
+    }
     return true;
 }
 
@@ -209,6 +240,7 @@ bool replay_options_parse(int argument_count, char **arguments, replay_options *
                         .mode = CSCD_MODE_ALL,
                         .frames = frame_range_all(),
                         .thread_count = 1,
+                        .report.up_axis = 2,
                         .argument_count = argument_count,
                         .arguments = arguments};
     *code = read_options(argument_count, arguments, &o, &help_wanted);

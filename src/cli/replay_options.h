@@ -5,6 +5,7 @@
 #include "cscd/cscd.h"
 #include "src/cli/command.h"
 #include "src/cli/frame_range.h"
+#include "src/cli/report_request.h"
 
 #include <stddef.h>
 
@@ -26,6 +27,7 @@ typedef struct replay_options {
     bool ignore_rest, no_check, quiet, fail_on_contact;
     const char *plan_path; /* NULL: not given */
     const char *ignore_path, *contacts_path, *json_path;
+    report_request report;
     int argument_count; /* the command line, for the provenance */
     char **arguments;
 } replay_options;

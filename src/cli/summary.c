@@ -10,6 +10,11 @@
 struct summary_writer {
     FILE *file; /* NULL: nothing is written */
     char *path;
+    FILE *memory; /* what is written comes here first: text, size bytes of it */
+    char *text;
+    size_t size;
+    bool keeps_text;  /* all of it, for summary_close */
+    size_t forwarded; /* bytes of it that the file has */
     const cscd_mesh *mesh;
     json out;
     uint32_t first_frame, frame_count, frame_capacity;
@@ -26,29 +31,49 @@ static bool write_failed(const summary_writer *w, io_error *error) {
 }
 
 static void free_summary(summary_writer *w) {
+    if (w->memory != NULL) fclose(w->memory);
+    free(w->text);
     free(w->path);
     free(w->frames);
     free(w);
 }
 
-bool summary_open(const char *path, const cscd_mesh *mesh, summary_writer **out, io_error *error) {
+static bool open_file(summary_writer *w, const char *path, io_error *error) {
+    w->path = strdup(path);
+    w->file = w->path != NULL ? fopen(path, "w") : NULL;
+    return w->file != NULL || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+}
+
+bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+                  io_error *error) {
     summary_writer *w = calloc(1, sizeof *w);
-    if (w == NULL) return io_fail(error, "out of memory");
-    w->mesh = mesh;
-    if (path != NULL) {
-        w->path = strdup(path);
-        w->file = w->path != NULL ? fopen(path, "w") : NULL;
-        if (w->file == NULL) {
-            io_fail(error, "%s: cannot write: %s", path, strerror(errno));
-            free_summary(w);
-            return false;
-        }
-        w->out.file = w->file;
-        json_begin_object(&w->out, NULL);
-        json_begin_array(&w->out, "intervals");
+    if (w != NULL) w->memory = open_memstream(&w->text, &w->size);
+    if (w == NULL || w->memory == NULL) {
+        free(w);
+        return io_fail(error, "out of memory");
     }
+    if (path != NULL && !open_file(w, path, error)) {
+        free_summary(w);
+        return false;
+    }
+    w->mesh = mesh;
+    w->keeps_text = keep_text;
+    w->out.file = w->memory;
+    json_begin_object(&w->out, NULL);
+    json_begin_array(&w->out, "intervals");
     *out = w;
     return true;
+}
+
+/* Hands the file what is new in memory. A stream in memory fails only for want of it. */
+static bool forward(summary_writer *w, io_error *error) {
+    if (fflush(w->memory) != 0 || ferror(w->memory)) return io_fail(error, "out of memory for the summary");
+    size_t begin = w->keeps_text ? w->forwarded : 0, count = w->size - begin;
+    w->forwarded = w->size;
+    bool written =
+        w->file == NULL || (fwrite(w->text + begin, 1, count, w->file) == count && fflush(w->file) == 0);
+    if (!w->keeps_text) rewind(w->memory);
+    return written || write_failed(w, error);
 }
 
 static void write_guarantees(summary_writer *w, const cscd_detector *detector) {
@@ -78,7 +103,6 @@ static void write_times(json *out, const cscd_timings *t) {
 }
 
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error) {
-    if (w->file == NULL) return true;
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -102,7 +126,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     write_guarantees(w, result->detector);
     write_times(out, &result->timings);
     json_end_object(out);
-    return fflush(w->file) == 0 || write_failed(w, error);
+    return forward(w, error);
 }
 
 bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error) {
@@ -217,20 +241,31 @@ static void write_provenance(summary_writer *w, const summary_ending *e) {
     json_end_object(out);
 }
 
-bool summary_close(summary_writer *w, const summary_ending *ending, io_error *error) {
-    bool written = true;
-    if (w->file != NULL) {
-        json_end_array(&w->out);
-        json_break_line(&w->out);
-        write_frames(w);
-        write_summary(w, ending);
-        write_provenance(w, ending);
-        json_end_object(&w->out);
-        fputc('\n', w->file);
-        written = !ferror(w->file);
-        written = fclose(w->file) == 0 && written;
-        if (!written) write_failed(w, error);
+/* The file, if there is one, is closed in any case. */
+static bool close_file(summary_writer *w, io_error *error) {
+    if (w->file == NULL) return true;
+    bool written = !ferror(w->file);
+    written = fclose(w->file) == 0 && written;
+    return written || write_failed(w, error);
+}
+
+bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error) {
+    json_end_array(&w->out);
+    json_break_line(&w->out);
+    write_frames(w);
+    write_summary(w, ending);
+    write_provenance(w, ending);
+    json_end_object(&w->out);
+    fputc('\n', w->memory);
+    bool forwarded = forward(w, error);
+    bool closed = close_file(w, forwarded ? error : NULL);
+    bool whole = w->keeps_text && !ferror(w->memory);
+    whole = fclose(w->memory) == 0 && whole;
+    w->memory = NULL;
+    if (text != NULL) {
+        *text = whole ? w->text : NULL;
+        if (whole) w->text = NULL;
     }
     free_summary(w);
-    return written;
+    return forwarded && closed;
 }

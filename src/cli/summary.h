@@ -47,8 +47,9 @@ void totals_print_table(const totals *t, cscd_method method);
 
 typedef struct summary_writer summary_writer;
 
-/* path NULL: a writer that writes nothing. */
-bool summary_open(const char *path, const cscd_mesh *mesh, summary_writer **out, io_error *error);
+/* path NULL: no file. keep_text: summary_close can give all of it. */
+bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+                  io_error *error);
 /* Each interval reaches the system at once. */
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
 bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error);
@@ -67,7 +68,8 @@ typedef struct summary_ending {
     const char *stopped_by; /* why not every interval is there; NULL when all are */
 } summary_ending;
 
-/* Writes the frames, the summary and the provenance, and closes. */
-bool summary_close(summary_writer *w, const summary_ending *ending, io_error *error);
+/* Writes the frames, the summary and the provenance, and closes. text NULL, or with keep_text: all that was
+ * written, to be freed, also when the file could not be; NULL when there was no memory for it. */
+bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error);
 
 #endif

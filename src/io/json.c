@@ -104,6 +104,11 @@ void json_null(json *out, const char *key) {
     fputs("null", out->file);
 }
 
+void json_verbatim(json *out, const char *key, const char *text) {
+    begin_value(out, key);
+    fputs(text, out->file);
+}
+
 void json_break_line(json *out) {
     out->break_line = true;
 }

@@ -28,6 +28,8 @@ void json_integer(json *out, const char *key, uint64_t value);
 void json_number(json *out, const char *key, double value);
 void json_boolean(json *out, const char *key, bool value);
 void json_null(json *out, const char *key);
+/* A value that is JSON already. */
+void json_verbatim(json *out, const char *key, const char *text);
 /* The next value starts on a new line, for people. */
 void json_break_line(json *out);
 

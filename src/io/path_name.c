@@ -4,9 +4,13 @@
 #include <string.h>
 #include <strings.h>
 
-bool path_has_extension(const char *path, const char *extension) {
+const char *path_file_name(const char *path) {
     const char *slash = strrchr(path, '/');
-    const char *name = slash != NULL ? slash + 1 : path;
+    return slash != NULL ? slash + 1 : path;
+}
+
+bool path_has_extension(const char *path, const char *extension) {
+    const char *name = path_file_name(path);
     size_t length = strlen(name), extension_length = strlen(extension);
     return length > extension_length && strcasecmp(name + length - extension_length, extension) == 0;
 }

@@ -8,6 +8,9 @@
  */
 bool path_has_extension(const char *path, const char *extension);
 
+/* What comes after the last '/'. */
+const char *path_file_name(const char *path);
+
 static inline bool path_is_digit(char c) {
     return c >= '0' && c <= '9';
 }

@@ -5,7 +5,7 @@ import { interpolateInferno, interpolateViridis } from 'd3-scale-chromatic';
 export const VF = [0, 90, 181];
 export const EE = [220, 50, 32];
 export const TOUCHING = [255, 176, 66];
-export const PLAIN = [196, 200, 208];
+export const PLAIN = [184, 196, 214];
 
 /** S0, S+, S-: as the array "orientation" numbers them. */
 export const ORIENTATIONS = [

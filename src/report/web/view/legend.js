@@ -6,6 +6,7 @@ import { intervalOf } from '../data/report.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
 
 const MANY = 8;
+const ROOMY = 560; // CSS pixels: in narrower views the legend begins folded
 
 const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 const short = (value) => String(Number(value.toPrecision(3))).replace('-', '−');
@@ -68,7 +69,7 @@ function orientationLegend(scene, time) {
   for (const value of values) counts[value]++;
   const told = scene.orientation.interval(interval);
   return [
-    title(`Seen from the region's point, during interval ${told}`),
+    title(`Orientation in interval ${told}, seen from each region's detector point`),
     items(
       item(swatch(ORIENTATIONS[1]), `S+ faces outwards throughout: ${grouped(counts[1])}`),
       item(swatch(ORIENTATIONS[2]), `S− faces inwards throughout: ${grouped(counts[2])}`),
@@ -123,7 +124,10 @@ function colourLegend(scene, state, painter) {
 
 /** @param {import('./paint.js').Painter} painter */
 export function createLegend(container, scene, store, painter) {
-  const box = element('div', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
+  const body = element('div', { class: 'legend-body' });
+  const box = element('details', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
+  box.append(element('summary', {}, 'Legend'), body);
+  box.open = container.clientWidth >= ROOMY;
   container.append(box);
   let shown = null;
   const show = (state) => {
@@ -131,7 +135,7 @@ export function createLegend(container, scene, store, painter) {
     if (key === shown) return;
     shown = key;
     const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state)];
-    box.replaceChildren(...parts);
+    body.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };
   onCalmly(store, ['time', 'colour', 'contacts'], show);

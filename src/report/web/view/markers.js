@@ -39,6 +39,7 @@ flat in float extent;
 out vec4 pixel;
 uniform float density;
 uniform float strength;
+uniform float rimmed;
 void main() {
   vec2 at = (gl_PointCoord - 0.5) * extent / density;
   float half_size = 0.5 * extent / density - 1.0;
@@ -55,11 +56,11 @@ void main() {
     float drawn = max(1.0 - hollow, 1.0 - smoothstep(-soft, soft, cross));
     inner = mix(vec3(1.0), inner, drawn);
   }
-  pixel = vec4(mix(inner, vec3(1.0), rim), cover * colour.a * strength);
+  pixel = vec4(mix(inner, vec3(1.0), rim * rimmed), cover * colour.a * strength);
   if (pixel.a < 0.01) discard;
 }`;
 
-function material(strength, depth) {
+function material(strength, rimmed, depth) {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
@@ -67,7 +68,7 @@ function material(strength, depth) {
     transparent: true,
     depthWrite: false,
     ...depth,
-    uniforms: { density: { value: 1 }, pixel: { value: 0.001 }, strength: { value: strength } },
+    uniforms: { density: { value: 1 }, pixel: { value: 0.001 }, strength: { value: strength }, rimmed: { value: rimmed } },
   });
 }
 
@@ -87,8 +88,8 @@ class Marks {
   constructor() {
     this.capacity = 64;
     this.geometry = geometryFor(this.capacity);
-    this.inSight = new Points(this.geometry, material(1, { depthFunc: LessEqualDepth }));
-    this.hidden = new Points(this.geometry, material(0.38, { depthFunc: GreaterDepth }));
+    this.inSight = new Points(this.geometry, material(1, 1, { depthFunc: LessEqualDepth }));
+    this.hidden = new Points(this.geometry, material(0.32, 0.35, { depthFunc: GreaterDepth }));
     this.inSight.renderOrder = 2;
     this.hidden.renderOrder = 1;
     this.object = new Group();
@@ -139,12 +140,16 @@ export function markedContacts(scene, state) {
   return marked;
 }
 
+/** CSS pixels across: smaller where many crowd. */
+const sizeAmong = (count) => Math.min(10, Math.max(6.5, 10 - 0.9 * Math.log2(count / 24)));
+
 export class ContactMarks extends Marks {
   /** @param {(point: number[]) => number[]} toView */
   setState(scene, state, toView) {
     this.marked = markedContacts(scene, state);
     this.hidden.visible = state.through;
     const { kind, point } = scene.contacts ?? {};
+    const size = sizeAmong(this.marked.length);
     const selectedLast = [...this.marked].sort((a, b) => (a.contact === state.selected) - (b.contact === state.selected));
     this.show(
       selectedLast.map(({ contact, age }) => ({
@@ -152,7 +157,7 @@ export class ContactMarks extends Marks {
         colour: kind[contact] === 0 ? VF : EE,
         alpha: age === 0 ? 1 : 0.75 * (1 - age / (TRAIL + 1)),
         shape: kind[contact] === 0 ? DISC : DIAMOND,
-        size: (contact === state.selected ? 19 : 10) - (age > 0 ? 2.5 : 0) + (kind[contact] === 0 ? 0 : 2.5),
+        size: (contact === state.selected ? 19 : size - (age > 0 ? 2 : 0)) + (kind[contact] === 0 ? 0 : 2),
       })),
     );
   }
@@ -163,6 +168,7 @@ export class DetectorMarks extends Marks {
   constructor() {
     super();
     this.hidden.material.uniforms.strength.value = 1;
+    this.hidden.material.uniforms.rimmed.value = 1;
   }
 
   setState(scene, points, toView) {

@@ -2,7 +2,7 @@
 
 import { intervalOf } from '../data/report.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step } from './colours.js';
-import { CUT, PICKED, TOUCHES } from './shading.js';
+import { CUT, CUT_CORNER, PICKED, TOUCHES } from './shading.js';
 import { contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
 
 export class Painter {
@@ -93,7 +93,7 @@ export class Painter {
     flags.fill(0);
     let lines = false;
     if (cuts && scene.region !== null) {
-      this.cuts ??= cutEdges(scene, CUT);
+      this.cuts ??= cutEdges(scene, CUT, CUT_CORNER);
       flags.set(this.cuts);
       lines = true;
     }

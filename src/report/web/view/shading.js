@@ -6,6 +6,7 @@ import { DoubleSide, GLSL3, ShaderMaterial, Vector3 } from 'three';
 export const CUT = [1, 2, 4]; // the edge opposite to corner 0, 1, 2 lies between regions
 export const TOUCHES = 8;
 export const PICKED = 16;
+export const CUT_CORNER = [32, 64, 128]; // a cut passes the corner: lines of other triangles go on in this one
 
 /** All corners of a triangle have its normal, so that the light is computed per corner and not per pixel. */
 const VERTEX = /* glsl */ `
@@ -46,6 +47,12 @@ uniform vec3 cutColour;
 uniform vec3 touchColour;
 uniform vec3 pickColour;
 uniform vec3 edgeColour;
+/** Pixels from here to the corner where the barycentric coordinates are those. */
+float reach(vec2 there) {
+  vec2 right = dFdx(corner.xy), up = dFdy(corner.xy), way = there - corner.xy;
+  float area = right.x * up.y - right.y * up.x;
+  return length(vec2(way.x * up.y - way.y * up.x, right.x * way.y - right.y * way.x)) / max(abs(area), 1e-12);
+}
 float line(float distance, float width) {
   return 1.0 - smoothstep(width - 0.5, width + 0.5, distance / density);
 }
@@ -54,11 +61,15 @@ void main() {
 #ifdef LINES
   vec3 distances = corner / max(fwidth(corner), 1e-7);
   float nearest = min(distances.x, min(distances.y, distances.z));
-  vec3 cut = vec3((flags & 1) != 0 ? distances.x : 1e6, (flags & 2) != 0 ? distances.y : 1e6,
-                  (flags & 4) != 0 ? distances.z : 1e6);
+  vec3 edge = vec3((flags & 1) != 0 ? distances.x : 1e6, (flags & 2) != 0 ? distances.y : 1e6,
+                   (flags & 4) != 0 ? distances.z : 1e6);
+  float cut = min(edge.x, min(edge.y, edge.z));
+  if ((flags & 32) != 0) cut = min(cut, reach(vec2(1.0, 0.0)));
+  if ((flags & 64) != 0) cut = min(cut, reach(vec2(0.0, 1.0)));
+  if ((flags & 128) != 0) cut = min(cut, reach(vec2(0.0, 0.0)));
   vec3 c = mix(colour, edgeColour, edges * line(nearest, 0.5));
   if ((flags & 8) != 0) c = mix(c, touchColour, line(nearest, 1.3));
-  c = mix(c, cutColour, line(min(cut.x, min(cut.y, cut.z)), 1.1));
+  c = mix(c, cutColour, line(cut, 1.2));
   if ((flags & 16) != 0) c = mix(c, pickColour, max(line(nearest, 1.8), 0.25));
   pixel = vec4(c, 1.0);
 #else

@@ -39,12 +39,10 @@ export class Space {
     surface.mesh.scale.setScalar(1 / this.length);
   }
 
-  /** The box of one record, or of all that have been read. */
-  box(positions, only = null) {
+  /** The box of all records that have been read. */
+  box(positions) {
     const box = new Box3();
-    const begin = only ?? 0;
-    const end = only === null ? positions.available : only + 1;
-    for (let i = begin; i < end; i++) {
+    for (let i = 0; i < positions.available; i++) {
       const center = positions.center(i);
       const half = positions.half(i);
       for (const sign of [-1, 1]) {
@@ -52,6 +50,18 @@ export class Space {
       }
     }
     return box;
+  }
+
+  /** A box around 0 that holds each of them when its middle is there. */
+  reach(positions) {
+    const most = [0, 0, 0];
+    for (let i = 0; i < positions.available; i++) {
+      positions.half(i).forEach((value, axis) => {
+        most[axis] = Math.max(most[axis], value);
+      });
+    }
+    const corner = this.toView(most.map((value, axis) => value + this.origin[axis])).map(Math.abs);
+    return new Box3(new Vector3(...corner).negate(), new Vector3(...corner));
   }
 }
 

@@ -27,9 +27,7 @@ export function contactTriangles({ triangles, contacts }, incidence, contact) {
   return contacts.kind[contact] === 0 ? [...of(a), ...of(b, c, d)] : [...of(a, b), ...of(c, d)];
 }
 
-/** For each triangle the bits of those edges whose other side is another region; `bits[i]`: opposite to corner i. */
-export function cutEdges({ triangles, triangleCount, vertexCount, region }, bits) {
-  const flags = new Uint8Array(triangleCount);
+function edgesBetween({ triangles, triangleCount, vertexCount, region }, found) {
   const seen = new Map();
   for (let t = 0; t < triangleCount; t++) {
     for (let corner = 0; corner < 3; corner++) {
@@ -37,13 +35,25 @@ export function cutEdges({ triangles, triangleCount, vertexCount, region }, bits
       const b = triangles[3 * t + ((corner + 2) % 3)];
       const key = Math.min(a, b) * vertexCount + Math.max(a, b);
       const other = seen.get(key);
-      if (other === undefined) {
-        seen.set(key, 3 * t + corner);
-      } else if (region[Math.floor(other / 3)] !== region[t]) {
-        flags[t] |= bits[corner];
-        flags[Math.floor(other / 3)] |= bits[other % 3];
-      }
+      if (other === undefined) seen.set(key, 3 * t + corner);
+      else if (region[Math.floor(other / 3)] !== region[t]) found(3 * t + corner, other, a, b);
     }
   }
+}
+
+/**
+ * For each triangle the bits of those edges whose other side is another region, `edgeBits[i]` for the one
+ * opposite to corner i, and of those corners that such an edge of any triangle ends in.
+ */
+export function cutEdges(scene, edgeBits, cornerBits) {
+  const flags = new Uint8Array(scene.triangleCount);
+  const ends = new Uint8Array(scene.vertexCount);
+  edgesBetween(scene, (one, other, a, b) => {
+    for (const place of [one, other]) flags[Math.floor(place / 3)] |= edgeBits[place % 3];
+    ends[a] = ends[b] = 1;
+  });
+  scene.triangles.forEach((vertex, place) => {
+    if (ends[vertex] === 1) flags[Math.floor(place / 3)] |= cornerBits[place % 3];
+  });
   return flags;
 }

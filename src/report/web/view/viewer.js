@@ -10,9 +10,9 @@ import { Resolution, rendersInSoftware } from './resolution.js';
 import { Space, sphereOf } from './space.js';
 import { Surface } from './surface.js';
 
-const SCENERY = { light: [214, 216, 220], dark: [84, 88, 98] };
+const SCENERY = { light: [226, 225, 221], dark: [78, 82, 92] };
 const GROUND = { light: '#f1f3f6', dark: '#1b212b' };
-const FAR_TRAVELLED = 2.5; // body lengths
+const FAR_TRAVELLED = 1.3; // body lengths
 
 export class Viewer {
   /** @throws where there is no WebGL */
@@ -98,10 +98,9 @@ export class Viewer {
     const { data, space } = this;
     const bodies = data.positions;
     this.whole = space.box(bodies);
-    let longest = 0;
-    for (let i = 0; i < bodies.available; i++) longest = Math.max(longest, ...bodies.half(i));
-    const travelled = Math.max(...this.whole.getSize(new Vector3()).toArray());
-    this.travels = travelled > (FAR_TRAVELLED * 2 * longest) / space.length;
+    this.reach = space.reach(bodies);
+    const size = (box) => Math.max(...box.getSize(new Vector3()).toArray());
+    this.travels = size(this.whole) > FAR_TRAVELLED * size(this.reach);
     this.surroundings = data.scenery === null ? new Box3() : space.box(data.scenery.positions);
   }
 
@@ -113,11 +112,9 @@ export class Viewer {
   }
 
   home() {
-    const { data, space, view } = this;
     this.follows = this.travels;
-    const { i } = data.positions.locate(this.store.get().time);
-    view.home(this.follows ? space.box(data.positions, i) : this.whole);
     this.followed = this.bodyPlace();
+    this.view.home(this.follows ? this.reach.clone().translate(this.followed) : this.whole);
     this.touched = false;
     this.onHome?.();
     this.invalidate();
@@ -214,7 +211,7 @@ export class Viewer {
     }
     this.body.setLines(state.edges || this.linesMarked);
     const { uniforms } = this.body.lined;
-    uniforms.edges.value = state.edges ? 0.45 : 0;
+    uniforms.edges.value = state.edges ? 0.4 : 0;
     uniforms.density.value = this.resolution.ratio;
   }
 

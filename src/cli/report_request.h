@@ -1,0 +1,24 @@
+/* What a command is told about the report that it writes. */
+#ifndef CSCD_REPORT_REQUEST_H
+#define CSCD_REPORT_REQUEST_H
+
+#include "src/io/io_error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct report_request {
+    const char *path;                               /* NULL: no report */
+    const char *scenery_path, *scenery_frames_path; /* NULL: none */
+    int up_axis;                                    /* 1: y, 2: z */
+} report_request;
+
+/* --up y|z */
+bool report_request_parse_up(const char *text, int *up_axis);
+
+/* False, with the reason, where the options do not go together, or the report would be written over one of
+ * others (NULLs among them are skipped). */
+bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
+                            io_error *error);
+
+#endif

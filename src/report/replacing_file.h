@@ -1,0 +1,21 @@
+/* A file that takes another's place only when it is complete. */
+#ifndef CSCD_REPLACING_FILE_H
+#define CSCD_REPLACING_FILE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+typedef struct replacing_file {
+    FILE *file;
+    char *target; /* where symbolic links lead */
+    char
+        *temporary; /* in the target's folder; NULL: the target is a pipe or a device and written to itself */
+} replacing_file;
+
+/* Permissions are those that fopen would leave. On false *out holds nothing to close, errno says why. */
+bool replacing_file_open(const char *path, replacing_file *out);
+
+/* complete: puts the file in its place. Else, and on failure, removes it. False: errno says why. */
+bool replacing_file_close(replacing_file *file, bool complete);
+
+#endif

@@ -1,0 +1,73 @@
+/* A report: one HTML page that shows a replay, a plan, or replays side by side, and needs no network. */
+#ifndef CSCD_REPORT_H
+#define CSCD_REPORT_H
+
+#include "cscd/cscd.h"
+#include "src/io/io_error.h"
+
+typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } report_kind;
+
+enum {
+    REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
+    REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
+    REPORT_CONTACTS_MAX = 100000,        /* kept in all: the first */
+    REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
+};
+
+/* A surface that is only drawn. */
+typedef struct report_scenery {
+    uint32_t vertex_count, triangle_count;
+    const uint32_t *triangles; /* NULL: there is none */
+    bool moves;                /* has positions of its own for every frame */
+} report_scenery;
+
+/* What is known at the start. All that it points to outlives the report. */
+typedef struct report_options {
+    report_kind kind;
+    const char *title, *generator;
+    const cscd_mesh *mesh; /* NULL for REPORT_COMPARE, which shows no surface */
+    const cscd_plan *plan; /* NULL: none */
+    uint32_t first, last;  /* the frames to come; what is kept follows from them; of a preprocess 0, 0 */
+    bool oriented;         /* the detector's method has detector points and orientations */
+    int up_axis;           /* of the picture: 1: y, 2: z; 0 stands for z */
+    report_scenery scenery;
+
+    /* The vertices of a contact as the model file numbers them. VF: the vertex, the face's three; EE: those
+     * of a, those of b. NULL: the file has the mesh's own numbers. */
+    void (*file_vertices)(void *user, const cscd_contact *contact, uint32_t vertices[4]);
+    void *file_vertices_user;
+} report_options;
+
+typedef struct report report;
+
+/* In this order: _create, _begin, _add_interval for every interval, the scenery, _write. _begin and the two
+ * behind it only with a mesh. After a failure there is only _destroy: a report is whole, or none. */
+bool report_create(const report_options *options, report **out, io_error *error);
+void report_destroy(report *r);
+
+/* The positions of the first frame. */
+bool report_begin(report *r, const double *positions, io_error *error);
+
+/* The next interval, right after the detector's step: its contacts, and the positions of the frame at its
+ * end. The report ends with the last frame that it was given here, be it earlier than expected. */
+bool report_add_interval(report *r, const cscd_detector *detector, const cscd_contacts *contacts,
+                         const double *end, io_error *error);
+
+/* The frames that are kept, ascending, the first and the last among them: final after the last interval. */
+uint32_t report_frame_count(const report *r);
+uint32_t report_frame(const report *r, uint32_t index);
+
+/* The scenery's positions: once if it stands still, else for each frame kept, in their order. */
+bool report_add_scenery(report *r, const double *positions, io_error *error);
+
+/* What `--json` wrote, as text; any `<` in it is taken care of. */
+typedef struct report_summary {
+    const char *name, *text;
+} report_summary;
+
+/* Puts the page at path in one go: until it is complete, and if that fails, an older file stays as it is. A
+ * pipe or a device is written to directly. preprocess: a JSON object as text, or NULL. Once. */
+bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
+                  const char *preprocess, io_error *error);
+
+#endif
