@@ -126,6 +126,7 @@ export function create(container, report, store, player) {
   const rows = createRows(scroll, table, {
     columns: 5,
     height: 48,
+    printed: 50,
     make: () => makeRow(select),
     fill(row, index) {
       const contact = shown[index];

@@ -78,6 +78,7 @@ export function create(container, report, store, player) {
   const rows = createRows(scroll, table, {
     columns: COLUMNS.length,
     height: 32,
+    printed: 2000,
     make: () => makeRow((frame) => player.stepTo(frame)),
     fill(row, index) {
       fillRow(row, shown[index]);

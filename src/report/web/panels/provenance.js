@@ -51,8 +51,8 @@ function factsOfPicture(scene) {
   const all = scene.last - scene.first + 1;
   const kept = scene.frames.length;
   const shown = kept === all ? (all === 1 ? 'the mesh at rest' : `all ${integer(all)}`) : `${integer(kept)} of ${integer(all)}; straight lines between them`;
-  const error = `Drawn positions are at most ${significant(scene.maxError, 3)} off along x, y or z, in the files' unit: ` +
-    `${significant(scene.relativeError, 3)} of the longest side of the mesh's box. Numbers in tables are not rounded by this.`;
+  const error = `Drawn positions are at most ${significant(scene.maxError, 3)} off along x, y or z, in the files' unit` +
+    `${scene.relativeError === null ? '' : `: ${significant(scene.relativeError, 3)} of the longest side of the mesh's box`}. Numbers in tables are not rounded by this.`;
   return [['Frames drawn', lines([shown])], ['Precision', lines([error])]];
 }
 

@@ -4,20 +4,22 @@ import { decimal, integer, milliseconds } from './format.js';
 import { lineOf, nameOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
 
-const milliCell = (value) => numberCell(milliseconds(value), value);
+const nothing = (text, title) => element('td', { class: 'number absent', text, title });
+
+const milliCell = (column, which) => (column ? numberCell(milliseconds(column[which]), column[which]) : nothing('–', 'not in the summary'));
 
 function cellsOf(summary, which, first) {
   const cells = STAGES.map(({ key }) => hasStage(summary.method, key)
-    ? milliCell(summary[`${key}_ms`][which])
-    : element('td', { class: 'number absent', text: 'X', title: 'not part of this method' }));
+    ? milliCell(summary[`${key}_ms`], which)
+    : nothing('X', 'not part of this method'));
   const pairs = summary.pcp[which];
   cells.push(numberCell(which === 'max' ? integer(pairs) : decimal(pairs, 1), pairs));
-  cells.push(milliCell(summary.total_ms[which]));
+  cells.push(milliCell(summary.total_ms, which));
   if (first) {
     const ratio = summary.total_ms[which] / first.total_ms[which];
-    cells.push(Number.isFinite(ratio) ? numberCell(`${decimal(ratio, 2)} ×`, ratio) : element('td', { class: 'number', text: '–' }));
+    cells.push(Number.isFinite(ratio) ? numberCell(`${decimal(ratio, 2)} ×`, ratio) : nothing('–', 'no time to compare with'));
   }
-  cells.push(milliCell(summary.check_ms[which]));
+  cells.push(milliCell(summary.check_ms, which));
   return cells;
 }
 
