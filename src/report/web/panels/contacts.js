@@ -6,6 +6,7 @@ import { extent, finder, intervalAt } from './intervalof.js';
 import { createRows } from './rows.js';
 
 const KINDS = ['VF', 'EE'];
+const LISTED_UP_TO = 5; /* frames a second; faster, a list cannot be read and costs as much as the view */
 
 function featureWords(contacts, contact) {
   const numbers = contacts.fileVertices ?? contacts.vertices;
@@ -157,11 +158,19 @@ export function create(container, report, store, player) {
     rows.show(shown.length);
   }
 
-  function update({ time }) {
+  /** Counts only while the recording plays fast. */
+  function rest() {
+    listed = -1;
+    capped.hidden = scroll.hidden = true;
+    empty.box.hidden = false;
+    empty.say('Listed when the playback pauses.', false, false);
+  }
+
+  function update({ time, playing, speed }) {
     current = intervalAt(time, first, last);
-    if (listed === current) return;
     counts.say(find(current));
-    list();
+    if (playing && speed > LISTED_UP_TO) rest();
+    else if (listed !== current) list();
   }
 
   function follow({ selected }) {
