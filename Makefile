@@ -54,7 +54,10 @@ TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
 REPORT_SOURCES  := $(wildcard src/report/*.c)
 CLI_SOURCES     := $(wildcard src/cli/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c)
-TEST_SOURCES    := $(filter-out $(if $(filter 0,$(GSL)),tests/test_gsl.c),$(wildcard tests/test_*.c))
+# The browser's tests look at pages, which no other configuration writes differently.
+NOT_HERE        := $(if $(filter 0,$(GSL)),tests/test_gsl.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/test_report_browser.c)
+TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/test_*.c))
 # ONLY="near line": the tests with one of these words in their names.
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
@@ -143,6 +146,7 @@ gallery: models
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 
 test: packages
+	@$(if $(filter tests/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods

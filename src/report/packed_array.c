@@ -19,7 +19,7 @@ enum {
 struct packed_array {
     z_stream stream;
     growable bytes; /* of the stream so far */
-    size_t size; /* of what was added */
+    size_t size;    /* of what was added */
     bool finished;
 };
 

@@ -1,0 +1,76 @@
+"""Reports that are unlike others: nothing in them, hostile names, parts of recordings, 100,000 triangles."""
+from material import HOSTILE, LARGE_TRIANGLES
+from page import expect, expect_equal
+from report_file import Report
+
+
+def names_are_text(context):
+    """A file's name may hold markup, quotes and lines; the page shows it and does nothing else with it."""
+    made, page = context.material.tetrahedra(HOSTILE.replace("/", ":")), context.page
+    page.open(made.page)
+    expect_equal(Report(made.page).document["title"], made.name, "title in the data")
+    expect(page.driver.title != "owned" and not page.find_all("img"), "the name of a file has become markup")
+    flat = " ".join(made.name.split())
+    heading = " ".join(page.script("return document.querySelector('h1').textContent;").split())
+    expect(flat in heading, f"the page is headed {heading!r}, not {flat!r}")
+
+
+def part_of_a_recording_keeps_its_numbers(context):
+    made, page = context.material.tetrahedra("part", "--frames", "2:8"), context.page
+    page.open(made.page)
+    expect(page.status().startswith("Frame 2 of 2 to 8"), page.status())
+    page.click("button", "Last frame")
+    expect_equal(page.frame(), 8, "last frame")
+    page.click("button", "First frame")
+    page.click("button", "Next frame with contacts")
+    first = made.contacts()[0]
+    expect_equal((page.frame(), first[0]), (3, 3), "interval of the first contact")
+    page.set_box("Contacts", True)
+    marker = page.markers()[0]
+    expect(max(abs(a - b) for a, b in zip(marker["position"], first[4])) < 1e-6, f"{marker} is not at {first[4]}")
+
+
+def nothing_touches(context):
+    made, page = context.material.tetrahedra("apart", "--frames", "0:2"), context.page
+    page.open(made.page)
+    expect_equal(made.contacts(), [], "contacts")
+    for name in ("Next frame with contacts", "Previous frame with contacts", "Frame with most contacts",
+                 "Zoom to contacts"):
+        button = page.element("button", name)
+        if button.is_enabled():
+            page.click("button", name)
+        expect_equal(page.frame(), 0, f"frame after {name}")
+    expect_equal(page.markers(), [], "markers")
+
+
+def a_single_interval(context):
+    made, page = context.material.tetrahedra("single", "--frames", "3:4"), context.page
+    page.open(made.page)
+    expect(page.status().startswith("Frame 3 of 3 to 4"), page.status())
+    page.click("button", "Next frame")
+    expect_equal(page.frame(), 4, "frame after a step")
+    page.click("button", "Play")
+    page.settle()
+    expect(3 <= page.frame() <= 4, f"frame {page.frame()} of 3 to 4")
+
+
+def large_recordings_are_thinned_and_say_so(context):
+    made, page = context.material.large(), context.page
+    page.open(made.page)
+    scene = Report(made.page).scene
+    expect_equal(scene["triangles"], LARGE_TRIANGLES, "triangles")
+    frames = scene["frames"]
+    expect(frames == sorted(set(frames)) and (frames[0], frames[-1]) == (scene["first"], scene["last"]), f"{frames}")
+    print(f"100,000 triangles: {len(frames)} of {scene['last'] + 1} frames, {len(Report(made.page).page) / 1e6:.1f} MB, "
+          f"open after {page.open_ms():.0f} ms")
+    if len(frames) <= scene["last"]:
+        notes = page.script("return document.querySelector('#notes').innerText;")
+        expect("frame" in notes and str(len(frames)) in notes, f"the page does not say that it has {len(frames)} frames"
+               f" only, but {notes!r}")
+    context.pictures.whole("large")
+    page.click("button", "Last frame")
+    expect_equal(page.frame(), scene["last"], "last frame")
+
+
+SCENARIOS = (names_are_text, part_of_a_recording_keeps_its_numbers, nothing_touches, a_single_interval,
+             large_recordings_are_thinned_and_say_so)

@@ -1,0 +1,150 @@
+"""Recordings and their reports, made once by the tool and the programs of models/, each when a scenario first asks for it."""
+import json
+import math
+import os
+import subprocess
+from array import array
+
+import recording_file
+
+RECORDINGS = ("pawn-drop", "dumbbell-stairs", "figure-balls")
+# Names a careless page or file would stumble over; ' and a newline are no better.
+HOSTILE = "<img src=x onerror=document.title='owned'>&amp;\"'\n</script><b>.obj"
+LARGE_FRAMES, LARGE_TRIANGLES = 161, 100000
+
+
+class Made:
+    """The files of one report."""
+
+    def __init__(self, folder, name):
+        self.base = os.path.join(folder, name)
+        self.model, self.frames = self.base + ".obj", self.base + ".pc2"
+        self.page, self.json, self.csv = self.base + ".html", self.base + ".json", self.base + ".csv"
+        self.name = os.path.basename(self.model)
+
+    def summary(self):
+        with open(self.json, encoding="utf-8") as file:
+            return json.load(file)
+
+    def contacts(self):
+        return recording_file.read_contacts(self.csv)
+
+
+class Material:
+    """What scenarios share; everything lies in one folder."""
+
+    def __init__(self, folder, build):
+        self.folder, self.build, self.made, self.recording = folder, build, {}, {}
+        os.makedirs(folder, exist_ok=True)
+
+    def run(self, program, *arguments):
+        command = [os.path.join(self.build, program), *arguments]
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        if done.returncode != 0:
+            raise AssertionError(f"{command}: exit {done.returncode}: {done.stderr.strip()}")
+        return done.stdout
+
+    def begin(self):
+        """Starts recording all scenes, side by side."""
+        for name in RECORDINGS:
+            if os.path.exists(os.path.join(self.folder, name + ".made")):
+                continue
+            command = [os.path.join(self.build, "models/record"), name, self.folder]
+            self.recording[name] = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+    def recorded(self, name):
+        """The files of a scene, once its program has ended."""
+        process = self.recording.pop(name, None)
+        if process is not None:
+            error = process.communicate()[1]
+            if process.returncode != 0:
+                raise AssertionError(f"record {name}: exit {process.returncode}: {error.decode(errors='replace')}")
+            with open(os.path.join(self.folder, name + ".made"), "w", encoding="utf-8"):
+                pass
+        return Made(self.folder, name)
+
+    def once(self, name, make):
+        if name not in self.made:
+            self.made[name] = make(name)
+        return self.made[name]
+
+    def replay(self, name):
+        """The report of one of the recordings, with its scenery, its summary and its contacts, of one run."""
+        return self.once(name, self._replay)
+
+    def _replay(self, name):
+        made = self.recorded(name)
+        scenery = ["--scenery", made.base + "-scenery.obj"]
+        if os.path.exists(made.base + "-scenery.pc2"):
+            scenery += ["--scenery-frames", made.base + "-scenery.pc2"]
+        self.replay_files(made, *scenery)
+        return made
+
+    def replay_files(self, made, *options):
+        self.run("cscd", "replay", made.model, made.frames, "--json", made.json, "--contacts", made.csv, "--report",
+                 made.page, "--quiet", *options)
+
+    def preprocess(self):
+        """The report of the regions of the dumbbell."""
+        return self.once("preprocess", self._preprocess)
+
+    def _preprocess(self, name):
+        source = self.recorded("dumbbell-stairs")
+        made = Made(self.folder, name)
+        self.run("cscd", "preprocess", source.model, "-o", made.base + ".plan.ply", "--report", made.page)
+        return made
+
+    def comparison(self):
+        """The report of two methods on the dumbbell, and their summaries' files."""
+        return self.once("comparison", self._comparison)
+
+    def _comparison(self, name):
+        source = self.recorded("dumbbell-stairs")
+        made = Made(self.folder, name)
+        made.summaries = []
+        for method in ("none", "single"):
+            path = os.path.join(self.folder, method + ".json")
+            self.run("cscd", "replay", source.model, source.frames, "--method", method, "--json", path, "--quiet")
+            made.summaries.append(path)
+        self.run("cscd", "report", *made.summaries, "-o", made.page)
+        return made
+
+    def tetrahedra(self, name="tetrahedra", *options):
+        """Ten frames in which one tetrahedron flies through another; `name` may be anything that a file may be called."""
+        return self.once(name, lambda _: self._tetrahedra(name, options))
+
+    def _tetrahedra(self, name, options):
+        made = Made(self.folder, "small")
+        made.model = os.path.join(self.folder, name if name.endswith(".obj") else name + ".obj")
+        made.page, made.name = os.path.join(self.folder, "small.html"), os.path.basename(made.model)
+        still = [(0.0, 0.0, 0.0), (0.0, 4.0, 0.0), (0.0, 0.0, 4.0), (-4.0, 0.0, 0.0)]
+        tip = [(3.5, 1.0, 1.0), (5.5, 1.0, 1.0), (5.5, 2.0, 1.0), (5.5, 1.0, 2.0)]
+        triangles = [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]
+        triangles += [tuple(corner + 4 for corner in triangle) for triangle in triangles]
+        frames = [still + [(x - k, y, z) for x, y, z in tip] for k in range(10)]
+        recording_file.write_obj(made.model, frames[0], triangles)
+        recording_file.write_pc2(made.frames, [recording_file.flat(frame) for frame in frames])
+        self.replay_files(made, *options)
+        return made
+
+    def large(self):
+        """A torus of 100,000 triangles that is bent to and fro: too large for all frames to be in the page."""
+        return self.once("large", self._large)
+
+    def _large(self, name):
+        made = Made(self.folder, name)
+        self.run("models/shape", "torus", "--triangles", str(LARGE_TRIANGLES), made.model)
+        positions, _ = recording_file.read_obj(made.model)
+        shapes = [bent(positions, 0.02 * k) for k in range(9)]
+        there_and_back = shapes + shapes[-2:0:-1]
+        recording_file.write_pc2(made.frames, [there_and_back[k % len(there_and_back)] for k in range(LARGE_FRAMES)])
+        self.replay_files(made, "--method", "single", "--no-check")
+        return made
+
+
+def bent(positions, bend):
+    """Sheared by the square of x, and longer."""
+    values = array("f")
+    for x, y, z in positions:
+        values.extend((x * (1.0 + bend), y, z + bend * x * x * math.copysign(1.0, x)))
+    return values

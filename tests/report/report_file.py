@@ -1,0 +1,114 @@
+"""Reads a report without any code of the product: the blocks of the page, the arrays in them and the frames of the body."""
+import base64
+import json
+import re
+import struct
+import zlib
+from array import array
+from itertools import accumulate
+
+FORMATS = {"u8": "B", "u32": "I", "f32": "f", "f64": "d"}
+BLOCK = re.compile(rb'<script type="application/([a-z-]+)" id="cscd-(report|array-[a-z_]+)">(.*?)</script>', re.DOTALL)
+
+
+class Report:
+    """What a page of the tool holds: `document` is its JSON, `arrays` are the numbers by name."""
+
+    def __init__(self, path):
+        with open(path, "rb") as file:
+            self.page = file.read()
+        blocks = BLOCK.findall(self.page)
+        documents = [text for kind, name, text in blocks if name == b"report"]
+        if len(documents) != 1:
+            raise ValueError(f"{path}: {len(documents)} documents, not one")
+        if b"<" in documents[0]:
+            raise ValueError(f"{path}: the document has a < that is not escaped")
+        self.document = json.loads(documents[0])
+        self.scene = self.document["scene"]
+        packed = {name.decode()[len("array-"):]: text for kind, name, text in blocks if name != b"report"}
+        stated = self.scene["arrays"] if self.scene else []
+        if sorted(packed) != sorted(entry["name"] for entry in stated):
+            raise ValueError(f"{path}: arrays {sorted(packed)} are not those that the document states")
+        self.arrays = {entry["name"]: unpack(packed[entry["name"]], entry) for entry in stated}
+        self.packed_sizes = {name: len(text) for name, text in packed.items()}
+
+    def summary(self):
+        return self.document["summaries"][0]["summary"]
+
+    def contacts(self):
+        """The contacts in order: (interval, "vf" or "ee", vertices, toi, point)."""
+        a = self.arrays
+        return [(a["contact_interval"][i], "ee" if a["contact_kind"][i] else "vf",
+                 tuple(a["contact_vertices"][4 * i:4 * i + 4]), a["contact_toi"][i],
+                 tuple(a["contact_point"][3 * i:3 * i + 3])) for i in range(len(a["contact_interval"]))]
+
+    def orientations(self):
+        """For every interval that has them: (interval, orientation of each triangle: 0 S0, 1 S+, 2 S-)."""
+        scene, packed = self.scene, self.arrays["orientation"]
+        size = (scene["triangles"] + 3) // 4
+        kept = [frame for frame in scene["frames"] if frame < scene["last"]]
+        if len(packed) != size * len(kept):
+            raise ValueError(f"{len(packed)} bytes of orientations, not {size} for each of {len(kept)} intervals")
+        now = bytes(size)
+        for index, interval in enumerate(kept):
+            change = packed[index * size:(index + 1) * size].tobytes()
+            now = bytes(a ^ b for a, b in zip(now, change))
+            yield interval, [now[t // 4] >> 2 * (t % 4) & 3 for t in range(scene["triangles"])]
+
+    def frames(self, name="frames", vertices=None):
+        """The positions that the page shows in each kept frame: [x of all vertices, y of all, z of all]."""
+        return list(shown_frames(self.arrays[name].tobytes(), vertices or self.scene["vertices"]))
+
+
+def unpack(text, entry):
+    """The numbers of a block."""
+    data = zlib.decompress(base64.b64decode(text.strip(), validate=True))
+    values = array(FORMATS[entry["type"]])
+    values.frombytes(data)
+    if len(values) != entry["count"]:
+        raise ValueError(f"{entry['name']}: {len(values)} numbers, not {entry['count']}")
+    return values
+
+
+def wrap(value):
+    """As a signed number of 32 bits."""
+    return (value + 0x80000000 & 0xFFFFFFFF) - 0x80000000
+
+
+def read_body(data, at, count):
+    """The differences d from the prediction, per axis, and where the next record begins."""
+    width = data[at]
+    if not 1 <= width <= 4:
+        raise ValueError(f"{width} bytes a value")
+    at += 1
+    planes = [data[at + p * 3 * count:at + (p + 1) * 3 * count] for p in range(width)]
+    values = planes[0]
+    for p in range(1, width):
+        values = [low | high << 8 * p for low, high in zip(values, planes[p])]
+    residuals = [value >> 1 ^ -(value & 1) for value in values]
+    axes = [list(accumulate(residuals[k * count:(k + 1) * count])) for k in range(3)]
+    return axes, at + width * 3 * count
+
+
+def shown_frames(data, count):
+    """Decodes the records one after the other."""
+    at, q, origin, step = 0, None, None, None
+    while at < len(data):
+        key, at = data[at], at + 1
+        if key == 1:
+            *origin, step = struct.unpack_from("<4d", data, at)
+            q, at = read_body(data, at + 32, count)
+        else:
+            shift = struct.unpack_from("<3i", data, at)
+            d, at = read_body(data, at + 12, count)
+            q = [[a + b + s for a, b in zip(old, new)] for old, new, s in zip(q, d, shift)]
+        q = [[wrap(value) for value in axis] for axis in q]
+        yield [shown_axis(origin[k], step, q[k]) for k in range(3)]
+
+
+def shown_axis(origin, step, q):
+    """Positions along one axis as the page draws them: float32 about the middle of the body."""
+    low, high = origin + step * min(q), origin + step * max(q)
+    middle = 0.5 * (low + high)
+    local = array("f", [origin + step * value - middle for value in q])
+    return [value + middle for value in local]

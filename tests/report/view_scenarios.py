@@ -1,0 +1,176 @@
+"""What the 3D view draws: the body, each contact where it is, every colour and mark, in pixels of the screen."""
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+
+from controls_scenarios import COLOURS, busiest, open_pawn
+from material import RECORDINGS
+from page import expect, expect_equal
+
+VF, EE = (0, 90, 181), (220, 50, 32)
+POSITION_TOLERANCE = 1e-6
+TRAIL = 8
+
+
+def bare(page):
+    """Nothing but the plain body."""
+    page.script("window.cscd.store.set({playing: false, colour: 'plain', contacts: false, trail: false, through: false,"
+                " points: false, cuts: false, edges: false, scenery: false, selected: null, triangle: null});")
+    page.settle()
+
+
+def at_most_contacts(context, name="pawn-drop"):
+    made = context.material.replay(name)
+    page = context.page
+    page.open(made.page)
+    bare(page)
+    page.go_to(busiest(made))
+    return made, page
+
+
+def in_view(page, markers):
+    """Those of the markers that the window shows."""
+    _, _, width, height = page.view_box()
+    return [marker for marker in markers if 0 <= marker["screen"][0] <= width and 0 <= marker["screen"][1] <= height]
+
+
+def same_place(a, b):
+    return max(abs(p - q) for p, q in zip(a, b)) <= POSITION_TOLERANCE
+
+
+def check_markers(page, contacts, interval):
+    """One marker for each contact of the interval, at its point."""
+    expected = sorted((kind, point) for frame, kind, _, _, point in contacts if frame == interval)
+    markers = [marker for marker in page.markers() if marker["interval"] == interval]
+    found = sorted((marker["kind"], tuple(marker["position"])) for marker in markers)
+    expect_equal(len(found), len(expected), f"markers of interval {interval}")
+    for (kind, position), (true_kind, point) in zip(found, expected):
+        expect(kind == true_kind and same_place(position, point), f"{kind} at {position}, not {true_kind} at {point}")
+    expect_equal(len(in_view(page, markers)), len(markers), f"markers of interval {interval} within the view")
+    return markers
+
+
+def contacts_are_where_the_csv_has_them(context):
+    for name in RECORDINGS:
+        made, page = at_most_contacts(context, name)
+        without = context.pictures.view()
+        page.set_box("Contacts", True)
+        markers = check_markers(page, made.contacts(), busiest(made))
+        shown = context.pictures.view(f"{name}-contacts")
+        places = [marker["screen"] for marker in markers]
+        difference = context.pictures.difference(without, shown, places)
+        expect(any(difference["near"]), f"{name}: no pixel changes where contacts are")
+        page.set_box("Through the surface", True)
+        page.settle()
+        through = context.pictures.view(f"{name}-through")
+        hidden = [n for n in context.pictures.difference(without, through, places)["near"] if n == 0]
+        expect(not hidden, f"{name}: {len(hidden)} of {len(places)} contacts cannot be seen through the surface")
+        context.pictures.whole(f"{name}-page")
+
+
+def kinds_differ_in_colour_and_shape(context):
+    made, page = at_most_contacts(context)
+    page.set_box("Contacts", True)
+    page.set_box("Through the surface", True)
+    page.click("button", "Zoom to contacts")
+    page.settle()
+    picture = context.pictures.view("zoomed")
+    markers = in_view(page, page.markers())
+    expect({marker["kind"] for marker in markers} == {"vf", "ee"}, "not both kinds are in view")
+    for kind, colour in (("vf", VF), ("ee", EE)):
+        places = [marker["screen"] for marker in markers if marker["kind"] == kind]
+        found = sum(count > 0 for count in context.pictures.count_near(picture, colour, places))
+        print(f"{found} of {len(places)} {kind} markers have pixels of their colour")
+        expect(found > 0, f"no {kind} marker has its colour")
+    expect(context.pictures.count(picture, VF) > 20 and context.pictures.count(picture, EE) > 20, "too few pixels")
+
+
+def trail_keeps_the_intervals_before(context):
+    made, page = at_most_contacts(context)
+    interval = busiest(made)
+    page.set_box("Contacts", True)
+    page.set_box("Through the surface", True)
+    without, now = context.pictures.view(), len(page.markers())
+    page.set_box("Trail", True)
+    with_trail = context.pictures.view("trail")
+    markers = page.markers()
+    window = range(interval - TRAIL, interval + 1)
+    expected = sum(contact[0] in window for contact in made.contacts())
+    expect(now < len(markers) == expected, f"{len(markers)} markers, not {expected}, {now} of them new")
+    for marker in markers:
+        expect_equal(marker["age"], interval - marker["interval"], f"age of a contact of interval {marker['interval']}")
+    expect(context.pictures.difference(without, with_trail)["all"] > 50, "the trail changes nothing")
+
+
+def every_colour_is_another_picture(context):
+    made, page = at_most_contacts(context)
+    pictures = {}
+    for name, value in COLOURS.items():
+        page.click("radio", name)
+        pictures[name] = context.pictures.view(f"colour-{value}")
+    names = list(pictures)
+    for i, one in enumerate(names):
+        for other in names[i + 1:]:
+            difference = context.pictures.difference(pictures[one], pictures[other])
+            expect(difference["all"] > 0.002 * difference["pixels"],
+                   f"{one} and {other} differ in {difference['all']} of {difference['pixels']} pixels only")
+
+
+def every_mark_changes_the_picture(context):
+    _, page = at_most_contacts(context, "figure-balls")
+    plain = context.pictures.view("plain")
+    for name in ("Detector points", "Region cuts", "Edges", "Surroundings"):
+        page.set_box(name, True)
+        marked = context.pictures.view("mark-" + name.lower().replace(" ", "-"))
+        difference = context.pictures.difference(plain, marked)["all"]
+        expect(difference > 30, f"{name} changes {difference} pixels")
+        page.set_box(name, False)
+        again = context.pictures.difference(plain, context.pictures.view())["all"]
+        expect_equal(again, 0, f"pixels that stay changed after {name}")
+
+
+def body_moves_between_frames_too(context):
+    made, page = at_most_contacts(context)
+    pictures = []
+    for time in (busiest(made), busiest(made) + 0.5, busiest(made) + 1):
+        page.go_to(time)
+        pictures.append(context.pictures.view())
+    for one, other in ((0, 1), (1, 2)):
+        expect(context.pictures.difference(pictures[one], pictures[other])["all"] > 50, "half a frame moves nothing")
+
+
+def camera_turns_zooms_and_comes_back(context):
+    _, page = at_most_contacts(context)
+    page.press("0")
+    page.leave_controls()
+    start = context.pictures.view()
+    canvas = page.element("image", "3D view")
+    ActionChains(page.driver, duration=50).click_and_hold(canvas).move_by_offset(120, 30).release().perform()
+    page.settle()
+    turned = context.pictures.view()
+    expect(context.pictures.difference(start, turned)["all"] > 1000, "dragging turns nothing")
+    ActionChains(page.driver).scroll_from_origin(ScrollOrigin.from_element(canvas), 0, -300).perform()
+    page.settle()
+    expect(context.pictures.difference(turned, context.pictures.view())["all"] > 1000, "the wheel zooms nothing")
+    page.press("0")
+    page.leave_controls()
+    expect_equal(context.pictures.difference(start, context.pictures.view())["all"], 0, "pixels unlike after reset")
+
+
+def zoom_looks_at_the_contacts(context):
+    made, page = at_most_contacts(context)
+    page.set_box("Contacts", True)
+    before = spread(page.markers())
+    page.click("button", "Zoom to contacts")
+    page.settle()
+    markers = page.markers()
+    expect_equal(len(in_view(page, markers)), len(markers), "contacts in view")
+    expect(spread(markers) > 1.2 * before, f"contacts spread over {spread(markers):.0f} pixels, {before:.0f} before")
+
+
+def spread(markers):
+    return max(max(m["screen"][k] for m in markers) - min(m["screen"][k] for m in markers) for k in (0, 1))
+
+
+SCENARIOS = (contacts_are_where_the_csv_has_them, kinds_differ_in_colour_and_shape, trail_keeps_the_intervals_before,
+             every_colour_is_another_picture, every_mark_changes_the_picture, body_moves_between_frames_too,
+             camera_turns_zooms_and_comes_back, zoom_looks_at_the_contacts)
