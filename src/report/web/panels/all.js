@@ -11,7 +11,18 @@ import * as regions from './regions.js';
 import * as status from './status.js';
 import * as timings from './timings.js';
 
-const PANELS = { status, notes, comparison, charts, contacts, timings, intervals, regions, provenance, licences };
+const PANELS = {
+  status,
+  notes,
+  comparison,
+  charts,
+  contacts,
+  timings,
+  intervals,
+  regions,
+  provenance,
+  licences,
+};
 
 /** A panel that the report has not all for must not take the others with it. */
 function createPanel(panel, container, report, store, player) {
@@ -20,7 +31,13 @@ function createPanel(panel, container, report, store, player) {
   } catch (error) {
     console.error(error);
     container.hidden = false;
-    container.append(element('p', { class: 'note alarm', role: 'alert', text: `This part of the report cannot be shown: ${error.message}` }));
+    container.append(
+      element('p', {
+        class: 'note alarm',
+        role: 'alert',
+        text: `This part of the report cannot be shown: ${error.message}`,
+      }),
+    );
   }
 }
 
@@ -28,5 +45,6 @@ export function createPanels(report, store, player) {
   document.body.dataset.kind = report.kind;
   document.title = `${report.title} · cscd report`;
   document.getElementById('title').textContent = report.title;
-  for (const [id, panel] of Object.entries(PANELS)) createPanel(panel, document.getElementById(id), report, store, player);
+  for (const [id, panel] of Object.entries(PANELS))
+    createPanel(panel, document.getElementById(id), report, store, player);
 }

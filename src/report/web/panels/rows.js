@@ -4,7 +4,8 @@ import { element } from './dom.js';
 const ALL_BELOW = 60;
 const MARGIN = 10;
 
-const gapRow = (columns) => element('tr', { class: 'gap', 'aria-hidden': 'true' }, element('td', { colspan: columns }));
+const gapRow = (columns) =>
+  element('tr', { class: 'gap', 'aria-hidden': 'true' }, element('td', { colspan: columns }));
 
 /**
  * @param {HTMLElement} box what scrolls
@@ -38,7 +39,9 @@ export function createRows(box, table, { columns, height, printed, make, fill })
     const rows = pool.slice(0, end - begin);
     above.firstChild.style.height = `${begin * rowHeight}px`;
     below.firstChild.style.height = `${(count - end) * rowHeight}px`;
-    const wanted = [begin > 0 ? above : null, ...rows, end < count && !printing ? below : null].filter(Boolean);
+    const wanted = [begin > 0 ? above : null, ...rows, end < count && !printing ? below : null].filter(
+      Boolean,
+    );
     if (wanted.length !== body.childNodes.length || wanted.some((row, i) => body.childNodes[i] !== row))
       body.replaceChildren(...wanted);
     rows.forEach((row, i) => {
@@ -65,7 +68,10 @@ export function createRows(box, table, { columns, height, printed, make, fill })
 
   box.addEventListener('scroll', drawWhereMoved, { passive: true });
   new ResizeObserver(drawWhereMoved).observe(box);
-  for (const [event, on] of [['beforeprint', true], ['afterprint', false]]) {
+  for (const [event, on] of [
+    ['beforeprint', true],
+    ['afterprint', false],
+  ]) {
     window.addEventListener(event, () => {
       printing = on;
       draw();
