@@ -71,7 +71,8 @@ function circumstances({ provenance, summary, intervals }) {
     mode: [summary.mode],
     'least separation': [String(summary.min_separation)],
     machine: [
-      `${machine.processor}, ${counted(machine.processors, 'processor')}, ${machine.system} ${machine.release}`,
+      `${machine.processor}, ${counted(machine.processors, 'processor')}, ` +
+        `${machine.system} ${machine.release}`,
     ],
     threads: [String(provenance.threads)],
     compiler: [`${provenance.compiler} ${provenance.flags}`],
