@@ -17,8 +17,12 @@ const QUESTION = 'M5 5.5C5 3.6 6.3 2.5 8 2.5s3 1.1 3 2.7c0 1.3-.7 1.9-1.5 2.5-.6
 /** Small recordings are read before the first picture, so that the view frames all of it at once. */
 const QUICK_BYTES = 24e6;
 
+const byId = (id) => document.getElementById(id);
+
 function showError(error) {
   console.error(error);
+  byId('opening')?.remove();
+  if (window.cscd.report === undefined) byId('main').hidden = true;
   const message = element('div', { role: 'alert', class: 'failure' });
   message.append(
     element('strong', {}, 'This report cannot be shown in full.'),
@@ -70,8 +74,6 @@ function createTools(container, theme, help) {
   );
 }
 
-const byId = (id) => document.getElementById(id);
-
 async function createScene(report, store, player) {
   const { scene } = report;
   const quick = scene.frames.length * scene.vertexCount * 12 < QUICK_BYTES;
@@ -96,6 +98,7 @@ async function open() {
   createPanels(report, store, player);
   viewer?.resize();
   viewer?.drawNow();
+  byId('opening')?.remove();
   performance.mark('cscd-open');
   listenToKeys({ report, store, player, viewer, theme, help });
   if (report.scene !== null) await readFrames(report.scene, viewer);

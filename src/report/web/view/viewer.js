@@ -6,7 +6,7 @@ import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
 import { onClick, pickTriangle } from './picking.js';
-import { Resolution, rendersInSoftware } from './resolution.js';
+import { Resolution, createContext } from './resolution.js';
 import { Space, sphereOf } from './space.js';
 import { Surface } from './surface.js';
 
@@ -31,9 +31,7 @@ export class Viewer {
   }
 
   makeRenderer() {
-    const canvas = document.createElement('canvas');
-    const software = rendersInSoftware();
-    const context = canvas.getContext('webgl2', { alpha: false, antialias: !software, stencil: false });
+    const { canvas, context, software } = createContext();
     this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are as on the screen throughout
     this.canvas = canvas;
@@ -256,6 +254,7 @@ export class Viewer {
     const { data, painter, space } = this;
     const { selected, time } = this.store.get();
     const interval = intervalOf(data, time);
+    this.update(this.store.get()); // where the view follows the body, it does so before
     const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
     if (begin === end) return;
     const box = new Box3();
