@@ -4,6 +4,8 @@ const LEAST = 0.7; // pixels of the buffer for one of the page
 const SLOW_MS = 30;
 const QUICK_MS = 12;
 const REST_MS = 160;
+/** Opaque: the page need not blend it. Kept: it can be printed. */
+const OPTIONS = { alpha: false, stencil: false, preserveDrawingBuffer: true };
 
 /** Without a graphics processor each pixel counts, several samples for each all the more. */
 function inSoftware(context) {
@@ -12,11 +14,11 @@ function inSoftware(context) {
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(name));
 }
 
-/** A canvas and its context, which smooths edges where that costs little. Opaque: the page need not blend it. */
+/** A canvas and its context, which smooths edges where that costs little. */
 export function createContext() {
   const make = (antialias) => {
     const canvas = document.createElement('canvas');
-    return { canvas, context: canvas.getContext('webgl2', { alpha: false, antialias, stencil: false }) };
+    return { canvas, context: canvas.getContext('webgl2', { ...OPTIONS, antialias }) };
   };
   const plain = make(false); // first the one for software, where making a context takes long
   if (plain.context === null) throw new Error('WebGL 2 is not available');
