@@ -1,6 +1,6 @@
-/** The charts under the view: they show every interval, move with the playback, and a click on them goes there. */
+/** The charts under the view: every interval, the moment that plays, and a click on them goes there. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading } from './dom.js';
+import { element, heading, setText } from './dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
 import { extent, finder, intervalAt } from './intervalof.js';
@@ -36,15 +36,22 @@ function createRange(count, changed) {
 }
 
 function rangeButtons(range, moment) {
-  const button = (text, label, act) => element('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
-  return element('span', { class: 'chart-range' },
+  const button = (text, label, act) =>
+    element('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
+  return element(
+    'span',
+    { class: 'chart-range' },
     button('−', 'Zoom charts out', () => range.scale(2, moment())),
     button('+', 'Zoom charts in', () => range.scale(0.5, moment())),
-    button('All', 'All intervals in the charts', () => range.all()));
+    button('All', 'All intervals in the charts', () => range.all()),
+  );
 }
 
 function logarithmicSwitch(plots) {
-  const box = element('input', { type: 'checkbox', onchange: () => plots().forEach((plot) => plot.setLogarithmic(box.checked)) });
+  const box = element('input', {
+    type: 'checkbox',
+    onchange: () => plots().forEach((plot) => plot.setLogarithmic(box.checked)),
+  });
   return element('label', { class: 'choice' }, box, 'Logarithmic');
 }
 
@@ -55,11 +62,20 @@ export function create(container, report, store, player) {
   if (container.hidden) return;
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
-  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) => createFigure({ ...figure, first, last }));
-  const band = compares ? null : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
+  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) =>
+    createFigure({ ...figure, first, last }),
+  );
+  const band = compares
+    ? null
+    : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
   let plots = [];
   let hovered = null;
   let read = -1;
+  const reading = element('output', {
+    class: 'reading',
+    'aria-live': 'off',
+    title: 'The interval whose values are shown: under the pointer, else the current one',
+  });
 
   const moment = () => store.get().time - first;
   const range = createRange(count, (begin, end) => {
@@ -71,6 +87,7 @@ export function create(container, report, store, player) {
     const interval = hovered ?? intervalAt(store.get().time, first, last) - first;
     if (interval === read) return;
     read = interval;
+    setText(reading, `frame ${first + interval}`);
     figures.forEach((figure) => figure.show(interval));
   }
 
@@ -100,10 +117,14 @@ export function create(container, report, store, player) {
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet', text: 'of each interval, by its first frame; click or drag to go there' })];
+  const beside = [element('span', { class: 'quiet', text: 'click or drag to go there; values of' }), reading];
   if (compares) beside.push(logarithmicSwitch(() => plots));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
-  container.append(heading('Charts', ...beside), ...(band ? [band.box] : []), ...figures.map(({ box }) => box));
+  container.append(
+    heading('Charts', ...beside),
+    ...(band ? [band.box] : []),
+    ...figures.map(({ box }) => box),
+  );
   draw();
   new ResizeObserver(() => {
     plots.forEach((plot) => plot.resize());
@@ -111,8 +132,10 @@ export function create(container, report, store, player) {
   }).observe(container);
   store.on(['time'], follow);
   onCalmly(store, ['time'], readValues);
-  store.on(['theme'], () => requestAnimationFrame(() => {
-    plots.forEach((plot) => plot.recolour());
-    band?.draw();
-  }));
+  store.on(['theme'], () =>
+    requestAnimationFrame(() => {
+      plots.forEach((plot) => plot.recolour());
+      band?.draw();
+    }),
+  );
 }

@@ -1,4 +1,4 @@
-/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top of it. */
+/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top. */
 import uPlot from 'uplot';
 import { element } from './dom.js';
 
@@ -35,14 +35,26 @@ function columnsOf(plot, from, to, pixels) {
   const { first, series, stacked } = plot;
   const count = to - from;
   const buckets = Math.min(count, Math.max(1, pixels));
-  const x = Array.from({ length: buckets }, (_, bucket) => first + from + Math.floor((bucket * count) / buckets));
+  const x = Array.from(
+    { length: buckets },
+    (_, bucket) => first + from + Math.floor((bucket * count) / buckets),
+  );
   x.push(first + to);
   const at = (values, kept) => {
     const column = kept.map((i) => values[i]);
     column.push(column[column.length - 1]);
     return column;
   };
-  if (!stacked) return [x, ...series.map(({ values }) => at(values, thin(from, to, pixels, (i) => values[i] ?? -1)))];
+  if (!stacked)
+    return [
+      x,
+      ...series.map(({ values }) =>
+        at(
+          values,
+          thin(from, to, pixels, (i) => values[i] ?? -1),
+        ),
+      ),
+    ];
   const total = (i) => series.reduce((sum, { values }) => sum + values[i], 0);
   const kept = thin(from, to, pixels, total);
   const sums = new Float64Array(kept.length + 1);
@@ -64,13 +76,34 @@ function seriesOptions({ series, stacked }) {
   return [{}, ...(stacked ? options.reverse() : options)];
 }
 
+/** A number at the right end would be cut. */
+function frameLabels({ scales: { x } }, splits) {
+  const room = (x.max - x.min) * 0.015;
+  return splits.map((frame) =>
+    Number.isInteger(frame) && (frame < 1000 || frame < x.max - room) ? String(frame) : '',
+  );
+}
+
 function axes(format, logarithmic) {
   const common = { font: AXIS_FONT, stroke: () => token('--quiet'), ticks: { show: false } };
   return [
-    { ...common, size: 22, gap: 3, space: 56, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
-      grid: { show: false }, values: (_, splits) => splits.map((value) => (Number.isInteger(value) ? String(value) : '')) },
-    { ...common, size: LEFT, gap: 5, space: logarithmic ? 18 : 26, grid: { stroke: () => token('--grid'), width: 1 },
-      values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))) },
+    {
+      ...common,
+      size: 22,
+      gap: 3,
+      space: 56,
+      incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
+      grid: { show: false },
+      values: frameLabels,
+    },
+    {
+      ...common,
+      size: LEFT,
+      gap: 5,
+      space: logarithmic ? 18 : 26,
+      grid: { stroke: () => token('--grid'), width: 1 },
+      values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))),
+    },
   ];
 }
 

@@ -68,13 +68,19 @@ function material(strength, rimmed, depth) {
     transparent: true,
     depthWrite: false,
     ...depth,
-    uniforms: { density: { value: 1 }, pixel: { value: 0.001 }, strength: { value: strength }, rimmed: { value: rimmed } },
+    uniforms: {
+      density: { value: 1 },
+      pixel: { value: 0.001 },
+      strength: { value: strength },
+      rimmed: { value: rimmed },
+    },
   });
 }
 
 function geometryFor(capacity) {
   const geometry = new BufferGeometry();
-  const attribute = (array, size, normalized) => new BufferAttribute(array, size, normalized).setUsage(DynamicDrawUsage);
+  const attribute = (array, size, normalized) =>
+    new BufferAttribute(array, size, normalized).setUsage(DynamicDrawUsage);
   geometry.setAttribute('position', attribute(new Float32Array(3 * capacity), 3, false));
   geometry.setAttribute('tint', attribute(new Uint8Array(4 * capacity), 4, true));
   geometry.setAttribute('form', attribute(new Float32Array(2 * capacity), 2, false));
@@ -150,7 +156,8 @@ export class ContactMarks extends Marks {
     this.hidden.visible = state.through;
     const { kind, point } = scene.contacts ?? {};
     const size = sizeAmong(this.marked.length);
-    const selectedLast = [...this.marked].sort((a, b) => (a.contact === state.selected) - (b.contact === state.selected));
+    const selected = ({ contact }) => contact === state.selected;
+    const selectedLast = [...this.marked].sort((a, b) => selected(a) - selected(b));
     this.show(
       selectedLast.map(({ contact, age }) => ({
         place: toView(point.subarray(3 * contact, 3 * contact + 3)),
