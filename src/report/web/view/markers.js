@@ -99,7 +99,7 @@ class Marks {
     this.capacity = 64;
     this.geometry = geometryFor(this.capacity);
     this.inSight = new Points(this.geometry, material(1, 1, { depthFunc: LessEqualDepth }));
-    this.hidden = new Points(this.geometry, material(0.32, 0.35, { depthFunc: GreaterDepth }));
+    this.hidden = new Points(this.geometry, material(0.42, 0.5, { depthFunc: GreaterDepth }));
     this.inSight.renderOrder = 2;
     this.hidden.renderOrder = 1;
     this.object = new Group();
