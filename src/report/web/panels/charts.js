@@ -122,7 +122,7 @@ export function create(container, report, store, player) {
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet', text: 'click or drag to go there; values of' }), reading];
+  const beside = [element('span', { class: 'quiet' }, 'click or drag to go there; values of ', reading)];
   beside.push(...scaleSwitches(compares, (scale) => plots.forEach((plot) => plot.setScale(scale))));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
   container.append(
