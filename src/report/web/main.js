@@ -38,17 +38,18 @@ function showError(error) {
 
 function initialState(report) {
   const { scene } = report;
+  const planShown = report.kind === 'preprocess' && scene.region !== null; // there is nothing else to see
   return {
     time: scene?.first ?? 0,
     playing: false,
     speed: 30,
     loop: false,
-    colour: report.kind === 'preprocess' && scene.region !== null ? 'region' : 'plain',
+    colour: planShown ? 'region' : 'plain',
     contacts: true,
     trail: false,
     through: true,
-    points: false,
-    cuts: false,
+    points: planShown,
+    cuts: planShown,
     edges: false,
     scenery: true,
     selected: null,

@@ -47,12 +47,17 @@ function rangeButtons(range, moment) {
   );
 }
 
-function logarithmicSwitch(plots) {
-  const box = element('input', {
-    type: 'checkbox',
-    onchange: () => plots().forEach((plot) => plot.setLogarithmic(box.checked)),
-  });
-  return element('label', { class: 'choice' }, box, 'Logarithmic');
+const CUT = 'Peaks of 2 % of the intervals go beyond the top, so that the others can be told apart';
+
+/** Switches of the vertical scale; change({logarithmic, cut}). */
+function scaleSwitches(compares, change) {
+  const box = (onchange) => element('input', { type: 'checkbox', onchange });
+  const tell = () => change({ logarithmic: logarithmic.checked, cut: cut.checked });
+  const logarithmic = box(tell);
+  const cut = box(tell);
+  const labels = [element('label', { class: 'choice', title: CUT }, cut, 'Cut peaks')];
+  if (compares) labels.push(element('label', { class: 'choice' }, logarithmic, 'Logarithmic'));
+  return labels;
 }
 
 export function create(container, report, store, player) {
@@ -109,16 +114,16 @@ export function create(container, report, store, player) {
   }
 
   function draw() {
-    plots = figures.map((figure) => figure.draw());
-    for (const surface of [...plots.map(({ over }) => over), ...(band ? [band.track] : [])])
-      followPointer(surface, { range: range.get, hover, go });
+    const attach = (surface) => followPointer(surface, { range: range.get, hover, go });
+    plots = figures.map((figure) => figure.draw(attach));
+    if (band) attach(band.track);
     band?.draw();
     follow(store.get());
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet', text: 'click or drag to go there; values of' }), reading];
-  if (compares) beside.push(logarithmicSwitch(() => plots));
+  const beside = [element('span', { class: 'quiet' }, 'click or drag to go there; values of ', reading)];
+  beside.push(...scaleSwitches(compares, (scale) => plots.forEach((plot) => plot.setScale(scale))));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
   container.append(
     heading('Charts', ...beside),

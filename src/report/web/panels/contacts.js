@@ -1,7 +1,7 @@
 /** The contacts of the current interval: which features meet, when and where. */
 import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from './dom.js';
-import { counted, decimal, integer } from './format.js';
+import { coordinates, counted, decimal, integer, positionDecimals } from './format.js';
 import { extent, finder, intervalAt } from './intervalof.js';
 import { createRows } from './rows.js';
 
@@ -19,13 +19,6 @@ function featureWords(contacts, contact) {
 /** Whether a row needs a second line for its features. */
 function hasLongNumbers({ vertices, fileVertices }) {
   return (fileVertices ?? vertices).some((vertex) => vertex > 9999);
-}
-
-/** Decimals that tell positions apart: six digits of the largest coordinate. */
-function positionDecimals(points, unit) {
-  let largest = 0;
-  for (const value of points) largest = Math.max(largest, Math.abs(value));
-  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest * unit || 1))));
 }
 
 function createTable() {
@@ -82,7 +75,7 @@ function fillRow(row, { contacts, unit, decimals }, contact, number) {
   setText(toi, decimal(contacts.toi[contact], 6));
   toi.title = toi.dataset.value = String(contacts.toi[contact]);
   const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)].map((value) => value * unit);
-  setText(position, point.map((value) => value.toFixed(decimals)).join(', '));
+  setText(position, coordinates(point, decimals));
   position.title = position.dataset.value = point.join(' ');
 }
 
@@ -152,6 +145,8 @@ export function create(container, report, store, player) {
   const scroll = element('div', { class: 'scroll' }, table);
   const empty = createEmpty(player);
   const capped = element('p', { class: 'quiet' });
+  const { found: all } = report.scene.contactsInfo;
+  const nothingHere = all === 0 ? 'No contact in this whole recording.' : 'No contact in this interval.';
   let shown = [];
   let begin = 0;
   let current = -1;
@@ -176,8 +171,7 @@ export function create(container, report, store, player) {
     setText(capped, `Only the first ${integer(kept)} of ${counted(found, 'contact')} are in this report.`);
     const before = contacts.count > 0 && contacts.interval[0] < current;
     const after = contacts.count > 0 && contacts.interval[contacts.count - 1] > current;
-    const none =
-      found > 0 ? 'The contacts of this interval are not in this report.' : 'No contact in this interval.';
+    const none = found > 0 ? 'The contacts of this interval are not in this report.' : nothingHere;
     empty.say(
       shown.length === 0 && kept > 0 ? 'No contact of this kind in this interval.' : none,
       before,

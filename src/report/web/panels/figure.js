@@ -46,7 +46,7 @@ export function createFigure(figure) {
     box,
     host,
     /** Only when the page has a width can it be drawn. */
-    draw: () => createPlot(host, figure),
+    draw: (attach) => createPlot(host, figure, attach),
     /** Values of this interval, counted from the first. */
     show(interval) {
       const columns = total

@@ -30,6 +30,15 @@ export function thin(from, to, pixels, weight) {
   return kept;
 }
 
+/** What 98 % of the intervals stay below: without the peaks the rest can be seen. */
+function usualLimit({ first, last, series, stacked }) {
+  const heights = Float64Array.from({ length: last - first }, (_, i) => {
+    const values = series.map((one) => one.values[i] ?? 0);
+    return stacked ? values.reduce((sum, value) => sum + value, 0) : Math.max(...values);
+  }).sort();
+  return heights[Math.floor(0.98 * (heights.length - 1))] * 1.2;
+}
+
 /** Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. */
 function columnsOf(plot, from, to, pixels) {
   const { first, series, stacked } = plot;
@@ -112,19 +121,28 @@ function axes(format, logarithmic) {
  * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
  *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
  *   values: of interval first, first + 1, ...
+ * @param {(surface: HTMLElement) => void} attach is given what lies over the plot, each time it is made anew
  */
-export function createPlot(host, plot) {
+export function createPlot(host, plot, attach) {
   const { first, last, height } = plot;
   const timeLine = element('div', { class: 'time-line' });
   const hoverLine = element('div', { class: 'hover-line', hidden: true });
   let range = [0, last - first];
   let logarithmic = false;
+  let cut = false;
+  const usual = usualLimit(plot);
   let chart = null;
   let time = first;
   let hover = null;
 
   const width = () => Math.max(160, host.clientWidth);
   const data = () => columnsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
+
+  /** Of the scale, where the highest value shown is `high`. */
+  function topOf(high) {
+    const top = cut && usual > 0 ? Math.min(high, usual) : high;
+    return top > 0 ? top * 1.04 : 1;
+  }
 
   function build() {
     chart?.destroy();
@@ -137,7 +155,7 @@ export function createPlot(host, plot) {
       select: { show: false },
       scales: {
         x: { time: false, range: () => [first + range[0], first + range[1]] },
-        y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, high > 0 ? high * 1.04 : 1] },
+        y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, topOf(high)] },
       },
       axes: axes(plot.format, logarithmic),
       series: seriesOptions(plot),
@@ -145,6 +163,7 @@ export function createPlot(host, plot) {
     };
     chart = new uPlot(options, data(), host);
     chart.over.append(hoverLine, timeLine);
+    attach(chart.over);
   }
 
   function moveLine(line, at) {
@@ -160,9 +179,6 @@ export function createPlot(host, plot) {
 
   build();
   return {
-    get over() {
-      return chart.over;
-    },
     setTime(at) {
       time = at;
       moveLine(timeLine, time);
@@ -177,8 +193,8 @@ export function createPlot(host, plot) {
       range = [begin, end];
       chart.setData(data());
     },
-    setLogarithmic(on) {
-      logarithmic = on;
+    setScale(scale) {
+      ({ logarithmic, cut } = scale);
       build();
     },
     resize() {

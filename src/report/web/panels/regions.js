@@ -1,10 +1,10 @@
 /** The plan's regions and what preprocessing measured. */
 import { element, heading, numberCell } from './dom.js';
-import { counted, decimal, integer, percent, significant } from './format.js';
+import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from './format.js';
 import { css, regionColour } from '../view/colours.js';
 import { swatch } from './palette.js';
 
-function regionRow(region, index, area, unit) {
+function regionRow(region, index, { area, unit, decimals }) {
   const name = element('th', { scope: 'row' }, swatch(css(regionColour(index))), ` ${index}`);
   const share = area > 0 ? region.area / area : 0;
   const point = region.detector_point.map((value) => value * unit);
@@ -18,7 +18,7 @@ function regionRow(region, index, area, unit) {
     numberCell(percent(region.visible_share), region.visible_share),
     element('td', {
       class: 'number',
-      text: point.map((value) => significant(value, 5)).join(', '),
+      text: coordinates(point, decimals),
       title: point.join(' '),
       'data-value': point.join(' '),
     }),
@@ -37,10 +37,11 @@ function regionTable(plan, unit) {
   ])
     head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : undefined }));
   const area = plan.regions.reduce((sum, region) => sum + region.area, 0);
+  const decimals = positionDecimals(plan.regions.map((region) => region.detector_point).flat(), unit);
   const body = element(
     'tbody',
     {},
-    ...plan.regions.map((region, index) => regionRow(region, index, area, unit)),
+    ...plan.regions.map((region, index) => regionRow(region, index, { area, unit, decimals })),
   );
   return element(
     'div',
@@ -57,7 +58,7 @@ function facts(pairs, label) {
 }
 
 function capacitances(values) {
-  return facts(
+  const table = facts(
     values.map((value, component) => [
       values.length > 1 ? `Capacitance of component ${component}` : 'Capacitance',
       significant(value, 6),
@@ -65,6 +66,7 @@ function capacitances(values) {
     ]),
     'Capacitances',
   );
+  return element('div', { class: 'scroll' }, table);
 }
 
 const PHASES = [

@@ -37,7 +37,7 @@ const title = (text) => element('div', { class: 'legend-title' }, text);
 function chargeLegend(limits) {
   const { low, high, below, above, least, most } = limits;
   const [first, last] = [`${below ? '≤\u202f' : ''}${short(low)}`, `${above ? '≥\u202f' : ''}${short(high)}`];
-  const range = `from ${short(least)} to ${short(most)}; the outermost 2\u202f% of triangles at either end share a colour`;
+  const range = `from ${short(least)} to ${short(most)}; 2\u202f% of the triangles at either end share a colour`;
   return [
     title('Charge per area at potential 1 (Gaussian units: 1/length)'),
     bar(VIRIDIS),

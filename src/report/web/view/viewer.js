@@ -272,7 +272,7 @@ export class Viewer {
         for (let corner = 0; corner < 3; corner++) add(data.positions.vertexAt(data.triangles[3 * t + corner], time));
       }
     }
-    this.view.frame(box.expandByScalar(0.35 * box.getSize(new Vector3()).length()));
+    this.view.frame(box.expandByScalar(0.15 * box.getSize(new Vector3()).length()));
     this.touched = true;
     this.invalidate();
   }
