@@ -15,7 +15,7 @@ extern "C" {
 /* Objects are those of the scene, or of a mesh that is one object, its components. Parts are the regions of a
  * plan, or the components: nearly convex pieces of one object. Cells are connected groups of a part's
  * vertices, by vector quantization (Linde, Buzo and Gray 1980) of positions and normals; each holds one
- * particle. */
+ * particle. Obstacles have parts and cells, too, but are not watched for each other, nor within. */
 typedef struct cscd_partition cscd_partition;
 
 typedef struct cscd_partition_options {
@@ -29,19 +29,22 @@ typedef struct cscd_partition_options {
 
 CSCD_API cscd_partition_options cscd_partition_defaults(void);
 
-/* plan: NULL, or one of the mesh. positions: at rest. */
+/* plan: NULL, or one of the mesh. positions: at rest. The mesh lives as long as the partition, of the plan
+ * nothing is kept. */
 CSCD_API cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan,
                                            const double *positions, const cscd_partition_options *options,
                                            cscd_partition **out);
 CSCD_API void cscd_partition_destroy(cscd_partition *partition);
 
 /* Cells anew for one part, or with part UINT32_MAX for all, at these positions and with as many as its area
- * now asks for. Sensors of the partition take it up in their next step. */
+ * now asks for. Other parts keep their cells, which may be numbered anew. Sensors of the partition take it up
+ * in their next step. */
 CSCD_API cscd_status cscd_partition_renew(cscd_partition *partition, const double *positions, uint32_t part);
 
 typedef struct cscd_part {
     uint32_t object;
-    uint32_t first_cell, cell_count; /* cells are numbered part by part */
+    uint32_t first_cell, cell_count; /* cells are numbered part by part; 0 cells where no vertex has most of
+                                      * its triangles here */
     double radius;                   /* of the sphere of its area, when its cells were made */
     bool convex;                     /* the part is a whole object, and convex */
 } cscd_part;
@@ -50,7 +53,7 @@ CSCD_API uint32_t cscd_partition_object_count(const cscd_partition *partition);
 CSCD_API uint32_t cscd_partition_part_count(const cscd_partition *partition);
 CSCD_API cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part);
 CSCD_API uint32_t cscd_partition_cell_count(const cscd_partition *partition);
-/* UINT32_MAX for a vertex without a triangle, and of an obstacle. */
+/* UINT32_MAX for a vertex without a triangle. */
 CSCD_API uint32_t cscd_partition_vertex_cell(const cscd_partition *partition, uint32_t vertex);
 /* Mean squared distance to the cells' means, per dimension (3.10), when a part's cells were made. */
 CSCD_API double cscd_partition_distortion(const cscd_partition *partition, uint32_t part);
