@@ -122,7 +122,8 @@ export function create(container, report, store, player) {
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet' }, 'click or drag to go there; values of ', reading)];
+  const told = player ? 'click or drag to go there; values of ' : 'values of ';
+  const beside = [element('span', { class: 'quiet' }, told, reading)];
   beside.push(...scaleSwitches(compares, (scale) => plots.forEach((plot) => plot.setScale(scale))));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
   container.append(

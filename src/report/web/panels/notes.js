@@ -9,8 +9,8 @@ function notesOfRun(summary, intervals) {
   if (!summary.complete)
     notes.push([
       'warn',
-      'stopped early',
-      `${summary.stopped_by}. What is here ends after ${counted(summary.intervals, 'interval')}.`,
+      `stopped early: ${summary.stopped_by ?? 'no reason is given'}`,
+      `What is here ends after ${counted(summary.intervals, 'interval')}.`,
     ]);
   if (/published$/.test(summary.method))
     notes.push([
