@@ -136,12 +136,14 @@ demo: packages
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/shape
+build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/objects \
+                   $(BUILD)/models/shape
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 
 # Redraws the pictures of README and docs.
 gallery: models
+	@.ci/packages browser
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 

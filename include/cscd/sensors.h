@@ -71,8 +71,8 @@ typedef enum cscd_sensor_method {
 typedef struct cscd_sensor_options {
     uint32_t struct_size; /* set by cscd_sensor_defaults */
     cscd_sensor_method method;
-    double
-        collision_distance;  /* mu, a length; 0, the default: what the longest edges and the motion ask for */
+    double collision_distance; /* mu, a length; 0, the default: what the longest edges and the motion ask
+                                * for */
     double effective_radius; /* R_eff, a length, at least mu; 0, the default: mu and the two largest cells */
     uint32_t step_limit;     /* of rounds in which particles walk, per moment; default 256 */
     bool exact;              /* warnings are checked by elementary tests; default true */
