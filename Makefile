@@ -143,6 +143,7 @@ build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/
 
 # Redraws the pictures of README and docs.
 gallery: models
+	@.ci/packages browser
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 

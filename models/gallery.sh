@@ -41,3 +41,16 @@ whole() { # whole NAME VIEW FRAMES: obstacles are part of the model
 }
 whole rings 0,10 0:165:15
 whole press 20,10 0:165:15
+
+# Of docs/report.md, in a browser.
+reports=$models/reports
+mkdir -p "$reports"
+"$tool" preprocess "$models/figure.obj" -o "$models/figure.plan.ply" --report "$reports/figure.html" --quiet
+"$tool" preprocess "$models/pawn-drop.obj" --quiet
+"$tool" replay "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --scenery "$models/pawn-drop-scenery.obj" \
+    --report "$reports/pawn-drop.html" --quiet
+for method in charge single none iccd published; do
+    "$tool" replay "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --method "$method" --json "$reports/$method.json" --quiet
+done
+(cd "$reports" && "$OLDPWD/$tool" report charge.json single.json none.json iccd.json published.json -o methods.html --quiet)
+/usr/bin/python3 tests/report/gallery.py "$reports/pawn-drop.html" "$reports/figure.html" "$reports/methods.html" "$images"

@@ -33,7 +33,7 @@ static int run_all(void **state) {
     folder = temp_folder_make();
     printed = shell_output(0, "BUILD='%.*s' %s '%s' || true", build_length(), getenv("CSCD_TOOL"), runner,
                            folder.path);
-    print_message("%s", printed);
+    fputs(printed, stdout);
     return 0;
 }
 

@@ -272,40 +272,61 @@ static void number(void *user, const cscd_contact *contact, uint32_t vertices[4]
     for (uint32_t i = 0; i < 4; i++) vertices[i] = *(const uint32_t *)user + contact->a + i;
 }
 
-/* Contacts that nobody found: what is kept is decided by their number alone. */
-static void of_many_contacts_the_first_are_kept(void **state) {
-    (void)state;
-    enum { INTERVALS = 30, MANY = 5000 };
+/* Contacts that nobody found: how many are kept is decided by their number alone. */
+enum { INTERVALS = 30, MANY = 5000, SHARE = REPORT_CONTACTS_MAX / INTERVALS };
+
+/* The first three intervals have none; the next have what these leave, and the last no less than their share.
+ */
+static uint32_t found_in(uint32_t interval) {
+    return interval < 3 ? 0 : MANY;
+}
+
+static page crowded_page(const report_rig *rig, uint32_t *file_offset) {
     static cscd_contact items[MANY];
-    uint32_t thousand = 1000;
-    report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
-    report_options options = report_rig_options(&rig);
+    report_options options = report_rig_options(rig);
     options.last = INTERVALS;
     options.oriented = false;
     options.file_vertices = number;
-    options.file_vertices_user = &thousand;
+    options.file_vertices_user = file_offset;
     for (int i = 0; i < MANY; i++) items[i] = (cscd_contact){.kind = CSCD_CONTACT_VF, .a = 4, .toi = i};
     report *r = create(&options);
-    assert_true(report_begin(r, rig.shape.frames, NULL));
-    for (int k = 0; k < INTERVALS; k++)
-        assert_true(report_add_interval(r, NULL, &(cscd_contacts){items, MANY}, rig.shape.frames, NULL));
-    page p = write_page(r);
-    const json_node *contacts = json_node_member(p.scene, "contacts");
-    assert_true(json_node_number(contacts, "found") == INTERVALS * MANY);
-    assert_true(json_node_number(contacts, "kept") == REPORT_CONTACTS_MAX);
-    assert_true(json_node_number(contacts, "interval_limit") == REPORT_INTERVAL_CONTACTS_MAX);
-    assert_true(json_node_number(contacts, "limit") == REPORT_CONTACTS_MAX);
+    assert_true(report_begin(r, rig->shape.frames, NULL));
+    for (uint32_t k = 0; k < INTERVALS; k++) {
+        cscd_contacts contacts = {items, found_in(k)};
+        assert_true(report_add_interval(r, NULL, &contacts, rig->shape.frames, NULL));
+    }
+    return write_page(r);
+}
+
+static void of_many_contacts_each_interval_keeps_its_share(void **state) {
+    (void)state;
+    uint32_t offset = 1000, i = 0;
+    report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
+    page p = crowded_page(&rig, &offset);
     page_bytes intervals = page_array(&p, "contact_interval"), times = page_array(&p, "contact_toi"),
                numbers = page_array(&p, "contact_file_vertices"), heats = page_array(&p, "heat");
-    assert_int_equal(intervals.size, REPORT_CONTACTS_MAX * sizeof(uint32_t));
-    for (uint32_t i = 0; i < REPORT_CONTACTS_MAX; i++) {
-        assert_int_equal(((const uint32_t *)(const void *)intervals.data)[i], i / 4000);
-        assert_true(((const double *)(const void *)times.data)[i] == i % 4000);
-        assert_int_equal(((const uint32_t *)(const void *)numbers.data)[i * 4 + 3], 1007);
+    const uint32_t *interval = (const void *)intervals.data, *file_vertex = (const void *)numbers.data;
+    const double *toi = (const void *)times.data;
+    size_t count = intervals.size / sizeof *interval;
+    for (uint32_t k = 0; k < INTERVALS; k++) {
+        uint32_t kept = 0;
+        for (; i < count && interval[i] == k; i++, kept++) {
+            assert_true(toi[i] == kept);
+            assert_int_equal(file_vertex[i * 4 + 3], 1007);
+        }
+        if (k < 3) assert_int_equal(kept, 0);
+        if (k == 3 || k == 4) assert_int_equal(kept, REPORT_INTERVAL_CONTACTS_MAX);
+        if (k > 3) assert_in_range(kept, SHARE, REPORT_INTERVAL_CONTACTS_MAX);
     }
-    assert_int_equal(*(const uint32_t *)(const void *)heats.data, INTERVALS * MANY); /* of the face 0 */
+    assert_int_equal(i, count);
+    const json_node *contacts = json_node_member(p.scene, "contacts");
+    assert_true(json_node_number(contacts, "found") == (INTERVALS - 3) * MANY);
+    assert_true(json_node_number(contacts, "kept") == REPORT_CONTACTS_MAX && count == REPORT_CONTACTS_MAX);
+    assert_true(json_node_number(contacts, "interval_limit") == REPORT_INTERVAL_CONTACTS_MAX);
+    assert_true(json_node_number(contacts, "limit") == REPORT_CONTACTS_MAX);
+    assert_int_equal(*(const uint32_t *)(const void *)heats.data, (INTERVALS - 3) * MANY); /* of the face 0 */
     page_bytes all[] = {intervals, times, numbers, heats};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i].data);
+    for (size_t a = 0; a < sizeof all / sizeof *all; a++) free(all[a].data);
     assert_false(page_has(&p, "orientation") || page_has(&p, "detector_points"));
     page_free(&p);
     report_rig_destroy(&rig);
@@ -317,7 +338,7 @@ int main(void) {
         cmocka_unit_test(of_long_recordings_few_frames_are_kept),
         cmocka_unit_test(moving_scenery_takes_room),
         cmocka_unit_test(scenery_comes_back),
-        cmocka_unit_test(of_many_contacts_the_first_are_kept),
+        cmocka_unit_test(of_many_contacts_each_interval_keeps_its_share),
     };
     return cmocka_run_group_tests_name("report_replay", tests, make_folder, remove_folder);
 }

@@ -54,7 +54,7 @@ static bool write_page(const report_command *c, io_error *error) {
     if (summaries == NULL) return false;
     char generator[PROVENANCE_GENERATOR_SIZE];
     provenance_generator(generator);
-    report_options options = {.kind = REPORT_COMPARE, .title = "comparison", .generator = generator};
+    report_options options = {.kind = REPORT_COMPARE, .title = "Comparison", .generator = generator};
     report *page = NULL;
     bool written = report_create(&options, &page, error) &&
                    report_write(page, c->output_path, summaries, c->count, NULL, error);

@@ -2,6 +2,7 @@
 #include "src/report/contact_arrays.h"
 
 #include "src/io/growable.h"
+#include "src/report/page_coordinate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +53,7 @@ static bool keep(contact_arrays *a, const report_options *options, uint32_t inte
     cscd_stencil stencil =
         cscd_mesh_stencil(options->mesh, contact->kind, contact->a, contact->b, contact->u, contact->v);
     double point[3];
-    for (int k = 0; k < 3; k++) point[k] = contact->point[k] * scale;
+    for (int k = 0; k < 3; k++) point[k] = page_coordinate(contact->point[k], scale);
     a->kept++;
     if (a->file_vertices != NULL) {
         uint32_t vertices[4];
@@ -64,14 +65,22 @@ static bool keep(contact_arrays *a, const report_options *options, uint32_t inte
            packed_array_add_f64(a->toi, &contact->toi, 1) && packed_array_add_f64(a->point, point, 3);
 }
 
+/* How many of an interval's may be kept: each of those to come is left its share of the whole. */
+static size_t room_for(const contact_arrays *a, const report_options *options, uint32_t interval) {
+    uint32_t intervals = options->last - options->first, to_come = options->last - 1 - interval;
+    size_t reserved = (size_t)(REPORT_CONTACTS_MAX / intervals) * to_come;
+    size_t room = REPORT_CONTACTS_MAX - a->kept - reserved;
+    return room < REPORT_INTERVAL_CONTACTS_MAX ? room : REPORT_INTERVAL_CONTACTS_MAX;
+}
+
 bool contact_arrays_add(contact_arrays *a, const report_options *options, uint32_t interval,
                         const cscd_contacts *contacts, double scale) {
+    size_t room = room_for(a, options, interval);
     a->found += contacts->count;
     for (size_t i = 0; i < contacts->count; i++) {
         const cscd_contact *contact = &contacts->items[i];
         heat_contact(a, options->mesh, contact);
-        if (i >= REPORT_INTERVAL_CONTACTS_MAX || a->kept >= REPORT_CONTACTS_MAX) continue;
-        if (!keep(a, options, interval, contact, scale)) return false;
+        if (i < room && !keep(a, options, interval, contact, scale)) return false;
     }
     return true;
 }

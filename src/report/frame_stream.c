@@ -3,6 +3,7 @@
 #include "src/report/frame_stream.h"
 
 #include "src/io/growable.h"
+#include "src/report/page_coordinate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,9 +50,9 @@ void frame_stream_free(frame_stream *stream) {
 static box box_of(const frame_stream *s, const double *positions) {
     box b = {.side = 0.0};
     for (size_t k = 0; k < 3; k++) {
-        b.low[k] = b.high[k] = positions[k] * s->scale;
+        b.low[k] = b.high[k] = page_coordinate(positions[k], s->scale);
         for (size_t v = 1; v < s->vertex_count; v++) {
-            double x = positions[v * 3 + k] * s->scale;
+            double x = page_coordinate(positions[v * 3 + k], s->scale);
             if (x < b.low[k]) b.low[k] = x;
             if (x > b.high[k]) b.high[k] = x;
         }
@@ -73,7 +74,7 @@ static void quantize(frame_stream *s, const double *positions) {
     for (size_t k = 0; k < 3; k++) {
         int32_t *values = s->values + k * s->vertex_count;
         for (size_t v = 0; v < s->vertex_count; v++) {
-            double from_origin = positions[v * 3 + k] * s->scale - s->origin[k];
+            double from_origin = page_coordinate(positions[v * 3 + k], s->scale) - s->origin[k];
             values[v] = s->step > 0.0 ? (int32_t)lrint(from_origin / s->step) : 0;
         }
     }
@@ -83,24 +84,37 @@ static double position_of(const frame_stream *s, size_t axis, int32_t value) {
     return s->origin[axis] + s->step * value;
 }
 
-/* What the page shows: float32 from the middle of the frame's box. */
-static void measure(frame_stream *s, const double *positions, const box *b) {
-    double largest = 0.0;
-    for (size_t k = 0; k < 3; k++) {
-        const int32_t *values = s->values + k * s->vertex_count;
-        int32_t low = values[0], high = values[0];
-        for (size_t v = 1; v < s->vertex_count; v++) {
-            if (values[v] < low) low = values[v];
-            if (values[v] > high) high = values[v];
-        }
-        double centre = (position_of(s, k, low) + position_of(s, k, high)) / 2.0;
-        for (size_t v = 0; v < s->vertex_count; v++) {
-            float local = (float)(position_of(s, k, values[v]) - centre);
-            largest = fmax(largest, fabs(local + centre - positions[v * 3 + k] * s->scale));
-        }
+/* What the page shows along an axis: float32 from the middle. Returns the largest error, and how long the
+ * frame is there. */
+static double measure_axis(const frame_stream *s, const double *positions, size_t axis, double *length) {
+    const int32_t *values = s->values + axis * s->vertex_count;
+    int32_t low = values[0], high = values[0];
+    for (size_t v = 1; v < s->vertex_count; v++) {
+        if (values[v] < low) low = values[v];
+        if (values[v] > high) high = values[v];
     }
-    s->max_error = fmax(s->max_error, largest / s->scale);
-    if (largest > 0.0) s->relative_error = fmax(s->relative_error, largest / b->side);
+    double centre = (position_of(s, axis, low) + position_of(s, axis, high)) / 2.0, error = 0.0;
+    double least = INFINITY, most = -INFINITY;
+    for (size_t v = 0; v < s->vertex_count; v++) {
+        double x = positions[v * 3 + axis] * s->scale;
+        float local = (float)(position_of(s, axis, values[v]) - centre);
+        error = fmax(error, fabs(local + centre - x));
+        least = fmin(least, x);
+        most = fmax(most, x);
+    }
+    *length = most - least;
+    return error;
+}
+
+static void measure(frame_stream *s, const double *positions) {
+    double error = 0.0, side = 0.0;
+    for (size_t k = 0; k < 3; k++) {
+        double length;
+        error = fmax(error, measure_axis(s, positions, k, &length));
+        side = fmax(side, length);
+    }
+    s->max_error = fmax(s->max_error, error / s->scale);
+    if (error > 0.0) s->relative_error = fmax(s->relative_error, side > 0.0 ? error / side : 1.0);
 }
 
 static bool add_key(frame_stream *s) {
@@ -164,7 +178,7 @@ bool frame_stream_add(frame_stream *s, const double *positions) {
         s->step = b.side * STEP_OF_SIDE;
     }
     quantize(s, positions);
-    measure(s, positions, &b);
+    measure(s, positions);
     if (!(key ? add_key(s) : add_shift(s)) || !add_body(s)) return false;
     int32_t *swap = s->previous;
     s->previous = s->values;

@@ -2,6 +2,7 @@
 #include "src/report/orientation_arrays.h"
 
 #include "src/io/growable.h"
+#include "src/report/page_coordinate.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,7 +64,7 @@ bool orientation_arrays_add_points(orientation_arrays *a, const cscd_detector *d
     for (uint32_t i = 0; i < count; i++) {
         double ends[6];
         cscd_detector_region_point(detector, i, ends, ends + 3);
-        for (int k = 0; k < 6; k++) ends[k] *= scale;
+        for (int k = 0; k < 6; k++) ends[k] = page_coordinate(ends[k], scale);
         if (!packed_array_add_f64(a->points, ends, 6)) return false;
     }
     return true;

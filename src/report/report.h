@@ -10,7 +10,7 @@ typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } re
 enum {
     REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
     REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
-    REPORT_CONTACTS_MAX = 100000,        /* kept in all: the first */
+    REPORT_CONTACTS_MAX = 100000,        /* kept in all; each interval has room for its share, at least */
     REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
 };
 

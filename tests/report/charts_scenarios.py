@@ -10,12 +10,14 @@ LEFT, RIGHT = 52, 12
 def charts_are_there(context):
     _, page = open_pawn(context)
     for name in CHARTS:
-        figure = page.element("figure", name)
-        expect(figure.rect["width"] > 100 and figure.rect["height"] > 40, f"{name} is {figure.rect} large")
-        inked = page.script(
-            "return [...arguments[0].querySelectorAll('canvas')].some((canvas) => canvas.getContext('2d')"
-            ".getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value > 0));", figure)
-        expect(inked, f"nothing is drawn in {name}")
+        check_drawn(page, page.element("figure", name), name)
+
+
+def check_drawn(page, figure, name):
+    expect(figure.rect["width"] > 100 and figure.rect["height"] > 40, f"{name} is {figure.rect} large")
+    inked = "return [...arguments[0].querySelectorAll('canvas')].some((canvas) => canvas.getContext('2d')" \
+            ".getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value > 0));"
+    page.wait(lambda: page.script(inked, figure), f"something drawn in {name}")
 
 
 def a_click_moves_the_scrubber(context):

@@ -16,6 +16,8 @@ MARK_KEYS = {"c": "contacts", "t": "trail", "x": "through", "d": "points", "r": 
 LANDMARKS = ("Playback", "Colour and marks", "Contacts of this interval", "Charts", "Timings", "Intervals", "Regions",
              "Provenance", "Licences")
 TABS_MOST = 250
+# Where the view is not what is looked at: a window of half the pixels, which are drawn by software.
+SMALL = {"width": 1000, "height": 560}
 
 
 def expect_frame(page, frame, what):
@@ -34,7 +36,7 @@ def busiest(made):
 
 def open_pawn(context, **arguments):
     made = context.material.replay("pawn-drop")
-    context.page.open(made.page, **arguments)
+    context.page.open(made.page, **{**SMALL, **arguments})
     return made, context.page
 
 

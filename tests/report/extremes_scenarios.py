@@ -54,6 +54,55 @@ def a_single_interval(context):
     expect(3 <= page.frame() <= 4, f"frame {page.frame()} of 3 to 4")
 
 
+def y_may_point_up(context):
+    made, page = context.material.tetrahedra("turned", "--up", "y"), context.page
+    page.open(made.page)
+    expect_equal(page.state("up"), "y", "axis that points up")
+    standing = context.pictures.view()
+    page.script("window.cscd.store.set({up: 'z'});")
+    changed = context.pictures.difference(standing, context.pictures.view())["all"]
+    expect(changed > 500, f"another axis up changes {changed} pixels")
+
+
+def damaged_pages_say_so(context):
+    """A page that was cut, or whose data were changed, tells which part cannot be read."""
+    made, page = context.material.tetrahedra("damaged"), context.page
+    with open(made.page, encoding="utf-8") as file:
+        text = file.read()
+    begin = text.index('id="cscd-array-frames">') + len('id="cscd-array-frames">')
+    damages = {"frames": text[:begin + 30] + "AAAA" + text[begin + 34:],
+               "heat": text.replace('id="cscd-array-heat"', 'id="cscd-array-gone"'),
+               "cscd-report": text.replace('{"format":1', '{"format":1,,', 1)}
+    for part, damaged in damages.items():
+        path = made.page.replace(".html", "-damaged.html")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(damaged)
+        page.open(path, whole=False)
+        alerts = [page.of_node(node).text for node in page.nodes("alert")]
+        expect(len(alerts) == 1 and part in alerts[0], f"damaged {part}: the page says {alerts}")
+        page.forget()
+
+
+def pages_without_webgl_show_the_rest(context):
+    made, page = context.material.tetrahedra("flat"), context.page
+    blocked = page.command("Page.addScriptToEvaluateOnNewDocument", source="""
+        const getContext = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+          return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...more);
+        };""")["identifier"]
+    try:
+        page.open(made.page)
+        notes = [page.of_node(node).text for node in page.nodes("note")]
+        expect(any("WebGL" in note for note in notes), f"the page says {notes}")
+        expect(page.status().startswith("Frame 0 of 0 to 9"), page.status())
+        page.click("button", "Next frame with contacts")
+        expect_equal(page.frame(), made.contacts()[0][0], "frame after a jump")
+        expect(len(page.table("Intervals")) == 10, "the table of intervals")
+    finally:
+        page.command("Page.removeScriptToEvaluateOnNewDocument", identifier=blocked)
+        page.forget()
+
+
 def large_recordings_are_thinned_and_say_so(context):
     made, page = context.material.large(), context.page
     page.open(made.page)
@@ -73,4 +122,5 @@ def large_recordings_are_thinned_and_say_so(context):
 
 
 SCENARIOS = (names_are_text, part_of_a_recording_keeps_its_numbers, nothing_touches, a_single_interval,
+             y_may_point_up, damaged_pages_say_so, pages_without_webgl_show_the_rest,
              large_recordings_are_thinned_and_say_so)

@@ -1,6 +1,6 @@
 """Narrow windows, fine screens, light and dark: the page fits and can be read."""
 from controls_scenarios import BUTTONS, busiest, open_pawn
-from page import WIDTH, expect, expect_equal
+from page import HEIGHT, WIDTH, expect, expect_equal
 
 LEAST_CONTRAST = 4.5
 # Colours of text and of what is behind it, as numbers: the first ground that is not transparent.
@@ -62,7 +62,7 @@ def fine_screens_get_fine_pictures(context):
 def light_and_dark_follow_the_system_and_the_button(context):
     pictures = {}
     for theme in ("light", "dark"):
-        made, page = open_pawn(context, theme=theme)
+        made, page = open_pawn(context, width=WIDTH, height=HEIGHT, theme=theme)
         expect_equal(page.state("theme"), theme, "theme")
         page.go_to(busiest(made))
         context.pictures.whole(f"page-{theme}")
@@ -80,7 +80,7 @@ def brightness(page):
 
 
 def the_view_is_the_largest_part(context):
-    _, page = open_pawn(context)
+    _, page = open_pawn(context, width=WIDTH, height=HEIGHT)
     _, _, width, height = page.view_box()
     expect(width > 0.5 * WIDTH and height > 300, f"the view is {width} by {height}")
     found = page.script(WIDER)

@@ -84,8 +84,8 @@ class Page:
         """What the system says about light and dark."""
         self.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
 
-    def open(self, path, width=WIDTH, height=HEIGHT, ratio=1, theme="light"):
-        """Opens a report and waits until it is drawn."""
+    def open(self, path, width=WIDTH, height=HEIGHT, ratio=1, theme="light", whole=True):
+        """Opens a report and waits until it is drawn; one that is not whole, until it has given up."""
         if self.path is not None:
             self.check_quiet()
         self.path = os.path.abspath(path)
@@ -95,10 +95,15 @@ class Page:
         self.take_log("browser")
         self.take_log("performance")
         self.driver.get("file://" + self.path)
-        self.driver.execute_async_script(
+        error = self.driver.execute_async_script(
             "const done = arguments[0], ready = window.cscd ? window.cscd.ready : Promise.reject('no window.cscd');"
             "ready.then(() => done(null), (error) => done(String(error)));")
+        expect((error is None) == whole, f"{self.path}: opening ended with {error}")
         self.settle()
+
+    def forget(self):
+        """What the page logged was to be expected."""
+        self.path = None
 
     def settle(self):
         """Two pictures later whatever was asked for is drawn."""

@@ -84,6 +84,10 @@ class Pictures:
             raise AssertionError("the pictures are not of one size")
         return found
 
+    def expect_back(self, start, what):
+        """The view becomes as it was in the picture `start`, to the last pixel."""
+        self.page.wait(lambda: self.difference(start, self.view(), least=0)["all"] == 0, f"the view as before {what}", 4.0)
+
     def count(self, picture, colour, tolerance=40):
         """Pixels of the colour."""
         return self.page.script(COUNT, picture, list(colour), tolerance, None, 0)

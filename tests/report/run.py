@@ -54,7 +54,7 @@ class Context:
         """Of the page that is open: no complaint on the console, nothing fetched."""
         if self._page is not None and self._page.path is not None:
             self._page.check_quiet()
-            self._page.path = None
+            self._page.forget()
 
     def close(self):
         if self._page is not None:

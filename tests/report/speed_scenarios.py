@@ -5,7 +5,7 @@ import time
 from material import RECORDINGS
 from page import expect
 
-SECONDS = 2.0
+SECONDS = 1.0
 
 
 def frames_drawn_per_second(page, seconds=SECONDS):

@@ -1,6 +1,7 @@
 """The numbers in the page's tables are those of the summary, digit by digit."""
 import json
 
+from charts_scenarios import check_drawn
 from controls_scenarios import busiest, open_pawn
 from page import CELLS, expect, expect_equal
 from report_file import Report
@@ -147,6 +148,10 @@ def regions_and_provenance_are_told(context):
 def comparison_shows_each_summary(context):
     made = context.material.comparison()
     context.page.open(made.page)
+    figures = context.page.nodes("figure")
+    expect(len(figures) >= 3, f"{len(figures)} charts")
+    for node in figures:
+        check_drawn(context.page, context.page.of_node(node), node["name"]["value"])
     context.pictures.whole("comparison")
     totals = []
     for path in made.summaries:

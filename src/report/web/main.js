@@ -11,14 +11,22 @@ import { readReport } from './data/report.js';
 import { createPanels } from './panels/all.js';
 import { createView } from './view/tools.js';
 
-const SUN = 'M8 4.5a3.5 3.5 0 1 1 0 7 3.5 3.5 0 0 1 0-7zM7.3 0h1.4v3H7.3zM7.3 13h1.4v3H7.3zM0 7.3h3v1.4H0zM13 7.3h3v1.4h-3z';
-const QUESTION = 'M5 5.5C5 3.6 6.3 2.5 8 2.5s3 1.1 3 2.7c0 1.3-.7 1.9-1.5 2.5-.6.5-.8.8-.8 1.5v.3H7.1V9c0-1.2.5-1.8 1.3-2.4.6-.5.9-.8.9-1.4 0-.7-.5-1.2-1.3-1.2-.9 0-1.4.6-1.4 1.5zM7 11h1.9v2H7z';
+const SUN =
+  'M8 4.5a3.5 3.5 0 1 1 0 7 3.5 3.5 0 0 1 0-7zM7.3 0h1.4v3H7.3zM7.3 13h1.4v3H7.3zM0 7.3h3v1.4H0zM13 7.3' +
+  'h3v1.4h-3z';
+const QUESTION =
+  'M5 5.5C5 3.6 6.3 2.5 8 2.5s3 1.1 3 2.7c0 1.3-.7 1.9-1.5 2.5-.6.5-.8.8-.8 1.5v.3H7.1V9c0-1.2.5-1.8 1.' +
+  '3-2.4.6-.5.9-.8.9-1.4 0-.7-.5-1.2-1.3-1.2-.9 0-1.4.6-1.4 1.5zM7 11h1.9v2H7z';
 
 /** Small recordings are read before the first picture, so that the view frames all of it at once. */
 const QUICK_BYTES = 24e6;
 
+const byId = (id) => document.getElementById(id);
+
 function showError(error) {
   console.error(error);
+  byId('opening')?.remove();
+  if (window.cscd.report === undefined) byId('main').hidden = true;
   const message = element('div', { role: 'alert', class: 'failure' });
   message.append(
     element('strong', {}, 'This report cannot be shown in full.'),
@@ -30,17 +38,18 @@ function showError(error) {
 
 function initialState(report) {
   const { scene } = report;
+  const planShown = report.kind === 'preprocess' && scene.region !== null; // there is nothing else to see
   return {
     time: scene?.first ?? 0,
     playing: false,
     speed: 30,
     loop: false,
-    colour: report.kind === 'preprocess' && scene.region !== null ? 'region' : 'plain',
+    colour: planShown ? 'region' : 'plain',
     contacts: true,
     trail: false,
     through: true,
-    points: false,
-    cuts: false,
+    points: planShown,
+    cuts: planShown,
     edges: false,
     scenery: true,
     selected: null,
@@ -70,8 +79,6 @@ function createTools(container, theme, help) {
   );
 }
 
-const byId = (id) => document.getElementById(id);
-
 async function createScene(report, store, player) {
   const { scene } = report;
   const quick = scene.frames.length * scene.vertexCount * 12 < QUICK_BYTES;
@@ -96,6 +103,7 @@ async function open() {
   createPanels(report, store, player);
   viewer?.resize();
   viewer?.drawNow();
+  byId('opening')?.remove();
   performance.mark('cscd-open');
   listenToKeys({ report, store, player, viewer, theme, help });
   if (report.scene !== null) await readFrames(report.scene, viewer);

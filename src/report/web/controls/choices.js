@@ -11,6 +11,8 @@ export const COLOURS = [
   { value: 'heat', name: 'Contact heat', array: 'heat' },
 ];
 
+const TRAIL = 'Contacts of the 8 intervals before, fading';
+const THROUGH = 'Contacts that the surface hides, faintly';
 const NO_PLAN = 'The recording was searched without regions, so the report has none';
 const REASONS = {
   charge: 'The report has no charge: the mesh is not closed, or the method needs none',
@@ -26,8 +28,8 @@ export function marksOf(scene) {
   const noPoints = scene.detectorPoints === null && scene.plan === null ? NO_PLAN : null;
   return [
     { key: 'contacts', name: 'Contacts', letter: 'C', missing: noContacts },
-    { key: 'trail', name: 'Trail', letter: 'T', missing: noContacts, title: 'Contacts of the 8 intervals before, fading' },
-    { key: 'through', name: 'Through the surface', letter: 'X', missing: noContacts, title: 'Hidden contacts, faintly' },
+    { key: 'trail', name: 'Trail', letter: 'T', missing: noContacts, title: TRAIL },
+    { key: 'through', name: 'Through the surface', letter: 'X', missing: noContacts, title: THROUGH },
     { key: 'points', name: 'Detector points', letter: 'D', missing: noPoints, title: 'From where each region is seen' },
     { key: 'cuts', name: 'Region cuts', letter: 'R', missing: scene.region === null ? NO_PLAN : null },
     { key: 'edges', name: 'Edges', letter: 'E', missing: null },

@@ -42,7 +42,7 @@ class RecordReader {
   /** Adds the stored differences and the shift to `q`. */
   readBody(frame, shift) {
     const planes = this.bytes[this.need(1, frame)];
-    if (planes < 1 || planes > 4) throw new BlockError(this.name, `has ${planes} bytes a value in frame record ${frame}`);
+    if (planes < 1 || planes > 4) throw new BlockError(this.name, `has ${planes} bytes a value in record ${frame}`);
     const size = 3 * this.vertexCount;
     const at = this.need(planes * size, frame);
     const { bytes, q, vertexCount } = this;

@@ -2,6 +2,7 @@
 import * as charts from './charts.js';
 import * as comparison from './comparison.js';
 import * as contacts from './contacts.js';
+import { element } from './dom.js';
 import * as intervals from './intervals.js';
 import * as licences from './licences.js';
 import * as notes from './notes.js';
@@ -10,11 +11,40 @@ import * as regions from './regions.js';
 import * as status from './status.js';
 import * as timings from './timings.js';
 
-const PANELS = { status, notes, comparison, charts, contacts, timings, intervals, regions, provenance, licences };
+const PANELS = {
+  status,
+  notes,
+  comparison,
+  charts,
+  contacts,
+  timings,
+  intervals,
+  regions,
+  provenance,
+  licences,
+};
+
+/** A panel that the report has not all for must not take the others with it. */
+function createPanel(panel, container, report, store, player) {
+  try {
+    panel.create(container, report, store, player);
+  } catch (error) {
+    console.error(error);
+    container.hidden = false;
+    container.append(
+      element('p', {
+        class: 'note alarm',
+        role: 'alert',
+        text: `This part of the report cannot be shown: ${error.message}`,
+      }),
+    );
+  }
+}
 
 export function createPanels(report, store, player) {
   document.body.dataset.kind = report.kind;
   document.title = `${report.title} · cscd report`;
   document.getElementById('title').textContent = report.title;
-  for (const [id, panel] of Object.entries(PANELS)) panel.create(document.getElementById(id), report, store, player);
+  for (const [id, panel] of Object.entries(PANELS))
+    createPanel(panel, document.getElementById(id), report, store, player);
 }

@@ -1,6 +1,6 @@
-/** The charts under the view: they show every interval, move with the playback, and a click on them goes there. */
+/** The charts under the view: every interval, the moment that plays, and a click on them goes there. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading } from './dom.js';
+import { element, heading, setText } from './dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
 import { extent, finder, intervalAt } from './intervalof.js';
@@ -36,16 +36,28 @@ function createRange(count, changed) {
 }
 
 function rangeButtons(range, moment) {
-  const button = (text, label, act) => element('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
-  return element('span', { class: 'chart-range' },
+  const button = (text, label, act) =>
+    element('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
+  return element(
+    'span',
+    { class: 'chart-range' },
     button('−', 'Zoom charts out', () => range.scale(2, moment())),
     button('+', 'Zoom charts in', () => range.scale(0.5, moment())),
-    button('All', 'All intervals in the charts', () => range.all()));
+    button('All', 'All intervals in the charts', () => range.all()),
+  );
 }
 
-function logarithmicSwitch(plots) {
-  const box = element('input', { type: 'checkbox', onchange: () => plots().forEach((plot) => plot.setLogarithmic(box.checked)) });
-  return element('label', { class: 'choice' }, box, 'Logarithmic');
+const CUT = 'Peaks of 2 % of the intervals go beyond the top, so that the others can be told apart';
+
+/** Switches of the vertical scale; change({logarithmic, cut}). */
+function scaleSwitches(compares, change) {
+  const box = (onchange) => element('input', { type: 'checkbox', onchange });
+  const tell = () => change({ logarithmic: logarithmic.checked, cut: cut.checked });
+  const logarithmic = box(tell);
+  const cut = box(tell);
+  const labels = [element('label', { class: 'choice', title: CUT }, cut, 'Cut peaks')];
+  if (compares) labels.push(element('label', { class: 'choice' }, logarithmic, 'Logarithmic'));
+  return labels;
 }
 
 export function create(container, report, store, player) {
@@ -55,11 +67,20 @@ export function create(container, report, store, player) {
   if (container.hidden) return;
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
-  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) => createFigure({ ...figure, first, last }));
-  const band = compares ? null : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
+  const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) =>
+    createFigure({ ...figure, first, last }),
+  );
+  const band = compares
+    ? null
+    : createStateBand(Array.from({ length: count }, (_, i) => finders[0](first + i)));
   let plots = [];
   let hovered = null;
   let read = -1;
+  const reading = element('output', {
+    class: 'reading',
+    'aria-live': 'off',
+    title: 'The interval whose values are shown: under the pointer, else the current one',
+  });
 
   const moment = () => store.get().time - first;
   const range = createRange(count, (begin, end) => {
@@ -71,6 +92,7 @@ export function create(container, report, store, player) {
     const interval = hovered ?? intervalAt(store.get().time, first, last) - first;
     if (interval === read) return;
     read = interval;
+    setText(reading, `frame ${first + interval}`);
     figures.forEach((figure) => figure.show(interval));
   }
 
@@ -92,18 +114,23 @@ export function create(container, report, store, player) {
   }
 
   function draw() {
-    plots = figures.map((figure) => figure.draw());
-    for (const surface of [...plots.map(({ over }) => over), ...(band ? [band.track] : [])])
-      followPointer(surface, { range: range.get, hover, go });
+    const attach = (surface) => followPointer(surface, { range: range.get, hover, go });
+    plots = figures.map((figure) => figure.draw(attach));
+    if (band) attach(band.track);
     band?.draw();
     follow(store.get());
     readValues();
   }
 
-  const beside = [element('span', { class: 'quiet', text: 'of each interval, by its first frame; click or drag to go there' })];
-  if (compares) beside.push(logarithmicSwitch(() => plots));
+  const told = player ? 'click or drag to go there; values of ' : 'values of ';
+  const beside = [element('span', { class: 'quiet' }, told, reading)];
+  beside.push(...scaleSwitches(compares, (scale) => plots.forEach((plot) => plot.setScale(scale))));
   if (count >= ZOOMED_FROM) beside.push(rangeButtons(range, moment));
-  container.append(heading('Charts', ...beside), ...(band ? [band.box] : []), ...figures.map(({ box }) => box));
+  container.append(
+    heading('Charts', ...beside),
+    ...(band ? [band.box] : []),
+    ...figures.map(({ box }) => box),
+  );
   draw();
   new ResizeObserver(() => {
     plots.forEach((plot) => plot.resize());
@@ -111,8 +138,10 @@ export function create(container, report, store, player) {
   }).observe(container);
   store.on(['time'], follow);
   onCalmly(store, ['time'], readValues);
-  store.on(['theme'], () => requestAnimationFrame(() => {
-    plots.forEach((plot) => plot.recolour());
-    band?.draw();
-  }));
+  store.on(['theme'], () =>
+    requestAnimationFrame(() => {
+      plots.forEach((plot) => plot.recolour());
+      band?.draw();
+    }),
+  );
 }

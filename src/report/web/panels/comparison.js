@@ -9,24 +9,46 @@ const note = ([grade, text]) => element('p', { class: `note ${grade}`, text });
 function overview(report) {
   const head = element('tr');
   const names = ['replay', 'method', 'intervals', 'with contact', 'VF', 'EE', 'mean total', 'to the first'];
-  names.forEach((text, i) => head.append(element('th', { scope: 'col', text, class: i > 1 ? 'number' : undefined })));
+  names.forEach((text, i) =>
+    head.append(element('th', { scope: 'col', text, class: i > 1 ? 'number' : undefined })),
+  );
   const body = element('tbody');
   const base = report.summaries[0].summary.summary.total_ms.mean;
   report.summaries.forEach(({ summary: { summary } }, index) => {
-    const number = (text, value) => element('td', { class: 'number', text, 'data-value': value, title: value });
+    const number = (text, value) =>
+      element('td', { class: 'number', text, 'data-value': value, title: value });
     const ratio = summary.total_ms.mean / base;
-    body.append(element('tr', {}, element('th', { scope: 'row' }, lineOf(index), ` ${nameOf(report, index)}`), element('td', { text: summary.method }),
-      ...['intervals', 'intervals_with_contact', 'vf', 'ee'].map((key) => number(integer(summary[key]), summary[key])),
-      number(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean),
-      Number.isFinite(ratio) ? number(`${decimal(ratio, 2)} ×`, ratio) : number('–', '')));
+    body.append(
+      element(
+        'tr',
+        {},
+        element('th', { scope: 'row' }, lineOf(index), ` ${nameOf(report, index)}`),
+        element('td', { text: summary.method }),
+        ...['intervals', 'intervals_with_contact', 'vf', 'ee'].map((key) =>
+          number(integer(summary[key]), summary[key]),
+        ),
+        number(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean),
+        Number.isFinite(ratio) ? number(`${decimal(ratio, 2)} ×`, ratio) : number('–', ''),
+      ),
+    );
   });
-  return element('div', { class: 'scroll' }, element('table', { 'aria-label': 'Comparison' }, element('thead', {}, head), body));
+  return element(
+    'div',
+    { class: 'scroll' },
+    element('table', { 'aria-label': 'Comparison' }, element('thead', {}, head), body),
+  );
 }
 
 export function create(container, report) {
   container.hidden = report.kind !== 'compare' || report.summaries.length === 0;
   if (container.hidden) return;
   const words = [...differences(report), ...agreement(report)];
-  container.append(heading('Comparison', element('span', { class: 'quiet', text: counted(report.summaries.length, 'replay') })), overview(report));
+  container.append(
+    heading(
+      'Comparison',
+      element('span', { class: 'quiet', text: counted(report.summaries.length, 'replay') }),
+    ),
+    overview(report),
+  );
   if (words.length > 0) container.append(element('div', { class: 'comparison-notes' }, ...words.map(note)));
 }

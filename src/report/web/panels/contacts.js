@@ -1,41 +1,63 @@
 /** The contacts of the current interval: which features meet, when and where. */
 import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from './dom.js';
-import { counted, decimal, integer } from './format.js';
+import { coordinates, counted, decimal, integer, positionDecimals } from './format.js';
 import { extent, finder, intervalAt } from './intervalof.js';
 import { createRows } from './rows.js';
 
 const KINDS = ['VF', 'EE'];
+const LISTED_UP_TO = 5; /* frames a second; faster, a list cannot be read and costs as much as the view */
 
 function featureWords(contacts, contact) {
   const numbers = contacts.fileVertices ?? contacts.vertices;
   const [a, b, c, d] = numbers.subarray(4 * contact, 4 * contact + 4);
-  return contacts.kind[contact] === 0 ? `vertex ${a} · face ${b} ${c} ${d}` : `edge ${a} ${b} · edge ${c} ${d}`;
+  return contacts.kind[contact] === 0
+    ? `vertex ${a} · face ${b} ${c} ${d}`
+    : `edge ${a} ${b} · edge ${c} ${d}`;
 }
 
-/** Decimals that tell positions apart: six digits of the largest coordinate. */
-function positionDecimals(points, unit) {
-  let largest = 0;
-  for (const value of points) largest = Math.max(largest, Math.abs(value));
-  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest * unit || 1))));
+/** Whether a row needs a second line for its features. */
+function hasLongNumbers({ vertices, fileVertices }) {
+  return (fileVertices ?? vertices).some((vertex) => vertex > 9999);
 }
 
 function createTable() {
-  const toi = element('button', { type: 'button', class: 'link', text: 'toi', title: 'Time of impact within the interval, 0 to 1' });
-  const head = element('tr', {},
+  const toi = element('button', {
+    type: 'button',
+    class: 'link',
+    text: 'toi',
+    title: 'Time of impact within the interval, 0 to 1',
+  });
+  const head = element(
+    'tr',
+    {},
     element('th', { scope: 'col', text: 'no.' }),
     element('th', { scope: 'col', text: 'kind' }),
     element('th', { scope: 'col', text: 'features' }),
     element('th', { scope: 'col' }, toi),
-    element('th', { scope: 'col', text: 'position x, y, z' }));
-  const table = element('table', { 'aria-label': 'Contacts of this interval' }, element('thead', {}, head), element('tbody'));
+    element('th', { scope: 'col', text: 'position x, y, z' }),
+  );
+  const table = element(
+    'table',
+    { 'aria-label': 'Contacts of this interval' },
+    element('thead', {}, head),
+    element('tbody'),
+  );
   return { table, toi };
 }
 
 function makeRow(select) {
   const button = element('button', { type: 'button' });
   const kind = element('td', {}, element('span'), element('span'));
-  const row = element('tr', { class: 'item' }, element('td', {}, button), kind, element('td'), element('td'), element('td'));
+  const row = element(
+    'tr',
+    { class: 'item' },
+    element('td', {}, button),
+    kind,
+    element('td'),
+    element('td'),
+    element('td'),
+  );
   row.addEventListener('click', () => select(Number(row.dataset.contact)));
   return row;
 }
@@ -53,7 +75,7 @@ function fillRow(row, { contacts, unit, decimals }, contact, number) {
   setText(toi, decimal(contacts.toi[contact], 6));
   toi.title = toi.dataset.value = String(contacts.toi[contact]);
   const point = [...contacts.point.subarray(3 * contact, 3 * contact + 3)].map((value) => value * unit);
-  setText(position, point.map((value) => value.toFixed(decimals)).join(', '));
+  setText(position, coordinates(point, decimals));
   position.title = position.dataset.value = point.join(' ');
 }
 
@@ -70,8 +92,16 @@ function choose(contacts, [begin, end], { kind, descending }) {
 /** What stands in place of the list when the interval has none. */
 function createEmpty(player) {
   const text = element('p');
-  const next = element('button', { type: 'button', text: 'Go to the next with contacts', onclick: () => player.nextWithContacts() });
-  const previous = element('button', { type: 'button', text: 'Go to the previous with contacts', onclick: () => player.previousWithContacts() });
+  const next = element('button', {
+    type: 'button',
+    text: 'Go to the next with contacts',
+    onclick: () => player.nextWithContacts(),
+  });
+  const previous = element('button', {
+    type: 'button',
+    text: 'Go to the previous with contacts',
+    onclick: () => player.previousWithContacts(),
+  });
   const box = element('div', { class: 'empty' }, text, next, previous);
   return {
     box,
@@ -86,9 +116,12 @@ function createEmpty(player) {
 function createCounts() {
   const vf = element('span');
   const ee = element('span');
-  const box = element('span', { class: 'counts' },
+  const box = element(
+    'span',
+    { class: 'counts' },
     element('span', {}, element('span', { class: 'mark-vf' }), vf),
-    element('span', {}, element('span', { class: 'mark-ee' }), ee));
+    element('span', {}, element('span', { class: 'mark-ee' }), ee),
+  );
   return {
     box,
     say(interval) {
@@ -107,10 +140,13 @@ export function create(container, report, store, player) {
   const { unit } = report.scene;
   const data = { contacts, unit, decimals: positionDecimals(contacts.point, unit) };
   const counts = createCounts();
+  container.classList.toggle('long-numbers', hasLongNumbers(contacts));
   const { table, toi } = createTable();
   const scroll = element('div', { class: 'scroll' }, table);
   const empty = createEmpty(player);
   const capped = element('p', { class: 'quiet' });
+  const { found: all } = report.scene.contactsInfo;
+  const nothingHere = all === 0 ? 'No contact in this whole recording.' : 'No contact in this interval.';
   let shown = [];
   let begin = 0;
   let current = -1;
@@ -120,6 +156,7 @@ export function create(container, report, store, player) {
   const rows = createRows(scroll, table, {
     columns: 5,
     height: 48,
+    printed: 50,
     make: () => makeRow(select),
     fill(row, index) {
       const contact = shown[index];
@@ -134,8 +171,12 @@ export function create(container, report, store, player) {
     setText(capped, `Only the first ${integer(kept)} of ${counted(found, 'contact')} are in this report.`);
     const before = contacts.count > 0 && contacts.interval[0] < current;
     const after = contacts.count > 0 && contacts.interval[contacts.count - 1] > current;
-    const none = found > 0 ? 'The contacts of this interval are not in this report.' : 'No contact in this interval.';
-    empty.say(shown.length === 0 && kept > 0 ? 'No contact of this kind in this interval.' : none, before, after);
+    const none = found > 0 ? 'The contacts of this interval are not in this report.' : nothingHere;
+    empty.say(
+      shown.length === 0 && kept > 0 ? 'No contact of this kind in this interval.' : none,
+      before,
+      after,
+    );
   }
 
   function list() {
@@ -150,11 +191,19 @@ export function create(container, report, store, player) {
     rows.show(shown.length);
   }
 
-  function update({ time }) {
+  /** Counts only while the recording plays fast. */
+  function rest() {
+    listed = -1;
+    capped.hidden = scroll.hidden = true;
+    empty.box.hidden = false;
+    empty.say('Listed when the playback pauses.', false, false);
+  }
+
+  function update({ time, playing, speed }) {
     current = intervalAt(time, first, last);
-    if (listed === current) return;
     counts.say(find(current));
-    list();
+    if (playing && speed > LISTED_UP_TO) rest();
+    else if (listed !== current) list();
   }
 
   function follow({ selected }) {
@@ -169,11 +218,27 @@ export function create(container, report, store, player) {
     list();
   });
   toi.closest('th').setAttribute('aria-sort', 'ascending');
-  const filter = segments('Kinds listed', 'contact-kind', [['all', 'All kinds'], ['vf', 'VF only'], ['ee', 'EE only']], 'all', (kind) => {
-    order.kind = kind;
-    list();
-  });
-  container.append(heading('Contacts of this interval', counts.box), element('div', { class: 'section-head' }, filter), capped, empty.box, scroll);
+  const filter = segments(
+    'Kinds listed',
+    'contact-kind',
+    [
+      ['all', 'All kinds'],
+      ['vf', 'VF only'],
+      ['ee', 'EE only'],
+    ],
+    'all',
+    (kind) => {
+      order.kind = kind;
+      list();
+    },
+  );
+  container.append(
+    heading('Contacts of this interval', counts.box),
+    element('div', { class: 'section-head' }, filter),
+    capped,
+    empty.box,
+    scroll,
+  );
   onCalmly(store, ['time'], update);
   store.on(['selected'], follow);
   update(store.get());

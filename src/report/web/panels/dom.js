@@ -2,7 +2,8 @@
 
 /**
  * @param {string} tag
- * @param {Object<string, string|number|boolean|Function>} [properties] `class`, `text`, `on...` listeners, else attributes
+ * @param {Object<string, string|number|boolean|Function>} [properties] `class`, `text`, `on...` listeners,
+ *   else attributes
  * @param {...Node} children
  */
 export function element(tag, properties = {}, ...children) {
@@ -11,7 +12,8 @@ export function element(tag, properties = {}, ...children) {
     if (value === undefined || value === false) continue;
     if (name === 'text') made.textContent = String(value);
     else if (name === 'class') made.className = String(value);
-    else if (name.startsWith('on')) made.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
+    else if (name.startsWith('on'))
+      made.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
     else made.setAttribute(name, value === true ? '' : String(value));
   }
   made.append(...children);

@@ -14,23 +14,44 @@ export function createFigure(figure) {
   const addKey = (mark, label, more) => {
     const output = element('output', { class: 'number', 'aria-live': 'off' });
     outputs.push(output);
-    keys.append(element('li', {}, ...mark, element('span', { text: label }), output, ...(more ? [element('small', { text: more })] : [])));
+    keys.append(
+      element(
+        'li',
+        {},
+        ...mark,
+        element('span', { text: label }),
+        output,
+        ...(more ? [element('small', { text: more })] : []),
+      ),
+    );
   };
   for (const { label, colour, mark, summary } of series)
     addKey([mark ?? swatch(colour.startsWith('--') ? `var(${colour})` : colour)], label, summary);
   if (total) addKey([], 'total');
   const host = element('div', { class: 'plot' });
-  const box = element('figure', { class: 'chart', 'aria-label': title },
-    element('figcaption', {}, element('h3', { text: title }), element('span', { class: 'quiet', text: figure.summary })), keys, host);
+  const box = element(
+    'figure',
+    { class: 'chart', 'aria-label': title },
+    element(
+      'figcaption',
+      {},
+      element('h3', { text: title }),
+      element('span', { class: 'quiet', text: figure.summary }),
+    ),
+    keys,
+    host,
+  );
 
   return {
     box,
     host,
     /** Only when the page has a width can it be drawn. */
-    draw: () => createPlot(host, figure),
+    draw: (attach) => createPlot(host, figure, attach),
     /** Values of this interval, counted from the first. */
     show(interval) {
-      const columns = total ? [...series.map(({ values }) => values), total] : series.map(({ values }) => values);
+      const columns = total
+        ? [...series.map(({ values }) => values), total]
+        : series.map(({ values }) => values);
       columns.forEach((values, i) => {
         const value = values[interval];
         setText(outputs[i], value === undefined || value === null ? '–' : read(value));

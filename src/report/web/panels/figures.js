@@ -3,10 +3,11 @@ import { counted, decimal, integer, milliseconds, significant } from './format.j
 import { lineOf, lineStyle, nameOf } from './palette.js';
 import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
 
-const column = (first, last, find, value) => Array.from({ length: last - first }, (_, i) => {
-  const interval = find(first + i);
-  return interval ? value(interval) : null;
-});
+const column = (first, last, find, value) =>
+  Array.from({ length: last - first }, (_, i) => {
+    const interval = find(first + i);
+    return interval ? value(interval) : null;
+  });
 
 function largest(values) {
   let at = 0;
@@ -20,10 +21,24 @@ const tick = (value) => (value >= 10000 ? `${significant(value / 1000, 4)}k` : s
 
 function stageFigure({ summary: { summary } }, first, last, find) {
   const total = column(first, last, find, ({ ms }) => ms.total);
-  const stages = stagesOf(summary.method).map((stage) => ({ ...stage, values: column(first, last, find, ({ ms }) => ms[stage.key]) }));
+  const stages = stagesOf(summary.method).map((stage) => ({
+    ...stage,
+    values: column(first, last, find, ({ ms }) => ms[stage.key]),
+  }));
   const other = { ...OTHER, values: column(first, last, find, ({ ms }) => otherMilliseconds(ms)) };
-  const words = `mean ${milliseconds(summary.total_ms.mean)} ms, maximum ${milliseconds(summary.total_ms.max)} ms (frame ${first + largest(total)})`;
-  return { title: 'Milliseconds per stage', summary: words, stacked: true, height: 132, read: millisecondsWithUnit, format: tick, series: [...stages, other], total };
+  const { mean, max } = summary.total_ms;
+  const most = first + largest(total);
+  const words = `mean ${milliseconds(mean)} ms, maximum ${milliseconds(max)} ms (frame ${most})`;
+  return {
+    title: 'Milliseconds per stage',
+    summary: words,
+    stacked: true,
+    height: 132,
+    read: millisecondsWithUnit,
+    format: tick,
+    series: [...stages, other],
+    total,
+  };
 }
 
 function contactFigure({ summary: { summary } }, first, last, find) {
@@ -31,10 +46,19 @@ function contactFigure({ summary: { summary } }, first, last, find) {
   const ee = column(first, last, find, (interval) => interval.ee);
   const both = vf.map((value, i) => (value === null ? null : value + ee[i]));
   const most = largest(both);
-  const words = summary.vf + summary.ee === 0 ? 'none'
-    : `${integer(summary.vf)} VF and ${integer(summary.ee)} EE in ${counted(summary.intervals_with_contact, 'interval')}, at most ${integer(both[most])} (frame ${first + most})`;
+  const words =
+    summary.vf + summary.ee === 0
+      ? 'none'
+      : `${integer(summary.vf)} VF and ${integer(summary.ee)} EE ` +
+        `in ${counted(summary.intervals_with_contact, 'interval')}, ` +
+        `at most ${integer(both[most])} (frame ${first + most})`;
   return {
-    title: 'Contacts per interval', summary: words, stacked: true, height: 112, read: integer, format: tick,
+    title: 'Contacts per interval',
+    summary: words,
+    stacked: true,
+    height: 112,
+    read: integer,
+    format: tick,
     series: [
       { label: 'VF', colour: '--vf-area', values: vf },
       { label: 'EE', colour: '--ee-area', values: ee },
@@ -45,9 +69,15 @@ function contactFigure({ summary: { summary } }, first, last, find) {
 
 function pairFigure({ summary: { summary } }, first, last, find) {
   const values = column(first, last, find, ({ pcp }) => pcp);
-  const words = `mean ${decimal(summary.pcp.mean, 1)}, maximum ${integer(summary.pcp.max)} (frame ${first + largest(values)})`;
+  const { mean, max } = summary.pcp;
+  const words = `mean ${decimal(mean, 1)}, maximum ${integer(max)} (frame ${first + largest(values)})`;
   return {
-    title: 'Pairs per interval (#PCPs)', summary: words, stacked: true, height: 112, read: integer, format: tick,
+    title: 'Pairs per interval (#PCPs)',
+    summary: words,
+    stacked: true,
+    height: 112,
+    read: integer,
+    format: tick,
     series: [{ label: 'triangle pairs whose volumes overlap', colour: '#009e73', values }],
   };
 }
@@ -71,8 +101,24 @@ function compareFigure(report, first, last, finders, { title, value, read, words
 /** Of several: a line each. */
 export function compareFigures(report, first, last, finders) {
   return [
-    { title: 'Milliseconds per interval', value: ({ ms }) => ms.total, read: millisecondsWithUnit, words: ({ total_ms: total }) => `mean ${milliseconds(total.mean)} ms` },
-    { title: 'Contacts per interval', value: ({ vf, ee }) => vf + ee, read: integer, words: ({ vf, ee }) => `${integer(vf + ee)} in all` },
-    { title: 'Pairs per interval (#PCPs)', value: ({ pcp }) => pcp, read: integer, words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}` },
+    {
+      title: 'Milliseconds per interval',
+      value: ({ ms }) => ms.total,
+      read: millisecondsWithUnit,
+      words: ({ total_ms: total }) =>
+        `mean ${milliseconds(total.mean)}, maximum ${milliseconds(total.max)} ms`,
+    },
+    {
+      title: 'Contacts per interval',
+      value: ({ vf, ee }) => vf + ee,
+      read: integer,
+      words: ({ vf, ee }) => `${integer(vf + ee)} in all`,
+    },
+    {
+      title: 'Pairs per interval (#PCPs)',
+      value: ({ pcp }) => pcp,
+      read: integer,
+      words: ({ pcp }) => `mean ${decimal(pcp.mean, 1)}, maximum ${integer(pcp.max)}`,
+    },
   ].map((figure) => compareFigure(report, first, last, finders, figure));
 }

@@ -45,3 +45,15 @@ export function ranges(numbers, most = 12) {
   if (parts.length < 2) return parts.join('');
   return `${parts.slice(0, -1).join(', ')} and ${parts[parts.length - 1]}`;
 }
+
+/** Decimals that tell positions apart: six digits of the largest coordinate. */
+export function positionDecimals(coordinates, unit) {
+  let largest = 0;
+  for (const value of coordinates) largest = Math.max(largest, Math.abs(value));
+  return Math.min(12, Math.max(0, 5 - Math.floor(Math.log10(largest * unit || 1))));
+}
+
+/** "x, y, z"; what rounds to nothing has no sign. */
+export function coordinates(point, decimals) {
+  return point.map((value) => value.toFixed(decimals).replace(/^-(?=[0.]+$)/, '')).join(', ');
+}

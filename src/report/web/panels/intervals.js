@@ -56,7 +56,11 @@ function fillRow(row, interval) {
   setText(state.firstChild.lastChild, interval.state);
   setNumber(vf, interval.vf, integer(interval.vf));
   setNumber(ee, interval.ee, integer(interval.ee));
-  setNumber(toi, interval.earliest_toi, interval.earliest_toi === null ? '–' : decimal(interval.earliest_toi, 6));
+  setNumber(
+    toi,
+    interval.earliest_toi,
+    interval.earliest_toi === null ? '–' : decimal(interval.earliest_toi, 6),
+  );
   setNumber(pcp, interval.pcp, integer(interval.pcp));
   setNumber(tests, interval.tests, integer(interval.tests));
   setNumber(ms, interval.ms.total, milliseconds(interval.ms.total));
@@ -78,6 +82,7 @@ export function create(container, report, store, player) {
   const rows = createRows(scroll, table, {
     columns: COLUMNS.length,
     height: 32,
+    printed: 2000,
     make: () => makeRow((frame) => player.stepTo(frame)),
     fill(row, index) {
       fillRow(row, shown[index]);
@@ -87,8 +92,12 @@ export function create(container, report, store, player) {
 
   function list(filter) {
     shown = intervals.filter(FILTERS[filter]);
-    setText(count, shown.length === intervals.length ? counted(intervals.length, 'interval')
-      : `${integer(shown.length)} of ${counted(intervals.length, 'interval')}`);
+    setText(
+      count,
+      shown.length === intervals.length
+        ? counted(intervals.length, 'interval')
+        : `${integer(shown.length)} of ${counted(intervals.length, 'interval')}`,
+    );
     rows.toTop();
     rows.show(shown.length);
   }
@@ -106,8 +115,24 @@ export function create(container, report, store, player) {
     if (index >= 0) rows.reveal(index);
   }
 
-  container.append(heading('Intervals', count, segments('Intervals listed', 'interval-filter',
-    [['all', 'All intervals'], ['contacts', 'With contacts'], ['penetrating', 'Penetrating']], 'all', list)), scroll);
+  container.append(
+    heading(
+      'Intervals',
+      count,
+      segments(
+        'Intervals listed',
+        'interval-filter',
+        [
+          ['all', 'All intervals'],
+          ['contacts', 'With contacts'],
+          ['penetrating', 'Penetrating'],
+        ],
+        'all',
+        list,
+      ),
+    ),
+    scroll,
+  );
   list('all');
   onCalmly(store, ['time'], follow);
   follow({ ...store.get(), playing: false });

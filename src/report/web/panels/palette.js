@@ -16,7 +16,15 @@ export function lineOf(index) {
   const { colour, dash } = lineStyle(index);
   const svg = document.createElementNS(SVG, 'svg');
   const line = document.createElementNS(SVG, 'line');
-  const place = { x1: 0, x2: 24, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.5, 'stroke-dasharray': dash.join(' ') || 'none' };
+  const place = {
+    x1: 0,
+    x2: 24,
+    y1: 4,
+    y2: 4,
+    stroke: colour,
+    'stroke-width': 2.5,
+    'stroke-dasharray': dash.join(' ') || 'none',
+  };
   for (const [name, value] of Object.entries(place)) line.setAttribute(name, String(value));
   svg.setAttribute('class', 'dash');
   svg.setAttribute('width', '24');

@@ -1,4 +1,4 @@
-/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top of it. */
+/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top. */
 import uPlot from 'uplot';
 import { element } from './dom.js';
 
@@ -30,19 +30,40 @@ export function thin(from, to, pixels, weight) {
   return kept;
 }
 
+/** What 98 % of the intervals stay below: without the peaks the rest can be seen. */
+function usualLimit({ first, last, series, stacked }) {
+  const heights = Float64Array.from({ length: last - first }, (_, i) => {
+    const values = series.map((one) => one.values[i] ?? 0);
+    return stacked ? values.reduce((sum, value) => sum + value, 0) : Math.max(...values);
+  }).sort();
+  return heights[Math.floor(0.98 * (heights.length - 1))] * 1.2;
+}
+
 /** Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. */
 function columnsOf(plot, from, to, pixels) {
   const { first, series, stacked } = plot;
   const count = to - from;
   const buckets = Math.min(count, Math.max(1, pixels));
-  const x = Array.from({ length: buckets }, (_, bucket) => first + from + Math.floor((bucket * count) / buckets));
+  const x = Array.from(
+    { length: buckets },
+    (_, bucket) => first + from + Math.floor((bucket * count) / buckets),
+  );
   x.push(first + to);
   const at = (values, kept) => {
     const column = kept.map((i) => values[i]);
     column.push(column[column.length - 1]);
     return column;
   };
-  if (!stacked) return [x, ...series.map(({ values }) => at(values, thin(from, to, pixels, (i) => values[i] ?? -1)))];
+  if (!stacked)
+    return [
+      x,
+      ...series.map(({ values }) =>
+        at(
+          values,
+          thin(from, to, pixels, (i) => values[i] ?? -1),
+        ),
+      ),
+    ];
   const total = (i) => series.reduce((sum, { values }) => sum + values[i], 0);
   const kept = thin(from, to, pixels, total);
   const sums = new Float64Array(kept.length + 1);
@@ -64,13 +85,34 @@ function seriesOptions({ series, stacked }) {
   return [{}, ...(stacked ? options.reverse() : options)];
 }
 
+/** A number at the right end would be cut. */
+function frameLabels({ scales: { x } }, splits) {
+  const room = (x.max - x.min) * 0.015;
+  return splits.map((frame) =>
+    Number.isInteger(frame) && (frame < 1000 || frame < x.max - room) ? String(frame) : '',
+  );
+}
+
 function axes(format, logarithmic) {
   const common = { font: AXIS_FONT, stroke: () => token('--quiet'), ticks: { show: false } };
   return [
-    { ...common, size: 22, gap: 3, space: 56, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
-      grid: { show: false }, values: (_, splits) => splits.map((value) => (Number.isInteger(value) ? String(value) : '')) },
-    { ...common, size: LEFT, gap: 5, space: logarithmic ? 18 : 26, grid: { stroke: () => token('--grid'), width: 1 },
-      values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))) },
+    {
+      ...common,
+      size: 22,
+      gap: 3,
+      space: 56,
+      incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000],
+      grid: { show: false },
+      values: frameLabels,
+    },
+    {
+      ...common,
+      size: LEFT,
+      gap: 5,
+      space: logarithmic ? 18 : 26,
+      grid: { stroke: () => token('--grid'), width: 1 },
+      values: (_, splits) => splits.map((value) => (value === null ? '' : format(value))),
+    },
   ];
 }
 
@@ -79,19 +121,28 @@ function axes(format, logarithmic) {
  * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
  *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
  *   values: of interval first, first + 1, ...
+ * @param {(surface: HTMLElement) => void} attach is given what lies over the plot, each time it is made anew
  */
-export function createPlot(host, plot) {
+export function createPlot(host, plot, attach) {
   const { first, last, height } = plot;
   const timeLine = element('div', { class: 'time-line' });
   const hoverLine = element('div', { class: 'hover-line', hidden: true });
   let range = [0, last - first];
   let logarithmic = false;
+  let cut = false;
+  const usual = usualLimit(plot);
   let chart = null;
   let time = first;
   let hover = null;
 
   const width = () => Math.max(160, host.clientWidth);
   const data = () => columnsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
+
+  /** Of the scale, where the highest value shown is `high`. */
+  function topOf(high) {
+    const top = cut && usual > 0 ? Math.min(high, usual) : high;
+    return top > 0 ? top * 1.04 : 1;
+  }
 
   function build() {
     chart?.destroy();
@@ -104,7 +155,7 @@ export function createPlot(host, plot) {
       select: { show: false },
       scales: {
         x: { time: false, range: () => [first + range[0], first + range[1]] },
-        y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, high > 0 ? high * 1.04 : 1] },
+        y: logarithmic ? { distr: 3 } : { range: (_, low, high) => [0, topOf(high)] },
       },
       axes: axes(plot.format, logarithmic),
       series: seriesOptions(plot),
@@ -112,6 +163,7 @@ export function createPlot(host, plot) {
     };
     chart = new uPlot(options, data(), host);
     chart.over.append(hoverLine, timeLine);
+    attach(chart.over);
   }
 
   function moveLine(line, at) {
@@ -127,9 +179,6 @@ export function createPlot(host, plot) {
 
   build();
   return {
-    get over() {
-      return chart.over;
-    },
     setTime(at) {
       time = at;
       moveLine(timeLine, time);
@@ -144,8 +193,8 @@ export function createPlot(host, plot) {
       range = [begin, end];
       chart.setData(data());
     },
-    setLogarithmic(on) {
-      logarithmic = on;
+    setScale(scale) {
+      ({ logarithmic, cut } = scale);
       build();
     },
     resize() {

@@ -2,7 +2,8 @@
 
 /**
  * @param {HTMLElement} surface over which the intervals extend from its left to its right
- * @param {{range: () => [number, number], hover: (interval: number|null) => void, go: (interval: number) => void}} chart
+ * @param {{range: () => [number, number], hover: (interval: number|null) => void,
+ *          go: (interval: number) => void}} chart
  */
 export function followPointer(surface, { range, hover, go }) {
   const intervalUnder = (event) => {

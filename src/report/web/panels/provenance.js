@@ -7,17 +7,25 @@ const lines = (texts) => texts.map((text) => element('div', { text }));
 const code = (text) => element('code', { text });
 
 function machineWords({ system, release, architecture, processor, processors }) {
-  return [processor, counted(processors, 'processor'), `${system} ${release}, ${architecture}`].filter(Boolean);
+  return [processor, counted(processors, 'processor'), `${system} ${release}, ${architecture}`].filter(
+    Boolean,
+  );
 }
 
 /** Arguments as a shell would read them. */
 function commandLine(args) {
-  return ['cscd', ...args.map((word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`))].join(' ');
+  return [
+    'cscd',
+    ...args.map((word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`)),
+  ].join(' ');
 }
 
 function planWords(plan) {
   if (plan.source === 'none') return 'none';
-  const from = plan.source === 'file' ? `from ${plan.path}` : `made by this replay in ${significant(plan.made_ms, 4)} ms`;
+  const from =
+    plan.source === 'file'
+      ? `from ${plan.path}`
+      : `made by this replay in ${significant(plan.made_ms, 4)} ms`;
   return `${counted(plan.regions, 'region')} by ${plan.method}, ${from}`;
 }
 
@@ -31,18 +39,43 @@ function factsOfRun(provenance) {
     ['Threads', lines([integer(provenance.threads)])],
     ['Command', [code(commandLine(provenance.arguments))]],
   ];
-  const inputs = (provenance.inputs ?? []).map(({ name, fnv1a64 }) => element('div', {}, `${name} `, code(fnv1a64)));
+  const inputs = (provenance.inputs ?? []).map(({ name, fnv1a64 }) =>
+    element('div', {}, `${name} `, code(fnv1a64)),
+  );
   if (inputs.length > 0) facts.push(['Inputs (FNV-1a)', inputs]);
-  if (provenance.frame_paths?.length > 1) facts.push(['Frames from', lines([`${provenance.frame_paths[0]} and ${counted(provenance.frame_paths.length - 1, 'other file')}`])]);
+  if (provenance.frame_paths?.length > 1)
+    facts.push([
+      'Frames from',
+      lines([`${provenance.frame_paths[0]} and ${counted(provenance.frame_paths.length - 1, 'other file')}`]),
+    ]);
   return facts;
 }
 
 function factsOfMethod(summary) {
   return [
-    ['Method', lines([`${summary.method}, mode ${summary.mode}, bounding volumes ${summary.volume}, vector instructions ${summary.simd}`])],
-    ['Least separation', lines([summary.min_separation === 0 ? '0: a contact is touching' : `${summary.min_separation}: a contact is coming within it`])],
+    [
+      'Method',
+      lines([
+        `${summary.method}, mode ${summary.mode}`,
+        `bounding volumes: ${summary.volume}, vector instructions: ${summary.simd}`,
+      ]),
+    ],
+    [
+      'Least separation',
+      lines([
+        summary.min_separation === 0
+          ? '0: a contact is touching'
+          : `${summary.min_separation}: a contact is coming within it`,
+      ]),
+    ],
     ['Plan', lines([planWords(summary.plan)])],
-    ['Mesh', lines([`${counted(summary.vertices, 'vertex', 'vertices')}, ${counted(summary.triangles, 'triangle')}, ${counted(summary.components, 'component')}`])],
+    [
+      'Mesh',
+      lines([
+        `${counted(summary.vertices, 'vertex', 'vertices')}, ${counted(summary.triangles, 'triangle')}, ` +
+          counted(summary.components, 'component'),
+      ]),
+    ],
   ];
 }
 
@@ -50,10 +83,23 @@ function factsOfMethod(summary) {
 function factsOfPicture(scene) {
   const all = scene.last - scene.first + 1;
   const kept = scene.frames.length;
-  const shown = kept === all ? (all === 1 ? 'the mesh at rest' : `all ${integer(all)}`) : `${integer(kept)} of ${integer(all)}; straight lines between them`;
-  const error = `Drawn positions are at most ${significant(scene.maxError, 3)} off along x, y or z, in the files' unit: ` +
-    `${significant(scene.relativeError, 3)} of the longest side of the mesh's box. Numbers in tables are not rounded by this.`;
-  return [['Frames drawn', lines([shown])], ['Precision', lines([error])]];
+  const shown =
+    kept === all
+      ? all === 1
+        ? 'the mesh at rest'
+        : `all ${integer(all)}`
+      : `${integer(kept)} of ${integer(all)}; straight lines between them`;
+  const relative =
+    scene.relativeError === null
+      ? ''
+      : `, ${significant(scene.relativeError, 3)} of the longest side of the mesh's box`;
+  const error =
+    `Drawn positions are at most ${significant(scene.maxError, 3)} off along x, y or z, ` +
+    `in the files' unit${relative}. Numbers in tables are not rounded by this.`;
+  return [
+    ['Frames drawn', lines([shown])],
+    ['Precision', lines([error])],
+  ];
 }
 
 function tableOf(facts, label) {
@@ -68,15 +114,27 @@ export function create(container, report) {
   if (report.kind === 'compare') {
     report.summaries.forEach(({ summary }, index) => {
       const facts = [...factsOfRun(summary.provenance), ...factsOfMethod(summary.summary)];
-      container.append(element('details', {}, element('summary', { text: nameOf(report, index) }), tableOf(facts, `Provenance of ${nameOf(report, index)}`)));
+      container.append(
+        element(
+          'details',
+          {},
+          element('summary', { text: nameOf(report, index) }),
+          tableOf(facts, `Provenance of ${nameOf(report, index)}`),
+        ),
+      );
     });
     return;
   }
   const run = report.summaries[0]?.summary;
   const provenance = run?.provenance ?? report.preprocess?.provenance;
-  container.append(tableOf([
-    ...(provenance ? factsOfRun(provenance) : []),
-    ...(run ? factsOfMethod(run.summary) : []),
-    ...(report.scene ? factsOfPicture(report.scene) : []),
-  ], 'Provenance'));
+  container.append(
+    tableOf(
+      [
+        ...(provenance ? factsOfRun(provenance) : []),
+        ...(run ? factsOfMethod(run.summary) : []),
+        ...(report.scene ? factsOfPicture(report.scene) : []),
+      ],
+      'Provenance',
+    ),
+  );
 }

@@ -1,31 +1,53 @@
 /** The plan's regions and what preprocessing measured. */
 import { element, heading, numberCell } from './dom.js';
-import { counted, decimal, integer, percent, significant } from './format.js';
+import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from './format.js';
 import { css, regionColour } from '../view/colours.js';
 import { swatch } from './palette.js';
 
-function regionRow(region, index, area, unit) {
+function regionRow(region, index, { area, unit, decimals }) {
   const name = element('th', { scope: 'row' }, swatch(css(regionColour(index))), ` ${index}`);
   const share = area > 0 ? region.area / area : 0;
   const point = region.detector_point.map((value) => value * unit);
-  return element('tr', {}, name,
+  return element(
+    'tr',
+    {},
+    name,
     numberCell(integer(region.component), region.component),
     numberCell(integer(region.triangles), region.triangles),
     numberCell(percent(share), share),
     numberCell(percent(region.visible_share), region.visible_share),
-    element('td', { class: 'number', text: point.map((value) => significant(value, 5)).join(', '), title: point.join(' '), 'data-value': point.join(' ') }));
+    element('td', {
+      class: 'number',
+      text: coordinates(point, decimals),
+      title: point.join(' '),
+      'data-value': point.join(' '),
+    }),
+  );
 }
 
 function regionTable(plan, unit) {
   const head = element('tr');
   for (const [text, number, title] of [
-    ['region'], ['component', true], ['triangles', true], ['share of area', true],
+    ['region'],
+    ['component', true],
+    ['triangles', true],
+    ['share of area', true],
     ['visible share', true, 'Share of the region that its detector point sees at rest'],
     ['detector point', true, 'x, y, z at rest'],
-  ]) head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : undefined }));
+  ])
+    head.append(element('th', { scope: 'col', text, title, class: number ? 'number' : undefined }));
   const area = plan.regions.reduce((sum, region) => sum + region.area, 0);
-  const body = element('tbody', {}, ...plan.regions.map((region, index) => regionRow(region, index, area, unit)));
-  return element('div', { class: 'scroll' }, element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body));
+  const decimals = positionDecimals(plan.regions.map((region) => region.detector_point).flat(), unit);
+  const body = element(
+    'tbody',
+    {},
+    ...plan.regions.map((region, index) => regionRow(region, index, { area, unit, decimals })),
+  );
+  return element(
+    'div',
+    { class: 'scroll' },
+    element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body),
+  );
 }
 
 function facts(pairs, label) {
@@ -36,16 +58,30 @@ function facts(pairs, label) {
 }
 
 function capacitances(values) {
-  return facts(values.map((value, component) => [
-    values.length > 1 ? `Capacitance of component ${component}` : 'Capacitance', significant(value, 6), value,
-  ]), 'Capacitances');
+  const table = facts(
+    values.map((value, component) => [
+      values.length > 1 ? `Capacitance of component ${component}` : 'Capacitance',
+      significant(value, 6),
+      value,
+    ]),
+    'Capacitances',
+  );
+  return element('div', { class: 'scroll' }, table);
 }
 
-const PHASES = [['assembly_ms', 'Assembly of the matrix'], ['solve_ms', 'Solution for the charge'], ['regions_ms', 'Regions and points'], ['total_ms', 'All of preprocessing']];
+const PHASES = [
+  ['assembly_ms', 'Assembly of the matrix'],
+  ['solve_ms', 'Solution for the charge'],
+  ['regions_ms', 'Regions and points'],
+  ['total_ms', 'All of preprocessing'],
+];
 
 function phases(timings) {
   const known = PHASES.filter(([key]) => timings[key] !== undefined);
-  return facts(known.map(([key, name]) => [name, `${decimal(timings[key], 3)} ms`, timings[key]]), 'Timings of preprocessing');
+  return facts(
+    known.map(([key, name]) => [name, `${decimal(timings[key], 3)} ms`, timings[key]]),
+    'Timings of preprocessing',
+  );
 }
 
 export function create(container, report) {
@@ -56,8 +92,13 @@ export function create(container, report) {
   container.append(heading('Regions', element('span', { class: 'quiet', text: words })));
   if (plan) container.append(regionTable(plan, report.scene.unit));
   if (plan?.capacitances?.length > 0) {
-    container.append(capacitances(plan.capacitances),
-      element('p', { class: 'quiet', text: "Capacitance: the charge at potential 1, a length in the files' unit (Gaussian units)." }));
+    container.append(
+      capacitances(plan.capacitances),
+      element('p', {
+        class: 'quiet',
+        text: "Capacitance: the charge at potential 1, a length in the files' unit (Gaussian units).",
+      }),
+    );
   }
   if (report.preprocess?.timings) container.append(phases(report.preprocess.timings));
 }

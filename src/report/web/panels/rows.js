@@ -3,18 +3,18 @@ import { element } from './dom.js';
 
 const ALL_BELOW = 60;
 const MARGIN = 10;
-const PRINTED_AT_MOST = 2000;
 
-const gapRow = (columns) => element('tr', { class: 'gap', 'aria-hidden': 'true' }, element('td', { colspan: columns }));
+const gapRow = (columns) =>
+  element('tr', { class: 'gap', 'aria-hidden': 'true' }, element('td', { colspan: columns }));
 
 /**
  * @param {HTMLElement} box what scrolls
  * @param {HTMLTableElement} table
- * @param {{columns: number, height: number, make: () => HTMLTableRowElement,
+ * @param {{columns: number, height: number, printed: number, make: () => HTMLTableRowElement,
  *          fill: (row: HTMLTableRowElement, index: number) => void}} options
- *   height: of a row, a first guess
+ *   height: of a row, a first guess; printed: so many rows go on paper at most
  */
-export function createRows(box, table, { columns, height, make, fill }) {
+export function createRows(box, table, { columns, height, printed, make, fill }) {
   const body = table.tBodies[0] ?? table.createTBody();
   const above = gapRow(columns);
   const below = gapRow(columns);
@@ -26,7 +26,8 @@ export function createRows(box, table, { columns, height, make, fill }) {
   let printing = false;
 
   function visible() {
-    if (count <= ALL_BELOW || (printing && count <= PRINTED_AT_MOST)) return [0, count];
+    if (printing) return [0, Math.min(count, printed)];
+    if (count <= ALL_BELOW) return [0, count];
     const first = Math.max(0, Math.floor(box.scrollTop / rowHeight) - MARGIN);
     const shown = Math.ceil((box.clientHeight || 400) / rowHeight) + 2 * MARGIN;
     const from = Math.min(first, Math.max(0, count - shown));
@@ -38,7 +39,9 @@ export function createRows(box, table, { columns, height, make, fill }) {
     const rows = pool.slice(0, end - begin);
     above.firstChild.style.height = `${begin * rowHeight}px`;
     below.firstChild.style.height = `${(count - end) * rowHeight}px`;
-    const wanted = [begin > 0 ? above : null, ...rows, end < count ? below : null].filter(Boolean);
+    const wanted = [begin > 0 ? above : null, ...rows, end < count && !printing ? below : null].filter(
+      Boolean,
+    );
     if (wanted.length !== body.childNodes.length || wanted.some((row, i) => body.childNodes[i] !== row))
       body.replaceChildren(...wanted);
     rows.forEach((row, i) => {
@@ -65,10 +68,13 @@ export function createRows(box, table, { columns, height, make, fill }) {
 
   box.addEventListener('scroll', drawWhereMoved, { passive: true });
   new ResizeObserver(drawWhereMoved).observe(box);
-  for (const [event, on] of [['beforeprint', true], ['afterprint', false]]) {
+  for (const [event, on] of [
+    ['beforeprint', true],
+    ['afterprint', false],
+  ]) {
     window.addEventListener(event, () => {
       printing = on;
-      drawWhereMoved();
+      draw();
     });
   }
 

@@ -25,7 +25,10 @@ export function stagesOf(method) {
 
 /** What of an interval's total is no stage's: checks of the input and the steps between. */
 export function otherMilliseconds(ms) {
-  return Math.max(0, STAGES.reduce((rest, { key }) => rest - ms[key], ms.total));
+  return Math.max(
+    0,
+    STAGES.reduce((rest, { key }) => rest - ms[key], ms.total),
+  );
 }
 
 /** In words: what an interval's guarantee promises, components with the same put together. */

@@ -12,15 +12,32 @@ function key(intervals) {
   for (const state of STATES) {
     const count = intervals.filter((interval) => interval?.state === state).length;
     if (count === 0) continue;
-    list.append(element('li', { title: STATE_MEANING[state] }, element('span', { class: `state ${state}` }, element('i'), element('span', { text: `${state} ${count}` }))));
+    list.append(
+      element(
+        'li',
+        { title: STATE_MEANING[state] },
+        element(
+          'span',
+          { class: `state ${state}` },
+          element('i'),
+          element('span', { text: `${state} ${count}` }),
+        ),
+      ),
+    );
   }
   return list;
 }
 
 /** @param {(object|undefined)[]} intervals from the first on */
 export function createStateBand(intervals) {
-  const counts = STATES.map((state) => [state, intervals.filter((interval) => interval?.state === state).length]);
-  const words = counts.filter(([, count]) => count > 0).map(([state, count]) => `${counted(count, 'interval')} ${state}`).join(', ');
+  const counts = STATES.map((state) => [
+    state,
+    intervals.filter((interval) => interval?.state === state).length,
+  ]);
+  const words = counts
+    .filter(([, count]) => count > 0)
+    .map(([state, count]) => `${counted(count, 'interval')} ${state}`)
+    .join(', ');
   const canvas = element('canvas', { role: 'img', 'aria-label': `States of the intervals: ${words}` });
   const timeLine = element('div', { class: 'time-line' });
   const track = element('div', { class: 'track' }, canvas, timeLine);

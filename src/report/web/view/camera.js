@@ -45,10 +45,11 @@ export class View {
     const wide = tall * camera.aspect;
     let distance = 0;
     for (let i = 0; i < 8; i++) {
-      const corner = new Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z);
-      corner.sub(target);
+      const side = (bit, axis) => (i & bit ? box.max : box.min)[axis];
+      const corner = new Vector3(side(1, 'x'), side(2, 'y'), side(4, 'z')).sub(target);
       const depth = corner.dot(from);
-      distance = Math.max(distance, depth + Math.abs(corner.dot(right)) / wide, depth + Math.abs(corner.dot(up)) / tall);
+      const needed = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / tall);
+      distance = Math.max(distance, depth + needed);
     }
     controls.target.copy(target);
     camera.position.copy(target).addScaledVector(from, Math.max(distance, 1e-4));

@@ -35,12 +35,14 @@ const items = (...list) => element('ul', { class: 'legend-items' }, ...list);
 const title = (text) => element('div', { class: 'legend-title' }, text);
 
 function chargeLegend(limits) {
-  const { low, high, below, above } = limits;
+  const { low, high, below, above, least, most } = limits;
+  const [first, last] = [`${below ? '≤\u202f' : ''}${short(low)}`, `${above ? '≥\u202f' : ''}${short(high)}`];
+  const range = `from ${short(least)} to ${short(most)}; 2\u202f% of the triangles at either end share a colour`;
   return [
     title('Charge per area at potential 1 (Gaussian units: 1/length)'),
     bar(VIRIDIS),
-    ends(`${below ? '≤\u202f' : ''}${short(low)}`, short((low + high) / 2), `${above ? '≥\u202f' : ''}${short(high)}`),
-    ...(below || above ? [element('p', { class: 'legend-note' }, `from ${short(limits.least)} to ${short(limits.most)}; the outermost 2\u202f% of triangles at either end share a colour`)] : []),
+    ends(first, short((low + high) / 2), last),
+    ...(below || above ? [element('p', { class: 'legend-note' }, range)] : []),
   ];
 }
 
@@ -52,12 +54,13 @@ const equalizedLegend = () => [
 
 function regionLegend(plan) {
   const rows = plan.regions.slice(0, MANY).map((region, i) => {
-    const visible = region.visible_share == null ? '' : `, ${percent(region.visible_share)} seen from its point`;
-    return item(swatch(regionColour(i)), `${i}: ${grouped(region.triangles)} triangles${visible}`);
+    const visible = region.visible_share == null ? '' : `, ${percent(region.visible_share)}`;
+    return item(swatch(regionColour(i)), `${i}: ${grouped(region.triangles)}${visible}`);
   });
   const rest = plan.regions.length - rows.length;
   return [
     title(`${plan.regions.length} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
+    element('p', { class: 'legend-note' }, 'Triangles, and the share that the detector point sees'),
     items(...rows, ...(rest > 0 ? [element('li', {}, `and ${grouped(rest)} more; colours repeat after 21`)] : [])),
   ];
 }
@@ -90,15 +93,18 @@ function heatLegend(most, info) {
 }
 
 /** VF and EE of the interval, and what else is marked. */
-function marksLegend(scene, state) {
+function marksLegend(scene, state, found) {
   const rows = [];
   if (state.contacts && scene.contacts !== null) {
-    const [begin, end] = scene.contacts.range(intervalOf(scene, state.time));
-    let edges = 0;
-    for (let contact = begin; contact < end; contact++) edges += scene.contacts.kind[contact];
+    const interval = intervalOf(scene, state.time);
+    const [begin, end] = scene.contacts.range(interval);
+    const kept = [0, 0];
+    for (let contact = begin; contact < end; contact++) kept[scene.contacts.kind[contact]]++;
+    const row = found.get(interval);
+    const count = (kind, all) => (kept[kind] < all ? `${grouped(kept[kind])} of ${grouped(all)}` : grouped(kept[kind]));
     const mark = (name) => element('span', { class: name, 'aria-hidden': 'true' });
-    rows.push(item(mark('mark-vf'), `VF, a vertex meets a face: ${grouped(end - begin - edges)}`));
-    rows.push(item(mark('mark-ee'), `EE, two edges meet: ${grouped(edges)}`));
+    rows.push(item(mark('mark-vf'), `VF, a vertex meets a face: ${count(0, row?.vf)}`));
+    rows.push(item(mark('mark-ee'), `EE, two edges meet: ${count(1, row?.ee)}`));
     const how = state.colour === 'plain' ? 'triangles that touch' : 'outlined: triangles that touch';
     if (end > begin) rows.push(item(swatch(TOUCHING), how));
   }
@@ -123,7 +129,9 @@ function colourLegend(scene, state, painter) {
 }
 
 /** @param {import('./paint.js').Painter} painter */
-export function createLegend(container, scene, store, painter) {
+export function createLegend(container, report, store, painter) {
+  const { scene } = report;
+  const found = new Map((report.summaries[0]?.summary.intervals ?? []).map((row) => [row.frame, row]));
   const body = element('div', { class: 'legend-body' });
   const box = element('details', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
   box.append(element('summary', {}, 'Legend'), body);
@@ -134,7 +142,7 @@ export function createLegend(container, scene, store, painter) {
     const key = [state.colour, state.contacts, intervalOf(scene, state.time)].join(' ');
     if (key === shown) return;
     shown = key;
-    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state)];
+    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state, found)];
     body.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };

@@ -11,12 +11,13 @@ export const TRAIL = 8; // intervals
 const DISC = 0;
 const DIAMOND = 1;
 const RING = 2;
+const STRONG = 4; // added to the shape of what is to be seen even where it is hidden
 
 const VERTEX = /* glsl */ `
 in vec4 tint;
 in vec2 form;
 out vec4 colour;
-flat out float shape;
+flat out float code;
 flat out float extent;
 uniform float density;
 uniform float pixel;
@@ -27,20 +28,22 @@ void main() {
   gl_Position = projectionMatrix * seen;
   gl_PointSize = size * density;
   colour = tint;
-  shape = form.x;
+  code = form.x;
   extent = size * density;
 }`;
 
 const FRAGMENT = /* glsl */ `
 precision highp float;
 in vec4 colour;
-flat in float shape;
+flat in float code;
 flat in float extent;
 out vec4 pixel;
 uniform float density;
 uniform float strength;
 uniform float rimmed;
 void main() {
+  bool strong = code > 3.5;
+  float shape = strong ? code - 4.0 : code;
   vec2 at = (gl_PointCoord - 0.5) * extent / density;
   float half_size = 0.5 * extent / density - 1.0;
   float round_distance = length(at) - half_size;
@@ -56,7 +59,8 @@ void main() {
     float drawn = max(1.0 - hollow, 1.0 - smoothstep(-soft, soft, cross));
     inner = mix(vec3(1.0), inner, drawn);
   }
-  pixel = vec4(mix(inner, vec3(1.0), rim * rimmed), cover * colour.a * strength);
+  float opacity = strong ? max(strength, 0.85) : strength;
+  pixel = vec4(mix(inner, vec3(1.0), rim * (strong ? 1.0 : rimmed)), cover * colour.a * opacity);
   if (pixel.a < 0.01) discard;
 }`;
 
@@ -68,13 +72,19 @@ function material(strength, rimmed, depth) {
     transparent: true,
     depthWrite: false,
     ...depth,
-    uniforms: { density: { value: 1 }, pixel: { value: 0.001 }, strength: { value: strength }, rimmed: { value: rimmed } },
+    uniforms: {
+      density: { value: 1 },
+      pixel: { value: 0.001 },
+      strength: { value: strength },
+      rimmed: { value: rimmed },
+    },
   });
 }
 
 function geometryFor(capacity) {
   const geometry = new BufferGeometry();
-  const attribute = (array, size, normalized) => new BufferAttribute(array, size, normalized).setUsage(DynamicDrawUsage);
+  const attribute = (array, size, normalized) =>
+    new BufferAttribute(array, size, normalized).setUsage(DynamicDrawUsage);
   geometry.setAttribute('position', attribute(new Float32Array(3 * capacity), 3, false));
   geometry.setAttribute('tint', attribute(new Uint8Array(4 * capacity), 4, true));
   geometry.setAttribute('form', attribute(new Float32Array(2 * capacity), 2, false));
@@ -89,7 +99,7 @@ class Marks {
     this.capacity = 64;
     this.geometry = geometryFor(this.capacity);
     this.inSight = new Points(this.geometry, material(1, 1, { depthFunc: LessEqualDepth }));
-    this.hidden = new Points(this.geometry, material(0.32, 0.35, { depthFunc: GreaterDepth }));
+    this.hidden = new Points(this.geometry, material(0.42, 0.5, { depthFunc: GreaterDepth }));
     this.inSight.renderOrder = 2;
     this.hidden.renderOrder = 1;
     this.object = new Group();
@@ -150,13 +160,14 @@ export class ContactMarks extends Marks {
     this.hidden.visible = state.through;
     const { kind, point } = scene.contacts ?? {};
     const size = sizeAmong(this.marked.length);
-    const selectedLast = [...this.marked].sort((a, b) => (a.contact === state.selected) - (b.contact === state.selected));
+    const selected = ({ contact }) => contact === state.selected;
+    const selectedLast = [...this.marked].sort((a, b) => selected(a) - selected(b));
     this.show(
       selectedLast.map(({ contact, age }) => ({
         place: toView(point.subarray(3 * contact, 3 * contact + 3)),
         colour: kind[contact] === 0 ? VF : EE,
         alpha: age === 0 ? 1 : 0.75 * (1 - age / (TRAIL + 1)),
-        shape: kind[contact] === 0 ? DISC : DIAMOND,
+        shape: (kind[contact] === 0 ? DISC : DIAMOND) + (contact === state.selected ? STRONG : 0),
         size: (contact === state.selected ? 19 : size - (age > 0 ? 2 : 0)) + (kind[contact] === 0 ? 0 : 2),
       })),
     );

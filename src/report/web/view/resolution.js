@@ -1,18 +1,32 @@
 /** How many pixels are drawn: all of the screen's at rest, fewer in motion where that is too slow. */
 
-const LEAST = 0.5; // pixels of the buffer for one of the page
+const LEAST = 0.7; // pixels of the buffer for one of the page
 const SLOW_MS = 30;
 const QUICK_MS = 12;
 const REST_MS = 160;
+/** Opaque: the page need not blend it. Kept: it can be printed. */
+const OPTIONS = { alpha: false, stencil: false, preserveDrawingBuffer: true };
 
 /** Without a graphics processor each pixel counts, several samples for each all the more. */
-export function rendersInSoftware() {
-  const context = document.createElement('canvas').getContext('webgl2');
-  if (context === null) throw new Error('WebGL 2 is not available');
+function inSoftware(context) {
   const details = context.getExtension('WEBGL_debug_renderer_info');
   const name = context.getParameter(details?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER);
-  context.getExtension('WEBGL_lose_context')?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(name));
+}
+
+/** A canvas and its context, which smooths edges where that costs little. */
+export function createContext() {
+  const make = (antialias) => {
+    const canvas = document.createElement('canvas');
+    return { canvas, context: canvas.getContext('webgl2', { ...OPTIONS, antialias }) };
+  };
+  const plain = make(false); // first the one for software, where making a context takes long
+  if (plain.context === null) throw new Error('WebGL 2 is not available');
+  if (inSoftware(plain.context)) return { ...plain, software: true };
+  plain.context.getExtension('WEBGL_lose_context')?.loseContext();
+  const smooth = make(true);
+  if (smooth.context === null) throw new Error('WebGL 2 is not available');
+  return { ...smooth, software: false };
 }
 
 export class Resolution {

@@ -1,6 +1,7 @@
 /** The surface's material: one light from over the reader's shoulder, lines along chosen edges. */
 
 import { DoubleSide, GLSL3, ShaderMaterial, Vector3 } from 'three';
+import { TOUCHING } from './colours.js';
 
 /** Bits of a triangle's flags, which travel in the fourth byte of its colour. */
 export const CUT = [1, 2, 4]; // the edge opposite to corner 0, 1, 2 lies between regions
@@ -13,6 +14,10 @@ const VERTEX = /* glsl */ `
 in vec4 tint;
 in vec4 facing;
 out vec3 colour;
+#ifdef SHADOWED
+uniform mat4 shadowMatrix;
+out vec3 below;
+#endif
 #ifdef LINES
 out vec3 corner;
 flat out int flags;
@@ -31,6 +36,9 @@ void main() {
   corner = vec3(which == 0, which == 1, which == 2);
   flags = int(tint.a * 255.0 + 0.5);
 #endif
+#ifdef SHADOWED
+  below = 0.5 + 0.5 * (shadowMatrix * modelMatrix * vec4(position, 1.0)).xyz;
+#endif
   gl_Position = projectionMatrix * seen;
 }`;
 
@@ -38,6 +46,15 @@ const FRAGMENT = /* glsl */ `
 precision highp float;
 in vec3 colour;
 out vec4 pixel;
+#ifdef SHADOWED
+in vec3 below;
+uniform highp sampler2DShadow shadowMap;
+float lit() {
+  vec2 inner = abs(below.xy - 0.5);
+  if (max(inner.x, inner.y) > 0.5 || below.z > 1.0) return 1.0;
+  return mix(0.74, 1.0, texture(shadowMap, vec3(below.xy, below.z - 0.004)));
+}
+#endif
 #ifdef LINES
 in vec3 corner;
 flat in int flags;
@@ -72,6 +89,8 @@ void main() {
   c = mix(c, cutColour, line(cut, 1.2));
   if ((flags & 16) != 0) c = mix(c, pickColour, max(line(nearest, 1.8), 0.25));
   pixel = vec4(c, 1.0);
+#elif defined(SHADOWED)
+  pixel = vec4(colour * lit(), 1.0);
 #else
   pixel = vec4(colour, 1.0);
 #endif
@@ -79,21 +98,21 @@ void main() {
 
 const unit = (colour) => new Vector3(...colour.map((value) => value / 255));
 
-export function surfaceMaterial({ lines = false, touching = [255, 176, 66], polygonOffset = false } = {}) {
+/** Either with lines along edges, or shadowed, or neither. */
+export function surfaceMaterial({ lines = false, shadowed = false }) {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
     side: DoubleSide,
-    polygonOffset,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 2,
-    defines: lines ? { LINES: 1 } : {},
+    defines: { ...(lines ? { LINES: 1 } : {}), ...(shadowed ? { SHADOWED: 1 } : {}) },
     uniforms: {
+      shadowMap: { value: null },
+      shadowMatrix: { value: null },
       density: { value: 1 },
       edges: { value: 0 },
       cutColour: { value: unit([20, 22, 28]) },
-      touchColour: { value: unit(touching) },
+      touchColour: { value: unit(TOUCHING) },
       pickColour: { value: unit([255, 255, 255]) },
       edgeColour: { value: unit([30, 34, 44]) },
     },

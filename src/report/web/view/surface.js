@@ -41,7 +41,7 @@ function spread(local, triangles, corners, facing) {
 }
 
 export class Surface {
-  constructor({ triangles, positions }, options) {
+  constructor({ triangles, positions }, { shadowed = false } = {}) {
     this.triangles = triangles;
     this.positions = positions;
     this.corners = new Float32Array(3 * triangles.length);
@@ -57,8 +57,8 @@ export class Surface {
     geometry.setAttribute('facing', attribute(this.facing, 4, true));
     geometry.setAttribute('tint', attribute(this.tint, 4, true));
     geometry.boundingSphere = new Sphere(undefined, Infinity);
-    this.quick = surfaceMaterial(options);
-    this.lined = surfaceMaterial({ ...options, lines: true });
+    this.quick = surfaceMaterial({ shadowed });
+    this.lined = surfaceMaterial({ lines: true });
     this.mesh = new Mesh(geometry, this.quick);
     this.mesh.frustumCulled = false;
   }
@@ -78,7 +78,7 @@ export class Surface {
     attributes.facing.needsUpdate = true;
   }
 
-  /** @param {(triangle: number) => number} colour 0xffrrggbb without the top byte, @param {Uint8Array|null} flags */
+  /** @param {Uint8Array} rgb three for each triangle @param {Uint8Array|null} flags what lines it has */
   paint(rgb, flags) {
     const { tint } = this;
     const count = this.triangles.length / 3;

@@ -7,7 +7,9 @@ import { createReadout } from './readout.js';
 import { Viewer } from './viewer.js';
 
 const HOUSE = 'M8 2 1.5 8H3.5v6h3.5v-4h2v4h3.5V8h2z';
-const LOUPE = 'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8zm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
+const LOUPE =
+  'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8z' +
+  'm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
 
 /** A button that stays pressed. */
 function toggle(name, text, title, pressed, action) {
@@ -68,7 +70,7 @@ export function createView(container, report, store, player) {
   const note = element('p', { class: 'view-note', 'aria-live': 'polite' });
   container.append(tools(viewer, store), note);
   viewer.note = note;
-  createLegend(container, report.scene, store, viewer.painter);
+  createLegend(container, report, store, viewer.painter);
   createReadout(container, report.scene, store);
   return viewer;
 }

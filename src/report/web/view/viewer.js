@@ -6,12 +6,14 @@ import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
 import { onClick, pickTriangle } from './picking.js';
-import { Resolution, rendersInSoftware } from './resolution.js';
+import { Resolution, createContext } from './resolution.js';
+import { Shadow } from './shadow.js';
 import { Space, sphereOf } from './space.js';
 import { Surface } from './surface.js';
 
 const SCENERY = { light: [226, 225, 221], dark: [78, 82, 92] };
 const GROUND = { light: '#f1f3f6', dark: '#1b212b' };
+const SHADOWED_IN_SOFTWARE = 30000; // triangles
 const FAR_TRAVELLED = 1.3; // body lengths
 
 export class Viewer {
@@ -31,9 +33,7 @@ export class Viewer {
   }
 
   makeRenderer() {
-    const canvas = document.createElement('canvas');
-    const software = rendersInSoftware();
-    const context = canvas.getContext('webgl2', { alpha: false, antialias: !software, stencil: false });
+    const { canvas, context, software } = createContext();
     this.renderer = new WebGLRenderer({ canvas, context });
     this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are as on the screen throughout
     this.canvas = canvas;
@@ -51,7 +51,9 @@ export class Viewer {
     this.scene = new Scene();
     this.painter = new Painter(data);
     this.body = new Surface(data);
-    this.scenery = data.scenery === null ? null : new Surface(data.scenery);
+    const cheap = !this.resolution.software || data.triangleCount <= SHADOWED_IN_SOFTWARE;
+    this.scenery = data.scenery === null ? null : new Surface(data.scenery, { shadowed: cheap });
+    this.shadow = this.scenery !== null && cheap ? new Shadow(this.body, this.scenery) : null;
     this.contacts = new ContactMarks();
     this.detectors = new DetectorMarks();
     this.scene.add(this.body.mesh, this.contacts.object, this.detectors.object);
@@ -91,6 +93,7 @@ export class Viewer {
       event.stopPropagation();
     });
     this.canvas.addEventListener('webglcontextrestored', () => this.invalidate());
+    window.addEventListener('beforeprint', () => this.drawNow());
   }
 
   /** What there is to see, as far as frames have been read. */
@@ -174,6 +177,7 @@ export class Viewer {
   draw() {
     const state = this.store.get();
     this.update(state);
+    if (this.shadow !== null && state.scenery) this.shadow.update(this.renderer, this.reach, this.surroundings);
     this.renderer.render(this.scene, this.view.camera);
     this.framesDrawn++;
     this.resolution.drawn();
@@ -219,7 +223,8 @@ export class Viewer {
     const { data, space } = this;
     const interval = intervalOf(data, state.time);
     this.contacts.setState(data, state, space.toView);
-    this.detectors.setState(data, state.points ? this.detectorPoints(interval, state.time - interval) : null, space.toView);
+    const points = state.points ? this.detectorPoints(interval, state.time - interval) : null;
+    this.detectors.setState(data, points, space.toView);
     const pixel = (2 * Math.tan((this.view.camera.fov * Math.PI) / 360)) / this.size.height;
     for (const marks of [this.contacts, this.detectors]) marks.setScale(this.resolution.ratio, pixel);
   }
@@ -256,6 +261,7 @@ export class Viewer {
     const { data, painter, space } = this;
     const { selected, time } = this.store.get();
     const interval = intervalOf(data, time);
+    this.update(this.store.get()); // where the view follows the body, it does so before
     const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
     if (begin === end) return;
     const box = new Box3();
@@ -266,7 +272,7 @@ export class Viewer {
         for (let corner = 0; corner < 3; corner++) add(data.positions.vertexAt(data.triangles[3 * t + corner], time));
       }
     }
-    this.view.frame(box.expandByScalar(0.35 * box.getSize(new Vector3()).length()));
+    this.view.frame(box.expandByScalar(0.15 * box.getSize(new Vector3()).length()));
     this.touched = true;
     this.invalidate();
   }

@@ -1,0 +1,15 @@
+/* Coordinates as the page has them: in its unit, and within what float32 and a graphics card can work with.
+ */
+#ifndef CSCD_PAGE_COORDINATE_H
+#define CSCD_PAGE_COORDINATE_H
+
+#include <math.h>
+
+/* Where a body grows or flies 2^100 times as far as it was large at the start, it is shown at this limit. */
+#define PAGE_COORDINATE_MAX 0x1p100
+
+static inline double page_coordinate(double x, double scale) {
+    return fmax(-PAGE_COORDINATE_MAX, fmin(PAGE_COORDINATE_MAX, x * scale));
+}
+
+#endif

@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""Draws the pictures of docs/report.md.
+
+usage: gallery.py REPORT.html PLAN.html COMPARISON.html IMAGES
+"""
+import base64
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True
+
+from page import Page  # noqa: E402
+
+FRAME = 84  # of the pawn: its head touches the collar
+
+
+def save(page, folder, name):
+    page.rest()
+    shown = page.command("Page.captureScreenshot", format="png")["data"]
+    with open(os.path.join(folder, name), "wb") as file:
+        file.write(base64.b64decode(shown))
+
+
+def main():
+    if len(sys.argv) != 5:
+        print(__doc__.strip())
+        return 2
+    replay, plan, comparison, folder = sys.argv[1:]
+    page = Page()
+    try:
+        page.open(replay)
+        page.script("window.cscd.store.set({time: arguments[0], colour: 'charge'});", FRAME)
+        save(page, folder, "report.png")
+        page.open(plan, theme="dark")
+        save(page, folder, "report-plan.png")
+        page.open(comparison, height=900)
+        page.script("for (const box of document.querySelectorAll('#charts input')) box.click();")
+        page.settle()
+        shown = page.command("Page.captureScreenshot", format="png")["data"]
+        with open(os.path.join(folder, "report-comparison.png"), "wb") as file:
+            file.write(base64.b64decode(shown))
+    finally:
+        page.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
