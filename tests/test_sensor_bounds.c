@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
-enum { MESHES = 12, INTERVALS_PER_MESH = 20, TOUCHES = 400 };
+enum { MESHES = 60, INTERVALS_PER_MESH = 40, TOUCHES = 1000 };
 #else
 enum { MESHES = 60, INTERVALS_PER_MESH = 120, TOUCHES = 5000 };
 #endif
@@ -217,7 +217,7 @@ static void every_triangle_is_held(void **state) {
     static uint32_t triangle_parts[SCENE_TRIANGLES_MAX];
     random_seed(4);
     for (int i = 0; i < 40; i++) {
-        scene_make(i % SCENE_FAMILY_COUNT, (uint64_t)i, &interval);
+        scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &interval);
         for (uint32_t t = 0; t < interval.triangle_count; t++)
             triangle_parts[t] = (uint32_t)random_integer(0, 4);
         bench b = bench_create(triangle_parts, 6, 5);

@@ -268,7 +268,7 @@ static void walks_end_on_any_mesh(void **state) {
     (void)state;
     random_seed(9);
     for (int i = 0; i < WALKED_SCENES; i++) {
-        scene_make(i % SCENE_FAMILY_COUNT, (uint64_t)i, &body);
+        scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &body);
         bench b = bench_create((uint32_t)random_integer(1, 6));
         for (uint32_t k = 0; k < body.vertex_count * 3; k++) {
             double x = body.x1[k];
