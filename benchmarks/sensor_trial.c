@@ -96,7 +96,9 @@ static double mean_edge(const recording_data *r) {
 static bool make_sensors(const recording_data *r, const sensor_rules *rules, cscd_partition **partition,
                          cscd_sensors **sensors, io_error *error) {
     const cscd_plan *plan = rules->plan ? r->charge : NULL;
-    if (cscd_partition_create(r->mesh, plan, r->model.positions, NULL, partition) != CSCD_OK)
+    cscd_partition_options cutting = cscd_partition_defaults();
+    cutting.cells = rules->cells;
+    if (cscd_partition_create(r->mesh, plan, r->model.positions, &cutting, partition) != CSCD_OK)
         return api_failed(r, error);
     cscd_sensor_options options = cscd_sensor_defaults();
     options.method = rules->random ? CSCD_SENSORS_RANDOM : CSCD_SENSORS_CELLS;
@@ -124,12 +126,37 @@ static bool renew_due(const recording_data *r, cscd_partition *partition, const 
     return true;
 }
 
-static bool run_intervals(const recording_data *r, const sensor_truth *truth, cscd_partition *partition,
-                          cscd_sensors *sensors, sensor_trial *t, double *ms, io_error *error) {
+/* Of the first frame. */
+static double largest_cell(const recording_data *r, const cscd_partition *partition) {
+    const double *x = recording_data_frame(r, 0);
+    double largest = 0.0;
+    for (uint32_t c = 0; c < partition->cell_count; c++)
+        for (uint32_t i = partition->cell_offsets[c]; i < partition->cell_offsets[c + 1]; i++)
+            for (uint32_t j = partition->cell_offsets[c]; j < i; j++) {
+                const double *p = x + (size_t)partition->cell_vertices[i] * 3,
+                             *q = x + (size_t)partition->cell_vertices[j] * 3;
+                largest = fmax(largest, (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
+                                            (p[2] - q[2]) * (p[2] - q[2]));
+            }
+    return sqrt(largest);
+}
+
+/* mu is that of the interval before. */
+static void set_reach(cscd_sensors *sensors, const sensor_rules *rules, double cell) {
+    if (rules->reach_mu > 0.0)
+        sensors->options.effective_radius =
+            rules->reach_mu * sensors->reach.mu_most + rules->reach_cells * cell;
+}
+
+static bool run_intervals(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
+                          cscd_partition *partition, cscd_sensors *sensors, sensor_trial *t, double *ms,
+                          io_error *error) {
     object_pairs warned = object_pairs_none(), confirmed = object_pairs_none();
+    double cell = rules->reach_cells > 0.0 ? largest_cell(r, partition) : 0.0;
     bool good = true;
     for (uint32_t k = 0; good && k < truth->interval_count; k++) {
         cscd_warnings warnings;
+        set_reach(sensors, rules, cell);
         good = cscd_sensors_step(sensors, recording_data_frame(r, k), recording_data_frame(r, k + 1),
                                  &warnings) == CSCD_OK ||
                api_failed(r, error);
@@ -138,6 +165,8 @@ static bool run_intervals(const recording_data *r, const sensor_truth *truth, cs
         cscd_sensor_counters counters = cscd_sensors_counters(sensors);
         t->rounds += (double)counters.rounds / (2.0 * truth->interval_count);
         t->cycles += (double)counters.cycles / (2.0 * truth->interval_count);
+        t->vertices += (double)counters.vertices;
+        t->pairs += (double)counters.particle_pairs;
         good = (object_pairs_of_warnings(&warnings, false, &warned) &&
                 object_pairs_of_warnings(&warnings, true, &confirmed)) ||
                io_fail(error, "out of memory");
@@ -160,7 +189,7 @@ bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const 
     sensor_trial t = {.trees_ms = truth->trees_ms};
     double *ms = body_allocate(r->frame_count, sizeof *ms);
     bool good = make_sensors(r, rules, &partition, &sensors, error) &&
-                run_intervals(r, truth, partition, sensors, &t, ms, error);
+                run_intervals(r, truth, rules, partition, sensors, &t, ms, error);
     if (good) {
         t.particles = cscd_sensors_particle_count(sensors);
         t.ms = sensor_median(ms, truth->interval_count);
@@ -181,6 +210,8 @@ void sensor_trial_add(sensor_trial *sum, const sensor_trial *one) {
     sum->rounds += one->rounds;
     sum->cycles += one->cycles;
     sum->ms += one->ms;
+    sum->vertices += one->vertices;
+    sum->pairs += one->pairs;
     sum->trees_ms = one->trees_ms;
 }
 

@@ -23,6 +23,9 @@ typedef struct sensor_rules {
     bool plan;       /* parts are the regions of a plan by charge, else components */
     bool scalar;     /* the sum of magnitudes decides, not that of vectors */
     double mu_edges; /* mu in mean edges of the first frame; 0: the default */
+    uint32_t cells;  /* of each part; 0: the default */
+    /* R_eff in mu, and in largest diameters of a cell of the first frame; both 0: the default */
+    double reach_mu, reach_cells;
     bool random, as_cells;
     uint32_t particles, seed; /* RANDOM; as_cells: as many as there are cells */
 } sensor_rules;
@@ -31,6 +34,7 @@ typedef struct sensor_rules {
  * the median of a step. Of several trials the sums. */
 typedef struct sensor_trial {
     double particles, touching, warned, found, confirmed, rounds, cycles, ms, trees_ms;
+    double vertices, pairs; /* walked on, and within R_eff, in all intervals */
 } sensor_trial;
 
 bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,

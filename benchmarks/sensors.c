@@ -42,6 +42,13 @@ static const sensor_rules random_rules[] = {
     {.name = "random, as cells", .random = true, .as_cells = true},
 };
 
+static void print_sweep(const char *scene, const char *rule, const sensor_trial *t) {
+    printf("  %-21s %-18s %8.0f %7.0f %8.0f %7.4f %9.3f %9.3f %10.2f %10.2f %9.2f\n", scene, rule,
+           t->touching, t->touching - t->found, t->warned - t->found, t->found / t->touching,
+           t->found / t->warned, t->confirmed / t->touching, 1e-6 * t->vertices, 1e-6 * t->pairs, t->ms);
+    fflush(stdout);
+}
+
 static void print_trial(const char *scene, const char *method, const sensor_trial *t, uint32_t runs) {
     double n = runs;
     printf("  %-21s %-18s %9.0f %8.0f %7.1f %8.1f %7.3f %9.3f %9.3f %7.1f %6.1f %9.3f %8.2f\n", scene, method,
@@ -88,6 +95,44 @@ static bool run_scene(const recording_data *r, io_error *error) {
     return good;
 }
 
+/* ---- how far they feel, and how many ----------------------------------------------------------------------
+ */
+
+static const sensor_rules sweep[] = {
+    {.name = "default"},
+    {.name = "R_eff mu", .reach_mu = 1.0},
+    {.name = "R_eff 2 mu", .reach_mu = 2.0},
+    {.name = "R_eff 4 mu", .reach_mu = 4.0},
+    {.name = "R_eff mu + 1 cell", .reach_mu = 1.0, .reach_cells = 1.0},
+    {.name = "R_eff mu + 2 cells", .reach_mu = 1.0, .reach_cells = 2.0},
+    {.name = "1 cell", .cells = 1},
+    {.name = "4 cells", .cells = 4},
+    {.name = "12 cells", .cells = 12},
+    {.name = "36 cells", .cells = 36},
+    {.name = "36, R_eff 2 mu", .cells = 36, .reach_mu = 2.0},
+    {.name = "108, R_eff 2 mu", .cells = 108, .reach_mu = 2.0},
+};
+
+enum { SWEEP = sizeof sweep / sizeof *sweep };
+
+static sensor_trial swept[SWEEP];
+
+/* Adds up; a scene of many objects is shown by itself, too. */
+static bool run_sweep(const recording_data *r, io_error *error) {
+    sensor_truth truth;
+    if (!sensor_truth_find(r, &truth, error)) return false;
+    bool good = true;
+    for (int i = 0; good && i < SWEEP; i++) {
+        sensor_trial one;
+        good = sensor_trial_run(r, &truth, &sweep[i], &one, error);
+        if (!good) break;
+        sensor_trial_add(&swept[i], &one);
+        if (cscd_mesh_component_count(r->mesh) > 4) print_sweep(r->name, sweep[i].name, &one);
+    }
+    sensor_truth_free(&truth);
+    return good;
+}
+
 /* ---- the certified mode ----------------------------------------------------------------------------------
  */
 
@@ -122,6 +167,13 @@ static bool run_all(const char *folder, const char *const *names, size_t count, 
            "touching", "missed", "false", "recall", "precision", "confirmed", "rounds", "cyc %", "ms",
            "of trees");
     if (!for_scenes(folder, names, count, run_scene, error)) return false;
+    printf(
+        "\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of their "
+        "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
+        "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed", "vertices M",
+        "pairs M", "ms");
+    if (!for_scenes(folder, names, count, run_sweep, error)) return false;
+    for (int i = 0; i < SWEEP; i++) print_sweep("all", sweep[i].name, &swept[i]);
     printf("\ncertified apart, %% of watched pairs of parts in all intervals; ms for the update and all "
            "questions\n"
            "  %-21s %-5s %8s %8s %8s %8s %11s %11s %11s\n",
