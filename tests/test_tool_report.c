@@ -154,6 +154,37 @@ static void what_is_no_summary_is_named(void **state) {
     EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
 }
 
+/* Of a true summary, with one part of it replaced. */
+static void a_changed_summary_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *part, *instead, *reasons[2];
+    } cases[] = {
+        {"\"frame\":3", "\"frame\":4", {"interval 3 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":-1", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":1e300", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":4294967295", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"source\"", "\"sauce\"", {"the plan has no member 'source'", NULL}},
+        {"\"complete\":true", "\"complete\":false", {"the summary has no member 'stopped_by'", NULL}},
+    };
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
+    char *text = read_whole_file(summary.text, NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *place = strstr(text, cases[i].part);
+        assert_non_null(place);
+        char *changed = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&changed, &size);
+        assert_non_null(out);
+        fprintf(out, "%.*s%s%s", (int)(place - text), text, cases[i].instead, place + strlen(cases[i].part));
+        assert_int_equal(fclose(out), 0);
+        temp_path path = temp_file_write(&folder, "changed.json", changed, size);
+        free(changed);
+        EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
+    }
+    free(text);
+}
+
 static void options_that_do_not_fit_are_refused(void **state) {
     (void)state;
     EXPECT_ERROR(2, TEXTS("--report OUT.html"), "replay", model.text, cache.text, "--scenery", model.text);
@@ -309,6 +340,7 @@ int main(void) {
         cmocka_unit_test(the_page_of_a_plan_has_charge_and_timings),
         cmocka_unit_test(summaries_stand_side_by_side),
         cmocka_unit_test(what_is_no_summary_is_named),
+        cmocka_unit_test(a_changed_summary_is_refused),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
         cmocka_unit_test(an_unwritable_report_loses_nothing_else),
         cmocka_unit_test(outputs_are_where_links_lead),
