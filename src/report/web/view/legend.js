@@ -59,7 +59,7 @@ function regionLegend(plan) {
   });
   const rest = plan.regions.length - rows.length;
   return [
-    title(`${plan.regions.length} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
+    title(`${grouped(plan.regions.length)} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
     element('p', { class: 'legend-note' }, 'Triangles, and the share that the detector point sees'),
     items(...rows, ...(rest > 0 ? [element('li', {}, `and ${grouped(rest)} more; colours repeat after 21`)] : [])),
   ];
