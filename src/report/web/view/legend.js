@@ -6,7 +6,7 @@ import { intervalOf } from '../data/report.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
 
 const MANY = 8;
-const ROOMY = 560; // CSS pixels: in narrower views the legend begins folded
+const ROOMY = { width: 560, height: 380 }; // CSS pixels: in smaller views the legend begins folded
 
 const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 const short = (value) => String(Number(value.toPrecision(3))).replace('-', '−');
@@ -135,7 +135,7 @@ export function createLegend(container, report, store, painter) {
   const body = element('div', { class: 'legend-body' });
   const box = element('details', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
   box.append(element('summary', {}, 'Legend'), body);
-  box.open = container.clientWidth >= ROOMY;
+  box.open = container.clientWidth >= ROOMY.width && container.clientHeight >= ROOMY.height;
   container.append(box);
   let shown = null;
   const show = (state) => {
