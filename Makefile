@@ -136,7 +136,8 @@ demo: packages
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
-build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/shape
+build/models/made: $(BUILD)/models/record $(BUILD)/models/cloth $(BUILD)/models/ipc $(BUILD)/models/objects \
+                   $(BUILD)/models/shape
 	@BUILD=$(BUILD) models/make.sh build/models
 	@touch $@
 

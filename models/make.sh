@@ -10,3 +10,4 @@ done
 "$BUILD/models/record" all "$folder"
 "$BUILD/models/cloth" all "$folder"
 "$BUILD/models/ipc" all "$folder"
+"$BUILD/models/objects" all "$folder"

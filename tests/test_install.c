@@ -89,7 +89,8 @@ static void files_are_where_they_belong(void **state) {
     const char *version = cscd_version_string();
     snprintf(expected, sizeof expected,
              "bin/cscd\ninclude/cscd/context.h\ninclude/cscd/cscd.h\ninclude/cscd/detector.h\n"
-             "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/solver.h\n"
+             "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/sensors.h\n"
+             "include/cscd/solver.h\n"
              "lib/cmake/cscd/cscdConfig.cmake\nlib/cmake/cscd/cscdConfigVersion.cmake\n"
              "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"
              "lib/pkgconfig/cscd.pc\nshare/man/man1/cscd.1\nshare/man/man3/cscd.3\n",

@@ -51,7 +51,7 @@ static void commands_are_those_of_the_tool(void **state) {
 
 static void options_are_those_of_the_tool(void **state) {
     (void)state;
-    static const char *const commands[] = {"preprocess", "replay", "check", "info", "render"};
+    static const char *const commands[] = {"preprocess", "replay", "sense", "check", "info", "render"};
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
         const char *name = commands[i];
         expect_equal(name, shell_output(0, PART_OF " | " NAMES, name),
@@ -73,14 +73,15 @@ static void no_option_is_made_up(void **state) {
     (void)state;
     expect_equal(
         "options", shell_output(0, PLAIN_PAGE " | " NAMES),
-        shell_output(0, "{ \"$CSCD_TOOL\" --help; for command in preprocess replay check info render; do "
-                        "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
+        shell_output(0,
+                     "{ \"$CSCD_TOOL\" --help; for command in preprocess replay sense check info render; do "
+                     "\"$CSCD_TOOL\" $command --help; done; } | " NAMES));
 }
 
 static void functions_are_those_of_the_headers(void **state) {
     (void)state;
-    static const char *const headers[] = {"context.h",  "mesh.h",   "plan.h",
-                                          "detector.h", "solver.h", "cscd.h"};
+    static const char *const headers[] = {"context.h", "mesh.h",    "plan.h", "detector.h",
+                                          "solver.h",  "sensors.h", "cscd.h"};
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
         expect_equal(headers[i],
                      shell_output(0,

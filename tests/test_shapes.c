@@ -33,6 +33,10 @@ static const struct expectation {
     [BODY_COIL] = {1, 2, 0.0, 30.0},
     [BODY_SLAB] = {1, 2, 0.0, 15.0},
     [BODY_CHAIN] = {5, 0, 5.0 * 2.0 * 9.8696044 * 0.22 * 0.22, 30.0},
+    [BODY_LETTER_T] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_U] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_V] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_W] = {1, 2, 0.0, 30.0},
 };
 
 static cscd_context *context;

@@ -31,6 +31,7 @@
 #include <cscd/detector.h>
 #include <cscd/mesh.h>
 #include <cscd/plan.h>
+#include <cscd/sensors.h>
 #include <cscd/solver.h>
 
 #define CSCD_VERSION_MAJOR 1

@@ -1,6 +1,7 @@
 /* The bodies by name, with as many triangles as asked for. */
 #include "models/shapes/catalogue.h"
 #include "models/shapes/figure.h"
+#include "models/shapes/letters.h"
 #include "models/shapes/revolution.h"
 #include "models/shapes/slab.h"
 
@@ -34,6 +35,10 @@ static const entry entries[BODY_KIND_COUNT] = {
     [BODY_SLAB] = {"slab", "a flat box folded twice, like a letter", 4000, 0, .add_squares = add_slab,
                    slab_triangles, 28},
     [BODY_CHAIN] = {"chain", "five linked tori: five components", 5000, 1000, .add_rings = add_chain},
+    [BODY_LETTER_T] = {"letter-t", "a T with round edges", 1380, 600, .add_implicit = add_letter_t},
+    [BODY_LETTER_U] = {"letter-u", "a U with square corners", 1380, 600, .add_implicit = add_letter_u},
+    [BODY_LETTER_V] = {"letter-v", "a V", 1380, 600, .add_implicit = add_letter_v},
+    [BODY_LETTER_W] = {"letter-w", "a W", 11920, 1000, .add_implicit = add_letter_w},
 };
 
 const char *body_kind_name(body_kind kind) {

@@ -18,6 +18,8 @@
  *   coil       a spring of five turns along z, round ends
  *   slab       a flat box folded twice, like a letter
  *   chain      five linked tori along x, five components
+ *   letter-t, letter-u, letter-v, letter-w
+ *              2 high, 2, 1.8, 2.2 and 3.2 wide, 0.5 deep, upright on z = 0, to be read from -y
  * Each component is closed, manifold, consistently oriented and embedded; positions are exact in single
  * precision; triangles are about equal. Everything is repeatable. */
 typedef enum body_kind {
@@ -33,6 +35,10 @@ typedef enum body_kind {
     BODY_COIL,
     BODY_SLAB,
     BODY_CHAIN,
+    BODY_LETTER_T,
+    BODY_LETTER_U,
+    BODY_LETTER_V,
+    BODY_LETTER_W,
     BODY_KIND_COUNT
 } body_kind;
 

@@ -11,7 +11,7 @@ double obstacles_height(const obstacles *o, double x) {
 }
 
 /* Out through the top, or forwards through the riser that is nearer. */
-bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out) {
+static bool hit_ground(const obstacles *o, const double point[3], obstacle_hit *out) {
     double depth = obstacles_height(o, point[0]) - point[2];
     if (depth <= 0.0) return false;
     *out = (obstacle_hit){{0.0, 0.0, 1.0}, depth, NULL};
@@ -20,6 +20,19 @@ bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_h
     double forwards = o->start + steps_below * o->tread - point[0];
     if (forwards > 0.0 && forwards < depth) *out = (obstacle_hit){{1.0, 0.0, 0.0}, forwards, NULL};
     return true;
+}
+
+/* Of ground and walls the one that the point is deepest in. */
+bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out) {
+    bool hit = hit_ground(o, point, out);
+    for (int k = 0; k < 2 && o->tray > 0.0; k++) {
+        double depth = fabs(point[k]) - o->tray;
+        if (depth <= (hit ? out->depth : 0.0)) continue;
+        *out = (obstacle_hit){{0.0, 0.0, 0.0}, depth, NULL};
+        out->normal[k] = point[k] > 0.0 ? -1.0 : 1.0;
+        hit = true;
+    }
+    return hit;
 }
 
 bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out) {

@@ -15,10 +15,12 @@ typedef struct ball {
 
 /* Ground at z = 0 below everything. Stairs descend along +x: step i of step_count covers the x from
  * start + i * tread to start + (i + 1) * tread, with its top at (step_count - i) * riser; before the first
- * the top stays as high. */
+ * the top stays as high. A tray is a square of ground between walls as high as one likes, about the origin.
+ */
 typedef struct obstacles {
     uint32_t step_count, ball_count;
     double start, tread, riser;
+    double tray;     /* half its width; 0: there is none */
     double friction; /* Coulomb's coefficient */
     double gravity;  /* acceleration downwards */
     ball balls[BALLS_MAX];
@@ -30,10 +32,10 @@ double obstacles_height(const obstacles *o, double x);
 /* Where a point is inside an obstacle: the way out, and whose. */
 typedef struct obstacle_hit {
     double normal[3], depth;
-    ball *pushed; /* NULL: ground or stairs */
+    ball *pushed; /* NULL: ground, stairs or walls */
 } obstacle_hit;
 
-/* Whether the point is inside ground or stairs, or inside ball `which`; if not, *out is untouched. */
+/* Whether the point is inside ground, stairs or walls, or inside ball `which`; if not, *out is untouched. */
 bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out);
 bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out);
 

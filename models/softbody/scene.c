@@ -1,7 +1,8 @@
 /* The recordings: which body falls how, onto what. */
 #include "models/softbody/scene.h"
-#include "models/softbody/vector.h"
+#include "models/softbody/turn.h"
 
+#include <math.h>
 #include <string.h>
 
 #define FLOOR                                                                                                \
@@ -120,20 +121,6 @@ const scene *scene_find(const char *name) {
         if (strcmp(scenes[i].name, name) == 0) return &scenes[i];
     }
     return NULL;
-}
-
-/* Rodrigues' formula, rounded to single precision: the only sines and cosines of a recording, and those of
- * different libraries differ in their last bits. */
-static void turn_matrix(const double axis[3], double degrees, double out[3][3]) {
-    double unit[3] = {axis[0], axis[1], axis[2]}, angle = degrees * 3.14159265358979323846 / 180.0;
-    if (!normalize(unit)) angle = 0.0;
-    for (int i = 0; i < 3; i++) {
-        double row[3] = {i == 0, i == 1, i == 2}, crossed[3];
-        cross(row, unit, crossed);
-        for (int j = 0; j < 3; j++)
-            out[i][j] = (float)(cos(angle) * row[j] + sin(angle) * crossed[j] +
-                                (1.0 - cos(angle)) * unit[i] * unit[j]);
-    }
 }
 
 soft_body scene_begin(const scene *s, const body *shape) {

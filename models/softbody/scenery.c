@@ -7,6 +7,9 @@ enum { BALL_TRIANGLES = 1280 };
 /* How far ground and steps reach to all sides, and the ground downwards. */
 static const double reach = 12.0, thickness = 0.5;
 
+/* Walls are drawn so low that one sees into the tray. */
+static const double wall = 0.1, wall_height = 0.3;
+
 /* Corners as the bits of 0 to 7: x, y, z. */
 static void add_box(body *b, const double low[3], const double high[3]) {
     static const uint8_t sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
@@ -18,6 +21,15 @@ static void add_box(body *b, const double low[3], const double high[3]) {
         const uint8_t *s = sides[i];
         body_add_triangle(b, first + s[0], first + s[1], first + s[2]);
         body_add_triangle(b, first + s[0], first + s[2], first + s[3]);
+    }
+}
+
+static void add_walls(body *b, double inner) {
+    double outer = inner + wall;
+    for (int side = -1; side <= 1; side += 2) {
+        double near = side > 0 ? inner : -outer;
+        add_box(b, (double[3]){near, -outer, 0.0}, (double[3]){near + wall, outer, wall_height});
+        add_box(b, (double[3]){-inner, near, 0.0}, (double[3]){inner, near + wall, wall_height});
     }
 }
 
@@ -35,6 +47,7 @@ bool scenery_make(const obstacles *o, body *out, io_error *error) {
     body made = {0}, sphere;
     if (!make_sphere(&sphere, error)) return false;
     add_box(&made, (double[3]){-reach, -reach, -thickness}, (double[3]){reach, reach, 0.0});
+    if (o->tray > 0.0) add_walls(&made, o->tray);
     for (uint32_t i = 0; i < o->step_count; i++) {
         double end = o->start + (i + 1) * o->tread, begin = i == 0 ? -reach : end - o->tread;
         add_box(&made, (double[3]){begin, -0.5 * reach, 0.0},

@@ -16,6 +16,7 @@ typedef enum exit_code {
 /* Each takes the arguments from the command's name on. */
 int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
+int command_sense(int argument_count, char **arguments);
 int command_check(int argument_count, char **arguments);
 int command_info(int argument_count, char **arguments);
 int command_report(int argument_count, char **arguments);

@@ -69,20 +69,20 @@ static bool parse_colour(const char *text, colouring *out) {
     return false;
 }
 
-static bool parse_size(const char *text, picture_options *picture) {
+bool parse_picture_size(const char *text, picture_options *picture) {
     char end = '\0';
     return sscanf(text, "%5ux%5u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
            picture->height >= 16 && picture->width <= 8192 && picture->height <= 8192;
 }
 
-static bool parse_view(const char *text, picture_options *picture) {
+bool parse_picture_view(const char *text, picture_options *picture) {
     char end = '\0';
     return sscanf(text, "%lf,%lf%c", &picture->azimuth, &picture->elevation, &end) == 2 &&
            picture->elevation >= -90.0 && picture->elevation <= 90.0 && picture->azimuth >= -1e6 &&
            picture->azimuth <= 1e6;
 }
 
-static bool parse_up(const char *text, picture_options *picture) {
+bool parse_picture_up(const char *text, picture_options *picture) {
     picture->y_up = strcmp(text, "y") == 0;
     return picture->y_up || strcmp(text, "z") == 0;
 }
@@ -122,13 +122,13 @@ static bool set_option(int id, const char *value, render_options *o, given_optio
         return true;
     case 's':
         given->size = true;
-        return parse_size(value, &o->picture);
+        return parse_picture_size(value, &o->picture);
     case 'v':
-        return parse_view(value, &o->picture);
+        return parse_picture_view(value, &o->picture);
     case 'z':
         return o->zoom = true;
     case 'u':
-        return parse_up(value, &o->picture);
+        return parse_picture_up(value, &o->picture);
     case 'e':
         return o->picture.wire = true;
     case 'w':

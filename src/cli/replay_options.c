@@ -129,8 +129,7 @@ static bool parse_start(const char *text, cscd_start *out) {
     return false;
 }
 
-/* 0, or a length that the library takes. */
-static bool parse_length(const char *text, double *out) {
+bool parse_length(const char *text, double *out) {
     double value;
     if (!parse_double(text, &value) || value < 0.0) return false;
     if (value != 0.0 && (value < 0x1p-300 || value > 0x1p300)) return false;

@@ -1,0 +1,33 @@
+/* Eight soft bodies that fall into a tray and tumble together. */
+#ifndef CSCD_MODELS_TUMBLE_H
+#define CSCD_MODELS_TUMBLE_H
+
+#include "models/shapes/body.h"
+#include "models/softbody/soft_body.h"
+#include "src/io/io_error.h"
+
+enum { TUMBLE_BODIES = 8, TUMBLE_FRAMES = 150 };
+
+extern const char tumble_name[], tumble_text[];
+
+typedef struct tumble {
+    body shape;    /* as the bodies begin, in single precision */
+    double *frame; /* its vertices now, in single precision */
+    obstacles around;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+    soft_body soft; /* all bodies: one lattice, of which each has a piece of its own */
+    self_contacts contacts;
+    double *start; /* the vertices where the detector's interval starts */
+} tumble;
+
+/* At the first frame, with a context that outlives it. On false there is nothing to close, and *error says
+ * why. */
+bool tumble_open(cscd_context *context, tumble *out, io_error *error);
+void tumble_close(tumble *t);
+
+/* On to the next frame. */
+bool tumble_advance(tumble *t, io_error *error);
+
+#endif

@@ -1,0 +1,14 @@
+/* Letters as thick as their strokes, with round edges: T, U, V, W. */
+#ifndef CSCD_MODELS_LETTERS_H
+#define CSCD_MODELS_LETTERS_H
+
+#include "models/shapes/body.h"
+
+/* Each adds exactly triangle_count triangles; false, and nothing added, where that cannot be. Sizes and
+ * places: catalogue.h. */
+bool add_letter_t(body *b, uint32_t triangle_count);
+bool add_letter_u(body *b, uint32_t triangle_count);
+bool add_letter_v(body *b, uint32_t triangle_count);
+bool add_letter_w(body *b, uint32_t triangle_count);
+
+#endif

@@ -1,0 +1,45 @@
+/* A context, a mesh, a plan, a partition and sensors for a scene; anything that fails there fails the test.
+ */
+#ifndef CSCD_TEST_SENSOR_RIG_H
+#define CSCD_TEST_SENSOR_RIG_H
+
+#include "cscd/cscd.h"
+#include "cscd/sensors.h"
+#include "tests/support/scenes.h"
+
+typedef struct sensor_setup {
+    uint32_t regions;                        /* of a plan by k-means; 0: no plan */
+    const cscd_partition_options *partition; /* NULL: the defaults */
+    const cscd_sensor_options *sensors;
+} sensor_setup;
+
+typedef struct sensor_rig {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_partition *partition;
+    cscd_sensors *sensors;
+} sensor_rig;
+
+/* Cells are made at x0. setup NULL: all defaults */
+sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup);
+void sensor_rig_destroy(sensor_rig *r);
+cscd_warnings sensor_rig_step(const sensor_rig *r, const double *start, const double *end);
+
+/* The first warning of two objects, NULL if there is none; object_a < object_b. */
+const cscd_warning *find_warning(const cscd_warnings *warnings, uint32_t object_a, uint32_t object_b);
+
+/* The warning with the earliest contact of two objects, NULL if there is none. */
+const cscd_warning *find_contact(const cscd_warnings *warnings, uint32_t object_a, uint32_t object_b);
+
+/* Adds a closed tube along a path in a plane z = const: rings of `segments` vertices around its points, and a
+ * vertex on each of its ends. */
+void scene_add_tube(scene *s, const double (*path)[3], int count, double radius, int segments);
+
+/* A tube along corners, whose sides are cut into steps of about a length. */
+void scene_add_bent_tube(scene *s, const double (*corners)[3], int count, double radius, double step);
+
+/* Moves vertices first .. end - 1 of the positions x. */
+void shift_vertices(uint32_t first, uint32_t end, const double by[3], double *x);
+
+#endif

@@ -1,0 +1,156 @@
+/* Sensors and memory: every allocation fails once, nothing leaks, steady steps allocate nothing; and work
+ * grows with the scene, not with its square. */
+#include "cscd/cscd.h"
+#include "cscd/sensors.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene s; /* large; one test at a time */
+
+typedef struct sensed {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_partition *partition;
+    cscd_sensors *sensors;
+} sensed;
+
+static cscd_status create(counting_allocator *counter, cscd_sensor_method method, sensed *out) {
+    cscd_context_options options = cscd_context_defaults();
+    options.allocator = counting_allocator_interface(counter);
+    options.thread_count = 1;
+    cscd_sensor_options sensor_options = cscd_sensor_defaults();
+    sensor_options.method = method;
+    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    cscd_status status = cscd_context_create(&options, &out->context);
+    if (status == CSCD_OK) status = cscd_mesh_create(out->context, &desc, &out->mesh);
+    if (status == CSCD_OK) status = cscd_partition_create(out->mesh, NULL, s.x0, NULL, &out->partition);
+    if (status == CSCD_OK)
+        status = cscd_sensors_create(out->mesh, out->partition, &sensor_options, &out->sensors);
+    return status;
+}
+
+static void destroy(sensed *r) {
+    cscd_sensors_destroy(r->sensors);
+    cscd_partition_destroy(r->partition);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+    *r = (sensed){0};
+}
+
+/* A step that lacks memory succeeds when it is repeated, with what it would have given. */
+static cscd_status step_twice(const sensed *r, cscd_warning *warning) {
+    cscd_warnings found = {NULL, 4711, 0};
+    cscd_status status = cscd_sensors_step(r->sensors, s.x0, s.x1, &found);
+    if (status == CSCD_OUT_OF_MEMORY) {
+        assert_int_equal(found.count, 4711);
+        assert_non_null(strstr(cscd_context_detail(r->context), "out of memory"));
+        assert_int_equal(cscd_sensors_step(r->sensors, s.x0, s.x1, &found), CSCD_OK);
+    }
+    assert_int_equal(found.count, 1);
+    *warning = found.items[0];
+    return status;
+}
+
+static void fail_each(cscd_sensor_method method) {
+    sensed r = {0};
+    cscd_warning expected, found;
+    counting_allocator counter = counting_allocator_start();
+    assert_int_equal(create(&counter, method, &r), CSCD_OK);
+    size_t created = counter.calls;
+    assert_int_equal(step_twice(&r, &expected), CSCD_OK);
+    size_t calls = counter.calls;
+    assert_true(calls > created + 3);
+    destroy(&r);
+    for (size_t n = 0; n < calls; n++) {
+        counter = counting_allocator_start();
+        counter.fail_at = n;
+        cscd_status status = create(&counter, method, &r);
+        assert_int_equal(status, n < created ? CSCD_OUT_OF_MEMORY : CSCD_OK);
+        if (status == CSCD_OK) {
+            assert_int_equal(step_twice(&r, &found), CSCD_OUT_OF_MEMORY);
+            assert_int_equal(found.vertex_a, expected.vertex_a);
+            assert_int_equal(found.vertex_b, expected.vertex_b);
+            assert_true(found.distance == expected.distance && found.toi == expected.toi);
+        }
+        destroy(&r);
+        assert_int_equal(counter.live, 0);
+        assert_int_equal(counter.bytes, 0);
+    }
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    scene_make(SCENE_TWO_SPHERES, 3, &s);
+    fail_each(CSCD_SENSORS_CELLS);
+    fail_each(CSCD_SENSORS_RANDOM);
+}
+
+static void steady_steps_allocate_nothing(void **state) {
+    (void)state;
+    for (int method = 0; method < 2; method++) {
+        sensed r = {0};
+        counting_allocator counter = counting_allocator_start();
+        cscd_warnings found;
+        scene_make(SCENE_LINKED_TORI, 2, &s);
+        assert_int_equal(create(&counter, (cscd_sensor_method)method, &r), CSCD_OK);
+        for (int frame = 0; frame < 40; frame++) {
+            size_t before = counter.calls;
+            const double *start = frame % 2 ? s.x1 : s.x0, *end = frame % 2 ? s.x0 : s.x1;
+            assert_int_equal(cscd_sensors_step(r.sensors, start, end, &found), CSCD_OK);
+            if (frame > 20) assert_int_equal(counter.calls, before);
+        }
+        destroy(&r);
+    }
+}
+
+/* ---- what the work grows with ------------------------------------------------------------------------- */
+
+/* Pairs of spheres that come to touch, far from other pairs. */
+static cscd_sensor_counters work_of(int pairs) {
+    sensed r = {0};
+    counting_allocator counter = counting_allocator_start();
+    cscd_warnings found;
+    scene_clear(&s);
+    for (int i = 0; i < 2 * pairs; i++) {
+        const double centre[3] = {i % 2 ? 2.05 : 0.0, 40.0 * (i / 2 % 3), 40.0 * (i / 6)};
+        uint32_t first = s.vertex_count;
+        scene_add_sphere(&s, centre, 1.0, 4, 8);
+        for (uint32_t v = first; v < s.vertex_count; v++) s.x1[v * 3] -= i % 2 ? 0.2 : 0.0;
+    }
+    assert_int_equal(create(&counter, CSCD_SENSORS_CELLS, &r), CSCD_OK);
+    assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x1, &found), CSCD_OK);
+    assert_int_equal(found.count, pairs);
+    cscd_sensor_counters counters = cscd_sensors_counters(r.sensors);
+    destroy(&r);
+    return counters;
+}
+
+static void expect_twice(uint64_t few, uint64_t many) {
+    assert_true(few > 0);
+    assert_true(many > 3 * few / 2 && many < 5 * few / 2);
+}
+
+static void work_grows_with_the_scene(void **state) {
+    (void)state;
+    cscd_sensor_counters few = work_of(7), many = work_of(14);
+    expect_twice(few.vertices, many.vertices);
+    expect_twice(few.particle_pairs, many.particle_pairs);
+    expect_twice(few.tests, many.tests);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(steady_steps_allocate_nothing),
+        cmocka_unit_test(work_grows_with_the_scene),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
