@@ -166,7 +166,13 @@ static tumble tumble_of(uint32_t frame) {
     return t;
 }
 
-/* At first they fall freely. */
+static void check_second(const double *frame) {
+    tumble again = tumble_of(2);
+    assert_memory_equal(frame, again.frame, (size_t)again.shape.vertex_count * 3 * sizeof *frame);
+    tumble_close(&again);
+}
+
+/* At first they fall freely; they do so again. */
 static void soft_bodies_fall_onto_each_other(void **state) {
     (void)state;
     io_error error;
@@ -175,25 +181,18 @@ static void soft_bodies_fall_onto_each_other(void **state) {
     check_closed(t.mesh, TUMBLE_BODIES);
     assert_int_equal(t.shape.triangle_count, 8148);
     assert_int_equal(census_begin(t.mesh, &c), CSCD_OK);
-    for (uint32_t frame = 0; frame < 34; frame++) {
+    for (uint32_t frame = 0; frame < 30; frame++) {
         if (frame > 0 && !tumble_advance(&t, &error)) fail_msg("%s", error.text);
         assert_int_equal(census_add(&c, t.frame), CSCD_OK);
         assert_true(frame > 10 || c.contacts == 0);
+        if (frame == 2) check_second(t.frame);
     }
-    assert_true(c.between_intervals > 0 && c.between_intervals < 30);
+    assert_true(c.between_intervals > 0 && c.between_intervals < 20);
     assert_int_equal(c.within_intervals, 0);
     for (uint32_t i = 0; i < t.shape.vertex_count * 3; i++)
         assert_true(i % 3 == 2 ? t.frame[i] > -0.1 : t.frame[i] > -1.9 && t.frame[i] < 1.9);
     census_free(&c);
     tumble_close(&t);
-}
-
-static void soft_bodies_repeat(void **state) {
-    (void)state;
-    tumble a = tumble_of(2), b = tumble_of(2);
-    assert_memory_equal(a.frame, b.frame, (size_t)a.shape.vertex_count * 3 * sizeof(double));
-    tumble_close(&a);
-    tumble_close(&b);
 }
 
 static void the_program_writes_model_and_frames(void **state) {
@@ -253,7 +252,6 @@ int main(void) {
         cmocka_unit_test(rows_touch_their_neighbours),
         cmocka_unit_test(frames_repeat),
         cmocka_unit_test(soft_bodies_fall_onto_each_other),
-        cmocka_unit_test(soft_bodies_repeat),
         cmocka_unit_test(the_program_writes_model_and_frames),
         cmocka_unit_test(the_program_names_its_scenes),
     };
