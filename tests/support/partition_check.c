@@ -1,4 +1,4 @@
-/* What holds for every partition; used inside cmocka tests. */
+/* What holds for every partition, and bodies to partition; used inside cmocka tests. */
 #include "tests/support/partition_check.h"
 
 #include <math.h>
@@ -104,4 +104,32 @@ void check_partition(const cscd_partition *partition) {
     check_parts(partition);
     check_cells(partition);
     check_neighbours(partition);
+}
+
+cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                             const cscd_partition_options *options) {
+    cscd_partition *partition = NULL;
+    assert_int_equal(cscd_partition_create(mesh, plan, positions, options, &partition), CSCD_OK);
+    check_partition(partition);
+    return partition;
+}
+
+row row_of(uint32_t count, const body_kind *kinds, const double *scales,
+           const cscd_partition_options *options) {
+    row r = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        body one = body_of(kinds[i], body_nearest_count(kinds[i], 600));
+        for (uint32_t j = 0; j < one.vertex_count * 3; j++) one.positions[j] *= scales[i];
+        body_append(&r.b, &one, (double[3]){20.0 * i, 0, 0});
+        body_free(&one);
+    }
+    r.mesh = body_mesh(&r.b, 1);
+    r.partition = partition_of(r.mesh, NULL, r.b.positions, options);
+    return r;
+}
+
+void row_free(row *r) {
+    cscd_partition_destroy(r->partition);
+    body_mesh_destroy(r->mesh);
+    body_free(&r->b);
 }
