@@ -69,22 +69,23 @@ static double progress_at(const walk *w, uint32_t vertex) {
 }
 
 /* The neighbour of `at`, in the cell or not, at the smallest angle to the direction (3.19-3.21), of those
- * that lie farther along; `at` where none does. */
-static uint32_t next_vertex(const walk *w, uint32_t at, double *length) {
+ * that lie farther along; `at` where none does. Angles are compared by squares of their cosines, which are
+ * positive, multiplied out. */
+static uint32_t next_vertex(const walk *w, uint32_t at) {
     const cscd_mesh *mesh = w->partition->mesh;
-    double here = progress_at(w, at), best = -INFINITY;
+    double here = progress_at(w, at), best_along = 0.0, best_squared = 1.0;
     uint32_t next = at;
     for (uint32_t s = mesh->vertex_star_offsets[at]; s < mesh->vertex_star_offsets[at + 1]; s++) {
         for (int k = 0; k < 3; k++) {
             uint32_t vertex = mesh->triangles[mesh->vertex_stars[s]][k];
-            if (vertex == at || !(progress_at(w, vertex) > here)) continue;
             double way[3];
             vector_subtract(position_of(w->positions, vertex), position_of(w->positions, at), way);
-            double size = sqrt(vector_dot(way, way)), cosine = vector_dot(way, w->direction) / size;
-            if (!(cosine > best)) continue;
-            best = cosine;
+            double along = vector_dot(way, w->direction), squared = vector_dot(way, way);
+            if (!(along > 0.0 && along * along * best_squared > best_along * best_along * squared)) continue;
+            if (!(progress_at(w, vertex) > here)) continue;
+            best_along = along;
+            best_squared = squared;
             next = vertex;
-            *length = size;
         }
     }
     return next;
@@ -94,12 +95,14 @@ static uint32_t next_vertex(const walk *w, uint32_t at, double *length) {
  * computed, so no vertex comes twice and the walk ends on any mesh: also in a cell without an outside, where
  * it goes to the far end of the surface only. */
 static double walk_out(const walk *w) {
-    double total = 0.0, length = 0.0;
+    double total = 0.0;
     uint32_t at = w->from;
     while (w->partition->vertex_cells[at] == w->cell) {
-        uint32_t next = next_vertex(w, at, &length);
+        uint32_t next = next_vertex(w, at);
         if (next == at) break;
-        total += length;
+        double way[3];
+        vector_subtract(position_of(w->positions, next), position_of(w->positions, at), way);
+        total += sqrt(vector_dot(way, way));
         at = next;
     }
     return total;
