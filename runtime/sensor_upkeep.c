@@ -7,6 +7,8 @@
 #define SINE_OF_FLAT 0.017452406437283512
 /* A part turns concave when the share of its concave edges grows by more than this. */
 #define CONCAVE_GROWTH 0.1
+/* Vertices of a cell from which its area is estimated at first. */
+enum { ESTIMATES_OF_CELL = 64 };
 
 cscd_status sensor_upkeep_create(const cscd_partition *partition, sensor_upkeep *out) {
     const cscd_mesh *mesh = partition->mesh;
@@ -268,11 +270,24 @@ static void measure(sensor_upkeep *upkeep, const cscd_partition *partition, cons
 
 /* ---- the check ----------------------------------------------------------------------------------------- */
 
-static double largest_estimate(const cscd_partition *partition, const double *positions, uint32_t part) {
+/* Of vertices spread over the cell: all of a small one. */
+static double largest_estimate(const cscd_partition *partition, const double *positions, uint32_t cell) {
+    uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
+    uint32_t stride = (end - begin + ESTIMATES_OF_CELL - 1) / ESTIMATES_OF_CELL;
     double largest = 0.0;
-    for (uint32_t i = partition->part_vertex_offsets[part]; i < partition->part_vertex_offsets[part + 1]; i++)
-        largest = larger(largest, sensor_upkeep_estimate(partition, positions, partition->part_vertices[i]));
+    for (uint32_t i = begin; i < end; i += stride)
+        largest = larger(largest, sensor_upkeep_estimate(partition, positions, partition->cell_vertices[i]));
     return largest;
+}
+
+static void take_measure(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,
+                         uint32_t part) {
+    const cscd_part *cells = &partition->parts[part];
+    part_measures *first = &upkeep->first[part];
+    *first = upkeep->now[part];
+    for (uint32_t i = 0; i < cells->cell_count; i++)
+        first->estimate =
+            larger(first->estimate, largest_estimate(partition, positions, cells->first_cell + i));
 }
 
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions) {
@@ -283,8 +298,7 @@ void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition
     for (uint32_t p = 0; p < partition->part_count; p++) {
         if (upkeep->part_generations[p] == partition->part_generations[p]) continue;
         upkeep->part_generations[p] = partition->part_generations[p];
-        upkeep->first[p] = upkeep->now[p];
-        upkeep->first[p].estimate = largest_estimate(partition, positions, p);
+        take_measure(upkeep, partition, positions, p);
     }
     upkeep->generation = partition->generation;
 }
