@@ -174,7 +174,7 @@ fuzz-elementary: packages
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
 	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(DEFORMING) \
-	    $(BUILD)/benchmarks/machine $(BUILD)/benchmarks/narrow_phase
+	    $(BUILD)/benchmarks/machine $(BUILD)/benchmarks/narrow_phase $(BUILD)/benchmarks/sensors
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
@@ -299,6 +299,13 @@ $(BUILD)/benchmarks/published_rules: $(call objects,$(RULES_SOURCES)) $(MODEL_PA
 METHODS_SOURCES := benchmarks/methods.c benchmarks/methods_report.c benchmarks/contest.c benchmarks/scene_files.c \
                    benchmarks/thesis_numbers.c src/cli/provenance.c src/timer.c
 $(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+# Looks inside, for rules that the public header has not and bounds to compare with.
+SENSORS_SOURCES := benchmarks/sensors.c benchmarks/sensor_trial.c benchmarks/sensor_cost.c benchmarks/scene_files.c \
+                   src/cli/object_pairs.c
+$(BUILD)/benchmarks/sensors: $(call objects,$(SENSORS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(CORE_OBJECTS)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 

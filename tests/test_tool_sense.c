@@ -122,6 +122,8 @@ static void says_what_it_has_missed(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("sense", SENSE, "--compare", "--mu", "0.001", "--reff", "10");
     assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.error, "warning: frame 1: part 0 has an edge longer than --mu"));
+    assert_null(strstr(run.out, "has new cells"));
     assert_non_null(strstr(run.out, "found 0, missed 2, false 0\n"));
     assert_non_null(strstr(run.out, "recall 0.0000, precision 1.0000"));
     assert_non_null(strstr(run.out, "pairs were missed in the intervals from frame 3, 5\n"));

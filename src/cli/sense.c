@@ -22,6 +22,7 @@ typedef struct sense {
     cscd_detector *detector; /* NULL without --compare */
     double *x0, *x1;
     uint32_t first, last, shown; /* frames; shown: in the picture, UINT32_MAX: there is none */
+    bool edge_told;
     sense_paths paths;
     sense_files files;
     sense_totals totals;
@@ -122,12 +123,20 @@ static bool compare(sense *s, sense_interval *interval, io_error *error) {
     return frame_list_add(&s->missed_frames, interval->frame) || io_fail(error, "out of memory");
 }
 
+/* New cells would not shorten an edge: it is told once. */
+static void tell_edge(sense *s, uint32_t frame, uint32_t part) {
+    if (!s->edge_told && !s->options->quiet)
+        warn("frame %u: part %u has an edge longer than --mu, so contacts there may be missed", frame, part);
+    s->edge_told = true;
+}
+
 /* Cells anew for the parts that ask for it, at the end of the interval. */
 static bool renew(sense *s, sense_interval *interval, io_error *error) {
     for (uint32_t p = 0; interval->warnings->renewals_due > 0 && p < cscd_partition_part_count(s->partition);
          p++) {
         cscd_renewal why = cscd_sensors_renewal(s->sensors, p);
-        if (why == CSCD_RENEWAL_NONE) continue;
+        if (why == CSCD_RENEWAL_EDGE) tell_edge(s, interval->frame + 1, p);
+        if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
         if (cscd_partition_renew(s->partition, s->x1, p) != CSCD_OK) return api_failed(s, error);
         if (!s->options->quiet)
             printf("frame %u: part %u has new cells, %u now (%s)\n", interval->frame + 1, p,

@@ -1,0 +1,154 @@
+/* What particle sensors are worth: recall, false alarms and time on scenes of many objects, beside the
+ * detector. */
+#include "benchmarks/scene_files.h"
+#include "benchmarks/sensor_cost.h"
+#include "benchmarks/sensor_trial.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: sensors [--folder FOLDER] [--cost] [SCENE...]\n"
+    "\n"
+    "Recall and precision are of pairs of objects and intervals: those with a warning against those in which "
+    "the\n"
+    "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: "
+    "recordings\n"
+    "NAME.obj and NAME.pc2 in FOLDER (default build/models, by make models); a plan by charge is made where\n"
+    "NAME.plan.ply is missing. --cost: only the tables of cost by size and by number of objects.\n";
+
+static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
+                                         "three-spheres", "three-spheres-unequal",
+                                         "v-shape",       "u-pair",
+                                         "u-three",       "mixed",
+                                         "t-pair",        "w-pair",
+                                         "tumble"};
+
+enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
+
+/* ---- the methods --------------------------------------------------------------------------------------- */
+
+static const sensor_rules rules[] = {
+    {.name = "cells"},
+    {.name = "cells, plan", .plan = true},
+    {.name = "cells, scalar", .scalar = true},
+    {.name = "cells, mu 1 edge", .mu_edges = 1.0},
+    {.name = "cells, mu 1/2 edge", .mu_edges = 0.5},
+};
+
+static const sensor_rules random_rules[] = {
+    {.name = "random, 5", .random = true, .particles = 5},
+    {.name = "random, as cells", .random = true, .as_cells = true},
+};
+
+static void print_trial(const char *scene, const char *method, const sensor_trial *t, uint32_t runs) {
+    double n = runs;
+    printf("  %-21s %-18s %9.0f %8.0f %7.1f %8.1f %7.3f %9.3f %9.3f %7.1f %6.1f %9.3f %8.2f\n", scene, method,
+           t->particles / n, t->touching / n, (t->touching - t->found) / n, (t->warned - t->found) / n,
+           t->touching > 0 ? t->found / t->touching : 1.0, t->warned > 0 ? t->found / t->warned : 1.0,
+           t->touching > 0 ? t->confirmed / t->touching : 1.0, t->rounds / n, 100.0 * t->cycles / n,
+           t->ms / n, t->ms / n / t->trees_ms);
+    fflush(stdout);
+}
+
+/* The mean over some seeds, and how many of them have missed something. */
+static bool run_random(const recording_data *r, const sensor_truth *truth, const sensor_rules *rule,
+                       io_error *error) {
+    sensor_trial sum = {0};
+    sensor_rules seeded = *rule;
+    double least = 1.0, most = 0.0;
+    for (uint32_t seed = 1; seed <= RANDOM_SEEDS; seed++) {
+        sensor_trial one;
+        seeded.seed = seed;
+        if (!sensor_trial_run(r, truth, &seeded, &one, error)) return false;
+        sensor_trial_add(&sum, &one);
+        double recall = one.touching > 0 ? one.found / one.touching : 1.0;
+        least = recall < least ? recall : least;
+        most = recall > most ? recall : most;
+    }
+    print_trial(r->name, rule->name, &sum, RANDOM_SEEDS);
+    printf("  %-21s   recall of %d seeds: %.3f to %.3f\n", "", RANDOM_SEEDS, least, most);
+    return true;
+}
+
+static bool run_scene(const recording_data *r, io_error *error) {
+    sensor_truth truth;
+    if (!sensor_truth_find(r, &truth, error)) return false;
+    bool good = true;
+    for (size_t i = 0; good && i < sizeof rules / sizeof *rules; i++) {
+        sensor_trial trial;
+        good = sensor_trial_run(r, &truth, &rules[i], &trial, error);
+        if (good) print_trial(r->name, rules[i].name, &trial, 1);
+    }
+    for (size_t i = 0; good && i < sizeof random_rules / sizeof *random_rules; i++)
+        good = run_random(r, &truth, &random_rules[i], error);
+    if (good) printf("  %-21s %-18s %87.3f\n", r->name, "detector by trees", truth.trees_ms);
+    sensor_truth_free(&truth);
+    return good;
+}
+
+/* ---- the certified mode ----------------------------------------------------------------------------------
+ */
+
+static bool run_certified(const recording_data *r, io_error *error) {
+    for (int plan = 0; plan < 2; plan++) {
+        certified_trial c;
+        if (!certified_trial_run(r, plan != 0, &c, error)) return false;
+        printf("  %-21s %-5s %8.0f %8.1f %8.1f %8.1f %11.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
+               c.pairs, 100.0 * c.balls / c.pairs, 100.0 * c.boxes / c.pairs, 100.0 * c.both / c.pairs,
+               c.cells, c.balls_ms, c.boxes_ms);
+    }
+    return true;
+}
+
+/* ---- the program -----------------------------------------------------------------------------------------
+ */
+
+static bool for_scenes(const char *folder, const char *const *names, size_t count,
+                       bool (*run)(const recording_data *, io_error *), io_error *error) {
+    for (size_t i = 0; i < count; i++) {
+        recording_data r;
+        if (!recording_data_open(folder, names[i], folder, 1, &r, error)) return false;
+        bool good = run(&r, error);
+        recording_data_close(&r);
+        if (!good) return false;
+    }
+    return true;
+}
+
+static bool run_all(const char *folder, const char *const *names, size_t count, io_error *error) {
+    printf("  %-21s %-18s %9s %8s %7s %8s %7s %9s %9s %7s %6s %9s %8s\n", "scene", "method", "particles",
+           "touching", "missed", "false", "recall", "precision", "confirmed", "rounds", "cyc %", "ms",
+           "of trees");
+    if (!for_scenes(folder, names, count, run_scene, error)) return false;
+    printf("\ncertified apart, %% of watched pairs of parts in all intervals; ms for the update and all "
+           "questions\n"
+           "  %-21s %-5s %8s %8s %8s %8s %11s %11s %11s\n",
+           "scene", "plan", "pairs", "balls %", "boxes %", "both %", "cells", "balls ms", "boxes ms");
+    return for_scenes(folder, names, count, run_certified, error);
+}
+
+int main(int argument_count, char **arguments) {
+    const char *folder = "build/models";
+    bool cost_only = false;
+    int next = 1;
+    for (; next < argument_count && strncmp(arguments[next], "--", 2) == 0; next++) {
+        if (strcmp(arguments[next], "--folder") == 0 && next + 1 < argument_count) {
+            folder = arguments[++next];
+        } else if (strcmp(arguments[next], "--cost") == 0) {
+            cost_only = true;
+        } else {
+            bool asked = strcmp(arguments[next], "--help") == 0;
+            fputs(help, asked ? stdout : stderr);
+            return asked ? 0 : 2;
+        }
+    }
+    io_error error = {""};
+    bool named = next < argument_count;
+    const char *const *names = named ? (const char *const *)(arguments + next) : all_scenes;
+    bool good = cost_only || run_all(folder, names, named ? (size_t)(argument_count - next) : SCENES, &error);
+    if (good && !named) good = sensor_cost_print(&error);
+    if (!good) fprintf(stderr, "sensors: %s\n", error.text);
+    return good ? 0 : 1;
+}
