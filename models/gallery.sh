@@ -36,21 +36,13 @@ strip sleeve 20,12 4 0:239:21
 strip bag 20,15 4 0:259:23 '--weld exact'
 "$tool" render "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --frame 84 --colour contacts --view 0,10 --size 900x560 \
     --scenery "$models/pawn-drop-scenery.obj" -o "$images/pawn-contacts.png"
-whole() { # whole NAME VIEW FRAMES: obstacles are part of the model
-    "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$3" --columns 4 --size 300x225 --view "$2" -o "$images/$1.png"
+whole() { # whole NAME VIEW FRAMES [OPTIONS]: obstacles are part of the model
+    # shellcheck disable=SC2086
+    "$tool" render "$models/$1.obj" "$models/$1.pc2" --frames "$3" --columns 4 --size 300x225 --view "$2" ${4:-} \
+        -o "$images/$1.png"
 }
 whole rings 0,10 0:165:15
 whole press 20,10 0:165:15
-
-# Of docs/report.md, in a browser.
-reports=$models/reports
-mkdir -p "$reports"
-"$tool" preprocess "$models/figure.obj" -o "$models/figure.plan.ply" --report "$reports/figure.html" --quiet
-"$tool" preprocess "$models/pawn-drop.obj" --quiet
-"$tool" replay "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --scenery "$models/pawn-drop-scenery.obj" \
-    --report "$reports/pawn-drop.html" --quiet
-for method in charge single none iccd published; do
-    "$tool" replay "$models/pawn-drop.obj" "$models/pawn-drop.pc2" --method "$method" --json "$reports/$method.json" --quiet
-done
-(cd "$reports" && "$OLDPWD/$tool" report charge.json single.json none.json iccd.json published.json -o methods.html --quiet)
-/usr/bin/python3 tests/report/gallery.py "$reports/pawn-drop.html" "$reports/figure.html" "$reports/methods.html" "$images"
+whole t-pair 25,15 0:110:10 '--colour contacts'
+whole mixed 5,10 0:110:10 '--colour contacts'
+strip tumble 25,25 4 0:143:13

@@ -16,46 +16,28 @@ cscd_status particles_reserve(particles *p, uint32_t count) {
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
             if (!grow(context, blocks[i], *blocks[i] != NULL ? p->capacity : 0, count))
                 return CSCD_OUT_OF_MEMORY;
+        double(*near)[3] = context_allocate(context, count, sizeof *near);
+        if (near == NULL) return CSCD_OUT_OF_MEMORY;
+        context_free(context, p->near);
+        p->near = near;
         p->capacity = count;
     }
     return particle_grid_reserve(context, &p->grid, p->capacity);
 }
 
 void particles_free(particles *p) {
-    void *blocks[] = {p->vertices, p->groups, p->objects, p->targets, p->kept};
+    void *blocks[] = {p->vertices, p->groups, p->objects, p->targets, p->kept, p->near};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(p->context, blocks[i]);
     particle_grid_free(p->context, &p->grid);
 }
 
 /* ---- forces ------------------------------------------------------------------------------------------ */
 
-/* Lengths are taken in units of R_eff, so that only the scene's proportions decide. */
-typedef struct force_sum {
-    double vector[3], scalar, potential;
-} force_sum;
-
-/* (x_j - x) / r^3 by (3.13). Two particles in one place have no direction; they pull as hard as any. */
-static void add_attraction(const particles *p, const double d[3], double r, force_sum *sum) {
-    static const double anywhere[3] = {1.0, 0.0, 0.0};
-    double s = larger(r, p->closest) / p->radius;
-    double magnitude = 1.0 / (s * s);
-    sum->scalar += magnitude;
-    if (r > 0.0)
-        vector_add_scaled(sum->vector, magnitude / r, d, sum->vector);
-    else
-        vector_add_scaled(sum->vector, magnitude, anywhere, sum->vector);
-}
-
-/* The potential of a force of 1 / r^2 that ends at R_eff, where it is 0. */
-static double potential_of(const particles *p, double r) {
-    return p->radius / larger(r, p->closest) - 1.0;
-}
-
-/* What particle i would feel at x. with_count: its pairs are counted, each where its smaller particle is. */
-static force_sum forces_at(particles *p, uint32_t i, const double x[3], bool with_count) {
-    force_sum sum = {{0.0, 0.0, 0.0}, 0.0, 0.0};
+/* Finds all that i can feel where it is or where it can go next, none farther from it than reach. */
+static void find_near(particles *p, uint32_t i, const double x[3], double reach) {
     bool repels = p->rule == PARTICLE_POTENTIAL;
-    double reach = p->radius * p->radius;
+    double farthest = reach * reach, felt = p->radius * p->radius;
+    p->attracting = p->repelling = 0;
     grid_search search = particle_grid_around(&p->grid, x);
     for (const grid_entry *e; (e = grid_search_next(&search)) != NULL;) {
         bool attracts = e->group != p->groups[i];
@@ -64,43 +46,93 @@ static force_sum forces_at(particles *p, uint32_t i, const double x[3], bool wit
         vector_subtract(e->x, x, d);
         double squared = vector_dot(d, d);
         p->counters.distances++;
-        if (!(squared < reach)) continue;
-        double r = sqrt(squared);
-        if (attracts && with_count && i < e->particle) p->counters.pairs++;
-        if (repels)
-            sum.potential += attracts ? -potential_of(p, r) : potential_of(p, r);
-        else
-            add_attraction(p, d, r, &sum);
+        if (!(squared < farthest)) continue;
+        if (attracts && squared < felt && i < e->particle) p->counters.pairs++;
+        memcpy(p->near[attracts ? p->attracting++ : p->capacity - ++p->repelling], e->x, sizeof e->x);
     }
-    p->counters.vertices++;
+}
+
+/* The length of the sum of (x_j - x) / r^3 (3.13, 3.14), in units of 1 / R_eff^2. Two particles in one place
+ * have no direction; they pull as hard as any. */
+static double vector_force(const particles *p, const double x[3]) {
+    double reach = p->radius * p->radius, sum[3] = {0.0, 0.0, 0.0};
+    for (uint32_t j = 0; j < p->attracting; j++) {
+        double d[3];
+        vector_subtract(p->near[j], x, d);
+        double squared = vector_dot(d, d);
+        if (!(squared < reach)) continue;
+        double r = sqrt(squared), s = p->radius / larger(r, p->closest);
+        if (r > 0.0)
+            vector_add_scaled(sum, s * s / r, d, sum);
+        else
+            sum[0] += s * s;
+    }
+    return vector_dot(sum, sum);
+}
+
+static double scalar_force(const particles *p, const double x[3]) {
+    double reach = p->radius * p->radius, closest = p->closest * p->closest, sum = 0.0;
+    for (uint32_t j = 0; j < p->attracting; j++) {
+        double d[3];
+        vector_subtract(p->near[j], x, d);
+        double squared = vector_dot(d, d);
+        if (squared < reach) sum += reach / larger(squared, closest);
+    }
     return sum;
 }
 
-/* The larger, the better the vertex. */
-static double worth(const particles *p, const force_sum *sum) {
+static double strongest_force(const particles *p, const double x[3]) {
+    double least = p->radius * p->radius;
+    for (uint32_t j = 0; j < p->attracting; j++) {
+        double d[3];
+        vector_subtract(p->near[j], x, d);
+        least = smaller(least, vector_dot(d, d));
+    }
+    return -least;
+}
+
+/* The potential of one side's forces of 1 / r^2, which end at R_eff. */
+static double potential(const particles *p, const double (*others)[3], uint32_t count, const double x[3]) {
+    double reach = p->radius * p->radius, sum = 0.0;
+    for (uint32_t j = 0; j < count; j++) {
+        double d[3];
+        vector_subtract(others[j], x, d);
+        double squared = vector_dot(d, d);
+        if (squared < reach) sum += p->radius / larger(sqrt(squared), p->closest) - 1.0;
+    }
+    return sum;
+}
+
+/* What a vertex is worth to the particle whose surroundings are known: the more, the better. */
+static double worth(particles *p, const double x[3]) {
+    p->counters.vertices++;
+    p->counters.distances += p->attracting + p->repelling;
     switch (p->rule) {
     case PARTICLE_ATTRACTION:
-        return vector_dot(sum->vector, sum->vector);
+        return vector_force(p, x);
     case PARTICLE_SCALAR:
-        return sum->scalar;
+        return scalar_force(p, x);
+    case PARTICLE_STRONGEST:
+        return strongest_force(p, x);
     case PARTICLE_POTENTIAL:
-        return -sum->potential;
+        return potential(p, (const double(*)[3])p->near, p->attracting, x) -
+               potential(p, (const double(*)[3])p->near + p->capacity - p->repelling, p->repelling, x);
     }
     return 0.0;
 }
 
 /* The best of where it is and where it can go; of equals where it is, else the smaller vertex. */
 static uint32_t choose_target(particles *p, uint32_t i, const double *x) {
-    uint32_t best = p->vertices[i];
-    force_sum sum = forces_at(p, i, x + (size_t)best * 3, true);
-    double most = worth(p, &sum);
-    uint32_t end = p->ways.offsets[best + 1];
-    for (uint32_t k = p->ways.offsets[best]; k < end; k++) {
+    uint32_t own = p->vertices[i], best = own;
+    const double *here = x + (size_t)own * 3;
+    find_near(p, i, here, p->radius + p->longest_way);
+    if (p->attracting + p->repelling == 0) return own;
+    double most = worth(p, here);
+    for (uint32_t k = p->ways.offsets[own]; k < p->ways.offsets[own + 1]; k++) {
         uint32_t target = p->ways.targets[k];
-        sum = forces_at(p, i, x + (size_t)target * 3, false);
-        double here = worth(p, &sum);
-        if (!(here > most)) continue;
-        most = here;
+        double there = worth(p, x + (size_t)target * 3);
+        if (!(there > most)) continue;
+        most = there;
         best = target;
     }
     return best;
@@ -125,7 +157,7 @@ void particles_begin(particles *p) {
 }
 
 uint32_t particles_round(particles *p, const double *x) {
-    particle_grid_build(&p->grid, x, p->vertices, p->groups, p->count, p->radius);
+    particle_grid_build(&p->grid, x, p->vertices, p->groups, p->count, p->radius + p->longest_way);
     uint32_t moved = 0;
     for (uint32_t i = 0; i < p->count; i++) p->targets[i] = choose_target(p, i, x);
     for (uint32_t i = 0; i < p->count; i++) {

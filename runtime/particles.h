@@ -7,7 +7,8 @@
 /* Where a particle walks to. */
 typedef enum particle_rule {
     PARTICLE_ATTRACTION, /* where the sum of attractions, as vectors, is longest (3.14) */
-    PARTICLE_SCALAR,     /* where the sum of their magnitudes is largest: to compare with */
+    PARTICLE_SCALAR,     /* where the sum of their magnitudes is largest */
+    PARTICLE_STRONGEST,  /* where the largest of them is largest: as near to another one as it gets */
     PARTICLE_POTENTIAL   /* where the potential of attractions and of repulsions in its object is least */
 } particle_rule;
 
@@ -32,10 +33,13 @@ typedef struct particles {
     uint32_t *objects;  /* PARTICLE_POTENTIAL: those of one object push each other apart */
     uint32_t *targets;  /* where each goes next */
     uint32_t *kept;     /* a state to come back to */
+    double (*near)[3];  /* those around a particle: attracting ones from the front, repelling from the back */
+    uint32_t attracting, repelling;
     particle_grid grid;
 
-    double radius;  /* R_eff */
-    double closest; /* distances count as at least this, so that forces stay finite */
+    double radius;      /* R_eff */
+    double longest_way; /* no way is longer */
+    double closest;     /* distances count as at least this, so that forces stay finite */
 
     uint64_t state;                    /* a hash of all vertices */
     uint64_t recent[PARTICLES_RECENT]; /* of the last rounds, and one of an older round */

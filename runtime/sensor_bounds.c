@@ -16,12 +16,14 @@ cscd_status sensor_bounds_create(const cscd_partition *partition, sensor_bounds 
         .homes = context_allocate(context, triangles, sizeof(uint32_t)),
         .last = context_allocate(context, vertices, sizeof(uint32_t)),
         .cursor = context_allocate(context, vertices, sizeof(uint32_t)),
+        .middles = context_allocate(context, vertices, sizeof(uint32_t)),
         .unbounded = context_allocate(context, parts, sizeof(bool)),
         .balls = context_allocate(context, vertices, sizeof(cell_ball)),
         .boxes = context_allocate(context, parts, sizeof(part_box)),
     };
     if (bounds.offsets == NULL || bounds.corners == NULL || bounds.homes == NULL || bounds.last == NULL ||
-        bounds.cursor == NULL || bounds.unbounded == NULL || bounds.balls == NULL || bounds.boxes == NULL) {
+        bounds.cursor == NULL || bounds.middles == NULL || bounds.unbounded == NULL || bounds.balls == NULL ||
+        bounds.boxes == NULL) {
         sensor_bounds_destroy(&bounds);
         return context_out_of_memory(context);
     }
@@ -37,6 +39,7 @@ void sensor_bounds_destroy(sensor_bounds *bounds) {
     context_free(context, bounds->homes);
     context_free(context, bounds->last);
     context_free(context, bounds->cursor);
+    context_free(context, bounds->middles);
     context_free(context, bounds->unbounded);
     context_free(context, bounds->balls);
     context_free(context, bounds->boxes);
@@ -118,11 +121,37 @@ static void drop_repeated(sensor_bounds *bounds, uint32_t cell_count) {
     bounds->offsets[cell_count] = kept;
 }
 
-static void follow(sensor_bounds *bounds, const cscd_partition *partition) {
+static double squared_distance(const double a[3], const double b[3]) {
+    double way[3];
+    vector_subtract(a, b, way);
+    return vector_dot(way, way);
+}
+
+/* The cell's vertex next to the mean of them all. */
+static uint32_t middle_of(const cscd_partition *partition, const double *positions, uint32_t cell) {
+    uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
+    uint32_t middle = partition->cell_vertices[begin];
+    double mean[3] = {0.0, 0.0, 0.0}, nearest = INFINITY;
+    for (uint32_t i = begin; i < end; i++)
+        vector_add_scaled(mean, 1.0 / (end - begin), positions + (size_t)partition->cell_vertices[i] * 3,
+                          mean);
+    for (uint32_t i = begin; i < end; i++) {
+        uint32_t vertex = partition->cell_vertices[i];
+        double squared = squared_distance(positions + (size_t)vertex * 3, mean);
+        if (!(squared < nearest)) continue;
+        nearest = squared;
+        middle = vertex;
+    }
+    return middle;
+}
+
+static void follow(sensor_bounds *bounds, const cscd_partition *partition, const double *positions) {
     if (bounds->generation == partition->generation) return;
     find_homes(bounds, partition);
     list_corners(bounds, partition->cell_count);
     drop_repeated(bounds, partition->cell_count);
+    for (uint32_t c = 0; c < partition->cell_count; c++)
+        bounds->middles[c] = middle_of(partition, positions, c);
     bounds->generation = partition->generation;
 }
 
@@ -140,27 +169,23 @@ static double length_at_most(double squared) {
     return sqrt(squared) * LENGTH_SLACK + LENGTH_UNDERFLOW;
 }
 
-static double squared_distance(const double *positions, uint32_t a, uint32_t b) {
-    double way[3];
-    vector_subtract(positions + (size_t)a * 3, positions + (size_t)b * 3, way);
-    return vector_dot(way, way);
-}
-
 /* The distance of two points that move linearly is convex in time, so the larger one of both ends bounds it,
  * and a triangle is nowhere farther from a point than its corners. */
 static double radius_of(const sensor_bounds *bounds, uint32_t cell, uint32_t centre, const double *start,
                         const double *end) {
     double largest = 0.0;
     for (uint32_t i = bounds->offsets[cell]; i < bounds->offsets[cell + 1]; i++) {
-        largest = larger(squared_distance(start, bounds->corners[i], centre), largest);
-        largest = larger(squared_distance(end, bounds->corners[i], centre), largest);
+        size_t corner = (size_t)bounds->corners[i] * 3;
+        largest = larger(squared_distance(start + corner, start + (size_t)centre * 3), largest);
+        largest = larger(squared_distance(end + corner, end + (size_t)centre * 3), largest);
     }
     return length_at_most(largest);
 }
 
 void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                           const double *end, const uint32_t *centres) {
-    follow(bounds, partition);
+    follow(bounds, partition, start);
+    if (centres == NULL) centres = bounds->middles;
     for (uint32_t c = 0; c < partition->cell_count; c++) {
         cell_ball *ball = &bounds->balls[c];
         memcpy(ball->start, start + (size_t)centres[c] * 3, sizeof ball->start);
@@ -219,7 +244,7 @@ static void add_to_box(const double *point, part_box *box) {
 
 void sensor_bounds_update_boxes(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                                 const double *end) {
-    follow(bounds, partition);
+    follow(bounds, partition, start);
     for (uint32_t p = 0; p < partition->part_count; p++) {
         const cscd_part *part = &partition->parts[p];
         part_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

@@ -21,6 +21,7 @@ typedef struct sensor_bounds {
     uint64_t generation;             /* of the partition that the lists are of; 0: of none */
     uint32_t *offsets, *corners;     /* of the triangles that cell c answers for, each vertex once */
     uint32_t *homes, *last, *cursor; /* scratch: per triangle its cell, per vertex, per cell */
+    uint32_t *middles;               /* per cell: a vertex in its middle, when cells were made */
     bool *unbounded;                 /* per part: it has triangles, but no cell */
     cell_ball *balls;                /* room for one per vertex */
     part_box *boxes;                 /* per part */
@@ -31,7 +32,8 @@ cscd_status sensor_bounds_create(const cscd_partition *partition, sensor_bounds 
 /* Of zeros: does nothing. */
 void sensor_bounds_destroy(sensor_bounds *bounds);
 
-/* Balls for one interval about one vertex per cell: its particle's, or any other. */
+/* Balls for one interval about one vertex per cell: its particle's, or any other; NULL: about those in the
+ * middle, whose balls are smaller. */
 void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                           const double *end, const uint32_t *centres);
 

@@ -142,8 +142,10 @@ void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, 
                           const double *x0, const double *x1, double radius_given) {
     memset(reach->parts, 0, partition->part_count * sizeof *reach->parts);
     measure_edges(reach, partition, x0, x1);
+    reach->longest_edge = 0.0;
     for (uint32_t p = 0; p < partition->part_count; p++) {
-        reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge);
+        reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge) * rounding;
+        reach->longest_edge = larger(reach->longest_edge, reach->parts[p].longest_edge);
         measure_motion(&reach->parts[p], partition, p, x0, x1);
     }
     reach->mu_most = largest_mu(reach, partition);

@@ -14,6 +14,7 @@ typedef struct sensor_reach {
     double mu_given;     /* 0: by the parts */
     double mu_most;      /* no pair of parts has a larger one */
     double radius;       /* R_eff */
+    double longest_edge; /* of all, at the start or at the end */
     double typical_edge; /* the root mean square of the triangles' sides at the start */
 } sensor_reach;
 

@@ -7,6 +7,8 @@
 #define SINE_OF_FLAT 0.017452406437283512
 /* A part turns concave when the share of its concave edges grows by more than this. */
 #define CONCAVE_GROWTH 0.1
+/* Vertices of a cell from which its area is estimated at first. */
+enum { ESTIMATES_OF_CELL = 64 };
 
 cscd_status sensor_upkeep_create(const cscd_partition *partition, sensor_upkeep *out) {
     const cscd_mesh *mesh = partition->mesh;
@@ -69,22 +71,23 @@ static double progress_at(const walk *w, uint32_t vertex) {
 }
 
 /* The neighbour of `at`, in the cell or not, at the smallest angle to the direction (3.19-3.21), of those
- * that lie farther along; `at` where none does. */
-static uint32_t next_vertex(const walk *w, uint32_t at, double *length) {
+ * that lie farther along; `at` where none does. Angles are compared by squares of their cosines, which are
+ * positive, multiplied out. */
+static uint32_t next_vertex(const walk *w, uint32_t at) {
     const cscd_mesh *mesh = w->partition->mesh;
-    double here = progress_at(w, at), best = -INFINITY;
+    double here = progress_at(w, at), best_along = 0.0, best_squared = 1.0;
     uint32_t next = at;
     for (uint32_t s = mesh->vertex_star_offsets[at]; s < mesh->vertex_star_offsets[at + 1]; s++) {
         for (int k = 0; k < 3; k++) {
             uint32_t vertex = mesh->triangles[mesh->vertex_stars[s]][k];
-            if (vertex == at || !(progress_at(w, vertex) > here)) continue;
             double way[3];
             vector_subtract(position_of(w->positions, vertex), position_of(w->positions, at), way);
-            double size = sqrt(vector_dot(way, way)), cosine = vector_dot(way, w->direction) / size;
-            if (!(cosine > best)) continue;
-            best = cosine;
+            double along = vector_dot(way, w->direction), squared = vector_dot(way, way);
+            if (!(along > 0.0 && along * along * best_squared > best_along * best_along * squared)) continue;
+            if (!(progress_at(w, vertex) > here)) continue;
+            best_along = along;
+            best_squared = squared;
             next = vertex;
-            *length = size;
         }
     }
     return next;
@@ -94,12 +97,14 @@ static uint32_t next_vertex(const walk *w, uint32_t at, double *length) {
  * computed, so no vertex comes twice and the walk ends on any mesh: also in a cell without an outside, where
  * it goes to the far end of the surface only. */
 static double walk_out(const walk *w) {
-    double total = 0.0, length = 0.0;
+    double total = 0.0;
     uint32_t at = w->from;
     while (w->partition->vertex_cells[at] == w->cell) {
-        uint32_t next = next_vertex(w, at, &length);
+        uint32_t next = next_vertex(w, at);
         if (next == at) break;
-        total += length;
+        double way[3];
+        vector_subtract(position_of(w->positions, next), position_of(w->positions, at), way);
+        total += sqrt(vector_dot(way, way));
         at = next;
     }
     return total;
@@ -265,11 +270,24 @@ static void measure(sensor_upkeep *upkeep, const cscd_partition *partition, cons
 
 /* ---- the check ----------------------------------------------------------------------------------------- */
 
-static double largest_estimate(const cscd_partition *partition, const double *positions, uint32_t part) {
+/* Of vertices spread over the cell: all of a small one. */
+static double largest_estimate(const cscd_partition *partition, const double *positions, uint32_t cell) {
+    uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
+    uint32_t stride = (end - begin + ESTIMATES_OF_CELL - 1) / ESTIMATES_OF_CELL;
     double largest = 0.0;
-    for (uint32_t i = partition->part_vertex_offsets[part]; i < partition->part_vertex_offsets[part + 1]; i++)
-        largest = larger(largest, sensor_upkeep_estimate(partition, positions, partition->part_vertices[i]));
+    for (uint32_t i = begin; i < end; i += stride)
+        largest = larger(largest, sensor_upkeep_estimate(partition, positions, partition->cell_vertices[i]));
     return largest;
+}
+
+static void take_measure(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,
+                         uint32_t part) {
+    const cscd_part *cells = &partition->parts[part];
+    part_measures *first = &upkeep->first[part];
+    *first = upkeep->now[part];
+    for (uint32_t i = 0; i < cells->cell_count; i++)
+        first->estimate =
+            larger(first->estimate, largest_estimate(partition, positions, cells->first_cell + i));
 }
 
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions) {
@@ -280,8 +298,7 @@ void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition
     for (uint32_t p = 0; p < partition->part_count; p++) {
         if (upkeep->part_generations[p] == partition->part_generations[p]) continue;
         upkeep->part_generations[p] = partition->part_generations[p];
-        upkeep->first[p] = upkeep->now[p];
-        upkeep->first[p].estimate = largest_estimate(partition, positions, p);
+        take_measure(upkeep, partition, positions, p);
     }
     upkeep->generation = partition->generation;
 }

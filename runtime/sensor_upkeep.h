@@ -38,7 +38,8 @@ cscd_status sensor_upkeep_create(const cscd_partition *partition, sensor_upkeep 
 void sensor_upkeep_destroy(sensor_upkeep *upkeep);
 
 /* Before each step: takes the measure of parts whose cells are new since the last call. Their first estimate
- * is the largest that a particle may have anywhere in its cell. */
+ * is the largest from any vertex of a cell, or of a large cell any of 64, so that particles that walk about
+ * do not change it much. */
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions);
 
 /* particles: the vertex of each cell's; NULL: areas are not estimated. Writes a reason for every part, the

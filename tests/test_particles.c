@@ -109,13 +109,14 @@ static particles world(particle_rule rule, double radius, int worlds) {
         p.groups[i] = p.objects[i] = i % 5;
     }
     p.radius = radius;
+    p.longest_way = 4.0;
     p.closest = 1e-3;
     return p;
 }
 
 /* Where the sum over all pairs is best for particle i, written down once more. */
 static double plain_worth(const particles *p, const uint32_t *vertices, uint32_t i, uint32_t at) {
-    double vector[3] = {0, 0, 0}, scalar = 0.0, potential = 0.0;
+    double vector[3] = {0, 0, 0}, scalar = 0.0, strongest = 0.0, potential = 0.0;
     for (uint32_t j = 0; j < p->count; j++) {
         double d[3], r = distance(points[vertices[j]], points[at]);
         if (j == i || r >= p->radius) continue;
@@ -124,14 +125,16 @@ static double plain_worth(const particles *p, const uint32_t *vertices, uint32_t
         potential += (own > 0 ? 1 : -1) * (1 / s - 1 / p->radius);
         if (own > 0) continue;
         scalar += 1 / (s * s);
+        strongest = fmax(strongest, 1 / (s * s));
         if (r > 0)
             vector_add_scaled(vector, 1 / (s * s * r), d, vector);
         else
             vector[0] += 1 / (s * s);
     }
-    return p->rule == PARTICLE_POTENTIAL ? -potential
-           : p->rule == PARTICLE_SCALAR  ? scalar
-                                         : sqrt(vector_dot(vector, vector));
+    return p->rule == PARTICLE_POTENTIAL   ? -potential
+           : p->rule == PARTICLE_SCALAR    ? scalar
+           : p->rule == PARTICLE_STRONGEST ? strongest
+                                           : sqrt(vector_dot(vector, vector));
 }
 
 static void expect_best(const particles *p, const uint32_t *before, uint32_t i) {
@@ -154,7 +157,7 @@ static void every_particle_takes_the_best_way(void **state) {
     random_seed(2);
     for (int round = 0; round < 30; round++) {
         scatter(centre, 1.0);
-        particles p = world((particle_rule)(round % 3), round % 2 ? 0.4 : 1.5, 1);
+        particles p = world((particle_rule)(round % 4), round % 3 ? 0.4 : 1.5, 1);
         memcpy(before, p.vertices, sizeof before);
         particles_begin(&p);
         uint32_t moved = particles_round(&p, points[0]), expected = 0;
@@ -196,8 +199,11 @@ static void counters_count(void **state) {
 
 /* A particle of group i / 2 on a path of its own with `length` points from first on. */
 static void lay_paths(particles *p, uint32_t paths, uint32_t length) {
-    *p =
-        (particles){.context = context, .ways = {way_offsets, way_targets}, .radius = 100.0, .closest = 1e-3};
+    *p = (particles){.context = context,
+                     .ways = {way_offsets, way_targets},
+                     .radius = 100.0,
+                     .longest_way = 2.0,
+                     .closest = 1e-3};
     uint32_t ways = 0;
     for (uint32_t v = 0; v < paths * length; v++) {
         way_offsets[v] = ways;
@@ -268,7 +274,7 @@ static void cycles_are_as_long_as_they_say(void **state) {
     for (int i = 0; i < 100; i++) {
         scatter(centre, 1.0);
         for (uint32_t v = 0; v < POINTS; v++) points[v][0] += 100.0 * (v % WORLDS);
-        particles p = world((particle_rule)(i % 3), 1.0, WORLDS);
+        particles p = world((particle_rule)(i % 4), 1.0, WORLDS);
         particles_begin(&p);
         uint32_t length = particles_settle(&p, points[0], 2000);
         assert_true(p.rounds < 2000);
@@ -292,6 +298,7 @@ static void repulsion_spreads(void **state) {
                    .rule = PARTICLE_POTENTIAL,
                    .ways = {way_offsets, way_targets},
                    .radius = 1e3,
+                   .longest_way = 1.0,
                    .closest = 1e-3};
     assert_int_equal(particles_reserve(&p, 2), CSCD_OK);
     p.count = 2;

@@ -49,6 +49,26 @@ static void way_out_is_the_nearer_one(void **state) {
     expect_way_out(&stairs, 8.0, -0.1, 0.0, 0.1);
 }
 
+/* Between walls: back over the wall, or up where it is deeper in the ground. */
+static void trays_have_walls(void **state) {
+    (void)state;
+    const obstacles o = {.tray = 2.0};
+    static const struct {
+        double point[3], normal[3], depth;
+    } inside[] = {{{2.25, 0.5, 1.0}, {-1.0, 0.0, 0.0}, 0.25},
+                  {{-2.5, 1.0, 9.0}, {1.0, 0.0, 0.0}, 0.5},
+                  {{1.0, 2.125, -0.1}, {0.0, -1.0, 0.0}, 0.125},
+                  {{2.1, -2.5, 0.5}, {0.0, 1.0, 0.0}, 0.5},
+                  {{2.125, 0.0, -0.25}, {0.0, 0.0, 1.0}, 0.25}};
+    obstacle_hit hit;
+    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) {
+        assert_true(obstacles_hit_terrain(&o, inside[i].point, &hit));
+        assert_memory_equal(hit.normal, inside[i].normal, sizeof hit.normal);
+        assert_true(hit.depth == inside[i].depth && hit.pushed == NULL);
+    }
+    assert_false(obstacles_hit_terrain(&o, (double[3]){1.9, -1.9, 0.1}, &hit));
+}
+
 /* Moved the way out, a point is outside of everything, or on it. */
 static void way_out_leads_out(void **state) {
     (void)state;
@@ -184,6 +204,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heights_are_those_of_the_steps),
         cmocka_unit_test(way_out_is_the_nearer_one),
+        cmocka_unit_test(trays_have_walls),
         cmocka_unit_test(way_out_leads_out),
         cmocka_unit_test(balls_push_from_their_centres),
         cmocka_unit_test(balls_fall_and_come_to_rest),

@@ -154,6 +154,37 @@ static void what_is_no_summary_is_named(void **state) {
     EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
 }
 
+/* Of a true summary, with one part of it replaced. */
+static void a_changed_summary_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *part, *instead, *reasons[2];
+    } cases[] = {
+        {"\"frame\":3", "\"frame\":4", {"interval 3 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":-1", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":1e300", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"frame\":0", "\"frame\":4294967295", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"source\"", "\"sauce\"", {"the plan has no member 'source'", NULL}},
+        {"\"complete\":true", "\"complete\":false", {"the summary has no member 'stopped_by'", NULL}},
+    };
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--json", summary.text);
+    char *text = read_whole_file(summary.text, NULL);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const char *place = strstr(text, cases[i].part);
+        assert_non_null(place);
+        char *changed = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&changed, &size);
+        assert_non_null(out);
+        fprintf(out, "%.*s%s%s", (int)(place - text), text, cases[i].instead, place + strlen(cases[i].part));
+        assert_int_equal(fclose(out), 0);
+        temp_path path = temp_file_write(&folder, "changed.json", changed, size);
+        free(changed);
+        EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
+    }
+    free(text);
+}
+
 static void options_that_do_not_fit_are_refused(void **state) {
     (void)state;
     EXPECT_ERROR(2, TEXTS("--report OUT.html"), "replay", model.text, cache.text, "--scenery", model.text);
@@ -191,6 +222,55 @@ static void an_unwritable_report_loses_nothing_else(void **state) {
     EXPECT_ERROR(1, TEXTS("nowhere/page.html", "No such file"), "replay", model.text, cache.text,
                  "--contacts", csv.text, "--report", nowhere.text);
     assert_false(exists(csv.text)); /* asked before anything is truncated */
+}
+
+static bool is_link(const char *path) {
+    struct stat status;
+    return lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
+}
+
+/* Links to no file yet stay links, and the outputs are where they lead. */
+static void outputs_are_where_links_lead(void **state) {
+    (void)state;
+    static const char *const names[] = {"led.html", "led.json", "led.csv"};
+    static const char *const link_names[] = {"link.html", "link.json", "link.csv"};
+    temp_path links[3], targets[3];
+    for (int i = 0; i < 3; i++) {
+        links[i] = temp_file_path(&folder, link_names[i]);
+        targets[i] = temp_file_path(&folder, names[i]);
+        assert_int_equal(symlink(names[i], links[i].text), 0);
+    }
+    EXPECT_TOOL(0, "replay", model.text, cache.text, "--report", links[0].text, "--json", links[1].text,
+                "--contacts", links[2].text);
+    struct stat status;
+    for (int i = 0; i < 3; i++) {
+        assert_true(is_link(links[i].text));
+        assert_int_equal(lstat(targets[i].text, &status), 0);
+        assert_true(S_ISREG(status.st_mode) && status.st_size > 0);
+    }
+    json_node_free(read_page(targets[0].text));
+    json_node_free(json_node_read_file(targets[1].text));
+}
+
+/* The reader of a pipe gets the page whole: nothing opens and closes the pipe before. */
+static void a_pipe_gets_the_page(void **state) {
+    (void)state;
+    temp_path pipe = temp_file_path(&folder, "pipe.html");
+    assert_int_equal(mkfifo(pipe.text, 0600), 0);
+    tool_process process = run_tool_start(
+        (const char *const[]){"replay", model.text, cache.text, "--report", pipe.text, "--quiet", NULL});
+    FILE *in = fopen(pipe.text, "rb"), *out = fopen(page.text, "wb"); /* waits for the first writer */
+    assert_true(in != NULL && out != NULL);
+    char buffer[4096];
+    for (size_t count; (count = fread(buffer, 1, sizeof buffer, in)) > 0;)
+        assert_int_equal(fwrite(buffer, 1, count, out), count);
+    if (ftell(out) == 0) kill(process.pid, SIGKILL); /* it would wait for another reader */
+    fclose(in);
+    assert_int_equal(fclose(out), 0);
+    tool_run run = run_tool_finish(&process);
+    assert_int_equal(run.code, 0);
+    tool_run_free(&run);
+    json_node_free(read_page(page.text));
 }
 
 static void a_replay_that_stops_reports_what_it_has(void **state) {
@@ -260,8 +340,11 @@ int main(void) {
         cmocka_unit_test(the_page_of_a_plan_has_charge_and_timings),
         cmocka_unit_test(summaries_stand_side_by_side),
         cmocka_unit_test(what_is_no_summary_is_named),
+        cmocka_unit_test(a_changed_summary_is_refused),
         cmocka_unit_test(options_that_do_not_fit_are_refused),
         cmocka_unit_test(an_unwritable_report_loses_nothing_else),
+        cmocka_unit_test(outputs_are_where_links_lead),
+        cmocka_unit_test(a_pipe_gets_the_page),
         cmocka_unit_test(a_replay_that_stops_reports_what_it_has),
         cmocka_unit_test(an_interrupted_replay_reports_what_it_has),
         cmocka_unit_test(names_are_never_markup),

@@ -23,16 +23,21 @@ static void add_object(object_stage *s, const moving_object *o, const body *b) {
 
 bool object_stage_open(const object_scene *scene, object_stage *out, io_error *error) {
     object_stage s = {.scene = scene};
-    for (uint32_t i = 0; i < scene->object_count; i++) {
+    body b = {0};
+    bool good = true;
+    for (uint32_t i = 0; good && i < scene->object_count; i++) {
         const moving_object *o = &scene->objects[i];
-        body b = {0};
-        if (!body_make(o->kind, o->triangle_count, &b, error)) {
-            object_stage_close(&s);
-            return false;
+        if (i == 0 || o->kind != o[-1].kind || o->triangle_count != o[-1].triangle_count) {
+            body_free(&b);
+            good = body_make(o->kind, o->triangle_count, &b, error);
         }
-        add_object(&s, o, &b);
+        if (good) add_object(&s, o, &b);
         s.first_vertex[i + 1] = s.rest.vertex_count;
-        body_free(&b);
+    }
+    body_free(&b);
+    if (!good) {
+        object_stage_close(&s);
+        return false;
     }
     body_append(&s.placed, &s.rest, (double[3]){0.0, 0.0, 0.0});
     object_stage_go(&s, 0);

@@ -43,14 +43,27 @@ static bool named_like_input(const char *path) {
     return false;
 }
 
-bool output_path_opens(const char *path, io_error *error) {
-    if (path == NULL) return true;
-    bool existed = access(path, F_OK) == 0;
+/* The file that was opened to see whether it can be; a link that led to nothing stays. */
+static void remove_created(const char *path) {
+    char *target = realpath(path, NULL);
+    if (target != NULL) unlink(target);
+    free(target);
+}
+
+/* A pipe is asked only, for its reader takes the end of the first writer for the end of all. */
+static bool try_open(const char *path) {
+    struct stat status;
+    bool exists = stat(path, &status) == 0;
+    if (exists && S_ISFIFO(status.st_mode)) return access(path, W_OK) == 0;
     FILE *file = fopen(path, "ab");
-    if (file == NULL) return io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+    if (file == NULL) return false;
     fclose(file);
-    if (!existed) unlink(path);
+    if (!exists) remove_created(path);
     return true;
+}
+
+bool output_path_opens(const char *path, io_error *error) {
+    return path == NULL || try_open(path) || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
 }
 
 bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error) {

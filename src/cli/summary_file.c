@@ -5,17 +5,19 @@
 #include <json-c/json.h>
 #include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A member that must be there, and what it must be. */
+/* A member that must be there, and what it must be: n: number, i: whole number, N: number or null, s: string,
+ * a: array, o: object, b: true or false. */
 typedef struct member {
     const char *name;
-    char kind; /* n: number, s: string, a: array, o: object, b: true or false, N: number or null */
+    char kind;
 } member;
 
-static const member of_interval[] = {{"frame", 'n'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
+static const member of_interval[] = {{"frame", 'i'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
                                      {"pcp", 'n'},   {"tests", 'n'},     {"plus", 'n'}, {"minus", 'n'},
                                      {"state", 's'}, {"guarantee", 'a'}, {"ms", 'o'},   {NULL, 0}};
 static const member of_times[] = {{"update", 'n'},    {"orientation", 'n'}, {"contour", 'n'},
@@ -42,6 +44,9 @@ static const member of_summary[] = {{"complete", 'b'},
                                     {"vf", 'n'},
                                     {"ee", 'n'},
                                     {NULL, 0}};
+static const member of_plan[] = {
+    {"source", 's'}, {"method", 's'}, {"regions", 'n'}, {"made_ms", 'n'}, {NULL, 0}};
+static const member of_incomplete[] = {{"stopped_by", 's'}, {NULL, 0}};
 static const member of_column[] = {{"mean", 'n'}, {"max", 'n'}, {NULL, 0}};
 static const member of_provenance[] = {
     {"version", 's'}, {"commit", 's'},  {"compiler", 's'},  {"flags", 's'},  {"date", 's'},
@@ -56,6 +61,8 @@ static bool is_of_kind(json_object *value, char kind) {
     switch (kind) {
     case 'n':
         return type == json_type_int || type == json_type_double;
+    case 'i':
+        return type == json_type_int;
     case 's':
         return type == json_type_string;
     case 'a':
@@ -101,6 +108,20 @@ static bool check_interval(json_object *interval, size_t index, io_error *error)
            elements_have(get(interval, "guarantee"), of_guarantee, where, error);
 }
 
+/* One after the other: the page has a place for each frame between the first and the last. */
+static bool check_intervals(json_object *intervals, io_error *error) {
+    int64_t first = 0;
+    for (size_t i = 0; i < json_object_array_length(intervals); i++) {
+        json_object *interval = json_object_array_get_idx(intervals, i);
+        if (!check_interval(interval, i, error)) return false;
+        int64_t frame = json_object_get_int64(get(interval, "frame"));
+        if (i == 0) first = frame;
+        if (frame < 0 || frame >= UINT32_MAX || frame - first != (int64_t)i)
+            return io_fail(error, "interval %zu of the file: 'frame' is not what cscd writes there", i);
+    }
+    return true;
+}
+
 static bool check_columns(json_object *summary, io_error *error) {
     for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
         char where[48];
@@ -121,12 +142,13 @@ static bool check_summary(json_object *root, io_error *error) {
     static const member parts[] = {
         {"intervals", 'a'}, {"frames", 'a'}, {"summary", 'o'}, {"provenance", 'o'}, {NULL, 0}};
     if (!has_members(root, parts, "the file", error)) return false;
-    json_object *intervals = get(root, "intervals"), *summary = get(root, "summary");
-    json_object *provenance = get(root, "provenance");
-    for (size_t i = 0; i < json_object_array_length(intervals); i++)
-        if (!check_interval(json_object_array_get_idx(intervals, i), i, error)) return false;
-    return elements_have(get(root, "frames"), of_frame, "a frame", error) &&
+    json_object *summary = get(root, "summary"), *provenance = get(root, "provenance");
+    return check_intervals(get(root, "intervals"), error) &&
+           elements_have(get(root, "frames"), of_frame, "a frame", error) &&
            has_members(summary, of_summary, "the summary", error) && check_columns(summary, error) &&
+           has_members(get(summary, "plan"), of_plan, "the plan", error) &&
+           (json_object_get_boolean(get(summary, "complete")) ||
+            has_members(summary, of_incomplete, "the summary", error)) &&
            has_members(provenance, of_provenance, "the provenance", error) &&
            elements_have(get(provenance, "inputs"), of_input, "an input", error) &&
            strings_only(get(provenance, "arguments"), "the arguments", error);

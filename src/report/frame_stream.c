@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STEP_OF_SIDE 0x1p-16 /* of a new grid */
-#define STEP_OF_SIDE_MAX                                                                                     \
-    0x1p-15 /* an error of half of it, and float32's 2^-25: below 2^-15.9 of the side                        \
-             */
-#define VALUE_LIMIT 0x1p30
+/* Of a new grid; and the coarsest that serves: half of it, and float32's 2^-25, are below 2^-15.9 of the
+ * side. */
+#define STEP_OF_SIDE     0x1p-16
+#define STEP_OF_SIDE_MAX 0x1p-15
+#define VALUE_LIMIT      0x1p30
 
 typedef struct box {
     double low[3], high[3], side; /* side: the longest */

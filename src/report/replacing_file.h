@@ -7,9 +7,8 @@
 
 typedef struct replacing_file {
     FILE *file;
-    char *target; /* where symbolic links lead */
-    char
-        *temporary; /* in the target's folder; NULL: the target is a pipe or a device and written to itself */
+    char *target;    /* where symbolic links lead */
+    char *temporary; /* in its folder; NULL: the target is a pipe or a device, and written to itself */
 } replacing_file;
 
 /* Permissions are those that fopen would leave. On false *out holds nothing to close, errno says why. */

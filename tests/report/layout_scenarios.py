@@ -30,6 +30,20 @@ return {page: document.documentElement.scrollWidth, wide,
 """
 
 
+# Boxes with more in them than they show, and nothing that takes the focus.
+UNREACHABLE = """
+return [...document.querySelectorAll('.scroll')].filter((e) => e.scrollWidth > e.clientWidth + 1 && e.tabIndex < 0 &&
+  !e.querySelector('button, a, input')).map((e) => e.firstElementChild.getAttribute('aria-label'));
+"""
+
+
+def what_scrolls_does_so_by_keyboard(context):
+    for path in (context.material.replay("pawn-drop").page, context.material.preprocess().page,
+                 context.material.comparison().page):
+        context.page.open(path, width=360, height=800)
+        expect_equal(context.page.script(UNREACHABLE), [], "tables that only a pointer can scroll")
+
+
 def narrow_windows_do_not_scroll_sideways(context):
     made = context.material.replay("pawn-drop")
     for name, path in (("replay", made.page), ("preprocess", context.material.preprocess().page),
@@ -87,5 +101,5 @@ def the_view_is_the_largest_part(context):
     expect(found["page"] <= found["wide"], f"the page scrolls sideways: {found}")
 
 
-SCENARIOS = (narrow_windows_do_not_scroll_sideways, narrow_windows_have_every_control, fine_screens_get_fine_pictures,
-             light_and_dark_follow_the_system_and_the_button, the_view_is_the_largest_part)
+SCENARIOS = (what_scrolls_does_so_by_keyboard, narrow_windows_do_not_scroll_sideways, narrow_windows_have_every_control,
+             fine_screens_get_fine_pictures, light_and_dark_follow_the_system_and_the_button, the_view_is_the_largest_part)

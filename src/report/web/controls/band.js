@@ -9,7 +9,7 @@ const stateOf = (row) => (row?.state in HEIGHTS ? row.state : 'unknown');
 
 /** Contacts are ticks above the strip, higher for more of them. */
 function drawTicks(context, counts, place, height, ink) {
-  const most = Math.max(1, ...counts);
+  const most = counts.reduce((largest, count) => Math.max(largest, count), 1); // more than a call takes arguments
   context.fillStyle = ink;
   counts.forEach((count, i) => {
     if (count === 0) return;
@@ -36,7 +36,7 @@ export function createBand(report, store, player) {
     const style = getComputedStyle(canvas);
     const colours = {};
     for (const state of Object.keys(HEIGHTS)) colours[state] = style.getPropertyValue(`--state-${state}`);
-    drawTicks(context, [...player.counts], place, clientHeight - strip - 1, style.color);
+    drawTicks(context, player.counts, place, clientHeight - strip - 1, style.color);
     for (let i = 0; i < intervals; i++) {
       const state = stateOf(rows.get(player.first + i));
       const height = strip * HEIGHTS[state];

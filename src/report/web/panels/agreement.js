@@ -1,20 +1,19 @@
 /** In which intervals replays found the same contacts, and under which circumstances they ran. */
 import { counted, integer, ranges } from './format.js';
-import { extent, finder } from './intervalof.js';
+import { finder } from './intervalof.js';
 import { nameOf } from './palette.js';
 
-/** In which intervals a replay found other contacts than the first did, and how many both have. */
-function disagreement(first, other, [begin, end]) {
+/** In which of its intervals a replay found other contacts than the first did, and how many both have. */
+function disagreement(first, intervals) {
   const contacts = [];
   const times = [];
   let common = 0;
-  for (let frame = begin; frame < end; frame++) {
-    const a = first(frame);
-    const b = other(frame);
-    if (!a || !b) continue;
+  for (const own of intervals) {
+    const other = first(own.frame);
+    if (!other) continue;
     common++;
-    if (a.vf !== b.vf || a.ee !== b.ee) contacts.push(frame);
-    else if (a.earliest_toi !== b.earliest_toi) times.push(frame);
+    if (other.vf !== own.vf || other.ee !== own.ee) contacts.push(own.frame);
+    else if (other.earliest_toi !== own.earliest_toi) times.push(own.frame);
   }
   return { contacts, times, common };
 }
@@ -24,12 +23,11 @@ const of = (frames, common) =>
 
 /** [grade, sentence] of each replay after the first; those that agree share one. */
 export function agreement(report) {
-  const span = extent(report);
-  const finders = report.summaries.map(({ summary }) => finder(summary));
+  const first = finder(report.summaries[0].summary);
   const agreeing = new Map();
   const sentences = [];
-  for (let i = 1; i < finders.length; i++) {
-    const { contacts, times, common } = disagreement(finders[0], finders[i], span);
+  for (let i = 1; i < report.summaries.length; i++) {
+    const { contacts, times, common } = disagreement(first, report.summaries[i].summary.intervals);
     const who = nameOf(report, i);
     if (common === 0) sentences.push(['warn', `${who} has no interval in common with ${nameOf(report, 0)}.`]);
     else if (contacts.length > 0)
@@ -81,11 +79,17 @@ function circumstances({ provenance, summary, intervals }) {
   };
 }
 
+/** Whether not all have the same. A recording is known by the frames that were read of it, and no others. */
+function differs(all, what) {
+  const comparable = (a, b) => what !== 'recording' || a.frames[0] === b.frames[0];
+  return all.some((a) => all.some((b) => comparable(a, b) && a[what][0] !== b[what][0]));
+}
+
 /** [grade, sentence] of each circumstance that is not the same for all. */
 export function differences(report) {
   const all = report.summaries.map(({ summary }) => circumstances(summary));
   return Object.keys(all[0])
-    .filter((what) => all.some((one) => one[what][0] !== all[0][what][0]))
+    .filter((what) => differs(all, what))
     .map((what) => {
       const groups = new Map();
       all.forEach((one, index) => {

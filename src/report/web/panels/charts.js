@@ -8,6 +8,7 @@ import { followPointer } from './pointer.js';
 import { createStateBand } from './stateband.js';
 
 const ZOOMED_FROM = 60; /* fewer intervals need no zoom */
+const MOST = 5e6; /* intervals, gaps between replays included */
 
 /** What is shown of a long recording, as numbers of intervals. */
 function createRange(count, changed) {
@@ -65,6 +66,7 @@ export function create(container, report, store, player) {
   const count = last - first;
   container.hidden = report.kind === 'preprocess' || count < 1;
   if (container.hidden) return;
+  if (count > MOST) throw new Error('its replays are of frames too far apart for one chart.');
   const compares = report.kind === 'compare';
   const finders = report.summaries.map(({ summary }) => finder(summary));
   const figures = (compares ? compareFigures : replayFigures)(report, first, last, finders).map((figure) =>

@@ -1,6 +1,6 @@
 /** What several replays have in common and where they differ. */
 import { agreement, differences } from './agreement.js';
-import { element, heading } from './dom.js';
+import { element, heading, scrollable } from './dom.js';
 import { counted, decimal, integer } from './format.js';
 import { lineOf, nameOf } from './palette.js';
 
@@ -32,11 +32,7 @@ function overview(report) {
       ),
     );
   });
-  return element(
-    'div',
-    { class: 'scroll' },
-    element('table', { 'aria-label': 'Comparison' }, element('thead', {}, head), body),
-  );
+  return scrollable(element('table', { 'aria-label': 'Comparison' }, element('thead', {}, head), body));
 }
 
 export function create(container, report) {

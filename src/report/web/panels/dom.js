@@ -30,6 +30,12 @@ export function heading(text, ...beside) {
   return element('div', { class: 'section-head' }, element('h2', { text }), ...beside);
 }
 
+/** A table that scrolls by itself, with the keyboard too where nothing in it takes the focus. */
+export function scrollable(table) {
+  const label = `${table.getAttribute('aria-label')}, scrolls`;
+  return element('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': label }, table);
+}
+
 /** A group of radio buttons, drawn as one segmented switch; choose(value) when one is taken. */
 export function segments(label, name, options, chosen, choose) {
   const group = element('div', { class: 'segments', role: 'radiogroup', 'aria-label': label });

@@ -1,5 +1,5 @@
 /** The plan's regions and what preprocessing measured. */
-import { element, heading, numberCell } from './dom.js';
+import { element, heading, numberCell, scrollable } from './dom.js';
 import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from './format.js';
 import { css, regionColour } from '../view/colours.js';
 import { swatch } from './palette.js';
@@ -43,11 +43,7 @@ function regionTable(plan, unit) {
     {},
     ...plan.regions.map((region, index) => regionRow(region, index, { area, unit, decimals })),
   );
-  return element(
-    'div',
-    { class: 'scroll' },
-    element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body),
-  );
+  return scrollable(element('table', { 'aria-label': 'Regions' }, element('thead', {}, head), body));
 }
 
 function facts(pairs, label) {
@@ -66,7 +62,7 @@ function capacitances(values) {
     ]),
     'Capacitances',
   );
-  return element('div', { class: 'scroll' }, table);
+  return scrollable(table);
 }
 
 const PHASES = [

@@ -1,5 +1,5 @@
 /** The table of milliseconds per stage, mean and maximum, of every replay in the report. */
-import { element, heading, numberCell } from './dom.js';
+import { element, heading, numberCell, scrollable } from './dom.js';
 import { decimal, integer, milliseconds } from './format.js';
 import { lineOf, nameOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
@@ -85,11 +85,7 @@ export function create(container, report) {
   report.summaries.forEach((_, index) => table.append(rowsOf(report, index, first)));
   container.append(
     heading('Timings', element('span', { class: 'quiet', text: 'milliseconds per interval, of each stage' })),
-    element(
-      'div',
-      { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Timings, scrolls sideways' },
-      table,
-    ),
+    scrollable(table),
     element('p', {
       class: 'quiet',
       text:

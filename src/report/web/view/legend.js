@@ -6,7 +6,7 @@ import { intervalOf } from '../data/report.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
 
 const MANY = 8;
-const ROOMY = 560; // CSS pixels: in narrower views the legend begins folded
+const ROOMY = { width: 560, height: 380 }; // CSS pixels: in smaller views the legend begins folded
 
 const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 const short = (value) => String(Number(value.toPrecision(3))).replace('-', '−');
@@ -59,7 +59,7 @@ function regionLegend(plan) {
   });
   const rest = plan.regions.length - rows.length;
   return [
-    title(`${plan.regions.length} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
+    title(`${grouped(plan.regions.length)} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
     element('p', { class: 'legend-note' }, 'Triangles, and the share that the detector point sees'),
     items(...rows, ...(rest > 0 ? [element('li', {}, `and ${grouped(rest)} more; colours repeat after 21`)] : [])),
   ];
@@ -135,7 +135,7 @@ export function createLegend(container, report, store, painter) {
   const body = element('div', { class: 'legend-body' });
   const box = element('details', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
   box.append(element('summary', {}, 'Legend'), body);
-  box.open = container.clientWidth >= ROOMY;
+  box.open = container.clientWidth >= ROOMY.width && container.clientHeight >= ROOMY.height;
   container.append(box);
   let shown = null;
   const show = (state) => {

@@ -174,6 +174,9 @@ export class ContactMarks extends Marks {
   }
 }
 
+/** Rings, too. */
+const ringAmong = (count) => Math.min(19, Math.max(11, 19 - 2 * Math.log2(count / 24)));
+
 /** Detector points lie inside the body: always drawn over it. */
 export class DetectorMarks extends Marks {
   constructor() {
@@ -184,9 +187,10 @@ export class DetectorMarks extends Marks {
 
   setState(scene, points, toView) {
     const marks = [];
+    const size = ringAmong((points?.length ?? 0) / 3);
     for (let region = 0; points !== null && 3 * region < points.length; region++) {
       const place = toView(points.subarray(3 * region, 3 * region + 3));
-      marks.push({ place, colour: regionColour(region), alpha: 1, shape: RING, size: 19 });
+      marks.push({ place, colour: regionColour(region), alpha: 1, shape: RING, size });
     }
     this.show(marks);
   }
