@@ -110,7 +110,9 @@ static bool make_sensors(const recording_data *r, const sensor_rules *rules, csc
         options.seed = rules->seed;
     }
     if (cscd_sensors_create(r->mesh, *partition, &options, sensors) != CSCD_OK) return api_failed(r, error);
-    if (rules->scalar) (*sensors)->particles.rule = PARTICLE_SCALAR;
+    static const particle_rule forces[] = {PARTICLE_ATTRACTION, PARTICLE_ATTRACTION, PARTICLE_SCALAR,
+                                           PARTICLE_STRONGEST};
+    if (rules->rule != RULE_DEFAULT) (*sensors)->particles.rule = forces[rules->rule];
     return true;
 }
 

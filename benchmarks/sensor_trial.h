@@ -20,8 +20,8 @@ void sensor_truth_free(sensor_truth *truth);
 
 typedef struct sensor_rules {
     const char *name;
-    bool plan;       /* parts are the regions of a plan by charge, else components */
-    bool scalar;     /* the sum of magnitudes decides, not that of vectors */
+    bool plan; /* parts are the regions of a plan by charge, else components */
+    enum { RULE_DEFAULT, RULE_VECTOR, RULE_SCALAR, RULE_STRONGEST } rule; /* as in particles.h */
     double mu_edges; /* mu in mean edges of the first frame; 0: the default */
     uint32_t cells;  /* of each part; 0: the default */
     /* R_eff in mu, and in largest diameters of a cell of the first frame; both 0: the default */

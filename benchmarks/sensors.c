@@ -32,7 +32,9 @@ enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
 static const sensor_rules rules[] = {
     {.name = "cells"},
     {.name = "cells, plan", .plan = true},
-    {.name = "cells, scalar", .scalar = true},
+    {.name = "cells, vector", .rule = RULE_VECTOR},
+    {.name = "cells, scalar", .rule = RULE_SCALAR},
+    {.name = "cells, strongest", .rule = RULE_STRONGEST},
     {.name = "cells, mu 1 edge", .mu_edges = 1.0},
     {.name = "cells, mu 1/2 edge", .mu_edges = 0.5},
 };
@@ -105,6 +107,11 @@ static const sensor_rules sweep[] = {
     {.name = "R_eff 4 mu", .reach_mu = 4.0},
     {.name = "R_eff mu + 1 cell", .reach_mu = 1.0, .reach_cells = 1.0},
     {.name = "R_eff mu + 2 cells", .reach_mu = 1.0, .reach_cells = 2.0},
+    {.name = "vector, 2 mu", .rule = RULE_VECTOR, .reach_mu = 2.0},
+    {.name = "scalar, 2 mu", .rule = RULE_SCALAR, .reach_mu = 2.0},
+    {.name = "strongest, mu", .rule = RULE_STRONGEST, .reach_mu = 1.0},
+    {.name = "strongest, 2 mu", .rule = RULE_STRONGEST, .reach_mu = 2.0},
+    {.name = "strongest, 4 mu", .rule = RULE_STRONGEST, .reach_mu = 4.0},
     {.name = "1 cell", .cells = 1},
     {.name = "4 cells", .cells = 4},
     {.name = "12 cells", .cells = 12},
