@@ -13,7 +13,8 @@ void check_partition(const cscd_partition *partition);
 cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                              const cscd_partition_options *options);
 
-/* Bodies of about 600 triangles beside each other as the components of one mesh, scaled; and its partition. */
+/* Bodies of about 600 triangles beside each other as the components of one mesh, scaled; and its partition.
+ */
 typedef struct row {
     body b;
     cscd_mesh *mesh;
