@@ -33,6 +33,12 @@ void particles_free(particles *p) {
 
 /* ---- forces ------------------------------------------------------------------------------------------ */
 
+static double squared_between(const double a[3], const double b[3]) {
+    double d[3];
+    vector_subtract(a, b, d);
+    return vector_dot(d, d);
+}
+
 /* Finds all that i can feel where it is or where it can go next, none farther from it than reach. */
 static void find_near(particles *p, uint32_t i, const double x[3], double reach) {
     bool repels = p->rule == PARTICLE_POTENTIAL;
@@ -42,14 +48,26 @@ static void find_near(particles *p, uint32_t i, const double x[3], double reach)
     for (const grid_entry *e; (e = grid_search_next(&search)) != NULL;) {
         bool attracts = e->group != p->groups[i];
         if (!attracts && (!repels || e->particle == i || p->objects[e->particle] != p->objects[i])) continue;
-        double d[3];
-        vector_subtract(e->x, x, d);
-        double squared = vector_dot(d, d);
+        double squared = squared_between(e->x, x);
         p->counters.distances++;
         if (!(squared < farthest)) continue;
         if (attracts && squared < felt && i < e->particle) p->counters.pairs++;
         memcpy(p->near[attracts ? p->attracting++ : p->capacity - ++p->repelling], e->x, sizeof e->x);
     }
+}
+
+/* By the strongest alone, most of them do not matter: one farther than the nearest by two ways or more is
+ * nowhere nearer than that one. */
+static void drop_far(particles *p, const double x[3]) {
+    double least = INFINITY;
+    for (uint32_t j = 0; j < p->attracting; j++) least = smaller(least, squared_between(p->near[j], x));
+    double farthest = (sqrt(least) + 2.0 * p->longest_way) * (1.0 + 0x1p-40);
+    uint32_t kept = 0;
+    for (uint32_t j = 0; j < p->attracting; j++) {
+        if (squared_between(p->near[j], x) > farthest * farthest) continue;
+        memmove(p->near[kept++], p->near[j], sizeof *p->near);
+    }
+    p->attracting = kept;
 }
 
 /* The length of the sum of (x_j - x) / r^3 (3.13, 3.14), in units of 1 / R_eff^2. Two particles in one place
@@ -73,21 +91,16 @@ static double vector_force(const particles *p, const double x[3]) {
 static double scalar_force(const particles *p, const double x[3]) {
     double reach = p->radius * p->radius, closest = p->closest * p->closest, sum = 0.0;
     for (uint32_t j = 0; j < p->attracting; j++) {
-        double d[3];
-        vector_subtract(p->near[j], x, d);
-        double squared = vector_dot(d, d);
+        double squared = squared_between(p->near[j], x);
         if (squared < reach) sum += reach / larger(squared, closest);
     }
     return sum;
 }
 
+/* It falls with the distance, so the nearest says all. */
 static double strongest_force(const particles *p, const double x[3]) {
     double least = p->radius * p->radius;
-    for (uint32_t j = 0; j < p->attracting; j++) {
-        double d[3];
-        vector_subtract(p->near[j], x, d);
-        least = smaller(least, vector_dot(d, d));
-    }
+    for (uint32_t j = 0; j < p->attracting; j++) least = smaller(least, squared_between(p->near[j], x));
     return -least;
 }
 
@@ -95,9 +108,7 @@ static double strongest_force(const particles *p, const double x[3]) {
 static double potential(const particles *p, const double (*others)[3], uint32_t count, const double x[3]) {
     double reach = p->radius * p->radius, sum = 0.0;
     for (uint32_t j = 0; j < count; j++) {
-        double d[3];
-        vector_subtract(others[j], x, d);
-        double squared = vector_dot(d, d);
+        double squared = squared_between(others[j], x);
         if (squared < reach) sum += p->radius / larger(sqrt(squared), p->closest) - 1.0;
     }
     return sum;
@@ -127,6 +138,7 @@ static uint32_t choose_target(particles *p, uint32_t i, const double *x) {
     const double *here = x + (size_t)own * 3;
     find_near(p, i, here, p->radius + p->longest_way);
     if (p->attracting + p->repelling == 0) return own;
+    if (p->rule == PARTICLE_STRONGEST) drop_far(p, here);
     double most = worth(p, here);
     for (uint32_t k = p->ways.offsets[own]; k < p->ways.offsets[own + 1]; k++) {
         uint32_t target = p->ways.targets[k];
