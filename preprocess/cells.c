@@ -42,7 +42,8 @@ static cscd_status allocate(cell_maker *maker, size_t largest) {
     maker->distortions = context_allocate(context, parts, sizeof(double));
     maker->vectors = context_allocate(context, largest * LBG_DIMENSIONS, sizeof(double));
     maker->vector_labels = context_allocate(context, largest, sizeof(uint32_t));
-    maker->moved = context_allocate(context, largest, sizeof(uint32_t));
+    maker->order = context_allocate(context, largest, sizeof(uint32_t));
+    maker->candidates = context_allocate(context, largest, sizeof(uint32_t));
     maker->codes = context_allocate(context, largest, sizeof(lbg_code));
     connect_work *c = &maker->connecting;
     c->pieces = context_allocate(context, vertices, sizeof(uint32_t));
@@ -53,18 +54,19 @@ static cscd_status allocate(cell_maker *maker, size_t largest) {
     c->best = context_allocate(context, largest, sizeof(uint32_t));
     bool complete = maker->offsets != NULL && maker->neighbours != NULL && maker->labels != NULL &&
                     maker->counts != NULL && maker->distortions != NULL && maker->vectors != NULL &&
-                    maker->vector_labels != NULL && maker->moved != NULL && maker->codes != NULL &&
-                    c->pieces != NULL && c->queue != NULL && c->piece_offsets != NULL &&
-                    c->piece_labels != NULL && c->settled != NULL && c->best != NULL;
+                    maker->vector_labels != NULL && maker->order != NULL && maker->candidates != NULL &&
+                    maker->codes != NULL && c->pieces != NULL && c->queue != NULL &&
+                    c->piece_offsets != NULL && c->piece_labels != NULL && c->settled != NULL &&
+                    c->best != NULL;
     return complete ? CSCD_OK : context_out_of_memory(context);
 }
 
 void cell_maker_free(cell_maker *maker) {
     connect_work *c = &maker->connecting;
-    void *blocks[] = {maker->offsets,     maker->neighbours, maker->labels, maker->counts,
-                      maker->distortions, maker->vectors,    maker->moved,  maker->vector_labels,
-                      maker->codes,       c->pieces,         c->queue,      c->piece_offsets,
-                      c->piece_labels,    c->settled,        c->best};
+    void *blocks[] = {maker->offsets,       maker->neighbours, maker->labels, maker->counts,
+                      maker->distortions,   maker->vectors,    maker->order,  maker->candidates,
+                      maker->vector_labels, maker->codes,      c->pieces,     c->queue,
+                      c->piece_offsets,     c->piece_labels,   c->settled,    c->best};
     cscd_context *context = maker->partition->context;
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
 }
@@ -155,7 +157,8 @@ void make_cells(cell_maker *maker, uint32_t part) {
              .epsilon = partition->options.epsilon,
              .labels = maker->vector_labels,
              .codes = maker->codes,
-             .moved = maker->moved};
+             .order = maker->order,
+             .candidates = maker->candidates};
     uint32_t code_count = lbg_run(&l);
     for (uint32_t i = 0; i < count; i++) maker->labels[vertices[i]] = l.labels[i];
     code_count = connect_labels(&maker->connecting, vertices, count, code_count);

@@ -15,7 +15,7 @@ typedef struct cell_maker {
     uint32_t *counts;               /* per part: how many are wanted, and then, how many there are */
     double *distortions;            /* per part */
     double *vectors;
-    uint32_t *vector_labels, *moved;
+    uint32_t *vector_labels, *order, *candidates;
     lbg_code *codes;
     connect_work connecting;
 } cell_maker;

@@ -71,24 +71,39 @@ void lbg_find_codes(const lbg *l, uint32_t code_count) {
 
 /* ---- the nearest code -------------------------------------------------------------------------------- */
 
-static uint32_t nearest_of_all(const lbg *l, uint32_t i, uint32_t code_count) {
-    uint32_t nearest = 0;
-    double least = squared_distance(vector_at(l, i), l->codes[0].mean);
-    for (uint32_t c = 1; c < code_count; c++) {
-        double squared = squared_distance(vector_at(l, i), l->codes[c].mean);
-        if (squared >= least) continue;
-        least = squared;
-        nearest = c;
+/* Vectors by codes, ascending in each: those of code c end at its end. */
+static void sort_by_code(const lbg *l, uint32_t code_count) {
+    uint32_t begin = 0;
+    for (uint32_t c = 0; c < code_count; c++) {
+        l->codes[c].end = begin;
+        begin += l->codes[c].count;
     }
-    return nearest;
+    for (uint32_t i = 0; i < l->vector_count; i++) l->order[l->codes[l->labels[i]].end++] = i;
 }
 
-/* Where a vector's own code has not moved, only one that has can be nearer than before. */
-static uint32_t nearest_of_moved(const lbg *l, uint32_t i, uint32_t moved_count) {
+/* Codes that may be as near to a vector of this one as its own: where that has not moved, one that has; and
+ * by the triangle inequality none farther off than twice the farthest vector, whatever the rounding. */
+static uint32_t find_candidates(const lbg *l, uint32_t code, uint32_t code_count) {
+    const lbg_code *own = &l->codes[code];
+    double farthest = 0.0;
+    for (uint32_t i = own->end - own->count; i < own->end; i++) {
+        double squared = squared_distance(vector_at(l, l->order[i]), own->mean);
+        farthest = squared > farthest ? squared : farthest;
+    }
+    double limit = farthest * (4.0 + 1e-6);
+    uint32_t count = 0;
+    for (uint32_t c = 0; c < code_count; c++) {
+        if (c == code || !(own->moved || l->codes[c].moved)) continue;
+        if (squared_distance(l->codes[c].mean, own->mean) <= limit) l->candidates[count++] = c;
+    }
+    return count;
+}
+
+static uint32_t nearest_code(const lbg *l, uint32_t i, uint32_t candidate_count) {
     uint32_t nearest = l->labels[i];
     double least = squared_distance(vector_at(l, i), l->codes[nearest].mean);
-    for (uint32_t m = 0; m < moved_count; m++) {
-        uint32_t c = l->moved[m];
+    for (uint32_t j = 0; j < candidate_count; j++) {
+        uint32_t c = l->candidates[j];
         double squared = squared_distance(vector_at(l, i), l->codes[c].mean);
         if (squared > least || (squared == least && c > nearest)) continue;
         least = squared;
@@ -99,20 +114,19 @@ static uint32_t nearest_of_moved(const lbg *l, uint32_t i, uint32_t moved_count)
 
 /* Has any vector found a nearer code? */
 static bool assign(const lbg *l, uint32_t code_count) {
-    uint32_t moved_count = 0;
     bool any = false;
+    sort_by_code(l, code_count);
     for (uint32_t c = 0; c < code_count; c++) {
-        if (l->codes[c].moved) l->moved[moved_count++] = c;
+        uint32_t candidate_count = find_candidates(l, c, code_count), end = l->codes[c].end;
+        if (candidate_count == 0) continue;
+        for (uint32_t i = end - l->codes[c].count; i < end; i++) {
+            uint32_t nearest = nearest_code(l, l->order[i], candidate_count);
+            if (nearest == c) continue;
+            l->labels[l->order[i]] = nearest;
+            l->codes[c].changed = l->codes[nearest].changed = any = true;
+        }
     }
-    for (uint32_t i = 0; i < l->vector_count; i++) {
-        uint32_t old = l->labels[i];
-        uint32_t nearest =
-            l->codes[old].moved ? nearest_of_all(l, i, code_count) : nearest_of_moved(l, i, moved_count);
-        if (nearest == old) continue;
-        l->labels[i] = nearest;
-        l->codes[old].changed = l->codes[nearest].changed = any = true;
-    }
-    for (uint32_t m = 0; m < moved_count; m++) l->codes[l->moved[m]].moved = false;
+    for (uint32_t c = 0; c < code_count; c++) l->codes[c].moved = false;
     return any;
 }
 
@@ -236,10 +250,10 @@ static uint32_t drop_empty(const lbg *l, uint32_t code_count) {
     uint32_t kept = 0;
     for (uint32_t c = 0; c < code_count; c++) {
         if (l->codes[c].count == 0) continue;
-        l->moved[c] = kept;
+        l->candidates[c] = kept;
         l->codes[kept++] = l->codes[c];
     }
-    for (uint32_t i = 0; i < l->vector_count; i++) l->labels[i] = l->moved[l->labels[i]];
+    for (uint32_t i = 0; i < l->vector_count; i++) l->labels[i] = l->candidates[l->labels[i]];
     return kept;
 }
 

@@ -12,6 +12,7 @@ typedef struct lbg_code {
     double mean[LBG_DIMENSIONS], sum[LBG_DIMENSIONS];
     double distortion; /* the sum of squared distances to the mean */
     uint32_t first, count;
+    uint32_t end;     /* of its vectors in the order */
     bool changed;     /* it got or lost a vector: its mean is to be found */
     bool moved;       /* its mean is another: vectors are to be compared with it */
     bool indivisible; /* until it changes */
@@ -24,7 +25,7 @@ typedef struct lbg {
     double epsilon;                   /* another round while the distortion falls by more than this share */
     uint32_t *labels;                 /* out: the code of each vector */
     lbg_code *codes;                  /* out, codes_max */
-    uint32_t *moved;                  /* codes_max, for its own use */
+    uint32_t *order, *candidates;     /* vector_count and codes_max, for its own use */
 
     /* NULL, or told the number of codes and the mean distortion per dimension (3.10) after every round. */
     void (*observe)(void *user, uint32_t code_count, double distortion);

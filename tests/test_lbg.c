@@ -21,7 +21,7 @@ typedef struct trace {
 
 static trace told;
 static double vectors[VECTORS_MAX * D];
-static uint32_t labels[VECTORS_MAX], moved[VECTORS_MAX];
+static uint32_t labels[VECTORS_MAX], order[VECTORS_MAX], candidates[VECTORS_MAX];
 static lbg_code codes[VECTORS_MAX];
 
 static void observe(void *user, uint32_t code_count, double distortion) {
@@ -33,7 +33,7 @@ static void observe(void *user, uint32_t code_count, double distortion) {
 
 static lbg run_of(uint32_t vector_count, uint32_t codes_max, double epsilon) {
     told.length = 0;
-    return (lbg){vectors, vector_count, codes_max, epsilon, labels, codes, moved, observe, &told};
+    return (lbg){vectors, vector_count, codes_max, epsilon, labels, codes, order, candidates, observe, &told};
 }
 
 static double squared_distance(const double *a, const double *b) {

@@ -315,8 +315,8 @@ int main(void) {
         cmocka_unit_test(symmetric_cube),    cmocka_unit_test(any_number),
         cmocka_unit_test(concave_bodies),    cmocka_unit_test(random_scenes),
         cmocka_unit_test(scale_and_place),   cmocka_unit_test(degenerate),
-        cmocka_unit_test(distortion_falls),  
-            
+        cmocka_unit_test(distortion_falls),
+
         cmocka_unit_test(renewing_one_part), cmocka_unit_test(objects_of_scenes),
         cmocka_unit_test(bad_arguments)};
     return cmocka_run_group_tests_name("partition", tests, NULL, NULL);

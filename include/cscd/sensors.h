@@ -20,8 +20,8 @@ typedef struct cscd_partition cscd_partition;
 
 typedef struct cscd_partition_options {
     uint32_t struct_size; /* set by cscd_partition_defaults */
-    uint32_t cells; /* of each part, at most its vertices; 0, the default: by how many of the smallest spheres
-                     * touch one */
+    uint32_t cells; /* of each part, at most its vertices, and more only where these are not connected; 0, the
+                     * default: by how many of the smallest spheres touch one */
     uint32_t cells_max;   /* of a part, where they are counted so; 1 or more, default 64 */
     double normal_weight; /* of unit normals beside positions scaled to a root mean square of 1; 0 to 1e6,
                            * default 1 */
