@@ -36,10 +36,6 @@ static uint32_t middle_of_cell(const cscd_partition *partition, uint32_t cell, c
     return middle_of(partition->cell_vertices + begin, partition->cell_offsets[cell + 1] - begin, x);
 }
 
-void cell_particles_middles(const cscd_partition *partition, const double *x, uint32_t *vertices) {
-    for (uint32_t c = 0; c < partition->cell_count; c++) vertices[c] = middle_of_cell(partition, c, x);
-}
-
 cscd_status cell_particles_place(particles *p, const cscd_partition *partition, uint64_t *generation,
                                  const double *x) {
     if (*generation == partition->generation) return CSCD_OK;

@@ -11,9 +11,6 @@
 cscd_status cell_particles_place(particles *p, const cscd_partition *partition, uint64_t *generation,
                                  const double *x);
 
-/* Per cell the vertex next to its middle. */
-void cell_particles_middles(const cscd_partition *partition, const double *x, uint32_t *vertices);
-
 /* Particles of one group do not attract each other: of an object, or of a part where parts of one object are
  * watched; all obstacles are one. */
 uint32_t particle_group(const cscd_partition *partition, uint32_t part, bool by_parts);

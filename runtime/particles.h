@@ -4,9 +4,18 @@
 
 #include "runtime/particle_grid.h"
 
-/* Where a particle walks to. */
+/* Where a particle walks to: every rule is of attractions of 1 / r^2 that end at R_eff (3.12, 3.13), and of
+ * the best vertex within its cell, where the thesis has it stay when a vertex outside is better (3.15
+ * to 3.17).
+ *
+ * The thesis adds attractions as vectors. Then two that pull to opposite sides cancel, and many far ones
+ * outdo the one at which there is a contact. By the strongest alone particles of two objects that touch end
+ * where they are nearest, whatever else is around; the exact check confirms more (docs/sensors.md compares
+ * them), and what is far costs little, since it can be dropped. Two particles also rest where only a move of
+ * both at once would bring them nearer: side by side on two round surfaces, say. No rule of one particle's
+ * own moves sees that. */
 typedef enum particle_rule {
-    PARTICLE_ATTRACTION, /* where the sum of attractions, as vectors, is longest (3.14) */
+    PARTICLE_ATTRACTION, /* where the sum of attractions, as vectors, is longest (3.14): the thesis's */
     PARTICLE_SCALAR,     /* where the sum of their magnitudes is largest */
     PARTICLE_STRONGEST,  /* where the largest of them is largest: as near to another one as it gets */
     PARTICLE_POTENTIAL   /* where the potential of attractions and of repulsions in its object is least */

@@ -75,8 +75,7 @@ static bool allocate_arrays(cscd_sensors *s) {
 
 static cscd_status create_random(cscd_sensors *s) {
     cscd_status status = random_particles_create(s->partition, &s->random);
-    s->middles = context_allocate(s->context, s->mesh->vertex_count, sizeof *s->middles);
-    if (status != CSCD_OK || s->middles == NULL) return CSCD_OUT_OF_MEMORY;
+    if (status != CSCD_OK) return status;
     s->particles.rule = PARTICLE_POTENTIAL;
     s->particles.ways = (vertex_ways){s->random.neighbour_offsets, s->random.neighbours};
     return random_particles_place(&s->random, s->partition, s->options.particles, s->options.seed,
@@ -86,6 +85,7 @@ static cscd_status create_random(cscd_sensors *s) {
 static cscd_status create_parts(cscd_sensors *s) {
     cscd_status status = allocate_arrays(s) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
     s->particles.context = s->context;
+    s->particles.rule = PARTICLE_STRONGEST;
     s->particles.ways = (vertex_ways){s->partition->neighbour_offsets, s->partition->neighbours};
     if (status == CSCD_OK)
         status = sensor_reach_create(s->partition, s->options.collision_distance, &s->reach);
@@ -133,8 +133,7 @@ void cscd_sensors_destroy(cscd_sensors *s) {
     sensor_areas_destroy(&s->areas);
     sensor_upkeep_destroy(&s->upkeep);
     sensor_bounds_destroy(&s->bounds);
-    void *blocks[] = {s->middles, s->before,      s->renewals, s->cells_a,
-                      s->cells_b, s->cell_checks, s->warnings, s};
+    void *blocks[] = {s->before, s->renewals, s->cells_a, s->cells_b, s->cell_checks, s->warnings, s};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
 }
 
@@ -203,19 +202,13 @@ static cscd_status watch(cscd_sensors *s, const double *x, uint32_t moment, cscd
     return CSCD_OK;
 }
 
-/* When new cells are due, and the balls of the certified answers. */
+/* When new cells are due, and what certified answers are taken from. */
 static uint32_t look_after(cscd_sensors *s, const double *start, const double *end) {
-    bool of_cells = s->options.method == CSCD_SENSORS_CELLS;
-    const uint32_t *at = of_cells ? s->particles.vertices : NULL;
+    const uint32_t *at = s->options.method == CSCD_SENSORS_CELLS ? s->particles.vertices : NULL;
     upkeep_limits limits = {s->options.area_factor, s->options.collision_distance};
     uint32_t due = sensor_upkeep_check(&s->upkeep, s->partition, end, at, &limits, s->renewals);
-    if (!of_cells) {
-        if (s->generation != s->partition->generation)
-            cell_particles_middles(s->partition, start, s->middles);
-        at = s->middles;
-    }
-    sensor_bounds_update(&s->bounds, s->partition, start, end, at);
-    s->generation = s->partition->generation;
+    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
+    sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
     return due;
 }
 
@@ -272,10 +265,12 @@ cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
     return sensors->renewals[part];
 }
 
-/* After a renewal balls and cells would not fit each other. */
+/* After a renewal balls and cells would not fit each other. Boxes are asked first: they know more, and answer
+ * at once. */
 bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
     const cscd_partition *partition = sensors->partition;
-    return part_a != part_b && sensors->bounds.generation == partition->generation &&
+    if (part_a == part_b || sensors->bounds.generation != partition->generation) return false;
+    return sensor_bounds_boxes_apart(&sensors->bounds, part_a, part_b) ||
            sensor_bounds_apart(&sensors->bounds, partition, part_a, part_b);
 }
 

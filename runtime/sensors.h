@@ -16,10 +16,9 @@ struct cscd_sensors {
     cscd_partition *partition;
     cscd_sensor_options options;
 
-    uint64_t generation; /* of the partition that particles and balls are of; 0: before the first step */
+    uint64_t generation; /* of the partition that particles are of, with CELLS; 0: before the first step */
     particles particles;
     random_particles random; /* RANDOM */
-    uint32_t *middles;       /* RANDOM: centres of the balls, per cell */
     uint32_t *before;        /* where particles were before the step: a step that fails puts them back */
     uint32_t before_capacity;
 

@@ -171,27 +171,33 @@ static void walks_begin_where_they_ended(void **state) {
 
 /* ---- mu and R_eff ------------------------------------------------------------------------------------- */
 
-/* The nearest vertices of both spheres are `gap` apart, on the x axis. */
+/* The distance at which particles come to rest does not depend on mu, where R_eff is given. */
+static cscd_warnings step_with(double mu, sensor_rig *r) {
+    cscd_sensor_options options = cscd_sensor_defaults();
+    options.collision_distance = mu;
+    options.effective_radius = 6.0;
+    sensor_setup setup = {0, NULL, &options};
+    *r = sensor_rig_create(&s, &setup);
+    return sensor_rig_step(r, s.x0, s.x0);
+}
+
 static void a_given_mu_is_taken(void **state) {
     (void)state;
+    sensor_rig r;
     two_spheres(0.2);
-    double x = 0.0;
-    for (uint32_t v = 0; v < s.vertex_count / 2; v++) x = fmax(x, s.x0[v * 3]);
-    uint32_t half = s.vertex_count / 2;
-    double nearest = INFINITY;
-    for (uint32_t v = 0; v < half; v++)
-        for (uint32_t w = half; w < s.vertex_count; w++) nearest = fmin(nearest, distance(s.x0, v, w));
-    for (int wider = 0; wider < 2; wider++) {
-        cscd_sensor_options options = cscd_sensor_defaults();
-        options.collision_distance = nearest * (wider ? 1.001 : 0.999);
-        sensor_setup setup = {0, NULL, &options};
-        sensor_rig r = sensor_rig_create(&s, &setup);
-        cscd_warnings found = sensor_rig_step(&r, s.x0, s.x0);
-        assert_int_equal(found.count, wider);
-        if (wider) assert_true(fabs(found.items[0].distance - nearest) < 1e-12);
-        if (wider) assert_false(found.items[0].contact);
-        sensor_rig_destroy(&r);
-    }
+    cscd_warnings found = step_with(1.0, &r);
+    assert_int_equal(found.count, 1);
+    double resting = found.items[0].distance;
+    assert_true(fabs(resting - distance(s.x0, found.items[0].vertex_a, found.items[0].vertex_b)) < 1e-12);
+    assert_false(found.items[0].contact);
+    sensor_rig_destroy(&r);
+    found = step_with(resting * 1.001, &r);
+    assert_int_equal(found.count, 1);
+    assert_true(found.items[0].distance == resting);
+    sensor_rig_destroy(&r);
+    found = step_with(resting * 0.999, &r);
+    assert_int_equal(found.count, 0);
+    sensor_rig_destroy(&r);
 }
 
 /* Beyond R_eff nobody moves; within it they do. */

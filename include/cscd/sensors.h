@@ -66,7 +66,8 @@ CSCD_API double cscd_partition_distortion(const cscd_partition *partition, uint3
 typedef struct cscd_sensors cscd_sensors;
 
 typedef enum cscd_sensor_method {
-    CSCD_SENSORS_CELLS, /* a particle in every cell, drawn to those of other objects (Saenghaengtham 2006) */
+    CSCD_SENSORS_CELLS, /* a particle in every cell (Saenghaengtham 2006), drawn to the nearest of another
+                         * object, where the thesis adds up the pulls of all */
     CSCD_SENSORS_RANDOM /* a fixed number on each object, from random vertices, which also push each other
                          * apart (Senin et al. 2003): to compare with */
 } cscd_sensor_method;
