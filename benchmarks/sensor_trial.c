@@ -239,19 +239,23 @@ static uint32_t ask_all(const cscd_sensors *s, apart_question ask, bool *answers
     return count;
 }
 
-static void measure_interval(cscd_sensors *s, const double *start, const double *end, bool *answers[2],
+/* The API asks boxes first, then balls about the middles. */
+static void measure_interval(cscd_sensors *s, const double *start, const double *end, bool *answers[3],
                              certified_trial *t, double ms[2]) {
-    double since = timer_now_ms();
     sensor_bounds_update(&s->bounds, s->partition, start, end, s->particles.vertices);
     uint32_t count = ask_all(s, balls_apart, answers[0]);
+    double since = timer_now_ms();
+    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
+    ask_all(s, balls_apart, answers[1]);
     timer_lap(&since, &ms[0]);
     sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
-    ask_all(s, boxes_apart, answers[1]);
+    ask_all(s, boxes_apart, answers[2]);
     timer_lap(&since, &ms[1]);
     for (uint32_t i = 0; i < count; i++) {
-        t->balls += answers[0][i];
-        t->boxes += answers[1][i];
-        t->both += answers[0][i] || answers[1][i];
+        t->walked += answers[0][i];
+        t->middles += answers[1][i];
+        t->boxes += answers[2][i];
+        t->either += answers[1][i] || answers[2][i];
     }
     t->pairs += count;
 }
@@ -263,9 +267,9 @@ bool certified_trial_run(const recording_data *r, bool plan, certified_trial *ou
     certified_trial t = {0};
     uint32_t count = r->frame_count - 1;
     double *ms[2] = {body_allocate(count, sizeof **ms), body_allocate(count, sizeof **ms)};
-    bool *answers[2] = {NULL, NULL};
+    bool *answers[3] = {NULL, NULL, NULL};
     bool good = make_sensors(r, &rules, &partition, &sensors, error);
-    for (int i = 0; good && i < 2; i++)
+    for (int i = 0; good && i < 3; i++)
         answers[i] = body_allocate((size_t)partition->part_count * partition->part_count, 1);
     for (uint32_t k = 0; good && k < count; k++) {
         const double *start = recording_data_frame(r, k), *end = recording_data_frame(r, k + 1);
@@ -277,12 +281,12 @@ bool certified_trial_run(const recording_data *r, bool plan, certified_trial *ou
         for (int i = 0; i < 2; i++) ms[i][k] = taken[i];
     }
     if (good) {
-        t.balls_ms = sensor_median(ms[0], count);
+        t.middles_ms = sensor_median(ms[0], count);
         t.boxes_ms = sensor_median(ms[1], count);
-        t.cells = cscd_partition_cell_count(partition);
         *out = t;
     }
-    for (int i = 0; i < 2; i++) free(ms[i]), free(answers[i]);
+    for (int i = 0; i < 2; i++) free(ms[i]);
+    for (int i = 0; i < 3; i++) free(answers[i]);
     cscd_sensors_destroy(sensors);
     cscd_partition_destroy(partition);
     return good;

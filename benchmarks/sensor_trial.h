@@ -41,10 +41,10 @@ bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const 
                       sensor_trial *out, io_error *error);
 void sensor_trial_add(sensor_trial *sum, const sensor_trial *one);
 
-/* Pairs of parts in all intervals; those that balls, boxes and both show to be apart; median ms of an update
- * and all questions. */
+/* Pairs of parts in all intervals; those that balls about particles, about the cells' middles, boxes, and
+ * either of the last two show to be apart; median ms of an update and all questions, of the last two. */
 typedef struct certified_trial {
-    double pairs, balls, boxes, both, cells, balls_ms, boxes_ms;
+    double pairs, walked, middles, boxes, either, middles_ms, boxes_ms;
 } certified_trial;
 
 bool certified_trial_run(const recording_data *r, bool plan, certified_trial *out, io_error *error);

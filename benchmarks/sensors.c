@@ -9,14 +9,14 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: sensors [--folder FOLDER] [--cost] [SCENE...]\n"
+    "usage: sensors [--folder FOLDER] [--only rules|reach|certified|cost] [SCENE...]\n"
     "\n"
     "Recall and precision are of pairs of objects and intervals: those with a warning against those in which "
     "the\n"
     "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: "
     "recordings\n"
     "NAME.obj and NAME.pc2 in FOLDER (default build/models, by make models); a plan by charge is made where\n"
-    "NAME.plan.ply is missing. --cost: only the tables of cost by size and by number of objects.\n";
+    "NAME.plan.ply is missing. Cost, by size and by number of objects, has bodies of its own.\n";
 
 static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
                                          "three-spheres", "three-spheres-unequal",
@@ -24,6 +24,10 @@ static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
                                          "u-three",       "mixed",
                                          "t-pair",        "w-pair",
                                          "tumble"};
+
+typedef enum table { TABLE_RULES, TABLE_REACH, TABLE_CERTIFIED, TABLE_COST, TABLE_COUNT } table;
+
+static const char *const table_names[TABLE_COUNT] = {"rules", "reach", "certified", "cost"};
 
 enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
 
@@ -147,9 +151,9 @@ static bool run_certified(const recording_data *r, io_error *error) {
     for (int plan = 0; plan < 2; plan++) {
         certified_trial c;
         if (!certified_trial_run(r, plan != 0, &c, error)) return false;
-        printf("  %-21s %-5s %8.0f %8.1f %8.1f %8.1f %11.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
-               c.pairs, 100.0 * c.balls / c.pairs, 100.0 * c.boxes / c.pairs, 100.0 * c.both / c.pairs,
-               c.cells, c.balls_ms, c.boxes_ms);
+        printf("  %-21s %-5s %8.0f %9.1f %9.1f %8.1f %8.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
+               c.pairs, 100.0 * c.walked / c.pairs, 100.0 * c.middles / c.pairs, 100.0 * c.boxes / c.pairs,
+               100.0 * c.either / c.pairs, c.middles_ms, c.boxes_ms);
     }
     return true;
 }
@@ -169,45 +173,61 @@ static bool for_scenes(const char *folder, const char *const *names, size_t coun
     return true;
 }
 
-static bool run_all(const char *folder, const char *const *names, size_t count, io_error *error) {
-    printf("  %-21s %-18s %9s %8s %7s %8s %7s %9s %9s %7s %6s %9s %8s\n", "scene", "method", "particles",
-           "touching", "missed", "false", "recall", "precision", "confirmed", "rounds", "cyc %", "ms",
-           "of trees");
-    if (!for_scenes(folder, names, count, run_scene, error)) return false;
-    printf(
-        "\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of their "
-        "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
-        "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed", "vertices M",
-        "pairs M", "ms");
-    if (!for_scenes(folder, names, count, run_sweep, error)) return false;
-    for (int i = 0; i < SWEEP; i++) print_sweep("all", sweep[i].name, &swept[i]);
-    printf("\ncertified apart, %% of watched pairs of parts in all intervals; ms for the update and all "
-           "questions\n"
-           "  %-21s %-5s %8s %8s %8s %8s %11s %11s %11s\n",
-           "scene", "plan", "pairs", "balls %", "boxes %", "both %", "cells", "balls ms", "boxes ms");
-    return for_scenes(folder, names, count, run_certified, error);
+static void print_heads(table t) {
+    if (t == TABLE_RULES)
+        printf("\n  %-21s %-18s %9s %8s %7s %8s %7s %9s %9s %7s %6s %9s %8s\n", "scene", "method",
+               "particles", "touching", "missed", "false", "recall", "precision", "confirmed", "rounds",
+               "cyc %", "ms", "of trees");
+    if (t == TABLE_REACH)
+        printf("\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of "
+               "their "
+               "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
+               "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed",
+               "vertices M", "pairs M", "ms");
+    if (t == TABLE_CERTIFIED)
+        printf(
+            "\ncertified apart, %% of watched pairs of parts in all intervals: balls about particles, about "
+            "middles; ms for the update and all questions\n  %-21s %-5s %8s %9s %9s %8s %8s %11s %11s\n",
+            "scene", "plan", "pairs", "walked %", "middles %", "boxes %", "either %", "middles ms",
+            "boxes ms");
+}
+
+static bool print_table(table t, const char *folder, const char *const *names, size_t count,
+                        io_error *error) {
+    print_heads(t);
+    switch (t) {
+    case TABLE_RULES:
+        return for_scenes(folder, names, count, run_scene, error);
+    case TABLE_REACH:
+        if (!for_scenes(folder, names, count, run_sweep, error)) return false;
+        for (int i = 0; i < SWEEP; i++) print_sweep("all", sweep[i].name, &swept[i]);
+        return true;
+    case TABLE_CERTIFIED:
+        return for_scenes(folder, names, count, run_certified, error);
+    default:
+        return sensor_cost_print(error);
+    }
 }
 
 int main(int argument_count, char **arguments) {
     const char *folder = "build/models";
-    bool cost_only = false;
-    int next = 1;
-    for (; next < argument_count && strncmp(arguments[next], "--", 2) == 0; next++) {
-        if (strcmp(arguments[next], "--folder") == 0 && next + 1 < argument_count) {
-            folder = arguments[++next];
-        } else if (strcmp(arguments[next], "--cost") == 0) {
-            cost_only = true;
-        } else {
-            bool asked = strcmp(arguments[next], "--help") == 0;
-            fputs(help, asked ? stdout : stderr);
-            return asked ? 0 : 2;
-        }
+    int only = -1, next = 1;
+    for (; next + 1 < argument_count && strncmp(arguments[next], "--", 2) == 0; next += 2) {
+        if (strcmp(arguments[next], "--folder") == 0) folder = arguments[next + 1];
+        for (int t = 0; t < TABLE_COUNT && strcmp(arguments[next], "--only") == 0; t++)
+            if (strcmp(arguments[next + 1], table_names[t]) == 0) only = t;
+    }
+    if (next < argument_count && arguments[next][0] == '-') {
+        fputs(help, stdout);
+        return strcmp(arguments[next], "--help") == 0 ? 0 : 2;
     }
     io_error error = {""};
-    bool named = next < argument_count;
+    bool named = next < argument_count, good = true;
     const char *const *names = named ? (const char *const *)(arguments + next) : all_scenes;
-    bool good = cost_only || run_all(folder, names, named ? (size_t)(argument_count - next) : SCENES, &error);
-    if (good && !named) good = sensor_cost_print(&error);
+    for (int t = 0; good && t < TABLE_COUNT; t++)
+        if (only < 0 ? t < TABLE_COST || !named : t == only)
+            good = print_table((table)t, folder, names, named ? (size_t)(argument_count - next) : SCENES,
+                               &error);
     if (!good) fprintf(stderr, "sensors: %s\n", error.text);
     return good ? 0 : 1;
 }
