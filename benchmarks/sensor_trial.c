@@ -96,7 +96,9 @@ static double mean_edge(const recording_data *r) {
 static bool make_sensors(const recording_data *r, const sensor_rules *rules, cscd_partition **partition,
                          cscd_sensors **sensors, io_error *error) {
     const cscd_plan *plan = rules->plan ? r->charge : NULL;
-    if (cscd_partition_create(r->mesh, plan, r->model.positions, NULL, partition) != CSCD_OK)
+    cscd_partition_options cutting = cscd_partition_defaults();
+    cutting.cells = rules->cells;
+    if (cscd_partition_create(r->mesh, plan, r->model.positions, &cutting, partition) != CSCD_OK)
         return api_failed(r, error);
     cscd_sensor_options options = cscd_sensor_defaults();
     options.method = rules->random ? CSCD_SENSORS_RANDOM : CSCD_SENSORS_CELLS;
@@ -108,7 +110,9 @@ static bool make_sensors(const recording_data *r, const sensor_rules *rules, csc
         options.seed = rules->seed;
     }
     if (cscd_sensors_create(r->mesh, *partition, &options, sensors) != CSCD_OK) return api_failed(r, error);
-    if (rules->scalar) (*sensors)->particles.rule = PARTICLE_SCALAR;
+    static const particle_rule forces[] = {PARTICLE_ATTRACTION, PARTICLE_ATTRACTION, PARTICLE_SCALAR,
+                                           PARTICLE_STRONGEST};
+    if (rules->rule != RULE_DEFAULT) (*sensors)->particles.rule = forces[rules->rule];
     return true;
 }
 
@@ -124,12 +128,37 @@ static bool renew_due(const recording_data *r, cscd_partition *partition, const 
     return true;
 }
 
-static bool run_intervals(const recording_data *r, const sensor_truth *truth, cscd_partition *partition,
-                          cscd_sensors *sensors, sensor_trial *t, double *ms, io_error *error) {
+/* Of the first frame. */
+static double largest_cell(const recording_data *r, const cscd_partition *partition) {
+    const double *x = recording_data_frame(r, 0);
+    double largest = 0.0;
+    for (uint32_t c = 0; c < partition->cell_count; c++)
+        for (uint32_t i = partition->cell_offsets[c]; i < partition->cell_offsets[c + 1]; i++)
+            for (uint32_t j = partition->cell_offsets[c]; j < i; j++) {
+                const double *p = x + (size_t)partition->cell_vertices[i] * 3,
+                             *q = x + (size_t)partition->cell_vertices[j] * 3;
+                largest = fmax(largest, (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
+                                            (p[2] - q[2]) * (p[2] - q[2]));
+            }
+    return sqrt(largest);
+}
+
+/* mu is that of the interval before. */
+static void set_reach(cscd_sensors *sensors, const sensor_rules *rules, double cell) {
+    if (rules->reach_mu > 0.0)
+        sensors->options.effective_radius =
+            rules->reach_mu * sensors->reach.mu_most + rules->reach_cells * cell;
+}
+
+static bool run_intervals(const recording_data *r, const sensor_truth *truth, const sensor_rules *rules,
+                          cscd_partition *partition, cscd_sensors *sensors, sensor_trial *t, double *ms,
+                          io_error *error) {
     object_pairs warned = object_pairs_none(), confirmed = object_pairs_none();
+    double cell = rules->reach_cells > 0.0 ? largest_cell(r, partition) : 0.0;
     bool good = true;
     for (uint32_t k = 0; good && k < truth->interval_count; k++) {
         cscd_warnings warnings;
+        set_reach(sensors, rules, cell);
         good = cscd_sensors_step(sensors, recording_data_frame(r, k), recording_data_frame(r, k + 1),
                                  &warnings) == CSCD_OK ||
                api_failed(r, error);
@@ -138,6 +167,8 @@ static bool run_intervals(const recording_data *r, const sensor_truth *truth, cs
         cscd_sensor_counters counters = cscd_sensors_counters(sensors);
         t->rounds += (double)counters.rounds / (2.0 * truth->interval_count);
         t->cycles += (double)counters.cycles / (2.0 * truth->interval_count);
+        t->vertices += (double)counters.vertices;
+        t->pairs += (double)counters.particle_pairs;
         good = (object_pairs_of_warnings(&warnings, false, &warned) &&
                 object_pairs_of_warnings(&warnings, true, &confirmed)) ||
                io_fail(error, "out of memory");
@@ -160,7 +191,7 @@ bool sensor_trial_run(const recording_data *r, const sensor_truth *truth, const 
     sensor_trial t = {.trees_ms = truth->trees_ms};
     double *ms = body_allocate(r->frame_count, sizeof *ms);
     bool good = make_sensors(r, rules, &partition, &sensors, error) &&
-                run_intervals(r, truth, partition, sensors, &t, ms, error);
+                run_intervals(r, truth, rules, partition, sensors, &t, ms, error);
     if (good) {
         t.particles = cscd_sensors_particle_count(sensors);
         t.ms = sensor_median(ms, truth->interval_count);
@@ -181,6 +212,8 @@ void sensor_trial_add(sensor_trial *sum, const sensor_trial *one) {
     sum->rounds += one->rounds;
     sum->cycles += one->cycles;
     sum->ms += one->ms;
+    sum->vertices += one->vertices;
+    sum->pairs += one->pairs;
     sum->trees_ms = one->trees_ms;
 }
 
@@ -206,19 +239,23 @@ static uint32_t ask_all(const cscd_sensors *s, apart_question ask, bool *answers
     return count;
 }
 
-static void measure_interval(cscd_sensors *s, const double *start, const double *end, bool *answers[2],
+/* The API asks boxes first, then balls about the middles. */
+static void measure_interval(cscd_sensors *s, const double *start, const double *end, bool *answers[3],
                              certified_trial *t, double ms[2]) {
-    double since = timer_now_ms();
     sensor_bounds_update(&s->bounds, s->partition, start, end, s->particles.vertices);
     uint32_t count = ask_all(s, balls_apart, answers[0]);
+    double since = timer_now_ms();
+    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
+    ask_all(s, balls_apart, answers[1]);
     timer_lap(&since, &ms[0]);
     sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
-    ask_all(s, boxes_apart, answers[1]);
+    ask_all(s, boxes_apart, answers[2]);
     timer_lap(&since, &ms[1]);
     for (uint32_t i = 0; i < count; i++) {
-        t->balls += answers[0][i];
-        t->boxes += answers[1][i];
-        t->both += answers[0][i] || answers[1][i];
+        t->walked += answers[0][i];
+        t->middles += answers[1][i];
+        t->boxes += answers[2][i];
+        t->either += answers[1][i] || answers[2][i];
     }
     t->pairs += count;
 }
@@ -230,9 +267,9 @@ bool certified_trial_run(const recording_data *r, bool plan, certified_trial *ou
     certified_trial t = {0};
     uint32_t count = r->frame_count - 1;
     double *ms[2] = {body_allocate(count, sizeof **ms), body_allocate(count, sizeof **ms)};
-    bool *answers[2] = {NULL, NULL};
+    bool *answers[3] = {NULL, NULL, NULL};
     bool good = make_sensors(r, &rules, &partition, &sensors, error);
-    for (int i = 0; good && i < 2; i++)
+    for (int i = 0; good && i < 3; i++)
         answers[i] = body_allocate((size_t)partition->part_count * partition->part_count, 1);
     for (uint32_t k = 0; good && k < count; k++) {
         const double *start = recording_data_frame(r, k), *end = recording_data_frame(r, k + 1);
@@ -244,12 +281,12 @@ bool certified_trial_run(const recording_data *r, bool plan, certified_trial *ou
         for (int i = 0; i < 2; i++) ms[i][k] = taken[i];
     }
     if (good) {
-        t.balls_ms = sensor_median(ms[0], count);
+        t.middles_ms = sensor_median(ms[0], count);
         t.boxes_ms = sensor_median(ms[1], count);
-        t.cells = cscd_partition_cell_count(partition);
         *out = t;
     }
-    for (int i = 0; i < 2; i++) free(ms[i]), free(answers[i]);
+    for (int i = 0; i < 2; i++) free(ms[i]);
+    for (int i = 0; i < 3; i++) free(answers[i]);
     cscd_sensors_destroy(sensors);
     cscd_partition_destroy(partition);
     return good;

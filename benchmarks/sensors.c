@@ -9,14 +9,14 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: sensors [--folder FOLDER] [--cost] [SCENE...]\n"
+    "usage: sensors [--folder FOLDER] [--only rules|reach|certified|cost] [SCENE...]\n"
     "\n"
     "Recall and precision are of pairs of objects and intervals: those with a warning against those in which "
     "the\n"
     "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: "
     "recordings\n"
     "NAME.obj and NAME.pc2 in FOLDER (default build/models, by make models); a plan by charge is made where\n"
-    "NAME.plan.ply is missing. --cost: only the tables of cost by size and by number of objects.\n";
+    "NAME.plan.ply is missing. Cost, by size and by number of objects, has bodies of its own.\n";
 
 static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
                                          "three-spheres", "three-spheres-unequal",
@@ -25,6 +25,10 @@ static const char *const all_scenes[] = {"two-spheres",   "two-spheres-unequal",
                                          "t-pair",        "w-pair",
                                          "tumble"};
 
+typedef enum table { TABLE_RULES, TABLE_REACH, TABLE_CERTIFIED, TABLE_COST, TABLE_COUNT } table;
+
+static const char *const table_names[TABLE_COUNT] = {"rules", "reach", "certified", "cost"};
+
 enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
 
 /* ---- the methods --------------------------------------------------------------------------------------- */
@@ -32,7 +36,9 @@ enum { SCENES = sizeof all_scenes / sizeof *all_scenes, RANDOM_SEEDS = 5 };
 static const sensor_rules rules[] = {
     {.name = "cells"},
     {.name = "cells, plan", .plan = true},
-    {.name = "cells, scalar", .scalar = true},
+    {.name = "cells, vector", .rule = RULE_VECTOR},
+    {.name = "cells, scalar", .rule = RULE_SCALAR},
+    {.name = "cells, strongest", .rule = RULE_STRONGEST},
     {.name = "cells, mu 1 edge", .mu_edges = 1.0},
     {.name = "cells, mu 1/2 edge", .mu_edges = 0.5},
 };
@@ -41,6 +47,13 @@ static const sensor_rules random_rules[] = {
     {.name = "random, 5", .random = true, .particles = 5},
     {.name = "random, as cells", .random = true, .as_cells = true},
 };
+
+static void print_sweep(const char *scene, const char *rule, const sensor_trial *t) {
+    printf("  %-21s %-18s %8.0f %7.0f %8.0f %7.4f %9.3f %9.3f %10.2f %10.2f %9.2f\n", scene, rule,
+           t->touching, t->touching - t->found, t->warned - t->found, t->found / t->touching,
+           t->found / t->warned, t->confirmed / t->touching, 1e-6 * t->vertices, 1e-6 * t->pairs, t->ms);
+    fflush(stdout);
+}
 
 static void print_trial(const char *scene, const char *method, const sensor_trial *t, uint32_t runs) {
     double n = runs;
@@ -88,6 +101,49 @@ static bool run_scene(const recording_data *r, io_error *error) {
     return good;
 }
 
+/* ---- how far they feel, and how many ----------------------------------------------------------------------
+ */
+
+static const sensor_rules sweep[] = {
+    {.name = "default"},
+    {.name = "R_eff mu", .reach_mu = 1.0},
+    {.name = "R_eff 2 mu", .reach_mu = 2.0},
+    {.name = "R_eff 4 mu", .reach_mu = 4.0},
+    {.name = "R_eff mu + 1 cell", .reach_mu = 1.0, .reach_cells = 1.0},
+    {.name = "R_eff mu + 2 cells", .reach_mu = 1.0, .reach_cells = 2.0},
+    {.name = "vector, 2 mu", .rule = RULE_VECTOR, .reach_mu = 2.0},
+    {.name = "scalar, 2 mu", .rule = RULE_SCALAR, .reach_mu = 2.0},
+    {.name = "strongest, mu", .rule = RULE_STRONGEST, .reach_mu = 1.0},
+    {.name = "strongest, 2 mu", .rule = RULE_STRONGEST, .reach_mu = 2.0},
+    {.name = "strongest, 4 mu", .rule = RULE_STRONGEST, .reach_mu = 4.0},
+    {.name = "1 cell", .cells = 1},
+    {.name = "4 cells", .cells = 4},
+    {.name = "12 cells", .cells = 12},
+    {.name = "36 cells", .cells = 36},
+    {.name = "36, R_eff 2 mu", .cells = 36, .reach_mu = 2.0},
+    {.name = "108, R_eff 2 mu", .cells = 108, .reach_mu = 2.0},
+};
+
+enum { SWEEP = sizeof sweep / sizeof *sweep };
+
+static sensor_trial swept[SWEEP];
+
+/* Adds up; a scene of many objects is shown by itself, too. */
+static bool run_sweep(const recording_data *r, io_error *error) {
+    sensor_truth truth;
+    if (!sensor_truth_find(r, &truth, error)) return false;
+    bool good = true;
+    for (int i = 0; good && i < SWEEP; i++) {
+        sensor_trial one;
+        good = sensor_trial_run(r, &truth, &sweep[i], &one, error);
+        if (!good) break;
+        sensor_trial_add(&swept[i], &one);
+        if (cscd_mesh_component_count(r->mesh) > 4) print_sweep(r->name, sweep[i].name, &one);
+    }
+    sensor_truth_free(&truth);
+    return good;
+}
+
 /* ---- the certified mode ----------------------------------------------------------------------------------
  */
 
@@ -95,9 +151,9 @@ static bool run_certified(const recording_data *r, io_error *error) {
     for (int plan = 0; plan < 2; plan++) {
         certified_trial c;
         if (!certified_trial_run(r, plan != 0, &c, error)) return false;
-        printf("  %-21s %-5s %8.0f %8.1f %8.1f %8.1f %11.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
-               c.pairs, 100.0 * c.balls / c.pairs, 100.0 * c.boxes / c.pairs, 100.0 * c.both / c.pairs,
-               c.cells, c.balls_ms, c.boxes_ms);
+        printf("  %-21s %-5s %8.0f %9.1f %9.1f %8.1f %8.1f %11.4f %11.4f\n", r->name, plan ? "plan" : "none",
+               c.pairs, 100.0 * c.walked / c.pairs, 100.0 * c.middles / c.pairs, 100.0 * c.boxes / c.pairs,
+               100.0 * c.either / c.pairs, c.middles_ms, c.boxes_ms);
     }
     return true;
 }
@@ -117,38 +173,61 @@ static bool for_scenes(const char *folder, const char *const *names, size_t coun
     return true;
 }
 
-static bool run_all(const char *folder, const char *const *names, size_t count, io_error *error) {
-    printf("  %-21s %-18s %9s %8s %7s %8s %7s %9s %9s %7s %6s %9s %8s\n", "scene", "method", "particles",
-           "touching", "missed", "false", "recall", "precision", "confirmed", "rounds", "cyc %", "ms",
-           "of trees");
-    if (!for_scenes(folder, names, count, run_scene, error)) return false;
-    printf("\ncertified apart, %% of watched pairs of parts in all intervals; ms for the update and all "
-           "questions\n"
-           "  %-21s %-5s %8s %8s %8s %8s %11s %11s %11s\n",
-           "scene", "plan", "pairs", "balls %", "boxes %", "both %", "cells", "balls ms", "boxes ms");
-    return for_scenes(folder, names, count, run_certified, error);
+static void print_heads(table t) {
+    if (t == TABLE_RULES)
+        printf("\n  %-21s %-18s %9s %8s %7s %8s %7s %9s %9s %7s %6s %9s %8s\n", "scene", "method",
+               "particles", "touching", "missed", "false", "recall", "precision", "confirmed", "rounds",
+               "cyc %", "ms", "of trees");
+    if (t == TABLE_REACH)
+        printf("\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of "
+               "their "
+               "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
+               "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed",
+               "vertices M", "pairs M", "ms");
+    if (t == TABLE_CERTIFIED)
+        printf(
+            "\ncertified apart, %% of watched pairs of parts in all intervals: balls about particles, about "
+            "middles; ms for the update and all questions\n  %-21s %-5s %8s %9s %9s %8s %8s %11s %11s\n",
+            "scene", "plan", "pairs", "walked %", "middles %", "boxes %", "either %", "middles ms",
+            "boxes ms");
+}
+
+static bool print_table(table t, const char *folder, const char *const *names, size_t count,
+                        io_error *error) {
+    print_heads(t);
+    switch (t) {
+    case TABLE_RULES:
+        return for_scenes(folder, names, count, run_scene, error);
+    case TABLE_REACH:
+        if (!for_scenes(folder, names, count, run_sweep, error)) return false;
+        for (int i = 0; i < SWEEP; i++) print_sweep("all", sweep[i].name, &swept[i]);
+        return true;
+    case TABLE_CERTIFIED:
+        return for_scenes(folder, names, count, run_certified, error);
+    default:
+        return sensor_cost_print(error);
+    }
 }
 
 int main(int argument_count, char **arguments) {
     const char *folder = "build/models";
-    bool cost_only = false;
-    int next = 1;
-    for (; next < argument_count && strncmp(arguments[next], "--", 2) == 0; next++) {
-        if (strcmp(arguments[next], "--folder") == 0 && next + 1 < argument_count) {
-            folder = arguments[++next];
-        } else if (strcmp(arguments[next], "--cost") == 0) {
-            cost_only = true;
-        } else {
-            bool asked = strcmp(arguments[next], "--help") == 0;
-            fputs(help, asked ? stdout : stderr);
-            return asked ? 0 : 2;
-        }
+    int only = -1, next = 1;
+    for (; next + 1 < argument_count && strncmp(arguments[next], "--", 2) == 0; next += 2) {
+        if (strcmp(arguments[next], "--folder") == 0) folder = arguments[next + 1];
+        for (int t = 0; t < TABLE_COUNT && strcmp(arguments[next], "--only") == 0; t++)
+            if (strcmp(arguments[next + 1], table_names[t]) == 0) only = t;
+    }
+    if (next < argument_count && arguments[next][0] == '-') {
+        fputs(help, stdout);
+        return strcmp(arguments[next], "--help") == 0 ? 0 : 2;
     }
     io_error error = {""};
-    bool named = next < argument_count;
+    bool named = next < argument_count, good = true;
     const char *const *names = named ? (const char *const *)(arguments + next) : all_scenes;
-    bool good = cost_only || run_all(folder, names, named ? (size_t)(argument_count - next) : SCENES, &error);
-    if (good && !named) good = sensor_cost_print(&error);
+    for (int t = 0; good && t < TABLE_COUNT; t++)
+        if (only < 0 ? t < TABLE_COST || !named : t == only)
+            good = print_table((table)t, folder, names, named ? (size_t)(argument_count - next) : SCENES,
+                               &error);
     if (!good) fprintf(stderr, "sensors: %s\n", error.text);
     return good ? 0 : 1;
 }

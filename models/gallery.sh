@@ -46,3 +46,11 @@ whole press 20,10 0:165:15
 whole t-pair 25,15 0:110:10 '--colour contacts'
 whole mixed 5,10 0:110:10 '--colour contacts'
 strip tumble 25,25 4 0:143:13
+sensed() { # sensed NAME FRAME VIEW [OPTIONS]: cells, particles and where they have been
+    # shellcheck disable=SC2086
+    "$tool" sense "$models/$1.obj" "$models/$1.pc2" --quiet --picture "$images/sense-$1.png" --frame "$2" --view "$3" \
+        --size 640x480 ${4:-}
+}
+sensed two-spheres-unequal 20 20,15 '--cells 12'
+sensed v-shape 24 20,15 '--plan none'
+sensed t-pair 18 20,15
