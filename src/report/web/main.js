@@ -1,7 +1,7 @@
 /** Opens the report: reads the data blocks, then builds the view, the controls and the panels. */
 
 import { createChoices } from './controls/choices.js';
-import { button, element } from './controls/dom.js';
+import { button, element } from './page/dom.js';
 import { createHelp, listenToKeys } from './controls/keys.js';
 import { createPlayer } from './controls/player.js';
 import { createStore } from './controls/store.js';

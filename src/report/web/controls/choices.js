@@ -1,6 +1,6 @@
 /** What the view shows: one colouring, and the marks over it. */
 
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
 
 export const COLOURS = [
   { value: 'plain', name: 'Plain' },

@@ -1,7 +1,7 @@
 /** Keys of the whole page, and the dialog that lists them. */
 
 import { COLOURS, colourMissing, marksOf } from './choices.js';
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
 
 const HELP = [
   ['Space', 'Play or pause'],

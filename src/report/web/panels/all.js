@@ -2,7 +2,7 @@
 import * as charts from './charts.js';
 import * as comparison from './comparison.js';
 import * as contacts from './contacts.js';
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
 import * as intervals from './intervals.js';
 import * as licences from './licences.js';
 import * as notes from './notes.js';

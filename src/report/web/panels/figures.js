@@ -1,5 +1,5 @@
 /** Which charts there are, and their numbers. */
-import { counted, decimal, integer, milliseconds, significant } from './format.js';
+import { counted, decimal, integer, milliseconds, significant } from '../page/format.js';
 import { lineOf, lineStyle, nameOf } from './palette.js';
 import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
 

@@ -1,6 +1,6 @@
 /** Where the results come from: version, machine, inputs; and how exactly this page shows them. */
-import { element, heading } from './dom.js';
-import { counted, integer, significant } from './format.js';
+import { element, heading } from '../page/dom.js';
+import { counted, integer, significant } from '../page/format.js';
 import { nameOf } from './palette.js';
 
 const lines = (texts) => texts.map((text) => element('div', { text }));

@@ -1,6 +1,6 @@
 /** The table of milliseconds per stage, mean and maximum, of every replay in the report. */
-import { element, heading, numberCell, scrollable } from './dom.js';
-import { decimal, integer, milliseconds } from './format.js';
+import { element, heading, numberCell, scrollable } from '../page/dom.js';
+import { decimal, integer, milliseconds } from '../page/format.js';
 import { lineOf, nameOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
 

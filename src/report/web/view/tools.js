@@ -1,7 +1,7 @@
 /** The view with its buttons, legend and readout; a message in its place where it cannot be drawn. */
 
-import { button, element } from '../controls/dom.js';
-import { intervalOf } from '../data/report.js';
+import { button, element } from '../page/dom.js';
+import { intervalAt } from '../page/intervals.js';
 import { createLegend } from './legend.js';
 import { createReadout } from './readout.js';
 import { Viewer } from './viewer.js';
@@ -29,7 +29,7 @@ function tools(viewer, store) {
   if (data.contacts !== null) {
     const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => viewer.zoomToContacts());
     const update = (state) => {
-      const [begin, end] = data.contacts.range(intervalOf(data, state.time));
+      const [begin, end] = data.contacts.range(intervalAt(state.time, data));
       zoom.disabled = begin === end && state.selected === null;
     };
     store.on(['time', 'selected'], update);

@@ -1,7 +1,7 @@
 /** The 3D view: builds the scene and draws it when something has changed, never otherwise. */
 
 import { Box3, Color, LinearSRGBColorSpace, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
-import { intervalOf } from '../data/report.js';
+import { intervalAt } from '../page/intervals.js';
 import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
@@ -221,7 +221,7 @@ export class Viewer {
 
   updateMarks(state) {
     const { data, space } = this;
-    const interval = intervalOf(data, state.time);
+    const interval = intervalAt(state.time, data);
     this.contacts.setState(data, state, space.toView);
     const points = state.points ? this.detectorPoints(interval, state.time - interval) : null;
     this.detectors.setState(data, points, space.toView);
@@ -260,7 +260,7 @@ export class Viewer {
   zoomToContacts() {
     const { data, painter, space } = this;
     const { selected, time } = this.store.get();
-    const interval = intervalOf(data, time);
+    const interval = intervalAt(time, data);
     this.update(this.store.get()); // where the view follows the body, it does so before
     const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
     if (begin === end) return;
