@@ -133,6 +133,7 @@ export function createPlot(host, plot, attach) {
       hooks: { ready: [moveLines], setScale: [moveLines] },
     };
     chart = new uPlot(options, data(), host);
+    chart.ctx.canvas.setAttribute('aria-hidden', 'true'); // the figure has a label and its numbers
     chart.over.append(hoverLine, timeLine);
     attach(chart.over);
   }

@@ -70,7 +70,7 @@ export function create(container, report) {
     'tr',
     {},
     element('th', { scope: 'col', text: several ? 'replay, method' : 'method' }),
-    element('th', { scope: 'col', text: '', 'aria-label': 'per frame' }),
+    element('th', { scope: 'col' }, element('span', { class: 'visually-hidden', text: 'mean or maximum' })),
   );
   const names = [
     ...STAGES.map(({ label }) => label),

@@ -11,6 +11,8 @@ const LOUPE =
   'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8z' +
   'm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
 
+const KEYS = 'Alt with arrows turns the view, Alt and Shift with arrows pans, Alt with Page Up or Down zooms; ? lists all keys.';
+
 /** A button that stays pressed. */
 function toggle(name, text, title, pressed, action) {
   const made = element('button', { type: 'button', 'aria-label': name, 'aria-pressed': pressed, title }, text);
@@ -67,8 +69,10 @@ export function createView(container, report, store, player) {
   viewer.canvas.addEventListener('webglcontextrestored', () => {
     note.textContent = '';
   });
+  const keys = element('p', { class: 'visually-hidden', id: 'view-keys' }, KEYS);
+  viewer.canvas.setAttribute('aria-describedby', 'status view-keys');
   const note = element('p', { class: 'view-note', 'aria-live': 'polite' });
-  container.append(tools(viewer, store), note);
+  container.append(tools(viewer, store), note, keys);
   viewer.note = note;
   createLegend(container, report, store, viewer.painter);
   createReadout(container, report.scene, store);
