@@ -8,6 +8,7 @@ import { createStore } from './controls/store.js';
 import { followTheme, initialTheme } from './controls/theme.js';
 import { createTransport } from './controls/transport.js';
 import { readReport } from './data/report.js';
+import { titleOf } from './page/names.js';
 import { createPanels } from './panels/all.js';
 import { createView } from './view/tools.js';
 
@@ -92,7 +93,7 @@ async function createScene(report, store, player) {
 async function open() {
   const hook = window.cscd;
   const report = await readReport();
-  document.title = `${report.title} · cscd report`;
+  document.title = `${titleOf(report)} · cscd report`;
   const store = createStore(initialState(report));
   const theme = followTheme(store);
   const player = report.scene === null ? null : createPlayer(report, store);

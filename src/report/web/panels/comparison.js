@@ -2,7 +2,8 @@
 import { agreement, differences } from './agreement.js';
 import { element, heading, numberCell, scrollable } from '../page/dom.js';
 import { counted, decimal, integer } from '../page/format.js';
-import { lineOf, nameOf } from './palette.js';
+import { nameOf } from '../page/names.js';
+import { lineOf } from './palette.js';
 
 const note = ([grade, text]) => element('p', { class: `note ${grade}`, text });
 

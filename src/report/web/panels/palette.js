@@ -24,10 +24,3 @@ export function lineOf(index) {
   svg.setAttribute('class', 'dash');
   return svg;
 }
-
-/** The name of a replay; its number too where names repeat. */
-export function nameOf(report, index) {
-  const { name } = report.summaries[index];
-  const same = report.summaries.filter((other) => other.name === name).length;
-  return same > 1 ? `${name} (${index + 1})` : name;
-}

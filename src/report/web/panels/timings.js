@@ -1,7 +1,8 @@
 /** The table of milliseconds per stage, mean and maximum, of every replay in the report. */
 import { element, heading, numberCell, scrollable } from '../page/dom.js';
 import { decimal, integer, milliseconds } from '../page/format.js';
-import { lineOf, nameOf } from './palette.js';
+import { nameOf } from '../page/names.js';
+import { lineOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
 
 const nothing = (text, title) => element('td', { class: 'number absent', text, title });
