@@ -10,6 +10,7 @@ import { createTransport } from './controls/transport.js';
 import { readReport } from './data/report.js';
 import { titleOf } from './page/names.js';
 import { createPanels } from './panels/all.js';
+import { markersOnScreen } from './view/onscreen.js';
 import { createView } from './view/tools.js';
 
 const SUN =
@@ -100,7 +101,7 @@ async function open() {
   const viewer = report.scene === null ? null : await createScene(report, store, player);
   const help = createHelp();
   createTools(byId('page-tools'), theme, help);
-  Object.assign(hook, { report, store, player, viewer });
+  Object.assign(hook, { report, store, player, viewer, markers: () => markersOnScreen(viewer) });
   createPanels(report, store, player);
   viewer?.resize();
   viewer?.drawNow();

@@ -2,6 +2,7 @@
 
 import { COLOURS, colourMissing, marksOf } from './choices.js';
 import { element } from '../page/dom.js';
+import { zoomToContacts } from '../view/framing.js';
 
 const HELP = [
   ['Space', 'Play or pause'],
@@ -89,7 +90,7 @@ function playbackKeys(player) {
 function sceneKeys(scene, store, viewer) {
   const actions = {
     0: () => viewer?.home(),
-    z: () => viewer?.zoomToContacts(),
+    z: () => viewer && zoomToContacts(viewer),
     Escape: () => store.set({ selected: null, triangle: null }),
   };
   COLOURS.forEach((colour, i) => {

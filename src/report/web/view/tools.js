@@ -2,6 +2,7 @@
 
 import { button, element } from '../page/dom.js';
 import { intervalAt } from '../page/intervals.js';
+import { zoomToContacts } from './framing.js';
 import { createLegend } from './legend.js';
 import { createReadout } from './readout.js';
 import { Viewer } from './viewer.js';
@@ -29,7 +30,7 @@ function tools(viewer, store) {
   const reset = button('Reset view', { glyph: HOUSE, key: '0' }, () => viewer.home());
   const row = element('div', { class: 'view-tools' }, reset);
   if (data.contacts !== null) {
-    const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => viewer.zoomToContacts());
+    const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => zoomToContacts(viewer));
     const update = (state) => {
       const [begin, end] = data.contacts.range(intervalAt(state.time, data));
       zoom.disabled = begin === end && state.selected === null;
