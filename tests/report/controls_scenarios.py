@@ -50,6 +50,14 @@ def everything_has_its_name(context):
     missing += [f"{role} {name}" for role, name in others.items() if not page.has(role, name)
                 and not (role == "radiogroup" and page.has("group", name))]
     expect(not missing, f"not in the accessibility tree: {', '.join(missing)}")
+    told = page.script("""return document.querySelector('#view canvas').getAttribute('aria-describedby').split(' ')
+        .map((id) => document.getElementById(id).textContent);""")
+    expect(told[0].startswith("Frame 0") and "Alt" in told[1], f"the view is described as {told}")
+    empty = page.script("""return [...document.querySelectorAll('th')].filter((one) => one.textContent.trim() === '')
+        .length;""")
+    expect_equal(empty, 0, "header cells without text")
+    heard = page.script("return document.querySelectorAll('.plot canvas:not([aria-hidden])').length;")
+    expect_equal(heard, 0, "canvases of charts that readers meet")
 
 
 def buttons_step_and_jump(context):

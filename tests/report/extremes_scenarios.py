@@ -98,6 +98,9 @@ def pages_without_webgl_show_the_rest(context):
         page.click("button", "Next frame with contacts")
         expect_equal(page.frame(), made.contacts()[0][0], "frame after a jump")
         expect(len(page.table("Intervals")) == 10, "the table of intervals")
+        useless = page.script("""return [...document.querySelectorAll('#choices input, #choices select')]
+            .filter((one) => !one.disabled || !one.title.includes('WebGL')).map((one) => one.ariaLabel);""")
+        expect(not useless, f"without a view {useless} can be chosen, or do not say why not")
     finally:
         page.command("Page.removeScriptToEvaluateOnNewDocument", identifier=blocked)
         page.forget()

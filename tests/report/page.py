@@ -243,7 +243,7 @@ class Page:
         return self.script(CELLS + "return cellsOf(arguments[0]);", self.element("table", name))
 
     def markers(self):
-        return self.script("return window.cscd.viewer.markers();")
+        return self.script("return window.cscd.markers();")
 
     def view_box(self):
         """Left, top, width, height of the 3D view in pixels of the page."""

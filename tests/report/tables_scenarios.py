@@ -1,5 +1,6 @@
 """The numbers in the page's tables are those of the summary, digit by digit."""
 import json
+import os
 
 from charts_scenarios import check_drawn
 from controls_scenarios import busiest, open_pawn
@@ -152,6 +153,9 @@ def comparison_shows_each_summary(context):
     expect(len(figures) >= 3, f"{len(figures)} charts")
     for node in figures:
         check_drawn(context.page, context.page.of_node(node), node["name"]["value"])
+    names = ", ".join(os.path.basename(path) for path in made.summaries)
+    titles = context.page.script("return [document.title, document.querySelector('h1').textContent];")
+    expect_equal(titles, [f"{names} · cscd report", names], "the titles")
     context.pictures.whole("comparison")
     totals = []
     for path in made.summaries:

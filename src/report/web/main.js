@@ -1,14 +1,16 @@
 /** Opens the report: reads the data blocks, then builds the view, the controls and the panels. */
 
 import { createChoices } from './controls/choices.js';
-import { button, element } from './controls/dom.js';
+import { button, element } from './page/dom.js';
 import { createHelp, listenToKeys } from './controls/keys.js';
 import { createPlayer } from './controls/player.js';
 import { createStore } from './controls/store.js';
 import { followTheme, initialTheme } from './controls/theme.js';
 import { createTransport } from './controls/transport.js';
 import { readReport } from './data/report.js';
+import { titleOf } from './page/names.js';
 import { createPanels } from './panels/all.js';
+import { markersOnScreen } from './view/onscreen.js';
 import { createView } from './view/tools.js';
 
 const SUN =
@@ -85,21 +87,21 @@ async function createScene(report, store, player) {
   if (quick) await Promise.all([scene.positions.readAll(), scene.scenery?.positions.readAll()]);
   const viewer = createView(byId('view'), report, store, player);
   if (scene.last > scene.first) createTransport(byId('playback'), report, store, player);
-  createChoices(byId('choices'), scene, store);
+  createChoices(byId('choices'), scene, viewer !== null, store);
   return viewer;
 }
 
 async function open() {
   const hook = window.cscd;
   const report = await readReport();
-  document.title = `${report.title} · cscd report`;
+  document.title = `${titleOf(report)} · cscd report`;
   const store = createStore(initialState(report));
   const theme = followTheme(store);
   const player = report.scene === null ? null : createPlayer(report, store);
   const viewer = report.scene === null ? null : await createScene(report, store, player);
   const help = createHelp();
   createTools(byId('page-tools'), theme, help);
-  Object.assign(hook, { report, store, player, viewer });
+  Object.assign(hook, { report, store, player, viewer, markers: () => markersOnScreen(viewer) });
   createPanels(report, store, player);
   viewer?.resize();
   viewer?.drawNow();

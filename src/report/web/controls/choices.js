@@ -1,6 +1,6 @@
 /** What the view shows: one colouring, and the marks over it. */
 
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
 
 export const COLOURS = [
   { value: 'plain', name: 'Plain' },
@@ -13,6 +13,7 @@ export const COLOURS = [
 
 const TRAIL = 'Contacts of the 8 intervals before, fading';
 const THROUGH = 'Contacts that the surface hides, faintly';
+const NO_VIEW = 'The 3D view, where this would show, cannot be drawn: the browser offers no WebGL';
 const NO_PLAN = 'The recording was searched without regions, so the report has none';
 const REASONS = {
   charge: 'The report has no charge: the mesh is not closed, or the method needs none',
@@ -22,8 +23,7 @@ const REASONS = {
   heat: 'The report has no contacts: nothing was replayed',
 };
 
-/** @returns {{key: string, name: string, letter: string, missing: string|null}[]} */
-export function marksOf(scene) {
+function marksOfScene(scene) {
   const noContacts = scene.contacts === null ? REASONS.heat : null;
   const noPoints = scene.detectorPoints === null && scene.plan === null ? NO_PLAN : null;
   return [
@@ -42,8 +42,20 @@ export function marksOf(scene) {
   ];
 }
 
-export const colourMissing = (scene, { array, value }) =>
-  array !== undefined && scene[array] === null ? REASONS[value] : null;
+/**
+ * @param {boolean} drawn whether there is a view that can show them
+ * @returns {{key: string, name: string, letter: string, missing: string|null}[]} missing: why it cannot be chosen
+ */
+export function marksOf(scene, drawn) {
+  const marks = marksOfScene(scene);
+  return drawn ? marks : marks.map((mark) => ({ ...mark, missing: NO_VIEW }));
+}
+
+/** Why the colouring cannot be chosen, or null. */
+export function colourMissing(scene, drawn, { array, value }) {
+  if (!drawn) return NO_VIEW;
+  return array !== undefined && scene[array] === null ? REASONS[value] : null;
+}
 
 function choice(input, name, key, title) {
   const label = element('label', { class: 'choice', title }, input, name);
@@ -52,11 +64,11 @@ function choice(input, name, key, title) {
   return label;
 }
 
-function colourChoices(scene, store) {
+function colourChoices(scene, drawn, store) {
   const group = element('fieldset', { class: 'choices', role: 'radiogroup', 'aria-label': 'Colour by' });
   group.append(element('legend', {}, 'Colour by'));
   COLOURS.forEach((colour, i) => {
-    const missing = colourMissing(scene, colour);
+    const missing = colourMissing(scene, drawn, colour);
     const input = element('input', {
       type: 'radio',
       name: 'colour',
@@ -76,10 +88,10 @@ function colourChoices(scene, store) {
   return group;
 }
 
-function markChoices(scene, store) {
+function markChoices(scene, drawn, store) {
   const group = element('fieldset', { class: 'choices', 'aria-label': 'Show' });
   group.append(element('legend', {}, 'Show'));
-  for (const { key, name, letter, missing, title = null } of marksOf(scene)) {
+  for (const { key, name, letter, missing, title = null } of marksOf(scene, drawn)) {
     const input = element('input', {
       type: 'checkbox',
       'aria-label': name,
@@ -97,8 +109,8 @@ function markChoices(scene, store) {
   return group;
 }
 
-function upSelect(store) {
-  const select = element('select', { 'aria-label': 'Up axis' });
+function upSelect(drawn, store) {
+  const select = element('select', { 'aria-label': 'Up axis', disabled: !drawn, title: drawn ? null : NO_VIEW });
   for (const axis of ['z', 'y']) select.append(element('option', { value: axis }, axis));
   select.value = store.get().up;
   select.addEventListener('change', () => store.set({ up: select.value }));
@@ -108,6 +120,7 @@ function upSelect(store) {
   return element('label', { class: 'row' }, 'Up axis', select);
 }
 
-export function createChoices(container, scene, store) {
-  container.append(colourChoices(scene, store), markChoices(scene, store), upSelect(store));
+/** @param {boolean} drawn whether there is a view */
+export function createChoices(container, scene, drawn, store) {
+  container.append(colourChoices(scene, drawn, store), markChoices(scene, drawn, store), upSelect(drawn, store));
 }

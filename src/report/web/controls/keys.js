@@ -1,7 +1,8 @@
 /** Keys of the whole page, and the dialog that lists them. */
 
 import { COLOURS, colourMissing, marksOf } from './choices.js';
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
+import { zoomToContacts } from '../view/framing.js';
 
 const HELP = [
   ['Space', 'Play or pause'],
@@ -89,13 +90,13 @@ function playbackKeys(player) {
 function sceneKeys(scene, store, viewer) {
   const actions = {
     0: () => viewer?.home(),
-    z: () => viewer?.zoomToContacts(),
+    z: () => viewer && zoomToContacts(viewer),
     Escape: () => store.set({ selected: null, triangle: null }),
   };
   COLOURS.forEach((colour, i) => {
-    if (colourMissing(scene, colour) === null) actions[String(i + 1)] = () => store.set({ colour: colour.value });
+    if (colourMissing(scene, viewer !== null, colour) === null) actions[String(i + 1)] = () => store.set({ colour: colour.value });
   });
-  for (const { key, letter, missing } of marksOf(scene)) {
+  for (const { key, letter, missing } of marksOf(scene, viewer !== null)) {
     if (missing === null) actions[letter.toLowerCase()] = () => store.set({ [key]: !store.get()[key] });
   }
   return actions;

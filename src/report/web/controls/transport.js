@@ -2,7 +2,8 @@
 
 import { createBand } from './band.js';
 import { onCalmly } from './calm.js';
-import { button, element, icon } from './dom.js';
+import { button, element, icon } from '../page/dom.js';
+import { moment } from '../page/format.js';
 
 const GLYPHS = {
   play: 'M4 2.5v11l9-5.5z',
@@ -88,11 +89,10 @@ function slider(store, player) {
   return input;
 }
 
-/** The time in frames, with decimals between frames only. */
 function clock(store, player) {
   const output = element('output', { class: 'number clock', 'aria-hidden': 'true' });
   const update = ({ time }) => {
-    output.textContent = `${Number.isInteger(time) ? time : time.toFixed(2)} / ${player.last}`;
+    output.textContent = `${moment(time)} / ${player.last}`;
   };
   onCalmly(store, ['time'], update);
   update(store.get());

@@ -179,8 +179,3 @@ export async function readReport() {
     scene: content.scene === null ? null : await sceneOf(content.scene),
   };
 }
-
-/** The interval of a time: its motion is linear. */
-export function intervalOf(scene, time) {
-  return Math.max(scene.first, Math.min(Math.floor(time), scene.last - 1));
-}

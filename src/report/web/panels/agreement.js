@@ -1,7 +1,7 @@
 /** In which intervals replays found the same contacts, and under which circumstances they ran. */
-import { counted, integer, ranges } from './format.js';
-import { finder } from './intervalof.js';
-import { nameOf } from './palette.js';
+import { counted, integer, ranges } from '../page/format.js';
+import { finder } from '../page/intervals.js';
+import { nameOf } from '../page/names.js';
 
 /** In which of its intervals a replay found other contacts than the first did, and how many both have. */
 function disagreement(first, intervals) {

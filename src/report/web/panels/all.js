@@ -2,7 +2,8 @@
 import * as charts from './charts.js';
 import * as comparison from './comparison.js';
 import * as contacts from './contacts.js';
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
+import { titleOf } from '../page/names.js';
 import * as intervals from './intervals.js';
 import * as licences from './licences.js';
 import * as notes from './notes.js';
@@ -43,8 +44,7 @@ function createPanel(panel, container, report, store, player) {
 
 export function createPanels(report, store, player) {
   document.body.dataset.kind = report.kind;
-  document.title = `${report.title} · cscd report`;
-  document.getElementById('title').textContent = report.title;
+  document.getElementById('title').textContent = titleOf(report);
   for (const [id, panel] of Object.entries(PANELS))
     createPanel(panel, document.getElementById(id), report, store, player);
 }

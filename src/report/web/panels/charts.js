@@ -1,9 +1,9 @@
 /** The charts under the view: every interval, the moment that plays, and a click on them goes there. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading, setText } from './dom.js';
+import { element, heading, setText } from '../page/dom.js';
 import { createFigure } from './figure.js';
 import { compareFigures, replayFigures } from './figures.js';
-import { extent, finder, intervalAt } from './intervalof.js';
+import { extentOf, finder, intervalAt } from '../page/intervals.js';
 import { followPointer } from './pointer.js';
 import { createStateBand } from './stateband.js';
 
@@ -62,7 +62,8 @@ function scaleSwitches(compares, change) {
 }
 
 export function create(container, report, store, player) {
-  const [first, last] = extent(report);
+  const extent = extentOf(report);
+  const { first, last } = extent;
   const count = last - first;
   container.hidden = report.kind === 'preprocess' || count < 1;
   if (container.hidden) return;
@@ -91,7 +92,7 @@ export function create(container, report, store, player) {
   });
 
   function readValues() {
-    const interval = hovered ?? intervalAt(store.get().time, first, last) - first;
+    const interval = hovered ?? intervalAt(store.get().time, extent) - first;
     if (interval === read) return;
     read = interval;
     setText(reading, `frame ${first + interval}`);

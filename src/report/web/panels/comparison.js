@@ -1,8 +1,9 @@
 /** What several replays have in common and where they differ. */
 import { agreement, differences } from './agreement.js';
-import { element, heading, scrollable } from './dom.js';
-import { counted, decimal, integer } from './format.js';
-import { lineOf, nameOf } from './palette.js';
+import { element, heading, numberCell, scrollable } from '../page/dom.js';
+import { counted, decimal, integer } from '../page/format.js';
+import { nameOf } from '../page/names.js';
+import { lineOf } from './palette.js';
 
 const note = ([grade, text]) => element('p', { class: `note ${grade}`, text });
 
@@ -15,8 +16,6 @@ function overview(report) {
   const body = element('tbody');
   const base = report.summaries[0].summary.summary.total_ms.mean;
   report.summaries.forEach(({ summary: { summary } }, index) => {
-    const number = (text, value) =>
-      element('td', { class: 'number', text, 'data-value': value, title: value });
     const ratio = summary.total_ms.mean / base;
     body.append(
       element(
@@ -25,10 +24,10 @@ function overview(report) {
         element('th', { scope: 'row' }, lineOf(index), ` ${nameOf(report, index)}`),
         element('td', { text: summary.method }),
         ...['intervals', 'intervals_with_contact', 'vf', 'ee'].map((key) =>
-          number(integer(summary[key]), summary[key]),
+          numberCell(integer(summary[key]), summary[key]),
         ),
-        number(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean),
-        Number.isFinite(ratio) ? number(`${decimal(ratio, 2)} ×`, ratio) : number('–', ''),
+        numberCell(`${decimal(summary.total_ms.mean, 3)} ms`, summary.total_ms.mean),
+        Number.isFinite(ratio) ? numberCell(`${decimal(ratio, 2)} ×`, ratio) : numberCell('–', ''),
       ),
     );
   });

@@ -1,8 +1,8 @@
 /** The contacts of the current interval: which features meet, when and where. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading, segments, setText } from './dom.js';
-import { coordinates, counted, decimal, integer, positionDecimals } from './format.js';
-import { extent, finder, intervalAt } from './intervalof.js';
+import { element, heading, segments, setText } from '../page/dom.js';
+import { coordinates, counted, decimal, integer, positionDecimals } from '../page/format.js';
+import { extentOf, finder, intervalAt } from '../page/intervals.js';
 import { createRows } from './rows.js';
 
 const KINDS = ['VF', 'EE'];
@@ -134,7 +134,7 @@ function createCounts() {
 export function create(container, report, store, player) {
   const contacts = report.scene?.contacts;
   if (report.kind !== 'replay' || !contacts) return;
-  const [first, last] = extent(report);
+  const extent = extentOf(report);
   const find = finder(report.summaries[0]?.summary);
   const order = { kind: 'all', descending: false };
   const { unit } = report.scene;
@@ -200,7 +200,7 @@ export function create(container, report, store, player) {
   }
 
   function update({ time, playing, speed }) {
-    current = intervalAt(time, first, last);
+    current = intervalAt(time, extent);
     counts.say(find(current));
     if (playing && speed > LISTED_UP_TO) rest();
     else if (listed !== current) list();

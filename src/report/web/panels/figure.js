@@ -1,6 +1,5 @@
 /** A chart with its title, its key, which also reads values, and its mean and maximum in words. */
-import { element, setText } from './dom.js';
-import { swatch } from './palette.js';
+import { element, setText, swatch } from '../page/dom.js';
 import { createPlot } from './plot.js';
 
 /**

@@ -1,6 +1,7 @@
 /** Which charts there are, and their numbers. */
-import { counted, decimal, integer, milliseconds, significant } from './format.js';
-import { lineOf, lineStyle, nameOf } from './palette.js';
+import { counted, decimal, integer, milliseconds, significant } from '../page/format.js';
+import { nameOf } from '../page/names.js';
+import { lineOf, lineStyle } from './palette.js';
 import { OTHER, otherMilliseconds, stagesOf } from './stages.js';
 
 const column = (first, last, find, value) =>

@@ -1,10 +1,11 @@
 /** All intervals in one table; a row goes there. */
 import { onCalmly } from '../controls/calm.js';
-import { element, heading, segments, setText } from './dom.js';
-import { counted, decimal, integer, milliseconds } from './format.js';
-import { extent, intervalAt } from './intervalof.js';
+import { element, heading, segments, setText } from '../page/dom.js';
+import { counted, decimal, integer, milliseconds } from '../page/format.js';
+import { extentOf, intervalAt } from '../page/intervals.js';
+import { STATE_MEANING } from '../page/states.js';
 import { createRows } from './rows.js';
-import { guaranteeInWords, STATE_MEANING } from './stages.js';
+import { guaranteeInWords } from './stages.js';
 
 const COLUMNS = [
   ['frame', 'The interval goes from this frame to the next'],
@@ -72,7 +73,7 @@ export function create(container, report, store, player) {
   const intervals = report.kind === 'replay' ? (report.summaries[0]?.summary.intervals ?? []) : [];
   container.hidden = intervals.length === 0;
   if (container.hidden) return;
-  const [first, last] = extent(report);
+  const extent = extentOf(report);
   const table = createTable();
   const scroll = element('div', { class: 'scroll' }, table);
   const count = element('span', { class: 'quiet' });
@@ -104,7 +105,7 @@ export function create(container, report, store, player) {
 
   /** The row of the current interval is marked, and while nothing plays it is scrolled to. */
   function follow({ time, playing }) {
-    const interval = intervalAt(time, first, last);
+    const interval = intervalAt(time, extent);
     if (interval === current && playing) return;
     const moved = interval !== current;
     current = interval;

@@ -1,5 +1,5 @@
 /** The licences of what this page is made of, in full. */
-import { element, heading } from './dom.js';
+import { element, heading } from '../page/dom.js';
 
 export function create(container) {
   const texts = document.getElementById('licence-texts')?.textContent.trim() ?? '';

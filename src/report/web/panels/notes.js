@@ -1,7 +1,7 @@
 /** What a reader must know before trusting the rest: what is missing, and what was lost. */
-import { element } from './dom.js';
-import { counted, integer, ranges } from './format.js';
-import { nameOf } from './palette.js';
+import { element } from '../page/dom.js';
+import { counted, integer, ranges } from '../page/format.js';
+import { nameOf } from '../page/names.js';
 
 /** [grade, what, more] each. */
 function notesOfRun(summary, intervals) {

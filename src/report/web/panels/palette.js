@@ -1,5 +1,5 @@
 /** Colours and dashes that tell replays apart. */
-import { element } from './dom.js';
+import { picture } from '../page/dom.js';
 
 /* Of Okabe and Ito's, without the yellow, which is lost on white. */
 const LINES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a94a0'];
@@ -9,14 +9,10 @@ export function lineStyle(index) {
   return { colour: LINES[index % LINES.length], dash: DASHES[index % DASHES.length] };
 }
 
-const SVG = 'http://www.w3.org/2000/svg';
-
 /** A short piece of the line that stands for a replay. */
 export function lineOf(index) {
   const { colour, dash } = lineStyle(index);
-  const svg = document.createElementNS(SVG, 'svg');
-  const line = document.createElementNS(SVG, 'line');
-  const place = {
+  const svg = picture(24, 8, 'line', {
     x1: 0,
     x2: 24,
     y1: 4,
@@ -24,25 +20,7 @@ export function lineOf(index) {
     stroke: colour,
     'stroke-width': 2.5,
     'stroke-dasharray': dash.join(' ') || 'none',
-  };
-  for (const [name, value] of Object.entries(place)) line.setAttribute(name, String(value));
+  });
   svg.setAttribute('class', 'dash');
-  svg.setAttribute('width', '24');
-  svg.setAttribute('height', '8');
-  svg.setAttribute('aria-hidden', 'true');
-  svg.append(line);
   return svg;
-}
-
-export function swatch(colour) {
-  const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
-  made.style.background = colour;
-  return made;
-}
-
-/** The name of a replay; its number too where names repeat. */
-export function nameOf(report, index) {
-  const { name } = report.summaries[index];
-  const same = report.summaries.filter((other) => other.name === name).length;
-  return same > 1 ? `${name} (${index + 1})` : name;
 }

@@ -1,6 +1,7 @@
 /** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top. */
 import uPlot from 'uplot';
-import { element } from './dom.js';
+import { columnsOf, heaviest } from '../page/columns.js';
+import { element } from '../page/dom.js';
 
 export const LEFT = 52;
 export const RIGHT = 12;
@@ -12,24 +13,6 @@ const token = (name) => getComputedStyle(document.documentElement).getPropertyVa
 /** A colour or the name of one of the page's own. */
 const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
 
-/**
- * At most one value a pixel: of the intervals that share one, the one of which `weight` is largest.
- * @returns {number[]} the intervals kept, ascending
- */
-export function thin(from, to, pixels, weight) {
-  const count = to - from;
-  const kept = [];
-  const buckets = Math.min(count, Math.max(1, pixels));
-  for (let bucket = 0; bucket < buckets; bucket++) {
-    const begin = from + Math.floor((bucket * count) / buckets);
-    const end = from + Math.floor(((bucket + 1) * count) / buckets);
-    let best = begin;
-    for (let i = begin + 1; i < end; i++) if (!(weight(i) <= weight(best))) best = i;
-    kept.push(best);
-  }
-  return kept;
-}
-
 /** What 98 % of the intervals stay below: without the peaks the rest can be seen. */
 function usualLimit({ first, last, series, stacked }) {
   const heights = Float64Array.from({ length: last - first }, (_, i) => {
@@ -39,36 +22,24 @@ function usualLimit({ first, last, series, stacked }) {
   return heights[Math.floor(0.98 * (heights.length - 1))] * 1.2;
 }
 
-/** Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. */
-function columnsOf(plot, from, to, pixels) {
-  const { first, series, stacked } = plot;
-  const count = to - from;
-  const buckets = Math.min(count, Math.max(1, pixels));
-  const x = Array.from(
-    { length: buckets },
-    (_, bucket) => first + from + Math.floor((bucket * count) / buckets),
-  );
-  x.push(first + to);
-  const at = (values, kept) => {
-    const column = kept.map((i) => values[i]);
+/**
+ * Steps: the value of interval k holds from frame k to k + 1, so the last is given twice. Of the intervals that share a
+ * pixel the one with the most shows.
+ */
+function stepsOf({ first, series, stacked }, from, to, pixels) {
+  const columns = columnsOf(from, to, pixels);
+  const x = [...columns.map(({ begin }) => first + begin), first + to];
+  const kept = (weight) => columns.map(({ begin, end }) => heaviest(begin, end, weight));
+  const at = (values, places) => {
+    const column = places.map((i) => values[i]);
     column.push(column[column.length - 1]);
     return column;
   };
-  if (!stacked)
-    return [
-      x,
-      ...series.map(({ values }) =>
-        at(
-          values,
-          thin(from, to, pixels, (i) => values[i] ?? -1),
-        ),
-      ),
-    ];
-  const total = (i) => series.reduce((sum, { values }) => sum + values[i], 0);
-  const kept = thin(from, to, pixels, total);
-  const sums = new Float64Array(kept.length + 1);
-  const columns = series.map(({ values }) => at(values, kept).map((value, i) => (sums[i] += value)));
-  return [x, ...columns.reverse()];
+  if (!stacked) return [x, ...series.map(({ values }) => at(values, kept((i) => values[i] ?? -1)))];
+  const places = kept((i) => series.reduce((sum, { values }) => sum + values[i], 0));
+  const sums = new Float64Array(places.length + 1);
+  const areas = series.map(({ values }) => at(values, places).map((value, i) => (sums[i] += value)));
+  return [x, ...areas.reverse()];
 }
 
 function seriesOptions({ series, stacked }) {
@@ -136,7 +107,7 @@ export function createPlot(host, plot, attach) {
   let hover = null;
 
   const width = () => Math.max(160, host.clientWidth);
-  const data = () => columnsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
+  const data = () => stepsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
 
   /** Of the scale, where the highest value shown is `high`. */
   function topOf(high) {
@@ -162,6 +133,7 @@ export function createPlot(host, plot, attach) {
       hooks: { ready: [moveLines], setScale: [moveLines] },
     };
     chart = new uPlot(options, data(), host);
+    chart.ctx.canvas.setAttribute('aria-hidden', 'true'); // the figure has a label and its numbers
     chart.over.append(hoverLine, timeLine);
     attach(chart.over);
   }

@@ -1,7 +1,7 @@
 /** Where the results come from: version, machine, inputs; and how exactly this page shows them. */
-import { element, heading } from './dom.js';
-import { counted, integer, significant } from './format.js';
-import { nameOf } from './palette.js';
+import { element, heading } from '../page/dom.js';
+import { counted, integer, significant } from '../page/format.js';
+import { nameOf } from '../page/names.js';
 
 const lines = (texts) => texts.map((text) => element('div', { text }));
 const code = (text) => element('code', { text });

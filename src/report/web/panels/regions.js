@@ -1,8 +1,7 @@
 /** The plan's regions and what preprocessing measured. */
-import { element, heading, numberCell, scrollable } from './dom.js';
-import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from './format.js';
+import { element, heading, numberCell, scrollable, swatch } from '../page/dom.js';
+import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from '../page/format.js';
 import { css, regionColour } from '../view/colours.js';
-import { swatch } from './palette.js';
 
 function regionRow(region, index, { area, unit, decimals }) {
   const name = element('th', { scope: 'row' }, swatch(css(regionColour(index))), ` ${index}`);

@@ -1,5 +1,5 @@
 /** Rows of a long table of which only those near the visible ones are in the document. */
-import { element } from './dom.js';
+import { element } from '../page/dom.js';
 
 const ALL_BELOW = 60;
 const MARGIN = 10;

@@ -42,12 +42,3 @@ export function guaranteeInWords(guarantee) {
   if (parts.length === 1) return parts[0][0];
   return parts.map(([words, count]) => `${count} of ${guarantee.length} components, ${words}`).join('; ');
 }
-
-export const STATES = ['clean', 'contact', 'penetrating', 'unknown'];
-
-export const STATE_MEANING = {
-  clean: 'no contact, and the start does not cross itself',
-  contact: 'there is contact',
-  penetrating: 'the mesh crosses itself at the start',
-  unknown: 'no contact; the start was not checked',
-};

@@ -1,8 +1,8 @@
 /** The line that says where the recording stands. */
 import { onCalmly } from '../controls/calm.js';
-import { setText } from './dom.js';
-import { counted, integer } from './format.js';
-import { extent, finder, intervalAt } from './intervalof.js';
+import { setText } from '../page/dom.js';
+import { counted, integer, moment } from '../page/format.js';
+import { extentOf, finder, intervalAt } from '../page/intervals.js';
 
 function ofStill(report) {
   if (report.kind === 'compare') return `${counted(report.summaries.length, 'replay')} compared`;
@@ -16,14 +16,14 @@ export function create(container, report, store) {
     container.textContent = ofStill(report);
     return;
   }
-  const [first, last] = extent(report);
+  const extent = extentOf(report);
+  const { first, last } = extent;
   const find = finder(report.summaries[0]?.summary);
 
   function update({ time, playing }) {
     container.setAttribute('aria-live', playing ? 'off' : 'polite');
-    const frame = Number.isInteger(time) ? String(time) : time.toFixed(2);
-    const parts = [`Frame ${frame} of ${first} to ${last}`];
-    const interval = find(intervalAt(time, first, last));
+    const parts = [`Frame ${moment(time)} of ${first} to ${last}`];
+    const interval = find(intervalAt(time, extent));
     if (interval) parts.push(interval.state, `${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
     setText(container, parts.join(' · '));
   }

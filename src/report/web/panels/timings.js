@@ -1,7 +1,8 @@
 /** The table of milliseconds per stage, mean and maximum, of every replay in the report. */
-import { element, heading, numberCell, scrollable } from './dom.js';
-import { decimal, integer, milliseconds } from './format.js';
-import { lineOf, nameOf } from './palette.js';
+import { element, heading, numberCell, scrollable } from '../page/dom.js';
+import { decimal, integer, milliseconds } from '../page/format.js';
+import { nameOf } from '../page/names.js';
+import { lineOf } from './palette.js';
 import { hasStage, STAGES } from './stages.js';
 
 const nothing = (text, title) => element('td', { class: 'number absent', text, title });
@@ -70,7 +71,7 @@ export function create(container, report) {
     'tr',
     {},
     element('th', { scope: 'col', text: several ? 'replay, method' : 'method' }),
-    element('th', { scope: 'col', text: '', 'aria-label': 'per frame' }),
+    element('th', { scope: 'col' }, element('span', { class: 'visually-hidden', text: 'mean or maximum' })),
   );
   const names = [
     ...STAGES.map(({ label }) => label),

@@ -1,16 +1,15 @@
 /** What the colours and marks mean, in words and numbers, over the view. */
 
 import { onCalmly } from '../controls/calm.js';
-import { element } from '../controls/dom.js';
-import { intervalOf } from '../data/report.js';
+import { element, swatch } from '../page/dom.js';
+import { counted, integer, percent, significant } from '../page/format.js';
+import { finder, intervalAt } from '../page/intervals.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, css, regionColour } from './colours.js';
 
 const MANY = 8;
 const ROOMY = { width: 560, height: 380 }; // CSS pixels: in smaller views the legend begins folded
 
-const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
-const short = (value) => String(Number(value.toPrecision(3))).replace('-', '−');
-const percent = (share) => `${Math.round(100 * share)}\u202f%`;
+const short = (value) => significant(value, 3).replace('-', '−');
 
 function bar(map) {
   const canvas = element('canvas', { class: 'legend-bar', width: 256, height: 1, 'aria-hidden': 'true' });
@@ -23,12 +22,6 @@ function bar(map) {
 }
 
 const ends = (...texts) => element('div', { class: 'legend-ends' }, ...texts.map((text) => element('span', {}, text)));
-
-function swatch(colour) {
-  const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
-  made.style.background = css(colour);
-  return made;
-}
 
 const item = (mark, ...text) => element('li', {}, mark, ' ', ...text);
 const items = (...list) => element('ul', { class: 'legend-items' }, ...list);
@@ -54,19 +47,19 @@ const equalizedLegend = () => [
 
 function regionLegend(plan) {
   const rows = plan.regions.slice(0, MANY).map((region, i) => {
-    const visible = region.visible_share == null ? '' : `, ${percent(region.visible_share)}`;
-    return item(swatch(regionColour(i)), `${i}: ${grouped(region.triangles)}${visible}`);
+    const visible = region.visible_share == null ? '' : `, ${percent(region.visible_share, 0)}`;
+    return item(swatch(css(regionColour(i))), `${i}: ${integer(region.triangles)}${visible}`);
   });
   const rest = plan.regions.length - rows.length;
   return [
-    title(`${grouped(plan.regions.length)} ${plan.regions.length === 1 ? 'region' : 'regions'} (${plan.method})`),
+    title(`${counted(plan.regions.length, 'region')} (${plan.method})`),
     element('p', { class: 'legend-note' }, 'Triangles, and the share that the detector point sees'),
-    items(...rows, ...(rest > 0 ? [element('li', {}, `and ${grouped(rest)} more; colours repeat after 21`)] : [])),
+    items(...rows, ...(rest > 0 ? [element('li', {}, `and ${integer(rest)} more; colours repeat after 21`)] : [])),
   ];
 }
 
 function orientationLegend(scene, time) {
-  const interval = intervalOf(scene, time);
+  const interval = intervalAt(time, scene);
   const values = scene.orientation.at(interval);
   const counts = [0, 0, 0];
   for (const value of values) counts[value]++;
@@ -74,9 +67,9 @@ function orientationLegend(scene, time) {
   return [
     title(`Orientation in interval ${told}, seen from each region's detector point`),
     items(
-      item(swatch(ORIENTATIONS[1]), `S+ faces outwards throughout: ${grouped(counts[1])}`),
-      item(swatch(ORIENTATIONS[2]), `S− faces inwards throughout: ${grouped(counts[2])}`),
-      item(swatch(ORIENTATIONS[0]), `S0 turns, or cannot be told: ${grouped(counts[0])}`),
+      item(swatch(css(ORIENTATIONS[1])), `S+ faces outwards throughout: ${integer(counts[1])}`),
+      item(swatch(css(ORIENTATIONS[2])), `S− faces inwards throughout: ${integer(counts[2])}`),
+      item(swatch(css(ORIENTATIONS[0])), `S0 turns, or cannot be told: ${integer(counts[0])}`),
     ),
   ];
 }
@@ -87,26 +80,26 @@ function heatLegend(most, info) {
   return [
     title(`Contacts that a triangle takes part in, whole recording${all}`),
     bar(HEAT),
-    ends('1', ...(most > 8 ? [grouped(Math.round(Math.sqrt(most)))] : []), grouped(most)),
-    items(item(swatch(PLAIN), 'none')),
+    ends('1', ...(most > 8 ? [integer(Math.round(Math.sqrt(most)))] : []), integer(most)),
+    items(item(swatch(css(PLAIN)), 'none')),
   ];
 }
 
 /** VF and EE of the interval, and what else is marked. */
-function marksLegend(scene, state, found) {
+function marksLegend(scene, state, find) {
   const rows = [];
   if (state.contacts && scene.contacts !== null) {
-    const interval = intervalOf(scene, state.time);
+    const interval = intervalAt(state.time, scene);
     const [begin, end] = scene.contacts.range(interval);
     const kept = [0, 0];
     for (let contact = begin; contact < end; contact++) kept[scene.contacts.kind[contact]]++;
-    const row = found.get(interval);
-    const count = (kind, all) => (kept[kind] < all ? `${grouped(kept[kind])} of ${grouped(all)}` : grouped(kept[kind]));
+    const row = find(interval);
+    const count = (kind, all) => (kept[kind] < all ? `${integer(kept[kind])} of ${integer(all)}` : integer(kept[kind]));
     const mark = (name) => element('span', { class: name, 'aria-hidden': 'true' });
     rows.push(item(mark('mark-vf'), `VF, a vertex meets a face: ${count(0, row?.vf)}`));
     rows.push(item(mark('mark-ee'), `EE, two edges meet: ${count(1, row?.ee)}`));
     const how = state.colour === 'plain' ? 'triangles that touch' : 'outlined: triangles that touch';
-    if (end > begin) rows.push(item(swatch(TOUCHING), how));
+    if (end > begin) rows.push(item(swatch(css(TOUCHING)), how));
   }
   return rows.length > 0 ? [items(...rows)] : [];
 }
@@ -131,7 +124,7 @@ function colourLegend(scene, state, painter) {
 /** @param {import('./paint.js').Painter} painter */
 export function createLegend(container, report, store, painter) {
   const { scene } = report;
-  const found = new Map((report.summaries[0]?.summary.intervals ?? []).map((row) => [row.frame, row]));
+  const find = finder(report.summaries[0]?.summary);
   const body = element('div', { class: 'legend-body' });
   const box = element('details', { class: 'legend', role: 'group', 'aria-label': 'Legend' });
   box.append(element('summary', {}, 'Legend'), body);
@@ -139,10 +132,10 @@ export function createLegend(container, report, store, painter) {
   container.append(box);
   let shown = null;
   const show = (state) => {
-    const key = [state.colour, state.contacts, intervalOf(scene, state.time)].join(' ');
+    const key = [state.colour, state.contacts, intervalAt(state.time, scene)].join(' ');
     if (key === shown) return;
     shown = key;
-    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state, found)];
+    const parts = [...colourLegend(scene, state, painter), ...marksLegend(scene, state, find)];
     body.replaceChildren(...parts);
     box.hidden = parts.length === 0;
   };

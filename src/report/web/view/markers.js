@@ -4,7 +4,7 @@ import {
   BufferAttribute, BufferGeometry, DynamicDrawUsage, GLSL3, GreaterDepth, Group, LessEqualDepth, Points, ShaderMaterial,
   Sphere,
 } from 'three';
-import { intervalOf } from '../data/report.js';
+import { intervalAt } from '../page/intervals.js';
 import { EE, VF, regionColour } from './colours.js';
 
 export const TRAIL = 8; // intervals
@@ -140,7 +140,7 @@ class Marks {
 /** The contacts to be marked, the oldest first so that the newest lie on top. */
 export function markedContacts(scene, state) {
   if (scene.contacts === null || !state.contacts) return [];
-  const now = intervalOf(scene, state.time);
+  const now = intervalAt(state.time, scene);
   const marked = [];
   const oldest = state.trail ? Math.max(scene.first, now - TRAIL) : now;
   for (let interval = oldest; interval <= now; interval++) {

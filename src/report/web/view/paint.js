@@ -1,6 +1,6 @@
 /** Which colour each triangle has, and which of its edges are drawn. */
 
-import { intervalOf } from '../data/report.js';
+import { intervalAt } from '../page/intervals.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step } from './colours.js';
 import { CUT, CUT_CORNER, PICKED, TOUCHES } from './shading.js';
 import { contactTriangles, cutEdges, trianglesOfVertices } from './topology.js';
@@ -51,7 +51,7 @@ export class Painter {
     } else if (colour === 'region') {
       this.fillFromTable(scene.plan.regions.map((_, region) => regionColour(region)), (t) => scene.region[t]);
     } else if (colour === 'orientation') {
-      const orientation = scene.orientation.at(intervalOf(scene, time));
+      const orientation = scene.orientation.at(intervalAt(time, scene));
       this.fillFromTable(ORIENTATIONS, (t) => orientation[t]);
     } else {
       this.fillFromTable([PLAIN], () => 0);
@@ -102,7 +102,7 @@ export class Painter {
       lines = true;
     };
     if (contacts && scene.contacts !== null) {
-      const touching = this.touchingIn(intervalOf(scene, time));
+      const touching = this.touchingIn(intervalAt(time, scene));
       if (colour === 'plain') for (const t of touching) rgb.set(TOUCHING, 3 * t);
       else touching.forEach(flag(TOUCHES));
     }
@@ -115,7 +115,7 @@ export class Painter {
   key(state) {
     const { scene } = this;
     const moving = state.colour === 'orientation' || (state.contacts && scene.contacts !== null);
-    const interval = moving ? intervalOf(scene, state.time) : '';
+    const interval = moving ? intervalAt(state.time, scene) : '';
     return [state.colour, state.contacts, state.cuts, state.selected, state.triangle, interval].join(' ');
   }
 

@@ -1,7 +1,12 @@
-/** Which triangle lies under a point of the picture. */
+/** Which contact or triangle lies under a point of the picture. */
+
+import { Raycaster, Vector2 } from 'three';
+import { markersOnScreen } from './onscreen.js';
+
+const NEAR = 9; // CSS pixels
 
 /** The nearest triangle that a ray hits, in the mesh's own coordinates; null where there is none. */
-export function pickTriangle(local, triangles, origin, direction) {
+function pickTriangle(local, triangles, origin, direction) {
   let best = Infinity;
   let picked = null;
   const [ox, oy, oz] = origin;
@@ -38,6 +43,27 @@ export function pickTriangle(local, triangles, origin, direction) {
     }
   }
   return picked;
+}
+
+/** The triangle at a point of the canvas, in CSS pixels. */
+function triangleAt(viewer, x, y) {
+  const { body, data, size, space, store, view } = viewer;
+  const point = new Vector2((2 * x) / size.width - 1, 1 - (2 * y) / size.height);
+  viewer.update(store.get());
+  const caster = new Raycaster();
+  caster.setFromCamera(point, view.camera);
+  const from = space.fromView(caster.ray.origin).map((value, axis) => value - body.center[axis]);
+  return pickTriangle(body.local, data.triangles, from, space.direction(caster.ray.direction));
+}
+
+/** Selects what is at a point of the canvas; a mark goes before the surface. */
+export function pick(viewer, x, y) {
+  const near = markersOnScreen(viewer)
+    .map(({ contact, screen }) => ({ contact, distance: Math.hypot(screen[0] - x, screen[1] - y) }))
+    .filter(({ distance }) => distance < NEAR)
+    .sort((a, b) => a.distance - b.distance);
+  if (near.length > 0) viewer.player.select(near[0].contact);
+  else viewer.store.set({ triangle: triangleAt(viewer, x, y) });
 }
 
 /** Calls `clicked(x, y)` (CSS pixels in the element) for a press that is not a drag. */

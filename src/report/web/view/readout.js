@@ -1,19 +1,20 @@
 /** What is known about the triangle that was clicked. */
 
 import { onCalmly } from '../controls/calm.js';
-import { element } from '../controls/dom.js';
-import { intervalOf } from '../data/report.js';
+import { element } from '../page/dom.js';
+import { significant } from '../page/format.js';
+import { intervalAt } from '../page/intervals.js';
 
 const ORIENTATIONS = ['S0, turns or cannot be told', 'S+, outwards', 'S−, inwards'];
 
 function facts(scene, t, time) {
   const rows = [['Corners', [0, 1, 2].map((corner) => scene.triangles[3 * t + corner]).join(', ')]];
   if (scene.component !== null && scene.componentCount > 1) rows.push(['Component', scene.component[t]]);
-  if (scene.charge !== null) rows.push(['Charge per area', `${Number(scene.charge[t].toPrecision(4))} per length`]);
+  if (scene.charge !== null) rows.push(['Charge per area', `${significant(scene.charge[t], 4)} per length`]);
   if (scene.equalized !== null) rows.push(['Rank of the charge', scene.equalized[t].toFixed(3)]);
   if (scene.region !== null) rows.push(['Region', scene.region[t]]);
   if (scene.orientation !== null) {
-    rows.push(['Orientation', ORIENTATIONS[scene.orientation.at(intervalOf(scene, time))[t]]]);
+    rows.push(['Orientation', ORIENTATIONS[scene.orientation.at(intervalAt(time, scene))[t]]]);
   }
   if (scene.heat !== null) rows.push(['Contacts, all intervals', scene.heat[t]]);
   return rows;

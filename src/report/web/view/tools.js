@@ -1,7 +1,8 @@
 /** The view with its buttons, legend and readout; a message in its place where it cannot be drawn. */
 
-import { button, element } from '../controls/dom.js';
-import { intervalOf } from '../data/report.js';
+import { button, element } from '../page/dom.js';
+import { intervalAt } from '../page/intervals.js';
+import { zoomToContacts } from './framing.js';
 import { createLegend } from './legend.js';
 import { createReadout } from './readout.js';
 import { Viewer } from './viewer.js';
@@ -10,6 +11,8 @@ const HOUSE = 'M8 2 1.5 8H3.5v6h3.5v-4h2v4h3.5V8h2z';
 const LOUPE =
   'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8z' +
   'm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
+
+const KEYS = 'Alt with arrows turns the view, Alt and Shift with arrows pans, Alt with Page Up or Down zooms; ? lists all keys.';
 
 /** A button that stays pressed. */
 function toggle(name, text, title, pressed, action) {
@@ -27,9 +30,9 @@ function tools(viewer, store) {
   const reset = button('Reset view', { glyph: HOUSE, key: '0' }, () => viewer.home());
   const row = element('div', { class: 'view-tools' }, reset);
   if (data.contacts !== null) {
-    const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => viewer.zoomToContacts());
+    const zoom = button('Zoom to contacts', { glyph: LOUPE, key: 'Z' }, () => zoomToContacts(viewer));
     const update = (state) => {
-      const [begin, end] = data.contacts.range(intervalOf(data, state.time));
+      const [begin, end] = data.contacts.range(intervalAt(state.time, data));
       zoom.disabled = begin === end && state.selected === null;
     };
     store.on(['time', 'selected'], update);
@@ -67,8 +70,10 @@ export function createView(container, report, store, player) {
   viewer.canvas.addEventListener('webglcontextrestored', () => {
     note.textContent = '';
   });
+  const keys = element('p', { class: 'visually-hidden', id: 'view-keys' }, KEYS);
+  viewer.canvas.setAttribute('aria-describedby', 'status view-keys');
   const note = element('p', { class: 'view-note', 'aria-live': 'polite' });
-  container.append(tools(viewer, store), note);
+  container.append(tools(viewer, store), note, keys);
   viewer.note = note;
   createLegend(container, report, store, viewer.painter);
   createReadout(container, report.scene, store);

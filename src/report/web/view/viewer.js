@@ -1,11 +1,11 @@
 /** The 3D view: builds the scene and draws it when something has changed, never otherwise. */
 
-import { Box3, Color, LinearSRGBColorSpace, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
-import { intervalOf } from '../data/report.js';
+import { Box3, Color, LinearSRGBColorSpace, Scene, Vector3, WebGLRenderer } from 'three';
+import { intervalAt } from '../page/intervals.js';
 import { View } from './camera.js';
 import { ContactMarks, DetectorMarks } from './markers.js';
 import { Painter } from './paint.js';
-import { onClick, pickTriangle } from './picking.js';
+import { onClick, pick } from './picking.js';
 import { Resolution, createContext } from './resolution.js';
 import { Shadow } from './shadow.js';
 import { Space, sphereOf } from './space.js';
@@ -86,7 +86,7 @@ export class Viewer {
     redraw(['theme'], () => this.setTheme());
     redraw(['up'], () => this.setUp());
     new ResizeObserver(() => this.resize()).observe(this.container);
-    onClick(this.canvas, (x, y) => this.pick(x, y));
+    onClick(this.canvas, (x, y) => pick(this, x, y));
     this.canvas.addEventListener('keydown', (event) => {
       if (!this.view.key(event)) return;
       event.preventDefault();
@@ -221,7 +221,7 @@ export class Viewer {
 
   updateMarks(state) {
     const { data, space } = this;
-    const interval = intervalOf(data, state.time);
+    const interval = intervalAt(state.time, data);
     this.contacts.setState(data, state, space.toView);
     const points = state.points ? this.detectorPoints(interval, state.time - interval) : null;
     this.detectors.setState(data, points, space.toView);
@@ -236,56 +236,10 @@ export class Viewer {
     return Float64Array.from(data.plan?.regions.flatMap((region) => region.detector_point) ?? []);
   }
 
-  /** The triangle at a point of the canvas, in CSS pixels. */
-  triangleAt(x, y) {
-    const ray = new Raycaster();
-    const point = new Vector2((2 * x) / this.size.width - 1, 1 - (2 * y) / this.size.height);
-    this.update(this.store.get());
-    ray.setFromCamera(point, this.view.camera);
-    const from = this.space.fromView(ray.ray.origin).map((value, axis) => value - this.body.center[axis]);
-    return pickTriangle(this.body.local, this.data.triangles, from, this.space.direction(ray.ray.direction));
-  }
-
-  /** A mark goes before the surface. */
-  pick(x, y) {
-    const near = this.markers()
-      .map(({ contact, screen }) => ({ contact, distance: Math.hypot(screen[0] - x, screen[1] - y) }))
-      .filter(({ distance }) => distance < 9)
-      .sort((a, b) => a.distance - b.distance);
-    if (near.length > 0) this.player.select(near[0].contact);
-    else this.store.set({ triangle: this.triangleAt(x, y) });
-  }
-
-  /** Frames the contacts of the interval, or the selected one and its triangles. */
-  zoomToContacts() {
-    const { data, painter, space } = this;
-    const { selected, time } = this.store.get();
-    const interval = intervalOf(data, time);
-    this.update(this.store.get()); // where the view follows the body, it does so before
-    const [begin, end] = selected === null ? data.contacts.range(interval) : [selected, selected + 1];
-    if (begin === end) return;
-    const box = new Box3();
-    const add = (point) => box.expandByPoint(new Vector3(...space.toView(point)));
-    for (let contact = begin; contact < end; contact++) {
-      add(data.contacts.point.subarray(3 * contact, 3 * contact + 3));
-      for (const t of painter.trianglesOf(contact)) {
-        for (let corner = 0; corner < 3; corner++) add(data.positions.vertexAt(data.triangles[3 * t + corner], time));
-      }
-    }
-    this.view.frame(box.expandByScalar(0.15 * box.getSize(new Vector3()).length()));
+  /** Looks at a box, which then is the reader's own view. */
+  frame(box) {
+    this.view.frame(box);
     this.touched = true;
     this.invalidate();
-  }
-
-  /** What is marked, and where on the canvas (CSS pixels). */
-  markers() {
-    const { data, size, space, view } = this;
-    this.update(this.store.get());
-    return this.contacts.marked.map(({ contact, interval, age }) => {
-      const position = [...data.contacts.point.subarray(3 * contact, 3 * contact + 3)];
-      const seen = new Vector3(...space.toView(position)).project(view.camera);
-      const screen = [((seen.x + 1) / 2) * size.width, ((1 - seen.y) / 2) * size.height];
-      return { contact, kind: data.contacts.kind[contact] === 0 ? 'vf' : 'ee', interval, position, screen, age };
-    });
   }
 }

@@ -1,8 +1,10 @@
 /** Which interval a moment belongs to, and what the summary says of it. */
 
-/** The first and last frame of what the report tells. */
-export function extent(report) {
-  if (report.scene) return [report.scene.first, report.scene.last];
+/** @typedef {{first: number, last: number}} Extent in frames; a scene is one, too */
+
+/** The first and last frame of what the report tells. @returns {Extent} */
+export function extentOf(report) {
+  if (report.scene) return report.scene;
   let first = Infinity;
   let last = -Infinity;
   for (const { summary } of report.summaries) {
@@ -11,10 +13,11 @@ export function extent(report) {
       last = Math.max(last, frame + 1);
     }
   }
-  return first < last ? [first, last] : [0, 0];
+  return first < last ? { first, last } : { first: 0, last: 0 };
 }
 
-export function intervalAt(time, first, last) {
+/** The interval of a time: its motion is linear. The last frame belongs to the interval before it. */
+export function intervalAt(time, { first, last }) {
   return Math.max(first, Math.min(Math.floor(time), last - 1));
 }
 

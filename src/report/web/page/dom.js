@@ -2,14 +2,14 @@
 
 /**
  * @param {string} tag
- * @param {Object<string, string|number|boolean|Function>} [properties] `class`, `text`, `on...` listeners,
- *   else attributes
- * @param {...Node} children
+ * @param {Object<string, string|number|boolean|null|Function>} [properties] `class`, `text`, `on...` listeners,
+ *   else attributes; false, null and undefined leave one out
+ * @param {...(Node|string)} children
  */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
-    if (value === undefined || value === false) continue;
+    if (value === undefined || value === null || value === false) continue;
     if (name === 'text') made.textContent = String(value);
     else if (name === 'class') made.className = String(value);
     else if (name.startsWith('on'))
@@ -17,6 +17,37 @@ export function element(tag, properties = {}, ...children) {
     else made.setAttribute(name, value === true ? '' : String(value));
   }
   made.append(...children);
+  return made;
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+/** One shape in a picture of its own, which readers pass over. */
+export function picture(width, height, name, attributes) {
+  const make = (tag, given) => {
+    const made = document.createElementNS(SVG, tag);
+    for (const [key, value] of Object.entries(given)) made.setAttribute(key, String(value));
+    return made;
+  };
+  const svg = make('svg', { viewBox: `0 0 ${width} ${height}`, width, height, 'aria-hidden': true });
+  svg.append(make(name, attributes));
+  return svg;
+}
+
+/** A glyph drawn by one path in a square of 16. */
+export const icon = (path) => picture(16, 16, 'path', { d: path, fill: 'currentColor' });
+
+/** A button with an accessible name and a title that tells its key. */
+export function button(name, { glyph = null, key = null, kind = 'icon' }, action) {
+  const title = key === null ? name : `${name} (${key})`;
+  const content = glyph === null ? name : icon(glyph);
+  return element('button', { type: 'button', class: kind, 'aria-label': name, title, onclick: action }, content);
+}
+
+/** A square of the colour that stands for what is named beside it. */
+export function swatch(colour) {
+  const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
+  made.style.background = colour;
   return made;
 }
 

@@ -24,8 +24,13 @@ export function milliseconds(value) {
   return value === 0 ? '0' : decimal(value, 3);
 }
 
-export function percent(share) {
-  return `${decimal(100 * share, 1)}${THIN}%`;
+export function percent(share, decimals = 1) {
+  return `${decimal(100 * share, decimals)}${THIN}%`;
+}
+
+/** A time in frames, with decimals between frames only. */
+export function moment(time) {
+  return Number.isInteger(time) ? String(time) : time.toFixed(2);
 }
 
 /** "1 contact", "2 contacts". */

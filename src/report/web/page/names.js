@@ -1,0 +1,21 @@
+/** What replays, and the page, are called. */
+
+const SHORT = 60; // characters of a title
+
+/** The name of a replay; its number too where names repeat. */
+export function nameOf(report, index) {
+  const { name } = report.summaries[index];
+  const same = report.summaries.filter((other) => other.name === name).length;
+  return same > 1 ? `${name} (${index + 1})` : name;
+}
+
+const withoutFolders = (path) => path.slice(path.lastIndexOf('/') + 1);
+
+/** A comparison is called by the files of its replays, where that is short. */
+export function titleOf(report) {
+  if (report.kind !== 'compare') return report.title;
+  const files = report.summaries.map(({ name }) => withoutFolders(name));
+  const unique = new Set(files).size === files.length;
+  const names = (unique ? files : report.summaries.map((_, index) => nameOf(report, index))).join(', ');
+  return names.length <= SHORT ? names : `Comparison of ${report.summaries.length} replays`;
+}
