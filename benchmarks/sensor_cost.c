@@ -62,7 +62,7 @@ static void destroy(contestants *c) {
 
 /* The first interval, which places particles and builds trees, is not counted. */
 static bool measure(const body *b, uint32_t vertices_each, cost *out, io_error *error) {
-    contestants c = {NULL};
+    contestants c = {.context = NULL};
     double sense[INTERVALS], trees[INTERVALS];
     size_t size = (size_t)b->vertex_count * 3;
     double *x = body_allocate(size * 2, sizeof *x);
