@@ -164,6 +164,9 @@ static void a_changed_summary_is_refused(void **state) {
         {"\"frame\":0", "\"frame\":-1", {"interval 0 of the file: 'frame'", NULL}},
         {"\"frame\":0", "\"frame\":1e300", {"interval 0 of the file: 'frame'", NULL}},
         {"\"frame\":0", "\"frame\":4294967295", {"interval 0 of the file: 'frame'", NULL}},
+        {"\"state\":\"clean\"", "\"state\":\"tidy\"", {"'state' is not what cscd writes there", NULL}},
+        {"\"processors\"", "\"possessors\"", {"the machine has no member 'processors'", NULL}},
+        {"\"release\":", "\"release\":7,\"was\":", {"the machine: 'release' is not", NULL}},
         {"\"source\"", "\"sauce\"", {"the plan has no member 'source'", NULL}},
         {"\"complete\":true", "\"complete\":false", {"the summary has no member 'stopped_by'", NULL}},
     };
@@ -273,17 +276,23 @@ static void a_pipe_gets_the_page(void **state) {
     json_node_free(read_page(page.text));
 }
 
-static void a_replay_that_stops_reports_what_it_has(void **state) {
-    (void)state;
+/* Whose first coordinate in a frame is infinite. */
+static temp_path write_spoilt(uint32_t frame) {
     recorded scene = recorded_tetrahedra(8);
     temp_path spoilt = recorded_write_cache(&folder, "spoilt.pc2", &scene);
     FILE *file = fopen(spoilt.text, "r+b");
     static const float infinite = (float)1e39;
     assert_non_null(file);
-    assert_int_equal(fseek(file, 32 + 5 * 8 * 12, SEEK_SET), 0);
+    assert_int_equal(fseek(file, 32 + (long)frame * 8 * 12, SEEK_SET), 0);
     assert_int_equal(fwrite(&infinite, sizeof infinite, 1, file), 1);
     assert_int_equal(fclose(file), 0);
     recorded_free(&scene);
+    return spoilt;
+}
+
+static void a_replay_that_stops_reports_what_it_has(void **state) {
+    (void)state;
+    temp_path spoilt = write_spoilt(5);
     EXPECT_ERROR(1, TEXTS("frame 5"), "replay", model.text, spoilt.text, "--report", page.text);
     json_node *root = read_page(page.text);
     const json_node *total = json_node_member(first_summary(root), "summary");
@@ -291,6 +300,15 @@ static void a_replay_that_stops_reports_what_it_has(void **state) {
     assert_true(json_node_number(json_node_member(root, "scene"), "last") == 4);
     assert_int_equal(json_node_member(json_node_member(root, "scene"), "frames")->count, 5);
     json_node_free(root);
+}
+
+static void a_replay_without_an_interval_says_that_it_reports_nothing(void **state) {
+    (void)state;
+    temp_path spoilt = write_spoilt(1);
+    remove(page.text);
+    EXPECT_ERROR(1, TEXTS("frame 1", "; no report was written"), "replay", model.text, spoilt.text,
+                 "--report", page.text);
+    assert_false(exists(page.text));
 }
 
 static void an_interrupted_replay_reports_what_it_has(void **state) {
@@ -346,6 +364,7 @@ int main(void) {
         cmocka_unit_test(outputs_are_where_links_lead),
         cmocka_unit_test(a_pipe_gets_the_page),
         cmocka_unit_test(a_replay_that_stops_reports_what_it_has),
+        cmocka_unit_test(a_replay_without_an_interval_says_that_it_reports_nothing),
         cmocka_unit_test(an_interrupted_replay_reports_what_it_has),
         cmocka_unit_test(names_are_never_markup),
     };

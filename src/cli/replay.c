@@ -292,6 +292,12 @@ static void end(replay *r) {
     free(r->x1);
 }
 
+/* A page that is not of this replay may lie where its report would. */
+static int fail_replay(const replay *r, bool begun, const char *reason) {
+    bool unreported = begun && r->options->report.path != NULL && r->totals.intervals == 0;
+    return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
+}
+
 static int run(const replay_options *options) {
     replay r = {.options = options};
     io_error error = {""}, close_error = {""};
@@ -307,7 +313,7 @@ static int run(const replay_options *options) {
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = close_outputs(&r, stopped_by, &close_error);
     if (!options->quiet && r.totals.intervals > 0) print_results(&r);
-    if (!ran) code = fail_input("%s", error.text);
+    if (!ran) code = fail_replay(&r, begun, error.text);
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
     if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)

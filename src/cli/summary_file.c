@@ -1,6 +1,8 @@
 /* Reads back what `cscd replay --json` wrote. */
 #include "src/cli/summary_file.h"
 
+#include "src/cli/summary.h"
+
 #include <errno.h>
 #include <json-c/json.h>
 #include <limits.h>
@@ -51,6 +53,8 @@ static const member of_column[] = {{"mean", 'n'}, {"max", 'n'}, {NULL, 0}};
 static const member of_provenance[] = {
     {"version", 's'}, {"commit", 's'},  {"compiler", 's'},  {"flags", 's'},  {"date", 's'},
     {"machine", 'o'}, {"threads", 'n'}, {"arguments", 'a'}, {"inputs", 'a'}, {NULL, 0}};
+static const member of_machine[] = {{"system", 's'},    {"release", 's'},    {"architecture", 's'},
+                                    {"processor", 's'}, {"processors", 'n'}, {NULL, 0}};
 static const member of_input[] = {{"name", 's'}, {"fnv1a64", 's'}, {NULL, 0}};
 static const char *const columns[] = {"update_ms",  "orientation_ms", "contour_ms", "traversal_ms",
                                       "contact_ms", "proof_ms",       "check_ms",   "total_ms",
@@ -100,11 +104,19 @@ static bool elements_have(json_object *array, const member *members, const char 
     return true;
 }
 
+static bool is_state(const char *name) {
+    for (interval_state state = INTERVAL_CLEAN; state <= INTERVAL_UNKNOWN; state++)
+        if (strcmp(name, interval_state_name(state)) == 0) return true;
+    return false;
+}
+
 static bool check_interval(json_object *interval, size_t index, io_error *error) {
     char where[48];
     snprintf(where, sizeof where, "interval %zu of the file", index);
-    return has_members(interval, of_interval, where, error) &&
-           has_members(get(interval, "ms"), of_times, where, error) &&
+    if (!has_members(interval, of_interval, where, error)) return false;
+    if (!is_state(json_object_get_string(get(interval, "state"))))
+        return io_fail(error, "%s: 'state' is not what cscd writes there", where);
+    return has_members(get(interval, "ms"), of_times, where, error) &&
            elements_have(get(interval, "guarantee"), of_guarantee, where, error);
 }
 
@@ -150,6 +162,7 @@ static bool check_summary(json_object *root, io_error *error) {
            (json_object_get_boolean(get(summary, "complete")) ||
             has_members(summary, of_incomplete, "the summary", error)) &&
            has_members(provenance, of_provenance, "the provenance", error) &&
+           has_members(get(provenance, "machine"), of_machine, "the machine", error) &&
            elements_have(get(provenance, "inputs"), of_input, "an input", error) &&
            strings_only(get(provenance, "arguments"), "the arguments", error);
 }

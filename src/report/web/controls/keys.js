@@ -94,7 +94,8 @@ function sceneKeys(scene, store, viewer) {
     Escape: () => store.set({ selected: null, triangle: null }),
   };
   COLOURS.forEach((colour, i) => {
-    if (colourMissing(scene, viewer !== null, colour) === null) actions[String(i + 1)] = () => store.set({ colour: colour.value });
+    if (colourMissing(scene, viewer !== null, colour) !== null) return;
+    actions[String(i + 1)] = () => store.set({ colour: colour.value });
   });
   for (const { key, letter, missing } of marksOf(scene, viewer !== null)) {
     if (missing === null) actions[letter.toLowerCase()] = () => store.set({ [key]: !store.get()[key] });

@@ -12,7 +12,8 @@ const LOUPE =
   'M6.5 1.5a5 5 0 1 0 3 9l3.8 3.8 1.2-1.2-3.8-3.8a5 5 0 0 0-4.2-8z' +
   'm0 1.8a3.2 3.2 0 1 1 0 6.4 3.2 3.2 0 0 1 0-6.4z';
 
-const KEYS = 'Alt with arrows turns the view, Alt and Shift with arrows pans, Alt with Page Up or Down zooms; ? lists all keys.';
+const KEYS =
+  'Alt with arrows turns the view, Alt and Shift with arrows pans, Alt with Page Up or Down zooms; ? lists all keys.';
 
 /** A button that stays pressed. */
 function toggle(name, text, title, pressed, action) {
