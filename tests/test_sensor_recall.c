@@ -11,7 +11,11 @@
 
 #include <cmocka.h>
 
+#ifdef __SANITIZE_ADDRESS__
+enum { SEEDS = 20, FRAMES = 10 };
+#else
 enum { SEEDS = 40, FRAMES = 10 };
+#endif
 
 static scene s; /* large; one test at a time */
 static double x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];
