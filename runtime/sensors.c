@@ -171,7 +171,8 @@ static cscd_status begin(cscd_sensors *s, const double *start, const double *end
     walk_areas areas = areas_of(s);
     sensor_reach_measure(&s->reach, s->partition, &areas, start, end, s->options.effective_radius);
     s->particles.radius = s->reach.radius;
-    s->particles.longest_way = s->reach.longest_edge;
+    bool inside = s->options.method == CSCD_SENSORS_CELLS;
+    s->particles.longest_way = inside ? s->reach.longest_inside : s->reach.longest_edge;
     s->particles.closest = s->reach.typical_edge * closest_share;
     s->particles.counters = (particle_counters){0};
     s->pairs.count = 0;

@@ -1,6 +1,6 @@
 /* The default mu: whatever touches has two vertices nearer than that at the start or at the end, and no
- * smaller bound would do. */
-#include "runtime/sensor_reach.h"
+ * smaller bound would do. And how far around particles look. */
+#include "runtime/sensors.h"
 #include "tests/support/sensor_rig.h"
 
 #include <math.h>
@@ -138,10 +138,50 @@ static void crossed_edges_need_it_all(void **state) {
     }
 }
 
+/* ---- how far around particles look -------------------------------------------------------------------- */
+
+/* Spheres that do not feel each other, and a large triangle below. */
+static void make_spheres(bool floor) {
+    const double corners[9] = {-900, -900, -20, 900, -900, -20, 0, 900, -20};
+    scene_clear(&s);
+    for (int i = 0; i < 10; i++)
+        scene_add_sphere(&s, (double[3]){10.0 * (i % 4), 10.0 * (i / 4), 0.0}, 1.0, 6, 8);
+    if (!floor) return;
+    for (uint32_t k = 0; k < 3; k++) s.triangles[s.triangle_count * 3 + k] = s.vertex_count + k;
+    memcpy(s.x0 + s.vertex_count * 3, corners, sizeof corners);
+    memcpy(s.x1 + s.vertex_count * 3, corners, sizeof corners);
+    s.vertex_count += 3;
+    s.triangle_count++;
+}
+
+static uint64_t distances_with(bool floor) {
+    cscd_sensor_options options = cscd_sensor_defaults();
+    cscd_partition_options cells = cscd_partition_defaults();
+    options.collision_distance = 0.5;
+    options.effective_radius = 1.0;
+    cells.cells = 12;
+    sensor_setup setup = {0, &cells, &options};
+    make_spheres(floor);
+    sensor_rig r = sensor_rig_create(&s, &setup);
+    sensor_rig_step(&r, s.x0, s.x1);
+    assert_true((r.sensors->reach.longest_edge > 100.0) == floor);
+    assert_true(r.sensors->reach.longest_inside > 0.1 && r.sensors->reach.longest_inside < 2.0);
+    uint64_t distances = r.sensors->particles.counters.distances;
+    sensor_rig_destroy(&r);
+    return distances;
+}
+
+/* Nobody walks along the floor's sides, which lead from cell to cell. */
+static void a_large_triangle_costs_nothing(void **state) {
+    (void)state;
+    assert_int_equal(distances_with(true), distances_with(false));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_touches_has_near_vertices),
         cmocka_unit_test(crossed_edges_need_it_all),
+        cmocka_unit_test(a_large_triangle_costs_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
