@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Particles nearer than this share of a typical edge pull no harder. */
+/* Where attractions are added, particles nearer than this share of a typical edge pull no harder. */
 static const double closest_share = 1e-3;
 
 cscd_sensor_options cscd_sensor_defaults(void) {
