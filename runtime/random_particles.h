@@ -3,7 +3,7 @@
 #define CSCD_RANDOM_PARTICLES_H
 
 #include "runtime/particles.h"
-#include "runtime/sensor_reach.h"
+#include "src/partition.h"
 
 /* Where they walk: on whole objects, along all edges. */
 typedef struct random_particles {

@@ -44,7 +44,10 @@ static void measure_edges(sensor_reach *reach, const cscd_partition *partition, 
         for (int k = 0; k < 3; k++) {
             uint32_t a = corners[k], b = corners[(k + 1) % 3];
             double at_start = squared_distance(x0, a, b);
-            longest = larger(longest, larger(at_start, squared_distance(x1, a, b)));
+            double side = larger(at_start, squared_distance(x1, a, b));
+            longest = larger(longest, side);
+            if (partition->vertex_cells[a] == partition->vertex_cells[b])
+                reach->longest_inside = larger(reach->longest_inside, side);
             sum += at_start;
         }
         for (int k = 0; k < 3; k++) {
@@ -141,8 +144,9 @@ static double largest_two_diameters(const walk_areas *areas, const double *x0, c
 void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, const walk_areas *areas,
                           const double *x0, const double *x1, double radius_given) {
     memset(reach->parts, 0, partition->part_count * sizeof *reach->parts);
+    reach->longest_edge = reach->longest_inside = 0.0;
     measure_edges(reach, partition, x0, x1);
-    reach->longest_edge = 0.0;
+    reach->longest_inside = sqrt(reach->longest_inside) * rounding;
     for (uint32_t p = 0; p < partition->part_count; p++) {
         reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge) * rounding;
         reach->longest_edge = larger(reach->longest_edge, reach->parts[p].longest_edge);

@@ -11,11 +11,12 @@ typedef struct part_reach {
 
 typedef struct sensor_reach {
     part_reach *parts;
-    double mu_given;     /* 0: by the parts */
-    double mu_most;      /* no pair of parts has a larger one */
-    double radius;       /* R_eff */
-    double longest_edge; /* of all, at the start or at the end */
-    double typical_edge; /* the root mean square of the triangles' sides at the start */
+    double mu_given;       /* 0: by the parts */
+    double mu_most;        /* no pair of parts has a larger one */
+    double radius;         /* R_eff */
+    double longest_edge;   /* of all, at the start or at the end */
+    double longest_inside; /* the same, of edges with both ends in one cell */
+    double typical_edge;   /* the root mean square of the triangles' sides at the start */
 } sensor_reach;
 
 cscd_status sensor_reach_create(const cscd_partition *partition, double mu_given, sensor_reach *reach);

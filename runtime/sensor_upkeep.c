@@ -303,13 +303,14 @@ void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition
     upkeep->generation = partition->generation;
 }
 
+/* A long edge comes last: it stays after new cells, and must not hide what these would mend. */
 static cscd_renewal reason_of(const part_measures *first, const part_measures *now,
                               const upkeep_limits *limits) {
     double edge = limits->edge_length;
     if (now->area > limits->area_factor * first->area) return CSCD_RENEWAL_AREA;
     if (now->estimate > limits->area_factor * first->estimate) return CSCD_RENEWAL_AREA;
-    if (edge > 0.0 && now->edge_squared > edge * edge) return CSCD_RENEWAL_EDGE;
-    return now->concave > first->concave + CONCAVE_GROWTH ? CSCD_RENEWAL_CONCAVE : CSCD_RENEWAL_NONE;
+    if (now->concave > first->concave + CONCAVE_GROWTH) return CSCD_RENEWAL_CONCAVE;
+    return edge > 0.0 && now->edge_squared > edge * edge ? CSCD_RENEWAL_EDGE : CSCD_RENEWAL_NONE;
 }
 
 uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,

@@ -43,8 +43,8 @@ void sensor_upkeep_destroy(sensor_upkeep *upkeep);
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions);
 
 /* particles: the vertex of each cell's; NULL: areas are not estimated. Writes a reason for every part, the
- * first that holds in their order, and returns how many of them are not NONE. Allocates nothing, as the call
- * above. */
+ * first that holds of AREA, CONCAVE and EDGE, and returns how many of them are not NONE. Allocates nothing,
+ * as the call above. */
 uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,
                              const uint32_t *particles, const upkeep_limits *limits, cscd_renewal *renewals);
 

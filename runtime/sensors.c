@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Particles nearer than this share of a typical edge pull no harder. */
+/* Where attractions are added, particles nearer than this share of a typical edge pull no harder. */
 static const double closest_share = 1e-3;
 
 cscd_sensor_options cscd_sensor_defaults(void) {
@@ -171,7 +171,8 @@ static cscd_status begin(cscd_sensors *s, const double *start, const double *end
     walk_areas areas = areas_of(s);
     sensor_reach_measure(&s->reach, s->partition, &areas, start, end, s->options.effective_radius);
     s->particles.radius = s->reach.radius;
-    s->particles.longest_way = s->reach.longest_edge;
+    bool inside = s->options.method == CSCD_SENSORS_CELLS;
+    s->particles.longest_way = inside ? s->reach.longest_inside : s->reach.longest_edge;
     s->particles.closest = s->reach.typical_edge * closest_share;
     s->particles.counters = (particle_counters){0};
     s->pairs.count = 0;

@@ -178,6 +178,22 @@ static void long_edges_are_seen(void **state) {
     bench_destroy(&b);
 }
 
+/* A long edge stays long, and does not hide that new cells are due. */
+static void bending_is_told_before_long_edges(void **state) {
+    (void)state;
+    random_seed(10);
+    make_two_bodies();
+    bench b = bench_create(12);
+    upkeep_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.upkeep.first[1].edge_squared)};
+    move(false, bend, 0.05);
+    due(&b, &limits);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
+    move(false, bend, 3.0);
+    due(&b, &limits);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);
+    bench_destroy(&b);
+}
+
 static void flip_triangles(void) {
     for (uint32_t t = 0; t < body.triangle_count; t++) {
         uint32_t corner = body.triangles[t * 3];
@@ -289,6 +305,7 @@ int main(void) {
         cmocka_unit_test(growth_is_seen),
         cmocka_unit_test(growth_is_estimated),
         cmocka_unit_test(long_edges_are_seen),
+        cmocka_unit_test(bending_is_told_before_long_edges),
         cmocka_unit_test(bending_is_seen),
         cmocka_unit_test(renewal_settles_one_part),
         cmocka_unit_test(estimates_are_rectangles),

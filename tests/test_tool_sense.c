@@ -213,6 +213,7 @@ static void unfit_options_are_refused(void **state) {
     EXPECT_ERROR(2, TEXTS("--seed is of --method random"), "sense", SENSE, "--seed", "3");
     EXPECT_ERROR(2, TEXTS("--cells is of --method cells"), "sense", SENSE, "--method", "random", "--cells",
                  "3");
+    EXPECT_ERROR(2, TEXTS("--within is of --method cells"), "sense", SENSE, "--method", "random", "--within");
     EXPECT_ERROR(2, TEXTS("--view is of a picture"), "sense", SENSE, "--view", "3,3");
     EXPECT_ERROR(2, TEXTS("step of 2"), "sense", SENSE, "--frames", "0:6:2");
     EXPECT_ERROR(2, TEXTS("no FRAMES given"), "sense", flight_model.text);

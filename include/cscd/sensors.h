@@ -69,7 +69,7 @@ typedef enum cscd_sensor_method {
     CSCD_SENSORS_CELLS, /* a particle in every cell (Saenghaengtham 2006), drawn to the nearest of another
                          * object, where the thesis adds up the pulls of all */
     CSCD_SENSORS_RANDOM /* a fixed number on each object, from random vertices, which also push each other
-                         * apart (Senin et al. 2003): to compare with */
+                         * apart (Senin et al. 2003): to compare with; watches objects, not within them */
 } cscd_sensor_method;
 
 typedef struct cscd_sensor_options {
@@ -77,9 +77,10 @@ typedef struct cscd_sensor_options {
     cscd_sensor_method method;
     double collision_distance; /* mu, a length; 0, the default: what the longest edges and the motion ask
                                 * for */
-    double effective_radius; /* R_eff, a length, at least mu; 0, the default: mu and the two largest cells */
-    uint32_t step_limit;     /* of rounds in which particles walk, per moment; default 256 */
-    bool exact;              /* warnings are checked by elementary tests; default true */
+    double effective_radius;   /* R_eff, a length, at least mu, and raised to mu where that is the default; 0,
+                                * the default: mu and the two largest cells */
+    uint32_t step_limit;       /* of rounds in which particles walk, per moment; default 256 */
+    bool exact;                /* warnings are checked by elementary tests; default true */
     double area_factor; /* renewal is due when a cell's area is beyond so many times the largest at first;
                          * default 2 */
     uint32_t particles; /* RANDOM: on each object; default 5 */
@@ -100,19 +101,21 @@ typedef struct cscd_warning {
     uint32_t vertex_a, vertex_b; /* where the two particles are */
     double distance;             /* between them, the smaller of both moments, */
     double time;                 /* and which moment: 0 or 1 */
-    bool contact;                /* the exact check has found one between these parts, where it has looked */
-    double toi;                  /* its earliest; 0 without */
+    bool contact; /* the exact check has found one of these objects, among the triangles about the cells of
+                   * both parts whose particles are near; at the parts' borders it may be another part's */
+    double toi;   /* its earliest; 0 without */
 } cscd_warning;
 
 /* Why cells of a part should be made anew. */
 typedef enum cscd_renewal {
     CSCD_RENEWAL_NONE,
     CSCD_RENEWAL_AREA,   /* a cell has become too large for one particle */
-    CSCD_RENEWAL_EDGE,   /* an edge is longer than the mu of the options */
+    CSCD_RENEWAL_EDGE,   /* an edge is longer than the mu of the options, which new cells do not change, so
+                          * contacts there may be missed; no other reason holds */
     CSCD_RENEWAL_CONCAVE /* the part has turned concave */
 } cscd_renewal;
 
-/* Sorted by (part_a, part_b). Owned by the sensors, valid until their next call. */
+/* Sorted by (part_a, part_b). Owned by the sensors, valid until their next step. */
 typedef struct cscd_warnings {
     const cscd_warning *items;
     size_t count;
@@ -126,8 +129,8 @@ CSCD_API cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *star
 /* After a step; part < the partition's count. */
 CSCD_API cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part);
 
-/* Certified: two different parts do not come to touch in the interval of the last step. False means nothing.
- */
+/* Certified: two different parts do not come to touch in the interval of the last step that has not failed.
+ * False means nothing, and is all there is before a step and after a renewal. */
 CSCD_API bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b);
 
 /* Particles: one per cell, in their order, or those of objects in theirs; and the vertex of each. */

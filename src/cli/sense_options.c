@@ -32,7 +32,7 @@ static const char help[] =
     "  --seed N               with random: default 1\n"
     "  --plan PLAN.ply|none   whose regions are the parts of concave objects (default as for replay); none:\n"
     "                         every component is one part\n"
-    "  --within               parts of one object are watched for each other, too\n"
+    "  --within               with cells: parts of one object are watched for each other, too\n"
     "  --no-exact             warnings are not checked by elementary tests\n"
     "  --csv OUT.csv          write each warning: frame, parts, objects, vertices, distance, contact\n"
     "  --json OUT.json        write a summary: every interval, counts, timings, provenance\n"
@@ -200,6 +200,8 @@ static int check_options(const sense_options *o, const given_options *given) {
                           given->option[OPTION_PARTICLES] ? "particles" : "seed");
     if (random && given->option[OPTION_CELLS])
         return fail_usage("sense", "--cells is of --method cells; random takes --particles");
+    if (random && o->partition.within)
+        return fail_usage("sense", "--within is of --method cells; random watches whole objects");
     if (s->effective_radius > 0.0 && s->effective_radius < s->collision_distance)
         return fail_usage("sense", "--reff %g is below --mu %g: particles would not feel what they warn of",
                           s->effective_radius, s->collision_distance);
