@@ -127,18 +127,18 @@ typedef struct samples {
 
 static bool run_frames(const caller_kind *kind, caller *c, const uint64_t *calls, samples *s,
                        io_error *error) {
-    progress shown;
-    progress_begin(&shown, false);
+    terminal_progress shown;
+    terminal_progress_begin(&shown, false);
     for (uint32_t i = 0; i < s->count; i++) {
         uint64_t calls_before = *calls;
         double detect_before = c->detect_ms, begin = timer_now_ms();
-        progress_update(&shown, i, s->count, kind->scene_name);
+        terminal_progress_update(&shown, i, s->count, kind->scene_name);
         if (!kind->advance(c, error)) return false;
         s->total[i] = timer_now_ms() - begin;
         s->detect[i] = c->detect_ms - detect_before;
         *(i == 0 ? &s->first_calls : &s->calls[(uint64_t)i * PARTS / s->count]) += *calls - calls_before;
     }
-    progress_end(&shown);
+    terminal_progress_end(&shown);
     return true;
 }
 

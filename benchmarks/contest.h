@@ -1,6 +1,5 @@
 /* One method on one recording, held against the method that leaves out no pair. */
-#ifndef CSCD_BENCHMARK_CONTEST_H
-#define CSCD_BENCHMARK_CONTEST_H
+#pragma once
 
 #include "benchmarks/scene_files.h"
 
@@ -51,5 +50,3 @@ bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out
 
 /* Of one class, or, where only is CLASS_COUNT, of both; means per interval, losses as they are. */
 score score_mean(const score classes[CLASS_COUNT], int only);
-
-#endif

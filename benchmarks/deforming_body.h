@@ -1,6 +1,5 @@
 /* Bodies of any size that deform from frame to frame by about one edge length, with and without contact. */
-#ifndef CSCD_BENCHMARK_DEFORMING_BODY_H
-#define CSCD_BENCHMARK_DEFORMING_BODY_H
+#pragma once
 
 #include "models/shapes/catalogue.h"
 #include "src/io/mesh_file.h"
@@ -36,5 +35,3 @@ void deforming_body_interval(const deforming_body *b, uint32_t i, double shift, 
 
 /* The root of the mean square of what vertices move in interval 1, in edge lengths. */
 double deforming_body_speed(const deforming_body *b);
-
-#endif

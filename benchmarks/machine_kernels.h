@@ -1,6 +1,5 @@
 /* The loops of benchmarks/machine, compiled once per instruction set. */
-#ifndef CSCD_BENCHMARK_MACHINE_KERNELS_H
-#define CSCD_BENCHMARK_MACHINE_KERNELS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -24,6 +23,4 @@ enum { MACHINE_CHAINS = 12, MACHINE_BOXES = 64 };
 extern const machine_kernels machine_scalar;
 #ifdef CSCD_WITH_AVX
 extern const machine_kernels machine_avx2, machine_avx512;
-#endif
-
 #endif

@@ -1,6 +1,5 @@
 /* The table and the JSON of benchmarks/methods. */
-#ifndef CSCD_BENCHMARK_METHODS_REPORT_H
-#define CSCD_BENCHMARK_METHODS_REPORT_H
+#pragma once
 
 #include "benchmarks/contest.h"
 #include "src/io/json.h"
@@ -18,5 +17,3 @@ void report_print(const report *r);
 
 /* One object per method over all intervals: means per interval, but losses per run. */
 void report_write(const report *r, json *out, uint32_t thread_count);
-
-#endif

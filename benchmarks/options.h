@@ -1,6 +1,5 @@
 /* Options, progress and JSON that the programs on deforming bodies have in common. */
-#ifndef CSCD_BENCHMARK_OPTIONS_H
-#define CSCD_BENCHMARK_OPTIONS_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "models/shapes/catalogue.h"
@@ -34,5 +33,3 @@ typedef struct bench_program {
 /* Of a whole program, its exit status: parses, runs, says what went wrong, and gives the rows of --json the
  * frame that tells where they come from. */
 int bench_main(const bench_program *program, int argument_count, char **arguments);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sets of elementary queries with their exact truth, in the published CSV form. */
-#ifndef CSCD_QUERY_FILE_H
-#define CSCD_QUERY_FILE_H
+#pragma once
 
 #include "runtime/elementary.h"
 #include "src/io/io_error.h"
@@ -24,5 +23,3 @@ void query_set_free(query_set *set);
 
 /* From "vertex-face" or "edge-edge" in the path; false when it holds neither. */
 bool query_kind_from_path(const char *path, query_kind *out);
-
-#endif

@@ -156,10 +156,10 @@ static void write_row(json *out, const row *r, const bench_options *o) {
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run_size(const bench_options *o, uint32_t size, table *t, json *out, progress *shown,
+static bool run_size(const bench_options *o, uint32_t size, table *t, json *out, terminal_progress *shown,
                      io_error *error) {
     deforming_body b;
-    progress_say(shown, "making a body");
+    terminal_progress_say(shown, "making a body");
     if (!deforming_body_make(o->kind, size, DEFORM_WAVE, o->shuffled, &b, error)) return false;
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE,
                                    size <= CHARGE_TRIANGLES_MAX ? CSCD_METHOD_CHARGE : CSCD_METHOD_KMEANS};
@@ -171,7 +171,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
         subject_options options = {methods[i / 2], i % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST,
                                    o->thread_count, o->simd, o->volume};
         snprintf(text, sizeof text, "%u triangles, %s", b.triangle_count, cscd_method_name(options.method));
-        progress_say(shown, text);
+        terminal_progress_say(shown, text);
         good = measure(&b, &options, intervals, r, error);
         if (!good) break;
         t->count++;
@@ -188,9 +188,9 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
 
 static bool run(const bench_options *o, json *out, io_error *error) {
     static table t;
-    progress shown;
+    terminal_progress shown;
     double contacts = 0.0;
-    progress_begin(&shown, false);
+    terminal_progress_begin(&shown, false);
     printf("%s, %u thread%s, simd %s, volume %s\n", body_kind_name(o->kind), o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), cscd_volume_name(o->volume));
     print_title("milliseconds per interval");
@@ -199,7 +199,7 @@ static bool run(const bench_options *o, json *out, io_error *error) {
     bool good = true;
     for (uint32_t i = 0; good && i < o->size_count; i++)
         good = run_size(o, o->sizes[i], &t, out, &shown, error);
-    progress_end(&shown);
+    terminal_progress_end(&shown);
     if (!good) return false;
     for (uint32_t i = 0; i < t.count; i++) contacts += t.rows[i].contacts;
     print_per_triangle(&t);

@@ -1,6 +1,5 @@
 /* Recordings that benchmarks replay: all frames in memory, and a plan by charge from its cache. */
-#ifndef CSCD_BENCHMARK_SCENE_FILES_H
-#define CSCD_BENCHMARK_SCENE_FILES_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/io_error.h"
@@ -24,5 +23,3 @@ bool recording_data_open(const char *folder, const char *name, const char *cache
 void recording_data_close(recording_data *r);
 
 const double *recording_data_frame(const recording_data *r, uint32_t frame);
-
-#endif

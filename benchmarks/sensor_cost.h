@@ -1,10 +1,7 @@
 /* What a step of particle sensors costs by size and by number of objects. */
-#ifndef CSCD_BENCHMARK_SENSOR_COST_H
-#define CSCD_BENCHMARK_SENSOR_COST_H
+#pragma once
 
 #include "src/io/io_error.h"
 
 /* Two tables on the standard output. */
 bool sensor_cost_print(io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* One recording under particle sensors of some rules, and what the detector finds in it. */
-#ifndef CSCD_BENCHMARK_SENSOR_TRIAL_H
-#define CSCD_BENCHMARK_SENSOR_TRIAL_H
+#pragma once
 
 #include "benchmarks/scene_files.h"
 #include "src/cli/object_pairs.h"
@@ -48,5 +47,3 @@ typedef struct certified_trial {
 } certified_trial;
 
 bool certified_trial_run(const recording_data *r, bool plan, certified_trial *out, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
-#ifndef CSCD_BENCHMARK_STAGES_H
-#define CSCD_BENCHMARK_STAGES_H
+#pragma once
 
 #include "benchmarks/deforming_body.h"
 #include "cscd/cscd.h"
@@ -58,5 +57,3 @@ void subject_destroy(subject *s);
 /* One interval; it counts as a sample when `counts`: a first one, which builds trees, should not. */
 bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
                   io_error *error);
-
-#endif

@@ -1,11 +1,8 @@
 /* How much memory the system would give us now. */
-#ifndef CSCD_AVAILABLE_MEMORY_H
-#define CSCD_AVAILABLE_MEMORY_H
+#pragma once
 
 #include <stddef.h>
 
 /* Bytes of physical memory that are free or can be freed without swapping, within the limit of the control
  * group (container) that the system shows; SIZE_MAX where the system does not tell. */
 size_t available_memory(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Cells of parts: near vertices with like normals, connected. */
-#ifndef CSCD_CELLS_H
-#define CSCD_CELLS_H
+#pragma once
 
 #include "preprocess/connect.h"
 #include "preprocess/lbg.h"
@@ -30,5 +29,3 @@ void make_cells(cell_maker *maker, uint32_t part);
 
 /* Writes all cells to the partition. */
 void hand_over_cells(const cell_maker *maker);
-
-#endif

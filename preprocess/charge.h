@@ -1,6 +1,5 @@
 /* The charge density of a conductor in the shape of the mesh: collocation at triangle centroids. */
-#ifndef CSCD_CHARGE_H
-#define CSCD_CHARGE_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -29,5 +28,3 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double 
 /* The same with a limit in bytes of the caller's in place of the system's. */
 cscd_status charge_solve_within(const cscd_mesh *mesh, const double *positions, size_t memory_limit,
                                 double *density, double *capacitance, charge_timings *timings);
-
-#endif

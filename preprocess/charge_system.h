@@ -1,6 +1,5 @@
 /* The system of equations for the charges of one component. */
-#ifndef CSCD_CHARGE_SYSTEM_H
-#define CSCD_CHARGE_SYSTEM_H
+#pragma once
 
 #include "preprocess/charge.h"
 #include "preprocess/potential.h"
@@ -42,5 +41,3 @@ double charge_system_work(uint32_t count);
 
 /* Assembles, factors and solves; adds to timings. CANCELLED: nothing is solved. */
 cscd_status charge_system_solve(charge_system *system, charge_timings *timings);
-
-#endif

@@ -1,6 +1,5 @@
 /* Clusters: edge-connected triangles of low charge. */
-#ifndef CSCD_CLUSTERS_H
-#define CSCD_CLUSTERS_H
+#pragma once
 
 #include "preprocess/dual_graph.h"
 
@@ -15,5 +14,3 @@ typedef struct clusters {
 cscd_status clusters_find(const cscd_mesh *mesh, const dual_graph *graph, const double *equalized,
                           double threshold, clusters *out);
 void clusters_free(const cscd_mesh *mesh, clusters *found);
-
-#endif

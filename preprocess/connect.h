@@ -1,6 +1,5 @@
 /* Labels of vertices made connected along edges. */
-#ifndef CSCD_CONNECT_H
-#define CSCD_CONNECT_H
+#pragma once
 
 #include "src/context.h"
 
@@ -22,5 +21,3 @@ typedef struct connect_work {
  * 0, by their first vertices; returns how many there are. */
 uint32_t connect_labels(const connect_work *work, const uint32_t *vertices, uint32_t count,
                         uint32_t label_count);
-
-#endif

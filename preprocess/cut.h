@@ -1,6 +1,5 @@
 /* The shortest cut through a band of triangles: a minimum cut of the dual graph, by maximum flow. */
-#ifndef CSCD_CUT_H
-#define CSCD_CUT_H
+#pragma once
 
 #include "preprocess/dual_graph.h"
 
@@ -26,5 +25,3 @@ void cutter_destroy(cutter *c);
  * number. */
 uint32_t cutter_separate(cutter *c, const uint32_t *parts, const uint32_t *band, uint32_t band_size,
                          uint32_t part, uint32_t *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* The cuts that a charge suggests: sets of triangles, each to be cut off from the rest of its component. */
-#ifndef CSCD_CUT_LIST_H
-#define CSCD_CUT_LIST_H
+#pragma once
 
 #include "preprocess/clusters.h"
 
@@ -23,5 +22,3 @@ typedef struct cut_limits {
 cscd_status cut_list_find(const cscd_mesh *mesh, const dual_graph *graph, const clusters *found,
                           const double *areas, const double *weights, cut_limits limits, cut_list *out);
 void cut_list_free(const cscd_mesh *mesh, cut_list *cuts);
-
-#endif

@@ -1,7 +1,6 @@
 /* Dense linear systems in single precision: LU with partial pivoting, by LAPACK and BLAS on the context's
  * threads. */
-#ifndef CSCD_DENSE_SOLVE_H
-#define CSCD_DENSE_SOLVE_H
+#pragma once
 
 #include "src/context.h"
 
@@ -13,5 +12,3 @@ cscd_status dense_factor(cscd_context *context, float *matrix, uint32_t count, i
 
 /* vector is replaced by the solution. */
 void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector);
-
-#endif

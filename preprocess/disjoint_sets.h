@@ -1,6 +1,5 @@
 /* Union-find over numbers 0, 1, 2, ...: a set's root is its smallest member. */
-#ifndef CSCD_DISJOINT_SETS_H
-#define CSCD_DISJOINT_SETS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -20,5 +19,3 @@ static inline uint32_t set_unite(uint32_t *parents, uint32_t x, uint32_t y) {
     parents[a] = parents[b] = root;
     return root;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The mesh's dual graph: triangles, joined across their common edges. */
-#ifndef CSCD_DUAL_GRAPH_H
-#define CSCD_DUAL_GRAPH_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -24,5 +23,3 @@ void dual_graph_free(const cscd_mesh *mesh, dual_graph *graph);
  * labels may be the same array as pieces; scratch has room for every triangle of the mesh. */
 uint32_t dual_graph_pieces(const dual_graph *graph, const uint32_t *list, uint32_t count,
                            const uint32_t *labels, uint32_t *pieces, uint32_t *scratch);
-
-#endif

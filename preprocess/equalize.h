@@ -1,6 +1,5 @@
 /* Equalization of charge densities: from values to the share of triangles that have no higher one. */
-#ifndef CSCD_EQUALIZE_H
-#define CSCD_EQUALIZE_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -10,5 +9,3 @@
  * density to its highest; all triangles of a bin then have one value. INVALID_ARGUMENT names the triangle
  * whose density is not finite. */
 cscd_status equalize(const cscd_mesh *mesh, const double *density, bool published, double *equalized);
-
-#endif

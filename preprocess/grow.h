@@ -1,6 +1,5 @@
 /* Growth of a cluster, ring by ring, until what is left of its component falls apart. */
-#ifndef CSCD_GROW_H
-#define CSCD_GROW_H
+#pragma once
 
 #include "preprocess/dual_graph.h"
 
@@ -31,5 +30,3 @@ void growth_destroy(growth *g);
  * come off by then. may_grow false: the cluster alone must separate them. false: it never happens. */
 bool growth_separates(growth *g, const uint32_t *cluster, uint32_t cluster_size, bool may_grow,
                       double relevant_area);
-
-#endif

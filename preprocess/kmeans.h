@@ -1,6 +1,5 @@
 /* K-means regions: vertices in k clusters, triangles by the fewest edges to a cluster's centre. */
-#ifndef CSCD_KMEANS_H
-#define CSCD_KMEANS_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -18,5 +17,3 @@ cscd_status regions_kmeans(const cscd_mesh *mesh, const double *positions, uint3
 
 /* The most regions that there can be: k, but not more than vertices, and one per component at least. */
 uint32_t kmeans_capacity(const cscd_mesh *mesh, uint32_t k);
-
-#endif

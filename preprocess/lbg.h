@@ -1,6 +1,5 @@
 /* Vector quantization by splitting (Linde, Buzo and Gray 1980): groups of near vectors and their means. */
-#ifndef CSCD_LBG_H
-#define CSCD_LBG_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,5 +46,3 @@ void lbg_find_codes(const lbg *l, uint32_t code_count);
 
 /* (3.10): of code_count codes over all vectors. */
 double lbg_distortion(const lbg *l, uint32_t code_count);
-
-#endif

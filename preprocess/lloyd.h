@@ -1,6 +1,5 @@
 /* Lloyd's iteration: k centroids of a set of points. */
-#ifndef CSCD_LLOYD_H
-#define CSCD_LLOYD_H
+#pragma once
 
 #include "src/context.h"
 
@@ -22,5 +21,3 @@ typedef struct lloyd {
  * LLOYD_ROUNDS_MAX rounds. A point goes to the first of its nearest centroids; an empty cluster keeps its
  * centroid. CANCELLED: the clusters mean nothing. */
 cscd_status lloyd_run(const lloyd *l, uint64_t seed);
-
-#endif

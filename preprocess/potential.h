@@ -1,6 +1,5 @@
 /* The potential of a uniformly charged triangle, in closed form. */
-#ifndef CSCD_POTENTIAL_H
-#define CSCD_POTENTIAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -25,5 +24,3 @@ bool potential_source_set(potential_source *source, const double corners[3][3]);
  * roundings. The same bits on every processor. */
 void potential_at(const potential_source *source, const double *x, const double *y, const double *z,
                   size_t count, double *potentials);
-
-#endif

@@ -1,6 +1,5 @@
 /* Regions of a mesh, from its charge; or one per component. docs/regions.md explains and justifies. */
-#ifndef CSCD_REGIONS_H
-#define CSCD_REGIONS_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -24,5 +23,3 @@ cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, 
 
 /* One region per component, with the component's number. */
 cscd_status regions_single(const cscd_mesh *mesh, uint32_t *region_of_triangle, uint32_t *region_count);
-
-#endif

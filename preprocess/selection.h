@@ -1,6 +1,5 @@
 /* Which cuts pay: those after which detector points see more. */
-#ifndef CSCD_SELECTION_H
-#define CSCD_SELECTION_H
+#pragma once
 
 #include "preprocess/cut_list.h"
 
@@ -13,5 +12,3 @@
 cscd_status select_cuts(const cscd_mesh *mesh, const dual_graph *graph, const double *positions,
                         const double *areas, const cut_list *cuts, double gain, double part_share,
                         uint32_t *regions);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts as spheres of their areas, and how many spheres touch one: so many cells a part gets. */
-#ifndef CSCD_SPHERES_H
-#define CSCD_SPHERES_H
+#pragma once
 
 #include "src/partition.h"
 
@@ -17,5 +16,3 @@ void find_radii(const cscd_partition *partition, const double *positions, double
  * watched. At most the part's vertices. convex: per part. */
 cscd_status count_cells(const cscd_partition *partition, const double *radii, const bool *convex,
                         uint32_t *counts);
-
-#endif

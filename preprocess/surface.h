@@ -1,6 +1,5 @@
 /* Areas, normals and lengths on the mesh, for any coordinates that positions may hold. */
-#ifndef CSCD_SURFACE_H
-#define CSCD_SURFACE_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -46,5 +45,3 @@ static inline double surface_edge_length(const cscd_mesh *mesh, const double *po
     const double *b = positions + (size_t)mesh->edges[edge][1] * 3;
     return surface_norm((double[3]){b[0] - a[0], b[1] - a[1], b[2] - a[2]});
 }
-
-#endif

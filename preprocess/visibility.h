@@ -1,6 +1,5 @@
 /* Detector points, and how much of its region each of them sees from inside. */
-#ifndef CSCD_VISIBILITY_H
-#define CSCD_VISIBILITY_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -22,5 +21,3 @@ double visible_share(const cscd_mesh *mesh, const double *positions, const uint3
 /* (p0 - d) . n of one triangle and the point d: positive where the point sees its inner side. */
 double orientation_value(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
                          const double point[3]);
-
-#endif

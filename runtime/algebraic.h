@@ -1,6 +1,5 @@
 /* Real roots of integer polynomials, and exact signs of other polynomials at them. */
-#ifndef CSCD_ALGEBRAIC_H
-#define CSCD_ALGEBRAIC_H
+#pragma once
 
 #include "runtime/polynomial.h"
 
@@ -30,5 +29,3 @@ bool algebraic_locate(integer_pool *pool, algebraic *root);
 
 /* The sign of q, of degree 2 at most, at the root: -1, 0 or 1. Faster where the root is located. */
 int algebraic_sign(integer_pool *pool, const algebraic *root, const polynomial *q);
-
-#endif

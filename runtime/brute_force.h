@@ -1,6 +1,5 @@
 /* Every pair of features that share no vertex: the reference that the other methods must equal. */
-#ifndef CSCD_BRUTE_FORCE_H
-#define CSCD_BRUTE_FORCE_H
+#pragma once
 
 #include "runtime/narrow_phase.h"
 
@@ -8,5 +7,3 @@
  * their own boxes in double, which loses none, and by the test of the pair. */
 void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
                       contact_lane *lane);
-
-#endif

@@ -1,7 +1,6 @@
 /* A call that takes long: it can be cancelled, and when it fails the detector is as it was, for a repetition.
  */
-#ifndef CSCD_CALL_H
-#define CSCD_CALL_H
+#pragma once
 
 #include "src/context.h"
 
@@ -31,5 +30,3 @@ void call_begin(cscd_detector *d);
  * little, and the next call is as sound as ever. Only it might do more, or in mode EARLIEST report other
  * contacts, than without the failure: that is why they are put back. */
 cscd_status call_fail(cscd_detector *d, cscd_status status);
-
-#endif

@@ -1,6 +1,5 @@
 /* Pairs of features that may come near each other on a motion, kept for every shorter one. */
-#ifndef CSCD_CANDIDATES_H
-#define CSCD_CANDIDATES_H
+#pragma once
 
 #include "runtime/interval_search.h"
 
@@ -16,5 +15,3 @@ void candidates_free(cscd_context *context, candidates *c);
 
 /* Tests all of them in the interval that the search has begun with. */
 cscd_status candidates_test(const candidates *c, interval_search *search);
-
-#endif

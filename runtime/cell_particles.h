@@ -1,6 +1,5 @@
 /* A particle in every cell of a partition, and what becomes of them when cells are made anew. */
-#ifndef CSCD_CELL_PARTICLES_H
-#define CSCD_CELL_PARTICLES_H
+#pragma once
 
 #include "runtime/particles.h"
 #include "src/partition.h"
@@ -14,5 +13,3 @@ cscd_status cell_particles_place(particles *p, const cscd_partition *partition, 
 /* Particles of one group do not attract each other: of an object, or of a part where parts of one object are
  * watched; all obstacles are one. */
 uint32_t particle_group(const cscd_partition *partition, uint32_t part, bool by_parts);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which of the free triangles are clean: have one winding number in common on their outer sides. */
-#ifndef CSCD_CLEAN_PATCH_H
-#define CSCD_CLEAN_PATCH_H
+#pragma once
 
 #include "runtime/start_state.h"
 
@@ -9,5 +8,3 @@
  * that becomes the clean one instead. Of a component without crossing and unknown triangles all are. Leaves
  * the numbers per component up to date. Takes linear time. */
 void clean_patches_find(start_states *s);
-
-#endif

@@ -1,6 +1,5 @@
 /* Closest points of features at rest. */
-#ifndef CSCD_CLOSEST_H
-#define CSCD_CLOSEST_H
+#pragma once
 
 /* Parameters as in cscd_contact; returns the squared distance. Zero-area faces and zero-length edges are
  * fine. (Ericson, Real-Time Collision Detection, 5.1.5 and 5.1.9.) */
@@ -8,5 +7,3 @@ double closest_point_triangle(const double p[3], const double a[3], const double
                               double *u, double *v);
 double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                         double *u, double *v);
-
-#endif

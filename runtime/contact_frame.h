@@ -1,6 +1,5 @@
 /* What is told of a touch: a time that is safe to step to, the points, the normal. */
-#ifndef CSCD_CONTACT_FRAME_H
-#define CSCD_CONTACT_FRAME_H
+#pragma once
 
 #include "runtime/coplanarity.h"
 #include "runtime/elementary.h"
@@ -9,5 +8,3 @@
  * earlier by 2^-32 at most, so that positions at it, rounded to doubles, have not passed each other yet. */
 void contact_frame_describe(const elementary_query *query, int first_count, const coplanarity *f, double toi,
                             elementary_hit *hit);
-
-#endif

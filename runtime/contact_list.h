@@ -1,6 +1,5 @@
 /* The interval's contacts from all threads as one sorted list. */
-#ifndef CSCD_CONTACT_LIST_H
-#define CSCD_CONTACT_LIST_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -14,5 +13,3 @@ bool contact_list_leaves_out(const cscd_detector *detector, const cscd_contact *
 /* How many contacts each lane finds differs from run to run: without this a buffer might grow in an interval
  * like those before. found: by all lanes together. */
 cscd_status contact_list_reserve_lanes(cscd_detector *detector, size_t found);
-
-#endif

@@ -1,6 +1,5 @@
 /* The continuous contour test: does the projection of a patch's contour stay a simple closed curve? */
-#ifndef CSCD_CONTOUR_H
-#define CSCD_CONTOUR_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -28,5 +27,3 @@ typedef struct contour_query {
  * interval, but for the common vertices of neighbours. Of a loop of three edges it looks at nothing; that one
  * is simple as long as its projection has an area. scratch: room for edge_count edges. */
 bool contour_stays_simple(const contour_query *query, contour_edge *scratch);
-
-#endif

@@ -1,6 +1,5 @@
 /* The cubic whose roots are the times at which four moving points are coplanar. */
-#ifndef CSCD_COPLANARITY_H
-#define CSCD_COPLANARITY_H
+#pragma once
 
 #include "runtime/elementary.h"
 
@@ -24,5 +23,3 @@ coplanarity coplanarity_cubic(const point_vectors *vectors);
 
 /* All coefficients beyond the error on one side of zero: the points are never coplanar in [0,1]. */
 bool coplanarity_excluded(const coplanarity *f);
-
-#endif

@@ -1,6 +1,5 @@
 /* Intervals of time that hold the roots of the coplanarity cubic, certified. */
-#ifndef CSCD_CUBIC_H
-#define CSCD_CUBIC_H
+#pragma once
 
 #include "runtime/coplanarity.h"
 
@@ -18,5 +17,3 @@ int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]);
 
 /* Of the computed cubic, at t in [0,1]. */
 double cubic_slope(const coplanarity *f, double t);
-
-#endif

@@ -1,6 +1,5 @@
 /* Culling by orientation: regions, their detector points, the triangles' flags of an interval. */
-#ifndef CSCD_CULLING_H
-#define CSCD_CULLING_H
+#pragma once
 
 #include "runtime/orientation.h"
 #include "src/plan.h"
@@ -51,5 +50,3 @@ static inline bool culling_kept(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->earlier[a], c->earlier[b]);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The detector's inside: trees, lanes and buffers that live from one interval to the next. */
-#ifndef CSCD_DETECTOR_H
-#define CSCD_DETECTOR_H
+#pragma once
 
 #include "runtime/call.h"
 #include "runtime/culling.h"
@@ -90,5 +89,3 @@ static inline bool detector_seals(const cscd_detector *d) {
 
 /* Makes room for count results of size bytes; what the buffer held is dropped. */
 cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* Features that a direction parts throughout an interval. */
-#ifndef CSCD_DIRECTIONS_H
-#define CSCD_DIRECTIONS_H
+#pragma once
 
 #include "runtime/elementary.h"
 
@@ -11,5 +10,3 @@
  * methods, in floats, leave out only what certainly is so; asking on the features' own points gives each
  * method the same pairs, whatever its trees. */
 bool directions_part(const elementary_query *query, int first_count, double distance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? */
-#ifndef CSCD_ELEMENTARY_H
-#define CSCD_ELEMENTARY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -40,5 +39,3 @@ elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *
 elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
                                           elementary_hit *hit);
 void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit);
-
-#endif

@@ -1,6 +1,5 @@
 /* Level three of the elementary tests: do two moving features touch, decided in exact arithmetic. */
-#ifndef CSCD_EXACT_TOUCH_H
-#define CSCD_EXACT_TOUCH_H
+#pragma once
 
 #include "runtime/elementary.h"
 #include "runtime/integer.h"
@@ -12,5 +11,3 @@ bool exact_touch(const elementary_query *query, int first_count, double *toi);
 
 /* The same, with a pool of the caller's, whose peak then tells what was needed. */
 bool exact_touch_in(integer_pool *pool, const elementary_query *query, int first_count, double *toi);
-
-#endif

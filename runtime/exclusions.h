@@ -1,6 +1,5 @@
 /* Pairs that the caller wants to be left out: by callback, by list, and by seams. */
-#ifndef CSCD_EXCLUSIONS_H
-#define CSCD_EXCLUSIONS_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -26,5 +25,3 @@ bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint
 
 /* Is this intersection of two triangles a < b? Seams: where all that meets has a vertex of one in common. */
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);
-
-#endif

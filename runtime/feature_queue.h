@@ -1,6 +1,5 @@
 /* Pairs of features that wait for their elementary test, which takes eight at a time. */
-#ifndef CSCD_FEATURE_QUEUE_H
-#define CSCD_FEATURE_QUEUE_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 
@@ -39,5 +38,3 @@ feature_source feature_queue_source(const struct swept_interval *interval);
 /* Decides all pairs of one list, or of both, and adds contacts and counts to the lane. */
 void feature_queue_decide_vf(const struct swept_interval *interval, struct contact_lane *lane);
 void feature_queue_decide_ee(const struct swept_interval *interval, struct contact_lane *lane);
-
-#endif

@@ -3,8 +3,7 @@
  * Eight triangles are a leaf, eight leaves a block, eight blocks a block of the next level; all trees have
  * the same height, above which blocks of parts join them into one. Bounds are floats in the part's own frame,
  * scaled by a power of two that is common to all; docs/trees.md derives how far they are rounded. */
-#ifndef CSCD_FOREST_H
-#define CSCD_FOREST_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 #include "runtime/orientation.h"
@@ -133,5 +132,3 @@ void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now);
 
 /* Fresh are these triangles, and there are no other flags. */
 void forest_mark_suspects(forest *f, const bool *suspects);
-
-#endif

@@ -1,7 +1,6 @@
 /* How far vertices may go on straight lines without contact: shorter and shorter steps, until one is proven.
  */
-#ifndef CSCD_FREE_STEP_H
-#define CSCD_FREE_STEP_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -22,5 +21,3 @@ typedef cscd_status motion_test(void *of, const double *from, const double *to, 
  * contact. IN_CONTACT: none is. */
 cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, motion_test *test, void *of,
                            double *reached, cscd_free_step *out);
-
-#endif

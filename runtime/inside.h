@@ -1,6 +1,5 @@
 /* The inside test of level two: are two features' points, coplanar at some time in an interval, in touch? */
-#ifndef CSCD_INSIDE_H
-#define CSCD_INSIDE_H
+#pragma once
 
 #include "runtime/coplanarity.h"
 #include "runtime/cubic.h"
@@ -10,5 +9,3 @@ typedef enum inside_verdict { INSIDE_NO, INSIDE_YES, INSIDE_UNSURE } inside_verd
 /* Whether they touch at none (NO) or every one (YES) of the times in the interval at which the four points
  * are coplanar; certified. first_count: 1 for VF, 2 for EE. */
 inside_verdict inside_test(const point_vectors *vectors, int first_count, const root_interval *interval);
-
-#endif

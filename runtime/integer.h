@@ -1,6 +1,5 @@
 /* Integers of any sign and up to thousands of bits, in a pool on the caller's stack: no allocation. */
-#ifndef CSCD_INTEGER_H
-#define CSCD_INTEGER_H
+#pragma once
 
 #include <stdint.h>
 
@@ -49,5 +48,3 @@ static inline int integer_sign(integer a) {
 
 /* a = result * 2^*exponent to a relative error of 2^-52, result in (-1, 1); no over- or underflow. */
 double integer_to_double(integer a, int *exponent);
-
-#endif

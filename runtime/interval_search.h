@@ -1,6 +1,5 @@
 /* The search of one interval: from the trees, moved there, to the lanes' contacts. */
-#ifndef CSCD_INTERVAL_SEARCH_H
-#define CSCD_INTERVAL_SEARCH_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -31,5 +30,3 @@ cscd_status interval_search_lanes_status(const cscd_detector *d);
 
 /* Every pair of features. */
 cscd_status interval_search_by_brute_force(interval_search *search);
-
-#endif

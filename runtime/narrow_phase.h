@@ -1,6 +1,5 @@
 /* From triangle pairs to contacts: representatives, feature volumes, elementary tests. */
-#ifndef CSCD_NARROW_PHASE_H
-#define CSCD_NARROW_PHASE_H
+#pragma once
 
 #include "runtime/culling.h"
 #include "runtime/elementary.h"
@@ -70,5 +69,3 @@ void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane);
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane);
-
-#endif

@@ -1,6 +1,5 @@
 /* Pairs of features that are near each other at one moment. */
-#ifndef CSCD_NEAR_H
-#define CSCD_NEAR_H
+#pragma once
 
 #include "runtime/interval_search.h"
 
@@ -15,5 +14,3 @@ interval_search near_search(cscd_detector *d, const double *positions, double di
 
 /* Of that search, in the detector's buffer. */
 cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* Continuous normal cones: a cone of directions that holds every normal of a set of triangles during a whole
  * interval (Provot 1997; Tang et al. 2009). */
-#ifndef CSCD_NORMAL_CONE_H
-#define CSCD_NORMAL_CONE_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -27,5 +26,3 @@ normal_cone normal_cone_of_ends(const uint32_t corners[3], const double *x0, con
 
 /* Of both (thesis, equations 5.1 and 5.2). limit: cones that are wider do not exist. */
 normal_cone normal_cone_union(const normal_cone *a, const normal_cone *b, float limit);
-
-#endif

@@ -1,6 +1,5 @@
 /* Orientation of triangles as seen from a detector point during a whole interval. */
-#ifndef CSCD_ORIENTATION_H
-#define CSCD_ORIENTATION_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -13,5 +12,3 @@ enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
 static inline bool orientations_may_touch(uint8_t a, uint8_t b) {
     return (a | b) == ORIENTATION_ZERO;
 }
-
-#endif

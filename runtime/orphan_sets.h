@@ -1,6 +1,5 @@
 /* Pairs of features that only triangles with a common vertex contain. */
-#ifndef CSCD_ORPHAN_SETS_H
-#define CSCD_ORPHAN_SETS_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -19,5 +18,3 @@ static inline bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[
 /* *too_many: there are more than eight per triangle, as in a fan, and *out stays empty. */
 cscd_status orphan_sets_create(const cscd_mesh *mesh, orphan_sets *out, bool *too_many);
 void orphan_sets_free(cscd_context *context, orphan_sets *sets);
-
-#endif

@@ -1,6 +1,5 @@
 /* Particles by where they are: a hashed uniform grid, built anew for every round by counting sort. */
-#ifndef CSCD_PARTICLE_GRID_H
-#define CSCD_PARTICLE_GRID_H
+#pragma once
 
 #include "src/context.h"
 
@@ -75,5 +74,3 @@ static inline const grid_entry *grid_search_next(grid_search *s) {
         grid_search_open(s);
     }
 }
-
-#endif

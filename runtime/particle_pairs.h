@@ -1,7 +1,6 @@
 /* The closest particles of every pair of watched parts: gathered over moments, then sorted, with no table of
  * parts by parts. */
-#ifndef CSCD_PARTICLE_PAIRS_H
-#define CSCD_PARTICLE_PAIRS_H
+#pragma once
 
 #include "runtime/particles.h"
 #include "runtime/sensor_reach.h"
@@ -30,5 +29,3 @@ cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const csc
 
 /* Sorts by (part_a, part_b, distance, moment, vertices). */
 void particle_pairs_sort(particle_pairs *pairs);
-
-#endif

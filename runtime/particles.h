@@ -1,6 +1,5 @@
 /* Particles: the forces that they feel on vertices, and how they walk until all rest. */
-#ifndef CSCD_PARTICLES_H
-#define CSCD_PARTICLES_H
+#pragma once
 
 #include "runtime/particle_grid.h"
 
@@ -73,5 +72,3 @@ uint32_t particles_settle(particles *p, const double *x, uint32_t limit);
 
 void particles_keep(particles *p);
 void particles_return(particles *p);
-
-#endif

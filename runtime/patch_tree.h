@@ -1,6 +1,5 @@
 /* The forest's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
-#ifndef CSCD_PATCH_TREE_H
-#define CSCD_PATCH_TREE_H
+#pragma once
 
 #include "runtime/forest.h"
 
@@ -30,5 +29,3 @@ static inline bool patch_is_leaf(const patch_node *node) {
 
 /* Hides in a forest the pairs that lie in one patch of `sealed`, which is given per node. */
 void patch_tree_hide(const patch_tree *tree, const bool *sealed, forest *f);
-
-#endif

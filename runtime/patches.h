@@ -1,6 +1,5 @@
 /* Patches that cannot touch themselves: ICCD (Tang et al. 2009), by normal cones and contour tests. */
-#ifndef CSCD_PATCHES_H
-#define CSCD_PATCHES_H
+#pragma once
 
 #include "runtime/contour.h"
 #include "runtime/normal_cone.h"
@@ -37,5 +36,3 @@ void patches_free(cscd_context *context, patches *p);
  * edges that the parent's contour has too are not tested again although the axis is another. */
 void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
                   bool published);
-
-#endif

@@ -1,6 +1,5 @@
 /* Polynomials of degree 3 at most with integer coefficients. */
-#ifndef CSCD_POLYNOMIAL_H
-#define CSCD_POLYNOMIAL_H
+#pragma once
 
 #include "runtime/integer.h"
 
@@ -31,5 +30,3 @@ int polynomial_sign_on_interval(integer_pool *pool, const polynomial *a);
 
 /* integer_pool_keep for all coefficients. */
 void polynomial_keep(integer_pool *pool, uint32_t mark, polynomial *a);
-
-#endif

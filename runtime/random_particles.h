@@ -1,6 +1,5 @@
 /* The older method: a fixed number of particles on every object, from random vertices (Senin et al. 2003). */
-#ifndef CSCD_RANDOM_PARTICLES_H
-#define CSCD_RANDOM_PARTICLES_H
+#pragma once
 
 #include "runtime/particles.h"
 #include "src/partition.h"
@@ -19,5 +18,3 @@ void random_particles_free(cscd_context *context, random_particles *r);
 /* Puts as many particles as asked for, or all that there are, on different vertices of every object. */
 cscd_status random_particles_place(const random_particles *r, const cscd_partition *partition,
                                    uint32_t per_object, uint32_t seed, particles *p);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which triangle answers for a feature, so that each pair of features is tested once. */
-#ifndef CSCD_REPRESENTATIVES_H
-#define CSCD_REPRESENTATIVES_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -16,5 +15,3 @@ typedef struct representatives {
 /* On failure *out holds nothing. */
 cscd_status representatives_create(const cscd_mesh *mesh, representatives *out);
 void representatives_free(cscd_context *context, representatives *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* The exact check of particle sensors: do the areas of cells of two parts touch, and when first? */
-#ifndef CSCD_SENSOR_AREAS_H
-#define CSCD_SENSOR_AREAS_H
+#pragma once
 
 #include "runtime/swept_box.h"
 #include "src/partition.h"
@@ -54,5 +53,3 @@ void sensor_areas_destroy(sensor_areas *areas);
  * detector, once. */
 cscd_status sensor_areas_check(sensor_areas *areas, const cscd_partition *partition, const area_query *query,
                                area_verdict *out);
-
-#endif

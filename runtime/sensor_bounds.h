@@ -1,6 +1,5 @@
 /* The certified mode of particle sensors: parts that provably do not touch in an interval. */
-#ifndef CSCD_SENSOR_BOUNDS_H
-#define CSCD_SENSOR_BOUNDS_H
+#pragma once
 
 #include "src/partition.h"
 
@@ -46,5 +45,3 @@ bool sensor_bounds_apart(const sensor_bounds *bounds, const cscd_partition *part
 void sensor_bounds_update_boxes(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                                 const double *end);
 bool sensor_bounds_boxes_apart(const sensor_bounds *bounds, uint32_t part_a, uint32_t part_b);
-
-#endif

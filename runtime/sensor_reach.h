@@ -1,6 +1,5 @@
 /* How near particles have to come for a warning, mu, and how far they feel each other, R_eff. */
-#ifndef CSCD_SENSOR_REACH_H
-#define CSCD_SENSOR_REACH_H
+#pragma once
 
 #include "src/partition.h"
 
@@ -34,5 +33,3 @@ void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, 
 
 /* The collision distance of two parts. */
 double sensor_reach_mu(const sensor_reach *reach, uint32_t part_a, uint32_t part_b);
-
-#endif

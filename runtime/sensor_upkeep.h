@@ -1,6 +1,5 @@
 /* When particle sensors are due for new cells: areas, edges and concavity against what they were at first. */
-#ifndef CSCD_SENSOR_UPKEEP_H
-#define CSCD_SENSOR_UPKEEP_H
+#pragma once
 
 #include "src/partition.h"
 
@@ -51,5 +50,3 @@ uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partit
 /* The area of the rectangle that walks in four directions span from a vertex within its cell (section 3.6).
  */
 double sensor_upkeep_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex);
-
-#endif

@@ -1,6 +1,5 @@
 /* The sensors' inside: particles, what they are measured against, and buffers that live from step to step. */
-#ifndef CSCD_SENSORS_H
-#define CSCD_SENSORS_H
+#pragma once
 
 #include "runtime/particle_pairs.h"
 #include "runtime/particles.h"
@@ -43,5 +42,3 @@ struct cscd_sensors {
  * where the options ask for it. */
 cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *end, size_t *count,
                            cscd_sensor_timings *timings, cscd_sensor_counters *counters);
-
-#endif

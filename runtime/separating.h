@@ -1,7 +1,6 @@
 /* Separating directions of level one: planes that keep two moving features apart during the whole interval.
  */
-#ifndef CSCD_SEPARATING_H
-#define CSCD_SEPARATING_H
+#pragma once
 
 #include "runtime/elementary.h"
 
@@ -13,5 +12,3 @@ bool separated_by_diagonals(const elementary_query *query, int first_count);
 
 /* By directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
 bool separated_in_plane(const elementary_query *query, int first_count);
-
-#endif

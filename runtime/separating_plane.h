@@ -1,6 +1,5 @@
 /* How long a plane that turns with two moving features keeps them farther apart than a distance. */
-#ifndef CSCD_SEPARATING_PLANE_H
-#define CSCD_SEPARATING_PLANE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -40,5 +39,3 @@ separating_plane separating_plane_find(const moving_features *features, const sh
  * plane: a bad one only gives a short time. */
 double separating_plane_holds(const moving_features *features, const separating_plane *plane,
                               double distance);
-
-#endif

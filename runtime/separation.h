@@ -1,6 +1,5 @@
 /* Minimum separation: do a moving vertex and face, or two moving edges, come within a distance, and when? */
-#ifndef CSCD_SEPARATION_H
-#define CSCD_SEPARATION_H
+#pragma once
 
 #include "runtime/elementary.h"
 
@@ -27,5 +26,3 @@ bool separation_vf(const elementary_query *query, const separation *limit, eleme
                    bool *bounded);
 bool separation_ee(const elementary_query *query, const separation *limit, elementary_hit *hit,
                    bool *bounded);
-
-#endif

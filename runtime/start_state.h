@@ -1,6 +1,5 @@
 /* What is known of the triangles at the start of an interval: which are clean, and from where. */
-#ifndef CSCD_START_STATE_H
-#define CSCD_START_STATE_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -91,5 +90,3 @@ void start_states_restore(start_states *s);
 
 /* Nothing is known of the end of the interval. */
 void start_states_forget(start_states *s);
-
-#endif

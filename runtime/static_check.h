@@ -1,6 +1,5 @@
 /* Is the surface embedded at one moment? All meeting triangle pairs, by exact predicates. */
-#ifndef CSCD_STATIC_CHECK_H
-#define CSCD_STATIC_CHECK_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -16,5 +15,3 @@ typedef struct intersection_lane {
  * component that they share, and tells the detector's start states. The tree's volumes contain the triangles
  * at that moment: of the moment, or of an interval that it is part of. */
 cscd_status static_check_suspects(cscd_detector *detector, const double *positions);
-
-#endif

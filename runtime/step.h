@@ -1,6 +1,5 @@
 /* One interval through the stages of the pipeline. */
-#ifndef CSCD_STEP_H
-#define CSCD_STEP_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -25,5 +24,3 @@ void step_take(cscd_detector *d, const double *end);
 
 /* They have not: the states are those at its start. */
 void step_withdraw(cscd_detector *d);
-
-#endif

@@ -1,6 +1,5 @@
 /* Axis-aligned boxes of moving features, in double. */
-#ifndef CSCD_SWEPT_BOX_H
-#define CSCD_SWEPT_BOX_H
+#pragma once
 
 #include "runtime/narrow_phase.h"
 
@@ -34,5 +33,3 @@ static inline bool swept_boxes_within(const swept_box *a, const swept_box *b, do
     }
     return true;
 }
-
-#endif

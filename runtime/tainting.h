@@ -1,6 +1,5 @@
 /* What the contacts found so far say about triangles: those in contact with their component are tainted. */
-#ifndef CSCD_TAINTING_H
-#define CSCD_TAINTING_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -11,5 +10,3 @@ void tainting_begin(cscd_detector *detector);
  * a component with itself the stars of both features are tainted; in components that are finished, these lose
  * their orientations. Returns how many did. */
 uint32_t tainting_look(cscd_detector *detector);
-
-#endif

@@ -1,6 +1,5 @@
 /* Self-traversal of the forest: batches of triangle pairs whose volumes overlap, without recursion. */
-#ifndef CSCD_TRAVERSAL_H
-#define CSCD_TRAVERSAL_H
+#pragma once
 
 #include "runtime/forest.h"
 
@@ -87,5 +86,3 @@ cscd_status traversal_round(traversal *t, bool *more);
 double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);
-
-#endif

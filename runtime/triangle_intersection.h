@@ -1,6 +1,5 @@
 /* Do two triangles of one mesh meet, features that share a vertex aside? Exact. */
-#ifndef CSCD_TRIANGLE_INTERSECTION_H
-#define CSCD_TRIANGLE_INTERSECTION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -13,5 +12,3 @@ bool triangles_intersect(const uint32_t a[3], const uint32_t b[3], const double 
 /* The same where vertices with the same name count as one, wherever they are. */
 bool triangles_intersect_by_names(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
                                   const double *positions);
-
-#endif

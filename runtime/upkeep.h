@@ -1,6 +1,5 @@
 /* The detector's trees: built when they are first needed, moved, and built anew when they have decayed. */
-#ifndef CSCD_UPKEEP_H
-#define CSCD_UPKEEP_H
+#pragma once
 
 #include "runtime/detector.h"
 
@@ -15,5 +14,3 @@ cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, do
 
 /* To a moment. */
 cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Vectors of three doubles. */
-#ifndef CSCD_VECTOR_H
-#define CSCD_VECTOR_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -54,5 +53,3 @@ static inline double power_of_two(int e) {
 static inline double vector_largest(const double a[3]) {
     return larger(fabs(a[0]), larger(fabs(a[1]), fabs(a[2])));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What every object shares: the allocator, the threads, progress, the sentence behind the last failure. */
-#ifndef CSCD_CONTEXT_H
-#define CSCD_CONTEXT_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/parallel.h"
@@ -38,5 +37,3 @@ cscd_status context_out_of_memory(cscd_context *context);
 
 /* For functions below which nobody wrote a sentence: status is CANCELLED, or an allocation failed. */
 cscd_status context_explain(cscd_context *context, cscd_status status);
-
-#endif

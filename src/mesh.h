@@ -1,6 +1,5 @@
 /* The mesh's connectivity: edges, stars and components, built once. */
-#ifndef CSCD_MESH_H
-#define CSCD_MESH_H
+#pragma once
 
 #include "src/context.h"
 
@@ -52,5 +51,3 @@ static inline bool triangle_contains(const uint32_t triangle[3], uint32_t vertex
 static inline bool edges_share_vertex(const uint32_t a[2], const uint32_t b[2]) {
     return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
-#ifndef CSCD_PARALLEL_H
-#define CSCD_PARALLEL_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -22,5 +21,3 @@ uint32_t parallel_thread_count(const parallel *threads);
 /* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. The host may
  * run them one after the other, so a task never waits for another one, and never calls this. */
 void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data);
-
-#endif

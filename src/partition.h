@@ -1,6 +1,5 @@
 /* The partition: cells of vertices that particles walk in, handed from preprocessing to the runtime. */
-#ifndef CSCD_PARTITION_H
-#define CSCD_PARTITION_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -44,5 +43,3 @@ static inline bool partition_watches(const cscd_partition *partition, uint32_t p
     bool obstacles = partition->object_obstacles[a] && partition->object_obstacles[b];
     return part_a != part_b && !obstacles && (a != b || partition->options.within);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The plan: what preprocessing hands to the runtime. */
-#ifndef CSCD_PLAN_H
-#define CSCD_PLAN_H
+#pragma once
 
 #include "src/mesh.h"
 
@@ -23,5 +22,3 @@ struct cscd_plan {
 
 /* A plan of zeros with room for region_count regions; NULL when out of memory. */
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count);
-
-#endif

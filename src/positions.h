@@ -1,6 +1,5 @@
 /* What positions may hold. */
-#ifndef CSCD_POSITIONS_H
-#define CSCD_POSITIONS_H
+#pragma once
 
 #include "src/context.h"
 
@@ -8,5 +7,3 @@
  * predicates over- or underflows. INVALID_ARGUMENT names the vertex; name says which array. */
 cscd_status positions_check(cscd_context *context, const double *positions, uint32_t vertex_count,
                             const char *name);
-
-#endif

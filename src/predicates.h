@@ -1,6 +1,5 @@
 /* Exact orientation predicates on doubles: a floating-point filter first, exact expansions behind it. */
-#ifndef CSCD_PREDICATES_H
-#define CSCD_PREDICATES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -16,5 +15,3 @@ int orient3d(const double a[3], const double b[3], const double c[3], const doub
 
 /* The three points lie on one line (or coincide). */
 bool collinear(const double a[3], const double b[3], const double c[3]);
-
-#endif

@@ -1,10 +1,7 @@
 /* What vector instructions the processor has. */
-#ifndef CSCD_PROCESSOR_H
-#define CSCD_PROCESSOR_H
+#pragma once
 
 #include "cscd/cscd.h"
 
 /* The best level that this processor, its operating system and this build have; never AUTO. */
 cscd_simd processor_best_simd(void);
-
-#endif

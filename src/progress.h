@@ -1,6 +1,5 @@
 /* How far a call has come, and whether the host wants it to end. */
-#ifndef CSCD_PROGRESS_H
-#define CSCD_PROGRESS_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -43,5 +42,3 @@ bool progress_go_on(cscd_context *context, double share);
 
 /* OK, or CANCELLED with its sentence. What tasks did counts only after this has said OK. */
 cscd_status progress_status(cscd_context *context);
-
-#endif

@@ -4,8 +4,7 @@
  * in the same order on each, none of them fused, so results do not depend on the level. Vectors are the
  * compiler's own (+ - * and [] work on them); what those lack is below. A set of lanes is the low eight bits
  * of a uint32_t, bit i for lane i; what is not a number is neither below nor above anything. */
-#ifndef CSCD_SIMD_H
-#define CSCD_SIMD_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -389,5 +388,3 @@ static inline f64w f64w_all(double x) {
     f64w zero = {0.0};
     return x - zero;
 }
-
-#endif

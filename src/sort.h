@@ -1,6 +1,5 @@
 /* A stable sort that allocates nothing. */
-#ifndef CSCD_SORT_H
-#define CSCD_SORT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -13,5 +12,3 @@ void sort_items(void *items, void *scratch, size_t count, size_t size,
 /* Sorts items of 8 or 16 bytes that begin with a uint64_t by that, ascending, stable; scratch has room for as
  * many. */
 void sort_by_number(void *items, void *scratch, size_t count, size_t size);
-
-#endif

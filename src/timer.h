@@ -1,11 +1,8 @@
 /* Wall clock for the stage timings. */
-#ifndef CSCD_TIMER_H
-#define CSCD_TIMER_H
+#pragma once
 
 /* Milliseconds since an arbitrary moment; never goes back. */
 double timer_now_ms(void);
 
 /* Adds the milliseconds since *since to *sum and moves *since to now. */
 void timer_lap(double *since, double *sum);
-
-#endif

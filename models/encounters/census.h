@@ -1,6 +1,5 @@
 /* Which objects of a recording touch each other, and when: by the detector, from frame to frame. */
-#ifndef CSCD_MODELS_CENSUS_H
-#define CSCD_MODELS_CENSUS_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -27,5 +26,3 @@ void census_free(census *c);
 
 /* Pairs of different objects that have touched. */
 uint32_t census_pair_count(const census *c);
-
-#endif

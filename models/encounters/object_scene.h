@@ -1,6 +1,5 @@
 /* Scenes of closed objects that meet and part by formula, and what they are made of. */
-#ifndef CSCD_MODELS_OBJECT_SCENE_H
-#define CSCD_MODELS_OBJECT_SCENE_H
+#pragma once
 
 #include "models/shapes/catalogue.h"
 
@@ -45,5 +44,3 @@ void object_stage_close(object_stage *s);
 
 /* To a frame below frame_count. */
 void object_stage_go(object_stage *s, uint32_t frame);
-
-#endif

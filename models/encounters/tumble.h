@@ -1,6 +1,5 @@
 /* Eight soft bodies that fall into a tray and tumble together. */
-#ifndef CSCD_MODELS_TUMBLE_H
-#define CSCD_MODELS_TUMBLE_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "models/softbody/soft_body.h"
@@ -29,5 +28,3 @@ void tumble_close(tumble *t);
 
 /* On to the next frame. */
 bool tumble_advance(tumble *t, io_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* The barrier of incremental potential contact: an energy that rises without bound as a distance goes to 0.
  */
-#ifndef CSCD_MODELS_BARRIER_H
-#define CSCD_MODELS_BARRIER_H
+#pragma once
 
 /* A function of one variable, with its derivatives. */
 typedef struct ipc_curve {
@@ -17,5 +16,3 @@ ipc_curve ipc_barrier(double distance, double reach);
  * with one continuous derivative (as there). crossing: the squared length of the edges' cross product;
  * threshold: below this one. */
 ipc_curve ipc_mollifier(double crossing, double threshold);
-
-#endif

@@ -1,6 +1,5 @@
 /* The barrier's energy over all pairs of features that are near, as a list of terms. */
-#ifndef CSCD_MODELS_CONTACT_ENERGY_H
-#define CSCD_MODELS_CONTACT_ENERGY_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -44,5 +43,3 @@ void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient);
 
 /* out += Hessian * x */
 void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out);
-
-#endif

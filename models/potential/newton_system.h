@@ -1,6 +1,5 @@
 /* The linear system of a Newton step, never assembled, and its solution by conjugate gradients. */
-#ifndef CSCD_MODELS_NEWTON_SYSTEM_H
-#define CSCD_MODELS_NEWTON_SYSTEM_H
+#pragma once
 
 #include "models/potential/contact_energy.h"
 #include "models/potential/springs.h"
@@ -38,5 +37,3 @@ void ipc_system_product(const ipc_system *s, const double *x, double *out);
  * wherever that stops. Preconditioned by the inverses of the 3 x 3 blocks on the diagonal. Returns the
  * iterations. */
 uint32_t ipc_system_solve(ipc_system *s, const double *gradient, double tolerance, uint32_t most, double *x);
-
-#endif

@@ -1,6 +1,5 @@
 /* The scenes of the IPC solver: which bodies, of what, between which obstacles. */
-#ifndef CSCD_MODELS_IPC_SCENES_H
-#define CSCD_MODELS_IPC_SCENES_H
+#pragma once
 
 #include "models/potential/contact_energy.h"
 #include "models/potential/springs.h"
@@ -37,5 +36,3 @@ const ipc_scene *ipc_scene_find(const char *name);
 
 /* The share of its travel that an obstacle has made. */
 double ipc_scene_travelled(const ipc_scene *s, double seconds);
-
-#endif

@@ -1,7 +1,6 @@
 /* A solver by incremental potential contact on the public API: each time step of implicit Euler is a
  * minimisation that never leaves the configurations free of contact. An example for authors of solvers. */
-#ifndef CSCD_MODELS_IPC_SOLVER_H
-#define CSCD_MODELS_IPC_SOLVER_H
+#pragma once
 
 #include "models/potential/newton_system.h"
 #include "models/potential/scenes.h"
@@ -64,5 +63,3 @@ void ipc_solver_end_step(ipc_solver *p);
 
 /* What a time step minimises, at any positions with their contacts: inertia, springs, barrier. */
 double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc_contacts *contacts);
-
-#endif

@@ -1,6 +1,5 @@
 /* Elasticity of closed bodies by springs: along the edges of the surface, and across the inside as struts. */
-#ifndef CSCD_MODELS_SPRINGS_H
-#define CSCD_MODELS_SPRINGS_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -46,5 +45,3 @@ void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessia
 
 /* The area that belongs to each vertex: a third of its triangles'. */
 void ipc_vertex_areas(const body *b, double *areas);
-
-#endif

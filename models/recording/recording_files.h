@@ -1,6 +1,5 @@
 /* The files of a recording, side by side in one folder: a model, its frames, and the same of its scenery. */
-#ifndef CSCD_MODELS_RECORDING_FILES_H
-#define CSCD_MODELS_RECORDING_FILES_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "src/io/point_cache_write.h"
@@ -10,5 +9,3 @@ bool recording_write_model(const char *folder, const char *name, const char *end
                            io_error *error);
 bool recording_open_frames(const char *folder, const char *name, const char *ending, uint32_t vertex_count,
                            uint32_t frame_count, point_cache_writer **out, io_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* A program that simulates scenes and writes a recording of each: its arguments, its help, its exit status.
  */
-#ifndef CSCD_MODELS_SCENE_PROGRAM_H
-#define CSCD_MODELS_SCENE_PROGRAM_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -22,5 +21,3 @@ int scene_program_run(const scene_program *p, int argument_count, char **argumen
 
 /* Where a scene is: on a terminal only, on one line, which goes when frame is frame_count. */
 void scene_program_show(const char *scene_name, uint32_t frame, uint32_t frame_count);
-
-#endif

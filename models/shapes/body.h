@@ -1,6 +1,5 @@
 /* Triangle meshes that grow. */
-#ifndef CSCD_MODELS_BODY_H
-#define CSCD_MODELS_BODY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -33,5 +32,3 @@ double body_least_angle(const body *b);
 
 /* Zeroed, never NULL; to be freed. */
 void *body_allocate(size_t count, size_t size);
-
-#endif

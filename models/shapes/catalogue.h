@@ -1,6 +1,5 @@
 /* The bodies by name, with as many triangles as asked for. */
-#ifndef CSCD_MODELS_CATALOGUE_H
-#define CSCD_MODELS_CATALOGUE_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "src/io/io_error.h"
@@ -61,5 +60,3 @@ uint32_t body_nearest_count(body_kind kind, uint32_t triangle_count);
 /* Exactly triangle_count triangles, 0: the default. On false *out is untouched and *error says which counts
  * are possible. */
 bool body_make(body_kind kind, uint32_t triangle_count, body *out, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Bodies that are the zero set of a function: a person, two rings that grew together, an ellipsoid. */
-#ifndef CSCD_MODELS_FIGURE_H
-#define CSCD_MODELS_FIGURE_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -9,5 +8,3 @@
 bool add_figure(body *b, uint32_t triangle_count);
 bool add_genus2(body *b, uint32_t triangle_count);
 bool add_ellipsoid(body *b, uint32_t triangle_count);
-
-#endif

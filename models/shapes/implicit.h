@@ -1,6 +1,5 @@
 /* Meshes of implicit surfaces. */
-#ifndef CSCD_MODELS_IMPLICIT_H
-#define CSCD_MODELS_IMPLICIT_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -16,5 +15,3 @@ void body_add_implicit(body *b, const implicit *surface, double spacing);
 
 /* Moves a point near the zero set onto it; `scale` is the length that derivatives are taken over. */
 void implicit_project(const implicit *surface, double scale, double p[3]);
-
-#endif

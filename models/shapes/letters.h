@@ -1,6 +1,5 @@
 /* Letters as thick as their strokes, with round edges: T, U, V, W. */
-#ifndef CSCD_MODELS_LETTERS_H
-#define CSCD_MODELS_LETTERS_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -10,5 +9,3 @@ bool add_letter_t(body *b, uint32_t triangle_count);
 bool add_letter_u(body *b, uint32_t triangle_count);
 bool add_letter_v(body *b, uint32_t triangle_count);
 bool add_letter_w(body *b, uint32_t triangle_count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Curves in the half plane (radius, height), of straight lines and arcs. */
-#ifndef CSCD_MODELS_OUTLINE_H
-#define CSCD_MODELS_OUTLINE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -36,5 +35,3 @@ void outline_at(const outline *o, double along, double point[2]);
 /* The length from the start of a piece up to the next corner, where it turns by more than 20 degrees, or to
  * the end. Moves *piece on to what follows. */
 double outline_section(const outline *o, uint32_t *piece);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meshes of implicit surfaces made even, with an exact number of triangles. */
-#ifndef CSCD_MODELS_REMESH_H
-#define CSCD_MODELS_REMESH_H
+#pragma once
 
 #include "models/shapes/implicit.h"
 
@@ -11,5 +10,3 @@ bool body_remesh(body *b, const implicit *surface, uint32_t triangle_count);
 
 /* Nets, then body_remesh. */
 bool body_add_even_implicit(body *b, const implicit *surface, uint32_t triangle_count);
-
-#endif

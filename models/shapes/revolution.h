@@ -1,6 +1,5 @@
 /* Bodies that are an outline revolved, bent, or linked. */
-#ifndef CSCD_MODELS_REVOLUTION_H
-#define CSCD_MODELS_REVOLUTION_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -15,5 +14,3 @@ void add_coil(body *b, uint32_t triangle_count);
 /* The count must be 2 CHAIN_LINKS or more, as an even number for each. */
 enum { CHAIN_LINKS = 5 };
 void add_chain(body *b, uint32_t triangle_count);
-
-#endif

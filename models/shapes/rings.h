@@ -1,6 +1,5 @@
 /* Meshes of rings of vertices: surfaces of revolution, and what follows from them by bending. */
-#ifndef CSCD_MODELS_RINGS_H
-#define CSCD_MODELS_RINGS_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "models/shapes/outline.h"
@@ -12,5 +11,3 @@ typedef void rings_place(double radius, double height, double angle, double poin
  * ring. Rings have sizes in proportion to their radii and sum up to half the count:
  * a sphere of V vertices has 2 V - 4 triangles, a torus 2 V. */
 void body_add_rings(body *b, const outline *o, uint32_t triangle_count, rings_place *place);
-
-#endif

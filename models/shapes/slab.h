@@ -1,6 +1,5 @@
 /* Boxes of equal squares, flat and folded. */
-#ifndef CSCD_MODELS_SLAB_H
-#define CSCD_MODELS_SLAB_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -10,5 +9,3 @@ void add_cube(body *b, uint32_t n);
 /* n along the length, 28 or more, the other edges divided as finely: slab_triangles(n) triangles. */
 void add_slab(body *b, uint32_t n);
 uint32_t slab_triangles(uint32_t n);
-
-#endif

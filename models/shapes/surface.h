@@ -1,6 +1,5 @@
 /* Closed meshes with neighbours: edges can be flipped, split and collapsed. */
-#ifndef CSCD_MODELS_SURFACE_H
-#define CSCD_MODELS_SURFACE_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -63,5 +62,3 @@ void surface_split(surface *s, uint32_t h, const double at[3]);
 
 /* Each triangle in four, at the middles of its edges. */
 void surface_quarter(surface *s);
-
-#endif

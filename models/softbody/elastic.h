@@ -1,6 +1,5 @@
 /* Elastic tetrahedra as XPBD constraints: neo-Hookean, volume and shape apart. */
-#ifndef CSCD_MODELS_ELASTIC_H
-#define CSCD_MODELS_ELASTIC_H
+#pragma once
 
 #include "models/softbody/lattice.h"
 
@@ -28,5 +27,3 @@ void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const doubl
 
 /* Energy above that of the rest shape. */
 double tetrahedra_energy(const tetrahedron *tetrahedra, uint32_t count, const double *nodes);
-
-#endif

@@ -1,6 +1,5 @@
 /* A lattice of cubes around a closed surface: the body that is simulated, and how the surface hangs in it. */
-#ifndef CSCD_MODELS_LATTICE_H
-#define CSCD_MODELS_LATTICE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ void lattice_free(lattice *l);
 /* The surface's vertices, vertex_count * 3, for nodes anywhere. */
 void lattice_place_vertices(const lattice *l, const double *nodes, double *positions);
 void lattice_place_vertex(const lattice *l, const double *nodes, uint32_t vertex, double position[3]);
-
-#endif

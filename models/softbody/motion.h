@@ -1,6 +1,5 @@
 /* How soft and how fast a recording is, and where it runs into itself. */
-#ifndef CSCD_MODELS_MOTION_H
-#define CSCD_MODELS_MOTION_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -27,5 +26,3 @@ void motion_free(motion *m);
 /* Root mean square of what the best rigid motion leaves between two sets of points (Horn, "Closed-form
  * solution of absolute orientation using unit quaternions", 1987). */
 double rigid_residual(const double *from, const double *to, uint32_t point_count);
-
-#endif

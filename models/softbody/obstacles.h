@@ -1,6 +1,5 @@
 /* What a soft body falls onto: ground, stairs, balls. z is up. */
-#ifndef CSCD_MODELS_OBSTACLES_H
-#define CSCD_MODELS_OBSTACLES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -46,5 +45,3 @@ void obstacles_end(obstacles *o, double step);
 
 /* Kinetic and potential energy of the balls. */
 double obstacles_energy(const obstacles *o);
-
-#endif

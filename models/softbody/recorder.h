@@ -1,7 +1,6 @@
 /* Runs a scene frame by frame: the soft body moves, cscd finds where it runs into itself, the body responds.
  */
-#ifndef CSCD_MODELS_RECORDER_H
-#define CSCD_MODELS_RECORDER_H
+#pragma once
 
 #include "models/softbody/scene.h"
 
@@ -31,5 +30,3 @@ bool recorder_advance(recorder *r, io_error *error);
 
 /* Of the body and the balls: kinetic, potential and elastic. */
 double recorder_energy(const recorder *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* The recordings: which body falls how, onto what. */
-#ifndef CSCD_MODELS_SCENE_H
-#define CSCD_MODELS_SCENE_H
+#pragma once
 
 #include "models/shapes/catalogue.h"
 #include "models/softbody/soft_body.h"
@@ -28,5 +27,3 @@ const scene *scene_find(const char *name);
 
 /* Places the body, which is at rest as catalogue.h says, as the scene begins. */
 soft_body scene_begin(const scene *s, const body *shape);
-
-#endif

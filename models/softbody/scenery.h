@@ -1,6 +1,5 @@
 /* What a body falls onto, as a mesh for pictures. */
-#ifndef CSCD_MODELS_SCENERY_H
-#define CSCD_MODELS_SCENERY_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "models/softbody/obstacles.h"
@@ -11,5 +10,3 @@ bool scenery_make(const obstacles *o, body *out, io_error *error);
 
 /* Moves the balls of a scenery to where they are now. */
 bool scenery_follow(const obstacles *o, body *scenery, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The response to self-contacts: pairs that cscd reports are kept on their sides, gently. */
-#ifndef CSCD_MODELS_SELF_CONTACT_H
-#define CSCD_MODELS_SELF_CONTACT_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -37,5 +36,3 @@ void self_contacts_add(self_contacts *s, const cscd_contacts *found, const doubl
 /* One pass in order: pushes the pairs in hold apart, follows vertices that slide from triangle to triangle,
  * and lets go of what has parted. */
 void self_contacts_solve(self_contacts *s, struct soft_body *soft);
-
-#endif

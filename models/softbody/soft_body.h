@@ -1,8 +1,7 @@
 /* A soft body that falls, bends and runs into things and into itself: extended position-based dynamics (XPBD)
  * on a lattice around a closed surface, in small steps (Macklin et al., "Small steps in physics simulation",
  * 2019). Everything runs in a fixed order: the same input gives the same motion, bit for bit. */
-#ifndef CSCD_MODELS_SOFT_BODY_H
-#define CSCD_MODELS_SOFT_BODY_H
+#pragma once
 
 #include "models/softbody/elastic.h"
 #include "models/softbody/obstacles.h"
@@ -37,5 +36,3 @@ void soft_body_push(const soft_body *b, double *nodes, uint32_t vertex, const do
 
 /* Kinetic, potential (of height z) and elastic energy. */
 double soft_body_energy(const soft_body *b, double gravity);
-
-#endif

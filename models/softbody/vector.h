@@ -1,6 +1,5 @@
 /* Three-vectors. */
-#ifndef CSCD_MODELS_VECTOR_H
-#define CSCD_MODELS_VECTOR_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -35,5 +34,3 @@ static inline bool normalize(double a[3]) {
     for (int k = 0; k < 3; k++) a[k] /= length;
     return true;
 }
-
-#endif

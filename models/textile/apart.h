@@ -1,6 +1,5 @@
 /* Contact and friction: what cscd_detector_near finds, as constraints on positions. */
-#ifndef CSCD_MODELS_APART_H
-#define CSCD_MODELS_APART_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -38,5 +37,3 @@ void apart_sum(const cscd_stencil *s, const double *positions, double sum[3]);
  * kept. */
 void apart_push(const cscd_stencil *s, const double *inverse_masses, const double change[3],
                 double *positions);
-
-#endif

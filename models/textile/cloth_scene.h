@@ -1,6 +1,5 @@
 /* The scenes of the cloth simulator: which garment falls how, onto what. */
-#ifndef CSCD_MODELS_CLOTH_SCENE_H
-#define CSCD_MODELS_CLOTH_SCENE_H
+#pragma once
 
 #include "models/textile/fabric.h"
 #include "src/io/io_error.h"
@@ -59,5 +58,3 @@ uint32_t *cloth_scene_seams(const cloth_scene *s, uint32_t resolution, uint32_t 
 /* An obstacle as a mesh about its centre, to be placed by cloth_obstacle_place. */
 bool cloth_obstacle_make(const cloth_obstacle *o, body *out, io_error *error);
 void cloth_obstacle_place(const cloth_obstacle *o, const body *shape, double time, double *positions);
-
-#endif

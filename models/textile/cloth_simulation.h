@@ -1,6 +1,5 @@
 /* Cloth that nothing passes through: a solver for cloth on the public API of cscd alone, frame by frame. */
-#ifndef CSCD_MODELS_CLOTH_SIMULATION_H
-#define CSCD_MODELS_CLOTH_SIMULATION_H
+#pragma once
 
 #include "models/textile/apart.h"
 #include "models/textile/cloth_scene.h"
@@ -50,5 +49,3 @@ bool cloth_advance(cloth_simulation *c, io_error *error);
  * smaller where the cloth was pressed together. */
 double cloth_thickness(const cloth_simulation *c);
 double cloth_separation(const cloth_simulation *c);
-
-#endif

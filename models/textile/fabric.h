@@ -1,7 +1,6 @@
 /* Cloth as springs along its edges and stiff hinges across them: extended position-based dynamics (XPBD,
  * Macklin et al. 2016) with one iteration a small step (Macklin et al. 2019). */
-#ifndef CSCD_MODELS_FABRIC_H
-#define CSCD_MODELS_FABRIC_H
+#pragma once
 
 #include "models/shapes/body.h"
 
@@ -45,5 +44,3 @@ void fabric_solve(const fabric *f, double step, const double *previous, double *
 
 /* Kinetic energy plus that of springs and hinges above rest. */
 double fabric_energy(const fabric *f, const double *positions, const double *velocities);
-
-#endif

@@ -1,6 +1,5 @@
 /* What falls and what it falls onto: sheets, tubes, boxes and balls as meshes. z is up, lengths in metres. */
-#ifndef CSCD_MODELS_GARMENT_H
-#define CSCD_MODELS_GARMENT_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "src/io/io_error.h"
@@ -28,5 +27,3 @@ void garment_add_box(body *b, double reach);
 
 /* About the origin, of about triangle_count triangles. */
 bool garment_add_ball(body *b, uint32_t triangle_count, double radius, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
-#ifndef CSCD_MODELS_SAFE_MOTION_H
-#define CSCD_MODELS_SAFE_MOTION_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -61,5 +60,3 @@ cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, doubl
 
 /* Both vertices of each seam to their common centre of mass. */
 void safe_motion_sew(const safe_motion *s, double *positions);
-
-#endif

@@ -1,6 +1,5 @@
 /* The corners of a leaf's eight triangles, as kernels see them. */
-#ifndef CSCD_CORNERS_H
-#define CSCD_CORNERS_H
+#pragma once
 
 #include "runtime/forest.h"
 #include "src/simd.h"
@@ -56,5 +55,3 @@ static inline void volumes_of(leaf_corners corners, const float slack[2], leaf_v
         v->swept[k][1] = f32x8_max(v->high[0][k], v->high[1][k]);
     }
 }
-
-#endif

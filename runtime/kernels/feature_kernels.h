@@ -1,6 +1,5 @@
 /* The kernels of this level for pairs of features, for the table. */
-#ifndef CSCD_FEATURE_KERNELS_H
-#define CSCD_FEATURE_KERNELS_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 #include "src/simd.h"
@@ -19,5 +18,3 @@ void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, con
                             const struct separation *limit, nearness_outcomes *out);
 void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                             const struct separation *limit, nearness_outcomes *out);
-
-#endif

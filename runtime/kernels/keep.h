@@ -1,6 +1,5 @@
 /* Leaving pairs out of a list, in place. */
-#ifndef CSCD_KEEP_H
-#define CSCD_KEEP_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 
@@ -11,5 +10,3 @@ static inline uint32_t keep_pair(feature_pairs *pairs, uint32_t i, uint32_t kept
     pairs->b[kept] = pairs->b[i];
     return kept + kept_now;
 }
-
-#endif

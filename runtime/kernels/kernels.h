@@ -1,7 +1,6 @@
 /* The inner loops, compiled once per instruction set: what differs between processors is behind this table.
  */
-#ifndef CSCD_KERNELS_H
-#define CSCD_KERNELS_H
+#pragma once
 
 #include "src/context.h"
 
@@ -129,6 +128,4 @@ const kernels *kernels_of(const cscd_context *context);
 extern const kernels kernels_scalar;
 #ifdef CSCD_WITH_AVX
 extern const kernels kernels_avx2, kernels_avx512;
-#endif
-
 #endif

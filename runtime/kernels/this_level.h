@@ -1,6 +1,5 @@
 /* The kernels under the names that they have on the level that is compiled. */
-#ifndef CSCD_THIS_LEVEL_H
-#define CSCD_THIS_LEVEL_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 #include "runtime/representatives.h"
@@ -24,5 +23,3 @@ uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *p
                                  triangle_pair *pairs, uint32_t count);
 uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
                               uint32_t count);
-
-#endif

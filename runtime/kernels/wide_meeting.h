@@ -36,8 +36,7 @@
  * zero. If all six miss, the triangles do not meet. Nor do they when, in a projection along an axis, the line
  * of an edge has the third corner strictly on one side and all of the other triangle strictly on the other.
  */
-#ifndef CSCD_WIDE_MEETING_H
-#define CSCD_WIDE_MEETING_H
+#pragma once
 
 #include "src/simd.h"
 
@@ -290,5 +289,3 @@ static inline uint32_t flat_free_is_open(const wide_vector corners[6]) {
         apart |= parted_by_edge_of(corners, corners + 3, k) | parted_by_edge_of(corners + 3, corners, k);
     return ALL_WIDTH & ~(flat & apart);
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* As many pairs of features as the processor takes at once, as vectors: their points, what lies between
  * these, the coplanarity cubic. The same operations in the same order as coplanarity.c, whose error bounds
  * therefore hold. */
-#ifndef CSCD_WIDE_PAIRS_H
-#define CSCD_WIDE_PAIRS_H
+#pragma once
 
 #include "runtime/kernels/kernels.h"
 #include "src/simd.h"
@@ -96,5 +95,3 @@ static inline void cubics_of(const wide_vectors *v, wide_cubics *f) {
     }
     f->error = 24.0 * 0x1p-53 * permanent + 0x1p-1060;
 }
-
-#endif

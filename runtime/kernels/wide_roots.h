@@ -1,7 +1,6 @@
 /* Roots of many cubics: Newton's method, certified intervals, the inside test. The same operations in the
  * same order as cubic.c and inside.c, whose error bounds therefore hold. */
-#ifndef CSCD_WIDE_ROOTS_H
-#define CSCD_WIDE_ROOTS_H
+#pragma once
 
 #include "runtime/kernels/wide_pairs.h"
 
@@ -156,5 +155,3 @@ static inline void decide_eight(const feature_source *source, const uint32_t *a,
         decide(&points, first_count, i, out);
     }
 }
-
-#endif

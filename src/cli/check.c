@@ -43,7 +43,7 @@ typedef struct check {
     cscd_detector *detector;
     double *positions;
     json out; /* file NULL when not asked for */
-    progress progress;
+    terminal_progress progress;
     frame_range frames;
     uint32_t frames_checked;
     frame_list crossing;
@@ -110,7 +110,7 @@ static bool prepare(check *c, io_error *error) {
 static bool check_frames(check *c, io_error *error) {
     uint32_t count = frame_range_count(&c->frames);
     for (uint32_t i = 0; i < count && !interrupted(); i++) {
-        progress_update(&c->progress, i, count, "check");
+        terminal_progress_update(&c->progress, i, count, "check");
         if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
     }
     return true;
@@ -136,9 +136,9 @@ static int run(const check_options *options) {
     if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
     if (!options->quiet) recording_warn(&c.recording);
     interrupt_catch();
-    progress_begin(&c.progress, options->quiet);
+    terminal_progress_begin(&c.progress, options->quiet);
     bool ran = prepare(&c, &error) && check_frames(&c, &error);
-    progress_end(&c.progress);
+    terminal_progress_end(&c.progress);
     bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
     if (c.frames_checked > 0 && !options->quiet) {
         printf("%s: %u of %u frames cross or touch themselves", options->source.model_path,

@@ -1,6 +1,5 @@
 /* What the tool's commands share: exit codes, error lines, option values. */
-#ifndef CSCD_COMMAND_H
-#define CSCD_COMMAND_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -34,5 +33,3 @@ void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Whole strings only; false leaves *out untouched. */
 bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_double(const char *text, double *out);
-
-#endif

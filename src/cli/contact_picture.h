@@ -1,6 +1,5 @@
 /* A frame of a recording as a scene, the contacts of its interval marked when wanted. */
-#ifndef CSCD_CONTACT_PICTURE_H
-#define CSCD_CONTACT_PICTURE_H
+#pragma once
 
 #include "src/cli/recording.h"
 #include "src/picture/scene.h"
@@ -35,5 +34,3 @@ void contact_picture_kind_colour(int kind, uint8_t rgb[3]);
 void contact_picture_focus(const contact_picture *picture, picture_options *options);
 
 void contact_picture_free(contact_picture *picture);
-
-#endif

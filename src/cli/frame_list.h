@@ -1,6 +1,5 @@
 /* A growing list of frames, printed as ranges. */
-#ifndef CSCD_FRAME_LIST_H
-#define CSCD_FRAME_LIST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,5 +21,3 @@ uint32_t frame_list_frames(const frame_list *list);
 /* prefix, then "3, 7-12, 20", and a line end; an empty list prints the line end only. */
 void frame_list_print(const frame_list *list, const char *prefix);
 void frame_list_free(frame_list *list);
-
-#endif

@@ -1,6 +1,5 @@
 /* The frames that --frames A:B:STEP chooses. */
-#ifndef CSCD_FRAME_RANGE_H
-#define CSCD_FRAME_RANGE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -24,5 +23,3 @@ bool frame_range_close(frame_range *range, uint32_t frame_count, io_error *error
 
 /* How many frames a closed range has. */
 uint32_t frame_range_count(const frame_range *range);
-
-#endif

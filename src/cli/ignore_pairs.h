@@ -1,7 +1,6 @@
 /* Triangle pairs that the user wants left out: those that meet in the first frame, and those of a list file.
  */
-#ifndef CSCD_IGNORE_PAIRS_H
-#define CSCD_IGNORE_PAIRS_H
+#pragma once
 
 #include "src/cli/recording.h"
 
@@ -25,5 +24,3 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
 bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b);
 
 void ignore_pairs_free(ignore_pairs *pairs);
-
-#endif

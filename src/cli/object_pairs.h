@@ -1,6 +1,5 @@
 /* Pairs of objects, of warnings and of contacts, as sets that can be compared. */
-#ifndef CSCD_OBJECT_PAIRS_H
-#define CSCD_OBJECT_PAIRS_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/growable.h"
@@ -36,5 +35,3 @@ bool object_pairs_of_contacts(const cscd_mesh *mesh, const object_map *map, cons
 
 /* Those of warnings, closed; confirmed_only: whose exact check has found a contact. */
 bool object_pairs_of_warnings(const cscd_warnings *warnings, bool confirmed_only, object_pairs *out);
-
-#endif

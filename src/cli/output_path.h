@@ -1,6 +1,5 @@
 /* Keeps a command from writing over what it reads. */
-#ifndef CSCD_OUTPUT_PATH_H
-#define CSCD_OUTPUT_PATH_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -18,5 +17,3 @@ bool output_path_is_safe(const char *path, const char *const *others, size_t oth
 /* Can path be opened for writing? What it holds stays as it is. Asked of all outputs before any is truncated.
  * NULL is fine. */
 bool output_path_opens(const char *path, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where a plan comes from: a file, or made in memory, or none; and by which method pairs are then culled. */
-#ifndef CSCD_PLAN_CHOICE_H
-#define CSCD_PLAN_CHOICE_H
+#pragma once
 
 #include "src/cli/recording.h"
 
@@ -38,5 +37,3 @@ void plan_choice_free(plan_choice *choice);
 
 /* "charge, 4 regions, from pawn.plan.ply", and the remark. */
 void plan_choice_print(const plan_choice *choice);
-
-#endif

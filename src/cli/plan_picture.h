@@ -1,6 +1,5 @@
 /* Colours of a plan: charge by rank, regions as hues; per triangle, and as a scene with its legend. */
-#ifndef CSCD_PLAN_PICTURE_H
-#define CSCD_PLAN_PICTURE_H
+#pragma once
 
 #include "src/cli/contact_picture.h"
 
@@ -24,5 +23,3 @@ bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const rec
 
 /* After it: a dot at each detector point, for the mesh at rest. */
 bool plan_picture_mark(contact_picture *picture, plan_legend *legend, const cscd_plan *plan, io_error *error);
-
-#endif

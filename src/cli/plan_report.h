@@ -1,6 +1,5 @@
 /* The report of a plan: charge, regions, detector points of a mesh at rest. */
-#ifndef CSCD_PLAN_REPORT_H
-#define CSCD_PLAN_REPORT_H
+#pragma once
 
 #include "src/cli/recording.h"
 #include "src/cli/report_request.h"
@@ -16,5 +15,3 @@ typedef struct plan_report {
 } plan_report;
 
 bool plan_report_write(const plan_report *r, io_error *error);
-
-#endif

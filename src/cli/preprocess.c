@@ -122,14 +122,14 @@ static bool save_report(const preprocess_options *o, const recording *r, const d
 enum { PERCENT = 100 };
 
 static bool show_progress(void *user, const char *stage, double fraction) {
-    progress_update(user, (uint32_t)(fraction * PERCENT), PERCENT, stage);
+    terminal_progress_update(user, (uint32_t)(fraction * PERCENT), PERCENT, stage);
     return !interrupted();
 }
 
 static bool make(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_status status = cscd_plan_create(r->mesh, positions, &o->plan, &plan);
-    progress_end(o->source.progress.user);
+    terminal_progress_end(o->source.progress.user);
     if (status == CSCD_CANCELLED)
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
     if (status != CSCD_OK)
@@ -147,9 +147,9 @@ static bool make(const preprocess_options *o, recording *r, const double *positi
 static int run(preprocess_options *o) {
     recording r;
     io_error error = {""};
-    progress shown;
+    terminal_progress shown;
     interrupt_catch();
-    progress_begin(&shown, o->quiet);
+    terminal_progress_begin(&shown, o->quiet);
     o->source.progress = (cscd_progress){show_progress, &shown};
     if (!recording_open(&o->source, &r, &error)) return fail_input("%s", error.text);
     if (!o->quiet) recording_warn(&r);

@@ -14,11 +14,11 @@ static double now_ms(void) {
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-void progress_begin(progress *p, bool quiet) {
-    *p = (progress){.shown = !quiet && isatty(STDERR_FILENO) != 0};
+void terminal_progress_begin(terminal_progress *p, bool quiet) {
+    *p = (terminal_progress){.shown = !quiet && isatty(STDERR_FILENO) != 0};
 }
 
-void progress_update(progress *p, uint32_t done, uint32_t total, const char *what) {
+void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what) {
     if (!p->shown || (done < total && now_ms() - p->last_ms < REDRAW_MS)) return;
     p->last_ms = now_ms();
     char bar[BAR_WIDTH + 1];
@@ -29,13 +29,13 @@ void progress_update(progress *p, uint32_t done, uint32_t total, const char *wha
     fflush(stderr);
 }
 
-void progress_say(progress *p, const char *text) {
+void terminal_progress_say(terminal_progress *p, const char *text) {
     if (!p->shown) return;
     fprintf(stderr, "\r%s ...\033[K", text);
     fflush(stderr);
 }
 
-void progress_end(progress *p) {
+void terminal_progress_end(terminal_progress *p) {
     if (p->shown) fputs("\r\033[K", stderr);
     p->shown = false;
 }

@@ -1,6 +1,5 @@
 /* Where a result comes from: version, machine, options, input hashes. */
-#ifndef CSCD_PROVENANCE_H
-#define CSCD_PROVENANCE_H
+#pragma once
 
 #include "src/io/json.h"
 
@@ -24,5 +23,3 @@ void provenance_write(json *out, int argument_count, char **arguments, uint32_t 
 
 /* {"name": ..., "hash": ...} in the array that is open. */
 void provenance_write_input(json *out, const char *name, uint64_t hash);
-
-#endif

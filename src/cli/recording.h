@@ -1,6 +1,5 @@
 /* A model file and its recorded frames, welded when asked, as a mesh and one array of positions per frame. */
-#ifndef CSCD_RECORDING_H
-#define CSCD_RECORDING_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/animation.h"
@@ -58,5 +57,3 @@ uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 /* Lines on stderr about triangles dropped by welding and about open, non-manifold and inconsistently oriented
  * components. */
 void recording_warn(recording *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* The options of `cscd render`. */
-#ifndef CSCD_RENDER_OPTIONS_H
-#define CSCD_RENDER_OPTIONS_H
+#pragma once
 
 #include "src/cli/frame_range.h"
 #include "src/cli/recording.h"
@@ -29,5 +28,3 @@ bool render_options_parse(int argument_count, char **arguments, render_options *
 bool parse_picture_size(const char *text, picture_options *picture);
 bool parse_picture_view(const char *text, picture_options *picture);
 bool parse_picture_up(const char *text, picture_options *picture);
-
-#endif

@@ -28,7 +28,7 @@ typedef struct replay {
     replay_report report;
     totals totals;
     frame_list contact_frames, crossing_frames;
-    progress progress;
+    terminal_progress progress;
 } replay;
 
 static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
@@ -62,10 +62,10 @@ static bool prepare_ignored(replay *r, io_error *error) {
 static bool prepare_plan(replay *r, io_error *error) {
     const replay_options *o = r->options;
     plan_request request = {o->model_path, o->plan_path, o->method, o->k, o->min_separation};
-    progress_begin(&r->progress, o->quiet);
-    progress_say(&r->progress, "preprocessing");
+    terminal_progress_begin(&r->progress, o->quiet);
+    terminal_progress_say(&r->progress, "preprocessing");
     bool chosen = plan_choose(&request, &r->recording, &r->plan, error);
-    progress_end(&r->progress);
+    terminal_progress_end(&r->progress);
     return chosen;
 }
 
@@ -206,7 +206,7 @@ static bool run_intervals(replay *r, io_error *error) {
         return false;
     replay_report_begin(&r->report, r->x0);
     for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
-        progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
+        terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
         if (!run_interval(r, k, error)) return false;
         double *swap = r->x0;
         r->x0 = r->x1;
@@ -248,10 +248,10 @@ static void print_results(const replay *r) {
 /* Of what there is: not even a first frame makes no report. */
 static bool write_report(replay *r, const char *summary, io_error *error) {
     if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
-    progress_begin(&r->progress, r->options->quiet);
-    progress_say(&r->progress, "writing the report");
+    terminal_progress_begin(&r->progress, r->options->quiet);
+    terminal_progress_say(&r->progress, "writing the report");
     bool written = replay_report_write(&r->report, summary, error);
-    progress_end(&r->progress);
+    terminal_progress_end(&r->progress);
     return written;
 }
 
@@ -306,9 +306,9 @@ static int run(const replay_options *options) {
     if (begun) {
         if (!options->quiet) recording_warn(&r.recording);
         interrupt_catch();
-        progress_begin(&r.progress, options->quiet);
+        terminal_progress_begin(&r.progress, options->quiet);
         ran = run_intervals(&r, &error);
-        progress_end(&r.progress);
+        terminal_progress_end(&r.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     bool closed = close_outputs(&r, stopped_by, &close_error);

@@ -1,6 +1,5 @@
 /* The options of `cscd replay`. */
-#ifndef CSCD_REPLAY_OPTIONS_H
-#define CSCD_REPLAY_OPTIONS_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/cli/command.h"
@@ -43,5 +42,3 @@ bool parse_length(const char *text, double *out);
 
 /* --method NAME|kmeans:K; *k stays as it is without a K. */
 bool parse_method(const char *text, cscd_method *method, uint32_t *k);
-
-#endif

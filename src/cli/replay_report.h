@@ -1,6 +1,5 @@
 /* The report of a replay. What goes wrong with it ends the report, not the replay, and is told at the end. */
-#ifndef CSCD_REPLAY_REPORT_H
-#define CSCD_REPLAY_REPORT_H
+#pragma once
 
 #include "src/cli/provenance.h"
 #include "src/cli/recording.h"
@@ -35,5 +34,3 @@ void replay_report_add(replay_report *r, const cscd_detector *detector, const cs
 bool replay_report_write(replay_report *r, const char *summary, io_error *error);
 
 void replay_report_close(replay_report *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a command is told about the report that it writes. */
-#ifndef CSCD_REPORT_REQUEST_H
-#define CSCD_REPORT_REQUEST_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -20,5 +19,3 @@ bool report_request_parse_up(const char *text, int *up_axis);
  * others (NULLs among them are skipped). */
 bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
                             io_error *error);
-
-#endif

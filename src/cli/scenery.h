@@ -1,6 +1,5 @@
 /* A mesh that is drawn beside the recording and never tested: ground, stairs, a ball. */
-#ifndef CSCD_SCENERY_H
-#define CSCD_SCENERY_H
+#pragma once
 
 #include "src/io/animation.h"
 #include "src/io/mesh_file.h"
@@ -24,5 +23,3 @@ bool scenery_read(scenery *s, uint32_t frame, io_error *error);
 
 /* Closes what open left; a zeroed struct is fine. */
 void scenery_close(scenery *s);
-
-#endif

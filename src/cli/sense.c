@@ -27,7 +27,7 @@ typedef struct sense {
     sense_files files;
     sense_totals totals;
     frame_list missed_frames;
-    progress progress;
+    terminal_progress progress;
 } sense;
 
 static bool api_failed(const sense *s, io_error *error) {
@@ -59,10 +59,10 @@ static bool prepare_plan(sense *s, io_error *error) {
     plan_request request = {.model_path = o->source.model_path,
                             .plan_path = o->plan_path,
                             .method = o->no_plan ? CSCD_METHOD_NONE : CSCD_METHOD_AUTO};
-    progress_begin(&s->progress, o->quiet);
-    progress_say(&s->progress, "preprocessing");
+    terminal_progress_begin(&s->progress, o->quiet);
+    terminal_progress_say(&s->progress, "preprocessing");
     bool chosen = plan_choose(&request, &s->recording, &s->plan, error);
-    progress_end(&s->progress);
+    terminal_progress_end(&s->progress);
     return chosen;
 }
 
@@ -188,7 +188,7 @@ static bool run_intervals(sense *s, io_error *error) {
     if (!read_frame(s, s->first, s->x0, error) || !draw(s, s->x0, s->first, NULL, error)) return false;
     if (!s->options->quiet) sense_print_head(s->options->compare);
     for (uint32_t k = s->first; k < s->last && !interrupted(); k++) {
-        progress_update(&s->progress, k - s->first, s->last - s->first, "sense");
+        terminal_progress_update(&s->progress, k - s->first, s->last - s->first, "sense");
         if (!run_interval(s, k, error)) return false;
         double *swap = s->x0;
         s->x0 = s->x1;
@@ -232,9 +232,9 @@ static int run(const sense_options *options) {
     if (begun) {
         if (!options->quiet) recording_warn(&s.recording);
         interrupt_catch();
-        progress_begin(&s.progress, options->quiet);
+        terminal_progress_begin(&s.progress, options->quiet);
         ran = run_intervals(&s, &error);
-        progress_end(&s.progress);
+        terminal_progress_end(&s.progress);
     }
     const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
     sense_subject subject = subject_of(&s);

@@ -1,6 +1,5 @@
 /* The options of `cscd sense`. */
-#ifndef CSCD_SENSE_OPTIONS_H
-#define CSCD_SENSE_OPTIONS_H
+#pragma once
 
 #include "src/cli/frame_range.h"
 #include "src/cli/recording.h"
@@ -23,5 +22,3 @@ typedef struct sense_options {
 
 /* False: *code is the exit code to end with (0 after --help). */
 bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code);
-
-#endif

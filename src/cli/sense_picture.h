@@ -1,6 +1,5 @@
 /* Cells, particles and where they have been, as a picture. */
-#ifndef CSCD_SENSE_PICTURE_H
-#define CSCD_SENSE_PICTURE_H
+#pragma once
 
 #include "src/cli/sense_options.h"
 #include "src/io/growable.h"
@@ -32,5 +31,3 @@ typedef struct sense_view {
 } sense_view;
 
 bool sense_picture_draw(const sense_view *view, const sense_options *options, io_error *error);
-
-#endif

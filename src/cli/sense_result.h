@@ -1,6 +1,5 @@
 /* What `cscd sense` found, interval by interval and in all; as a table and as files. */
-#ifndef CSCD_SENSE_RESULT_H
-#define CSCD_SENSE_RESULT_H
+#pragma once
 
 #include "src/cli/plan_choice.h"
 #include "src/cli/sense_options.h"
@@ -70,5 +69,3 @@ bool sense_files_close(sense_files *files, const sense_subject *subject, const s
 
 const char *sense_method_name(cscd_sensor_method method);
 const char *sense_renewal_name(cscd_renewal renewal);
-
-#endif

@@ -1,6 +1,5 @@
 /* Several frames of a recording side by side in one picture. */
-#ifndef CSCD_STRIP_H
-#define CSCD_STRIP_H
+#pragma once
 
 #include "src/cli/contact_picture.h"
 #include "src/cli/render_options.h"
@@ -10,5 +9,3 @@
  * options. */
 bool strip_draw(const render_options *options, recording *r, contact_picture *picture, scenery *beside,
                 io_error *error);
-
-#endif

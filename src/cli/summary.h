@@ -1,6 +1,5 @@
 /* The JSON summary of a replay, written interval by interval, and the table at its end. */
-#ifndef CSCD_SUMMARY_H
-#define CSCD_SUMMARY_H
+#pragma once
 
 #include "src/cli/plan_choice.h"
 
@@ -71,5 +70,3 @@ typedef struct summary_ending {
 /* Writes the frames, the summary and the provenance, and closes. text NULL, or with keep_text: all that was
  * written, to be freed, also when the file could not be; NULL when there was no memory for it. */
 bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Reads back what `cscd replay --json` wrote. */
-#ifndef CSCD_SUMMARY_FILE_H
-#define CSCD_SUMMARY_FILE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -9,5 +8,3 @@
 /* A summary as JSON, to be freed, after a look at all members that a report shows; NULL, with the reason and
  * the place: file and line, or the member that is missing. */
 char *summary_file_read(const char *path, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Recorded vertex positions, one frame at a time: PC2 and MDD point caches, sequences of mesh files. */
-#ifndef CSCD_ANIMATION_H
-#define CSCD_ANIMATION_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -22,5 +21,3 @@ uint32_t animation_frame_count(const animation *animation);
 /* Reads frame (0-based) into positions, vertex_count * 3. The memory in use does not grow with the frames
  * read. On false *error names the frame; positions are then undefined. */
 bool animation_read(animation *animation, uint32_t frame, double *positions, io_error *error);
-
-#endif

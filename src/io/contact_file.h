@@ -1,6 +1,5 @@
 /* Contacts as rows of a CSV file or lines of a JSON Lines file. */
-#ifndef CSCD_CONTACT_FILE_H
-#define CSCD_CONTACT_FILE_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/io_error.h"
@@ -29,5 +28,3 @@ bool contact_file_write(contact_file *file, const contact_record *record, io_err
 bool contact_file_flush(contact_file *file, io_error *error);
 /* False when the rest could not be written. NULL does nothing and is fine. */
 bool contact_file_close(contact_file *file, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A whole file in memory, a position in it, and errors that name the place. */
-#ifndef CSCD_FILE_READER_H
-#define CSCD_FILE_READER_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -29,5 +28,3 @@ void file_reader_close(file_reader *reader);
 bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool file_reader_fail_here(file_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-
-#endif

@@ -1,6 +1,5 @@
 /* Sequences of mesh files, one a frame, of which only the positions are taken. */
-#ifndef CSCD_FRAME_FILES_H
-#define CSCD_FRAME_FILES_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -24,5 +23,3 @@ uint32_t frame_files_frame_count(const frame_files *files);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool frame_files_read(frame_files *files, uint32_t frame, double *positions, io_error *error);
-
-#endif

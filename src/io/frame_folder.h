@@ -1,6 +1,5 @@
 /* Sequences given as a folder that holds one mesh file a frame. */
-#ifndef CSCD_FRAME_FOLDER_H
-#define CSCD_FRAME_FOLDER_H
+#pragma once
 
 #include "src/io/frame_names.h"
 #include "src/io/io_error.h"
@@ -11,5 +10,3 @@
  * and all other files are ignored. The names must have one extension and differ in the value of one number
  * only, so that their order is beyond doubt; numbers may be left out. On false the list may have grown. */
 bool frame_folder_find(const char *folder, frame_names *list, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The file names of a sequence of frames: a list, how to fill it from a folder, and its natural order. */
-#ifndef CSCD_FRAME_NAMES_H
-#define CSCD_FRAME_NAMES_H
+#pragma once
 
 #include "src/io/growable.h"
 #include "src/io/io_error.h"
@@ -34,5 +33,3 @@ void frame_names_sort(frame_names *list);
 
 /* Ends in .obj, .ply or .off, in any case. */
 bool frame_names_is_mesh(const char *name);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sequences given as a pattern: walk/f_%04d.obj. */
-#ifndef CSCD_FRAME_PATTERN_H
-#define CSCD_FRAME_PATTERN_H
+#pragma once
 
 #include "src/io/frame_names.h"
 #include "src/io/io_error.h"
@@ -14,5 +13,3 @@
  * error. *folder (to be freed) becomes the folder with its '/', or ""; list holds the names in it, in order.
  * On false *folder is untouched, and list may have grown. */
 bool frame_pattern_find(const char *pattern, char **folder, frame_names *list, io_error *error);
-
-#endif

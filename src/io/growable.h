@@ -1,6 +1,5 @@
 /* An array that grows by doubling, every size checked for overflow before memory is asked for. */
-#ifndef CSCD_GROWABLE_H
-#define CSCD_GROWABLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -28,5 +27,3 @@ void *growable_take(growable *array);
 /* realloc: the one place where the mesh readers get memory. It is weak, so that a test can put a failing one
  * in its place. */
 void *io_realloc(void *memory, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* The one clear line that a failing file operation leaves behind. */
-#ifndef CSCD_IO_ERROR_H
-#define CSCD_IO_ERROR_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -11,5 +10,3 @@ typedef struct io_error {
 /* Formats "what is wrong, where (file, line or byte offset), what was expected"; always returns false,
  * so that a reader can end with `return io_fail(...)`. error may be NULL. */
 bool io_fail(io_error *error, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-#endif

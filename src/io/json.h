@@ -1,6 +1,5 @@
 /* Writes JSON as it goes: commas, nesting and escapes are seen to here. */
-#ifndef CSCD_JSON_H
-#define CSCD_JSON_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -32,5 +31,3 @@ void json_null(json *out, const char *key);
 void json_verbatim(json *out, const char *key, const char *text);
 /* The next value starts on a new line, for people. */
 void json_break_line(json *out);
-
-#endif

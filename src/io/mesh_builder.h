@@ -1,6 +1,5 @@
 /* Collects the vertices and faces of a mesh file, checking each. */
-#ifndef CSCD_MESH_BUILDER_H
-#define CSCD_MESH_BUILDER_H
+#pragma once
 
 #include "src/io/file_reader.h"
 #include "src/io/growable.h"
@@ -35,5 +34,3 @@ bool mesh_builder_end_face(mesh_builder *builder);
 
 /* Moves the mesh to *out; false, and *out untouched, when it has no vertices or no triangles. */
 bool mesh_builder_finish(mesh_builder *builder, mesh_file *out);
-
-#endif

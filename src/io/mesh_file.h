@@ -1,6 +1,5 @@
 /* Triangle meshes from OBJ, PLY and OFF files. */
-#ifndef CSCD_MESH_FILE_H
-#define CSCD_MESH_FILE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -23,5 +22,3 @@ bool mesh_file_read(const char *path, mesh_file *out, io_error *error);
 void mesh_file_free(mesh_file *mesh);
 
 bool mesh_file_write_obj(const char *path, const mesh_file *mesh, io_error *error);
-
-#endif

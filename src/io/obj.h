@@ -1,6 +1,5 @@
 /* Wavefront OBJ: vertices and polygons; all other records are skipped. */
-#ifndef CSCD_OBJ_H
-#define CSCD_OBJ_H
+#pragma once
 
 #include "src/io/file_reader.h"
 #include "src/io/mesh_file.h"
@@ -9,5 +8,3 @@
 
 /* On false *out is untouched and the reader's error set. */
 bool obj_read(file_reader *reader, mesh_file *out);
-
-#endif

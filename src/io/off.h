@@ -1,6 +1,5 @@
 /* OFF (Object File Format) in text, with normals, colours or texture coordinates ignored. */
-#ifndef CSCD_OFF_H
-#define CSCD_OFF_H
+#pragma once
 
 #include "src/io/file_reader.h"
 #include "src/io/mesh_file.h"
@@ -12,5 +11,3 @@ bool off_recognise(const file_reader *reader);
 
 /* The keyword may be missing. On false *out is untouched and the reader's error set. */
 bool off_read(file_reader *reader, mesh_file *out);
-
-#endif

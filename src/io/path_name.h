@@ -1,6 +1,5 @@
 /* What the name of a file says. */
-#ifndef CSCD_PATH_NAME_H
-#define CSCD_PATH_NAME_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -14,5 +13,3 @@ const char *path_file_name(const char *path);
 static inline bool path_is_digit(char c) {
     return c >= '0' && c <= '9';
 }
-
-#endif

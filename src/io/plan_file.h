@@ -1,6 +1,5 @@
 /* A plan as a PLY file that any viewer shows: the mesh at rest, charge and region per face, a colour. */
-#ifndef CSCD_PLAN_FILE_H
-#define CSCD_PLAN_FILE_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/io_error.h"
@@ -17,5 +16,3 @@ bool plan_file_write(const char *path, const cscd_mesh *mesh, const double *posi
  * mesh's. */
 bool plan_file_read(const char *path, const cscd_context *context, const cscd_mesh *mesh, cscd_plan **out,
                     io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* PLY (Stanford polygon format): text and binary, either byte order. */
-#ifndef CSCD_PLY_H
-#define CSCD_PLY_H
+#pragma once
 
 #include "src/io/file_reader.h"
 #include "src/io/mesh_file.h"
@@ -13,5 +12,3 @@ bool ply_recognise(const file_reader *reader);
 /* Coordinates keep the precision that the file has: a float in text is read as the double it spells. On false
  * *out is untouched and the reader's error set. */
 bool ply_read(file_reader *reader, mesh_file *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* The rows of a PLY file, value by value: text and binary, either byte order. */
-#ifndef CSCD_PLY_DATA_H
-#define CSCD_PLY_DATA_H
+#pragma once
 
 #include "src/io/ply_header.h"
 
@@ -34,5 +33,3 @@ bool ply_data_read(ply_data *data, const ply_visitor *visitor);
 bool ply_data_number(ply_data *data, const ply_property *property, double *value);
 bool ply_data_length(ply_data *data, const ply_property *property, int64_t *length);
 bool ply_data_skip(ply_data *data, const ply_property *property);
-
-#endif

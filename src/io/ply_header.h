@@ -1,6 +1,5 @@
 /* The header of a PLY file: its encoding, elements and properties. */
-#ifndef CSCD_PLY_HEADER_H
-#define CSCD_PLY_HEADER_H
+#pragma once
 
 #include "src/io/file_reader.h"
 #include "src/io/growable.h"
@@ -58,5 +57,3 @@ void ply_header_free(ply_header *header);
 
 size_t ply_type_size(ply_type type);
 bool ply_type_is_integer(ply_type type);
-
-#endif

@@ -1,6 +1,5 @@
 /* Point caches: all frames of an animation in one PC2 or MDD file. */
-#ifndef CSCD_POINT_CACHE_H
-#define CSCD_POINT_CACHE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -33,5 +32,3 @@ uint32_t point_cache_frame_count(const point_cache *cache);
 
 /* frame is below the count; positions takes vertex_count * 3 and is undefined on false. */
 bool point_cache_read(point_cache *cache, uint32_t frame, double *positions, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Writes PC2 and MDD point caches, frame by frame. */
-#ifndef CSCD_POINT_CACHE_WRITE_H
-#define CSCD_POINT_CACHE_WRITE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -21,5 +20,3 @@ bool point_cache_writer_write(point_cache_writer *writer, const double *position
 /* Always frees the writer; NULL is fine. True if all frame_count frames are in the file. If not, the file is
  * removed; *error is set unless a write has already failed and said why. */
 bool point_cache_writer_close(point_cache_writer *writer, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Tokens and numbers of the text formats, line by line. */
-#ifndef CSCD_TEXT_H
-#define CSCD_TEXT_H
+#pragma once
 
 #include "src/io/file_reader.h"
 
@@ -44,5 +43,3 @@ size_t text_parse_integer_prefix(text_token token, int64_t *value);
 
 bool text_equals(text_token token, const char *word);
 text_shown text_show(text_token token);
-
-#endif

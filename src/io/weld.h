@@ -1,6 +1,5 @@
 /* Joins vertices that lie on each other, as exporters split them along texture seams. */
-#ifndef CSCD_WELD_H
-#define CSCD_WELD_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -28,5 +27,3 @@ void weld_free(weld *w);
  * that were welded lie farther apart than epsilon in this frame (frame: for the message). */
 bool weld_positions(const weld *w, const double *file_positions, uint32_t frame, double *out,
                     io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A perspective camera that frames a set of points. */
-#ifndef CSCD_PICTURE_CAMERA_H
-#define CSCD_PICTURE_CAMERA_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -37,5 +36,3 @@ void picture_camera_unproject(const picture_camera *camera, double x, double y, 
 
 /* A direction in camera space. */
 void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]);
-
-#endif

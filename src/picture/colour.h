@@ -1,6 +1,5 @@
 /* Colours: between sRGB bytes and linear light, and the map from numbers to colours. */
-#ifndef CSCD_PICTURE_COLOUR_H
-#define CSCD_PICTURE_COLOUR_H
+#pragma once
 
 #include <stdint.h>
 
@@ -22,5 +21,3 @@ void picture_colour_map(double value, uint8_t rgb[3]);
 
 /* One of 21 distinct colours, the first seven the most; those of index and index + 21 are the same. */
 void picture_colour_category(uint32_t index, uint8_t rgb[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* What makes scenery readable as the ground below a body: faint squares, and the body's shadow. */
-#ifndef CSCD_PICTURE_GROUND_H
-#define CSCD_PICTURE_GROUND_H
+#pragma once
 
 #include "src/picture/camera.h"
 #include "src/picture/shadow.h"
@@ -15,5 +14,3 @@ typedef struct picture_ground {
  * are unit vectors in camera space. */
 double picture_ground_light(const picture_ground *ground, const picture_camera *camera,
                             const double normal[3], const double view[3], double x, double y, double depth);
-
-#endif

@@ -1,6 +1,5 @@
 /* An RGBA picture in memory and its PNG file. */
-#ifndef CSCD_PICTURE_IMAGE_H
-#define CSCD_PICTURE_IMAGE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -29,5 +28,3 @@ void picture_image_blend(picture_image *image, int64_t x, int64_t y, const uint8
 
 /* On false *error names the file and the reason, and no half-written file is left. */
 bool picture_image_write_png(const char *path, const picture_image *image, io_error *error);
-
-#endif

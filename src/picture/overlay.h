@@ -1,6 +1,5 @@
 /* What is drawn over the surface: markers, caption and legend. */
-#ifndef CSCD_PICTURE_OVERLAY_H
-#define CSCD_PICTURE_OVERLAY_H
+#pragma once
 
 #include "src/picture/camera.h"
 #include "src/picture/image.h"
@@ -35,5 +34,3 @@ void picture_caption_size(uint32_t width, uint32_t height, double enlarged, cons
  * else becomes '?'. */
 void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
                           const picture_legend *legend, size_t count);
-
-#endif

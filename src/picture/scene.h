@@ -1,6 +1,5 @@
 /* A picture of a triangle mesh with markers and a caption, as a PNG file. */
-#ifndef CSCD_PICTURE_SCENE_H
-#define CSCD_PICTURE_SCENE_H
+#pragma once
 
 #include "src/picture/overlay.h"
 #include "src/picture/shade.h"
@@ -55,5 +54,3 @@ bool picture_render_image(const picture_scene *scene, const picture_options *opt
 /* Renders into a file. On false *error says why and no file is left. */
 bool picture_render(const picture_scene *scene, const picture_options *options, const char *png_path,
                     io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* From the z-buffer to pixels: colours, lights and wires. */
-#ifndef CSCD_PICTURE_SHADE_H
-#define CSCD_PICTURE_SHADE_H
+#pragma once
 
 #include "src/picture/camera.h"
 #include "src/picture/ground.h"
@@ -30,5 +29,3 @@ void picture_vertex_normals(const picture_camera *camera, const double *position
  * surfaces one after the other. */
 void picture_shade(const picture_visibility *visibility, const picture_surface *surfaces,
                    const picture_camera *camera, bool transparent, picture_image *image);
-
-#endif

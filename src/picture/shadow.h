@@ -1,6 +1,5 @@
 /* The soft shadow that a body casts straight down. */
-#ifndef CSCD_PICTURE_SHADOW_H
-#define CSCD_PICTURE_SHADOW_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -32,5 +31,3 @@ void picture_shadow_free(picture_shadow *shadow);
 /* How much light from above the body takes from a level surface at the point, 0 to 1: sharp and dark where
  * they are near, wider and fainter the farther the body is above. */
 double picture_shadow_at(const picture_shadow *shadow, const double point[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Many pictures of one size in one: a grid of tiles. */
-#ifndef CSCD_PICTURE_SHEET_H
-#define CSCD_PICTURE_SHEET_H
+#pragma once
 
 #include "src/picture/image.h"
 
@@ -17,5 +16,3 @@ bool picture_sheet_create(uint32_t tile_count, uint32_t columns, uint32_t tile_w
 /* Copies the tile, which has the sheet's tile size, to place `index`, counted row by row from the upper left
  * corner; the lines stay, one pixel inside its left and upper side. */
 void picture_sheet_place(picture_sheet *sheet, uint32_t index, const picture_image *tile);
-
-#endif

@@ -1,6 +1,5 @@
 /* The z-buffer: which triangle is seen at each sample, and how near. */
-#ifndef CSCD_PICTURE_VISIBILITY_H
-#define CSCD_PICTURE_VISIBILITY_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -40,5 +39,3 @@ void picture_visibility_free(picture_visibility *visibility);
 void picture_visibility_draw(picture_visibility *visibility, const double *projected,
                              const uint32_t *triangles, uint32_t triangle_count, uint32_t first_number,
                              double near_depth);
-
-#endif

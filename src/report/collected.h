@@ -1,6 +1,5 @@
 /* What a report holds while it is being collected, for the files of this folder that make it. */
-#ifndef CSCD_REPORT_COLLECTED_H
-#define CSCD_REPORT_COLLECTED_H
+#pragma once
 
 #include "src/io/growable.h"
 #include "src/report/contact_arrays.h"
@@ -22,5 +21,3 @@ struct report {
 
 /* Puts the last frame into the stream, if it is not there. */
 bool report_keep_last(report *r);
-
-#endif

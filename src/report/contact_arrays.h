@@ -1,6 +1,5 @@
 /* The contacts of a report: the kept ones as arrays, and how many every triangle takes part in. */
-#ifndef CSCD_CONTACT_ARRAYS_H
-#define CSCD_CONTACT_ARRAYS_H
+#pragma once
 
 #include "src/report/packed_array.h"
 #include "src/report/report.h"
@@ -20,5 +19,3 @@ void contact_arrays_free(contact_arrays *arrays); /* a zeroed struct is fine */
 /* Points are stored times scale. False: out of memory. */
 bool contact_arrays_add(contact_arrays *arrays, const report_options *options, uint32_t interval,
                         const cscd_contacts *contacts, double scale);
-
-#endif

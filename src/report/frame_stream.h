@@ -1,7 +1,6 @@
 /* Frames as the page stores them: positions rounded to a grid, each frame as its difference from the one
  * before. */
-#ifndef CSCD_FRAME_STREAM_H
-#define CSCD_FRAME_STREAM_H
+#pragma once
 
 #include "src/report/packed_array.h"
 
@@ -33,5 +32,3 @@ void frame_stream_free(frame_stream *stream); /* a zeroed struct is fine */
 
 /* False: out of memory. */
 bool frame_stream_add(frame_stream *stream, const double *positions);
-
-#endif

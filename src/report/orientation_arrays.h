@@ -1,6 +1,5 @@
 /* How triangles faced their regions' detector points, and where these points were, as arrays of a report. */
-#ifndef CSCD_ORIENTATION_ARRAYS_H
-#define CSCD_ORIENTATION_ARRAYS_H
+#pragma once
 
 #include "src/report/packed_array.h"
 #include "src/report/report.h"
@@ -23,5 +22,3 @@ bool orientation_arrays_add(orientation_arrays *arrays, const cscd_detector *det
 
 /* Of the detector's last step: each region's point at the start and at the end, times scale. */
 bool orientation_arrays_add_points(orientation_arrays *arrays, const cscd_detector *detector, double scale);
-
-#endif

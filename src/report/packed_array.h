@@ -1,6 +1,5 @@
 /* An array of the page: values in, compressed in memory as they come, base64 out. */
-#ifndef CSCD_PACKED_ARRAY_H
-#define CSCD_PACKED_ARRAY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,5 +26,3 @@ bool packed_array_finish(packed_array *array);
 
 /* The finished stream, in one line of base64. False: the file refused, errno says why. */
 bool packed_array_write(const packed_array *array, FILE *file);
-
-#endif

@@ -1,6 +1,5 @@
 /* The arrays of a page, by name: those collected, and those that follow from the mesh and the plan. */
-#ifndef CSCD_PAGE_ARRAYS_H
-#define CSCD_PAGE_ARRAYS_H
+#pragma once
 
 #include "src/report/packed_array.h"
 #include "src/report/report.h"
@@ -24,5 +23,3 @@ void page_arrays_free(page_arrays *arrays);
 
 /* Values of its type. */
 size_t page_array_count(const page_array *array);
-
-#endif

@@ -1,7 +1,6 @@
 /* Coordinates as the page has them: in its unit, and within what float32 and a graphics card can work with.
  */
-#ifndef CSCD_PAGE_COORDINATE_H
-#define CSCD_PAGE_COORDINATE_H
+#pragma once
 
 #include <math.h>
 
@@ -11,5 +10,3 @@
 static inline double page_coordinate(double x, double scale) {
     return fmax(-PAGE_COORDINATE_MAX, fmin(PAGE_COORDINATE_MAX, x * scale));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A file that takes another's place only when it is complete. */
-#ifndef CSCD_REPLACING_FILE_H
-#define CSCD_REPLACING_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -16,5 +15,3 @@ bool replacing_file_open(const char *path, replacing_file *out);
 
 /* complete: puts the file in its place. Else, and on failure, removes it. False: errno says why. */
 bool replacing_file_close(replacing_file *file, bool complete);
-
-#endif

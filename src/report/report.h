@@ -1,6 +1,5 @@
 /* A report: one HTML page that shows a replay, a plan, or replays side by side, and needs no network. */
-#ifndef CSCD_REPORT_H
-#define CSCD_REPORT_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "src/io/io_error.h"
@@ -69,5 +68,3 @@ typedef struct report_summary {
  * pipe or a device is written to directly. preprocess: a JSON object as text, or NULL. Once. */
 bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
                   const char *preprocess, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The page without its data: src/report/template.html, a part of the program. */
-#ifndef CSCD_REPORT_TEMPLATE_H
-#define CSCD_REPORT_TEMPLATE_H
+#pragma once
 
 #include "src/io/io_error.h"
 
@@ -17,5 +16,3 @@ bool report_template_load(report_template *out, io_error *error);
 
 /* Divides a page at its one line `<!--cscd:data-->`. */
 bool report_template_divide(const char *page, size_t size, report_template *out, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The operations of src/simd.h behind plain arrays, compiled once per instruction set. */
-#ifndef CSCD_TEST_SIMD_OPERATIONS_H
-#define CSCD_TEST_SIMD_OPERATIONS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -42,6 +41,4 @@ typedef struct simd_operations {
 extern const simd_operations simd_operations_scalar;
 #ifdef CSCD_WITH_AVX
 extern const simd_operations simd_operations_avx2, simd_operations_avx512;
-#endif
-
 #endif

@@ -1,7 +1,6 @@
 /* Moments of [0,1] at which an integer polynomial in t vanishes: rational, or algebraic of degree 2 and more.
  */
-#ifndef CSCD_TEST_ALGEBRAIC_MOMENT_H
-#define CSCD_TEST_ALGEBRAIC_MOMENT_H
+#pragma once
 
 #include <arb.h>
 #include <flint/fmpz_poly.h>
@@ -38,5 +37,3 @@ int moment_sign(moment *m, const fmpz_poly_struct *p);
 
 /* Adjacent doubles about it, or twice the moment itself. */
 void moment_bounds(moment *m, double *low, double *high);
-
-#endif

@@ -1,7 +1,6 @@
 /* An exact answer to the elementary tests, by algebraic numbers: slow, and shares nothing with the product.
  */
-#ifndef CSCD_TEST_ALGEBRAIC_ORACLE_H
-#define CSCD_TEST_ALGEBRAIC_ORACLE_H
+#pragma once
 
 #include "tests/support/elementary_cases.h"
 
@@ -19,5 +18,3 @@ oracle_verdict algebraic_oracle(pair_kind kind, const elementary_query *query);
 
 /* Gives back what the arithmetic keeps between calls. */
 void algebraic_oracle_finish(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* A context, a mesh and room for the charges of a surface. */
-#ifndef CSCD_TEST_CHARGE_RIG_H
-#define CSCD_TEST_CHARGE_RIG_H
+#pragma once
 
 #include "preprocess/charge.h"
 #include "tests/support/charge_shapes.h"
@@ -21,5 +20,3 @@ charge_rig charge_rig_solve(const conductor *s, uint32_t thread_count);
 bool charge_rig_untouched(const charge_rig *r);
 
 void charge_rig_destroy(charge_rig *r);
-
-#endif

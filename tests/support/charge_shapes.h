@@ -1,6 +1,5 @@
 /* Closed surfaces whose capacitance is known, at any refinement. */
-#ifndef CSCD_TEST_CHARGE_SHAPES_H
-#define CSCD_TEST_CHARGE_SHAPES_H
+#pragma once
 
 #include <stdint.h>
 
@@ -30,5 +29,3 @@ void conductor_crowd_edges(conductor *s);
 void conductor_append(conductor *a, const conductor *b);
 
 void conductor_free(conductor *s);
-
-#endif

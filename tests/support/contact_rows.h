@@ -1,6 +1,5 @@
 /* Reads the tool's contact files back, strictly: CSV and JSON Lines. */
-#ifndef CSCD_TEST_CONTACT_ROWS_H
-#define CSCD_TEST_CONTACT_ROWS_H
+#pragma once
 
 #include "src/io/contact_file.h"
 
@@ -20,5 +19,3 @@ size_t contact_rows_of(const contact_rows *rows, uint32_t frame, cscd_contact_ki
 
 /* Every number the same, bit for bit. */
 void contact_rows_assert_equal(const contact_rows *a, const contact_rows *b);
-
-#endif

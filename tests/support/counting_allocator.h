@@ -1,6 +1,5 @@
 /* An allocator that counts, and that can be told to fail. */
-#ifndef CSCD_TEST_COUNTING_ALLOCATOR_H
-#define CSCD_TEST_COUNTING_ALLOCATOR_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -12,5 +11,3 @@ typedef struct counting_allocator {
 
 counting_allocator counting_allocator_start(void);
 cscd_allocator counting_allocator_interface(counting_allocator *counter);
-
-#endif

@@ -1,6 +1,5 @@
 /* Gaps between moving features along the seven directions of 14-DOPs, in long double. */
-#ifndef CSCD_TEST_DIRECTION_GAP_H
-#define CSCD_TEST_DIRECTION_GAP_H
+#pragma once
 
 #include <stdint.h>
 
@@ -32,5 +31,3 @@ long double axis_gap(motion m, point_set a, point_set b, long double enough);
 
 /* The largest magnitude of a coordinate relative to that of the vertex 0 at the start. */
 double motion_extent(motion m, uint32_t vertex_count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Queries for the elementary tests, built backwards from a contact, and checks of what was found. */
-#ifndef CSCD_TEST_ELEMENTARY_CASES_H
-#define CSCD_TEST_ELEMENTARY_CASES_H
+#pragma once
 
 #include "runtime/elementary.h"
 
@@ -60,5 +59,3 @@ elementary_hit check_first(pair_kind kind, const elementary_query *query, double
 
 /* No contact. */
 void check_apart(pair_kind kind, const elementary_query *query);
-
-#endif

@@ -1,6 +1,5 @@
 /* The exact families of the query generator: small integers and quarters. */
-#ifndef CSCD_TEST_ELEMENTARY_FAMILIES_H
-#define CSCD_TEST_ELEMENTARY_FAMILIES_H
+#pragma once
 
 #include "tests/support/elementary_generator.h"
 
@@ -9,5 +8,3 @@ int stream_integer(random_stream *random, int lowest, int highest);
 
 /* A query of the family, which comes before FAMILY_NUDGED. */
 elementary_query exact_query(random_stream *random, pair_kind kind, query_family family);
-
-#endif

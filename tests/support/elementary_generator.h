@@ -1,6 +1,5 @@
 /* Random queries for the elementary tests, most of them degenerate in one way or another. */
-#ifndef CSCD_TEST_ELEMENTARY_GENERATOR_H
-#define CSCD_TEST_ELEMENTARY_GENERATOR_H
+#pragma once
 
 #include "tests/support/elementary_cases.h"
 #include "tests/support/random_stream.h"
@@ -33,5 +32,3 @@ const char *query_family_name(query_family family);
 /* Points are renumbered, axes exchanged, time reversed, coordinates shifted and scaled by powers of two at
  * random, exactly, so that all coordinates are 0 or from 2^-300 to 2^300. */
 elementary_query generate_query(random_stream *random, pair_kind kind, query_family family);
-
-#endif

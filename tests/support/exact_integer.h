@@ -1,6 +1,5 @@
 /* Integers of up to 2112 bits, for tests: an exact oracle that shares nothing with the code under test. */
-#ifndef CSCD_TESTS_EXACT_INTEGER_H
-#define CSCD_TESTS_EXACT_INTEGER_H
+#pragma once
 
 #include <stdint.h>
 
@@ -23,5 +22,3 @@ struct exact_integer exact_from_double(double value);
 struct exact_integer exact_add(const struct exact_integer *a, const struct exact_integer *b);
 struct exact_integer exact_subtract(const struct exact_integer *a, const struct exact_integer *b);
 struct exact_integer exact_multiply(const struct exact_integer *a, const struct exact_integer *b);
-
-#endif

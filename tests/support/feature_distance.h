@@ -1,6 +1,5 @@
 /* The distance of two moving features, in long double and by cases: nothing in common with the oracle. */
-#ifndef CSCD_TEST_FEATURE_DISTANCE_H
-#define CSCD_TEST_FEATURE_DISTANCE_H
+#pragma once
 
 #include "tests/support/elementary_cases.h"
 
@@ -20,5 +19,3 @@ long double largest_coordinate(const elementary_query *query);
 
 /* Of a point, from t = 0 to t = 1. */
 long double largest_displacement(const elementary_query *query);
-
-#endif

@@ -1,6 +1,5 @@
 /* A forest over a scene's mesh, for tests; anything that fails there fails the test. */
-#ifndef CSCD_TEST_FOREST_RIG_H
-#define CSCD_TEST_FOREST_RIG_H
+#pragma once
 
 #include "runtime/forest.h"
 #include "tests/support/direction_gap.h"
@@ -33,5 +32,3 @@ void translate(double *x, uint32_t vertex_count, const double by[3]);
  */
 void in_frame(const forest *f, const forest_part *p, motion m, uint32_t vertex, int moment,
               long double out[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Recorded animations for tests: point caches built byte by byte, mesh files, and checks of what is read. */
-#ifndef CSCD_TEST_FRAME_FIXTURE_H
-#define CSCD_TEST_FRAME_FIXTURE_H
+#pragma once
 
 #include "src/io/animation.h"
 #include "src/io/io_error.h"
@@ -53,5 +52,3 @@ void frame_fixture_open_fails(const char *path, uint32_t vertex_count, io_error 
 
 /* Reading the frame fails; the error is put in *error. */
 void frame_fixture_read_fails(animation *opened, uint32_t vertex_count, uint32_t frame, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a step that is certified free of contact must be, by brute force. */
-#ifndef CSCD_TEST_FREE_STEP_CHECK_H
-#define CSCD_TEST_FREE_STEP_CHECK_H
+#pragma once
 
 #include "tests/support/rig.h"
 
@@ -28,5 +27,3 @@ bool free_step_check(const rig *reference, const cscd_context *called, const fre
 
 /* Does the mesh neither cross itself nor have a triangle without area? */
 bool free_step_embedded(const rig *reference, const double *positions);
-
-#endif

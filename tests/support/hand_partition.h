@@ -1,6 +1,5 @@
 /* Partitions put together by hand: any triangles to any parts, cells about random vertices. */
-#ifndef CSCD_TEST_HAND_PARTITION_H
-#define CSCD_TEST_HAND_PARTITION_H
+#pragma once
 
 #include "src/partition.h"
 
@@ -14,5 +13,3 @@ void hand_partition_destroy(cscd_partition *partition);
 
 /* A random vertex of each cell, one per cell; room for a vertex count. */
 void hand_partition_particles(const cscd_partition *partition, uint32_t *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A strict JSON reader (RFC 8259), so that the tests judge what the tool writes without sharing its code. */
-#ifndef CSCD_TEST_JSON_READER_H
-#define CSCD_TEST_JSON_READER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,5 +38,3 @@ bool json_node_boolean(const json_node *object, const char *key);
 
 /* NULL where the object has no such member. */
 const json_node *json_node_find(const json_node *object, const char *key);
-
-#endif

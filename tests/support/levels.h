@@ -1,6 +1,5 @@
 /* A context for each level of vector instructions that this processor has. */
-#ifndef CSCD_TEST_LEVELS_H
-#define CSCD_TEST_LEVELS_H
+#pragma once
 
 #include "cscd/cscd.h"
 
@@ -12,5 +11,3 @@ extern cscd_context *contexts[LEVEL_COUNT];
 /* Set-up and tear-down of a suite. */
 int open_levels(void **state);
 int close_levels(void **state);
-
-#endif

@@ -1,6 +1,5 @@
 /* Reads bytes as a mesh file and checks the mesh or the error; used inside cmocka tests. */
-#ifndef CSCD_TEST_MESH_CHECK_H
-#define CSCD_TEST_MESH_CHECK_H
+#pragma once
 
 #include "src/io/mesh_file.h"
 
@@ -39,5 +38,3 @@ void mesh_check_survives(file_bytes file);
 /* The same of the file cut after every byte, with every bit flipped, and with every byte doubled and dropped.
  */
 void mesh_check_damage(file_bytes file);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small meshes without positions, put together from standard pieces. */
-#ifndef CSCD_TEST_MESH_SHAPES_H
-#define CSCD_TEST_MESH_SHAPES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -25,5 +24,3 @@ void shape_add_grid(shape *s, uint32_t rows, uint32_t columns, bool rows_close, 
 
 /* count quads in a ring with half a twist. */
 void shape_add_moebius_strip(shape *s, uint32_t count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Brute force over features: what every method must equal. */
-#ifndef CSCD_ORACLE_H
-#define CSCD_ORACLE_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "runtime/separation.h"
@@ -26,5 +25,3 @@ void oracle_find(const scene *s, oracle_list *out);
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out);
 
 void oracle_free(oracle_list *list);
-
-#endif

@@ -1,6 +1,5 @@
 /* An elementary test's answer beside the oracle's. */
-#ifndef CSCD_TEST_ORACLE_COMPARISON_H
-#define CSCD_TEST_ORACLE_COMPARISON_H
+#pragma once
 
 #include "tests/support/algebraic_oracle.h"
 
@@ -24,5 +23,3 @@ compared compare_with_oracle(pair_kind kind, const elementary_query *query);
 
 /* In hexadecimal, as an initialiser, with both answers in a comment. */
 void print_compared(pair_kind kind, const elementary_query *query, const compared *result);
-
-#endif

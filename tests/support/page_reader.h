@@ -1,6 +1,5 @@
 /* Reads a report back, so that the tests judge the page's data without sharing the writer's code. */
-#ifndef CSCD_TEST_PAGE_READER_H
-#define CSCD_TEST_PAGE_READER_H
+#pragma once
 
 #include "tests/support/json_reader.h"
 
@@ -32,5 +31,3 @@ page_bytes page_array(const page *p, const char *name);
 /* Positions as the page shows them: frame_count * vertex_count * 3, to be freed. key_count: how many of the
  * records begin a grid; NULL: not asked for. */
 double *page_frames(page_bytes records, uint32_t vertex_count, uint32_t frame_count, uint32_t *key_count);
-
-#endif

@@ -1,6 +1,5 @@
 /* What holds for every partition, and bodies to partition; used inside cmocka tests. */
-#ifndef CSCD_TEST_PARTITION_CHECK_H
-#define CSCD_TEST_PARTITION_CHECK_H
+#pragma once
 
 #include "src/partition.h"
 #include "tests/support/region_check.h"
@@ -24,5 +23,3 @@ typedef struct row {
 row row_of(uint32_t count, const body_kind *kinds, const double *scales,
            const cscd_partition_options *options);
 void row_free(row *r);
-
-#endif

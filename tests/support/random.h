@@ -1,6 +1,5 @@
 /* One random stream for a whole test program; random_seed starts it anew. */
-#ifndef CSCD_TEST_RANDOM_H
-#define CSCD_TEST_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -16,5 +15,3 @@ double random_unit(void);
 
 /* In [low, high], up to rounding. */
 double random_between(double low, double high);
-
-#endif

@@ -1,6 +1,5 @@
 /* Reproducible random numbers for tests (splitmix64: Steele, Lea, Flood 2014). */
-#ifndef CSCD_TEST_RANDOM_STREAM_H
-#define CSCD_TEST_RANDOM_STREAM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -31,5 +30,3 @@ static inline uint32_t stream_below(random_stream *random, uint32_t limit) {
 static inline double stream_between(random_stream *random, double low, double high) {
     return low + (high - low) * ((double)(stream_bits(random) >> 11) * 0x1p-53);
 }
-
-#endif

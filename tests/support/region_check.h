@@ -1,6 +1,5 @@
 /* What holds for every division into regions; used inside cmocka tests. */
-#ifndef CSCD_TEST_REGION_CHECK_H
-#define CSCD_TEST_REGION_CHECK_H
+#pragma once
 
 #include "src/mesh.h"
 #include "tests/support/body_of.h"
@@ -11,5 +10,3 @@ void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t regi
 /* The mesh of a body, in a context of its own with that many threads. */
 cscd_mesh *body_mesh(const body *b, uint32_t thread_count);
 void body_mesh_destroy(cscd_mesh *mesh);
-
-#endif

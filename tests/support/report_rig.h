@@ -1,6 +1,5 @@
 /* A recording with a plan and a detector, and the report of its replay. */
-#ifndef CSCD_TEST_REPORT_RIG_H
-#define CSCD_TEST_REPORT_RIG_H
+#pragma once
 
 #include "src/report/report.h"
 #include "tests/support/tool_fixture.h"
@@ -25,5 +24,3 @@ bool report_rig_replay(const report_rig *rig, report *r, io_error *error);
 
 /* The report of the whole replay, with one summary, at path; false where that failed. */
 bool report_rig_write(const report_rig *rig, const char *path, io_error *error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A context, a mesh and a detector for a scene; anything that fails there fails the test. */
-#ifndef CSCD_TEST_RIG_H
-#define CSCD_TEST_RIG_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "tests/support/scenes.h"
@@ -15,5 +14,3 @@ typedef struct rig {
 rig rig_create(const scene *s, uint32_t thread_count, const cscd_detector_options *options);
 void rig_destroy(rig *r);
 cscd_contacts rig_step(const rig *r, const scene *s);
-
-#endif

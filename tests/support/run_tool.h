@@ -1,6 +1,5 @@
 /* Runs the built tool as a user would: arguments in; exit code, both outputs and peak memory out. */
-#ifndef CSCD_TEST_RUN_TOOL_H
-#define CSCD_TEST_RUN_TOOL_H
+#pragma once
 
 #include <stddef.h>
 #include <sys/types.h>
@@ -43,5 +42,3 @@ tool_run run_tool_finish(tool_process *process);
 
 /* A whole file as a string, to be freed; the test fails when it cannot be read. size may be NULL. */
 char *read_whole_file(const char *path, size_t *size);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meshes and random intervals that the suites share. */
-#ifndef CSCD_SCENES_H
-#define CSCD_SCENES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -44,5 +43,3 @@ void scene_add_torus(scene *s, const double centre[3], double major, double mino
                      bool standing);
 void scene_add_capsule(scene *s, double length, double radius, int rings, int segments);
 void scene_add_sheet(scene *s, double width, double height, int columns, int rows);
-
-#endif

@@ -1,7 +1,6 @@
 /* A context, a mesh, a plan, a partition and sensors for a scene; anything that fails there fails the test.
  */
-#ifndef CSCD_TEST_SENSOR_RIG_H
-#define CSCD_TEST_SENSOR_RIG_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
@@ -41,5 +40,3 @@ void scene_add_bent_tube(scene *s, const double (*corners)[3], int count, double
 
 /* Moves vertices first .. end - 1 of the positions x. */
 void shift_vertices(uint32_t first, uint32_t end, const double by[3], double *x);
-
-#endif

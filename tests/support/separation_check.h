@@ -1,6 +1,5 @@
 /* Distances of moving features by dense sampling in long double: shares nothing with the code under test. */
-#ifndef CSCD_TEST_SEPARATION_CHECK_H
-#define CSCD_TEST_SEPARATION_CHECK_H
+#pragma once
 
 #include "runtime/separation.h"
 #include "tests/support/elementary_cases.h"
@@ -33,5 +32,3 @@ long double tolerance_of(const elementary_query *query, const separation *limit)
 /* Asserts, printing the query where they fail, all that separation.h says: of the answer, the time, the
  * distance then, u, v, point and normal. Returns whether the pair was reported. */
 bool check_separation(pair_kind kind, const elementary_query *query, const separation *limit, bool *bounded);
-
-#endif

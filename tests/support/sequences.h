@@ -1,6 +1,5 @@
 /* Random recordings whose meshes go into themselves, lie still, come out, and go in again. */
-#ifndef CSCD_TEST_SEQUENCES_H
-#define CSCD_TEST_SEQUENCES_H
+#pragma once
 
 #include "tests/support/scenes.h"
 
@@ -20,5 +19,3 @@ typedef struct sequence {
 
 /* The same seed gives the same sequence; half of them face inwards. */
 void sequence_make(sequence_kind kind, uint64_t seed, uint32_t frame_count, sequence *out);
-
-#endif

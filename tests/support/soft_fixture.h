@@ -1,6 +1,5 @@
 /* Soft bodies for tests, far above the ground, and what they have that the laws of motion keep. */
-#ifndef CSCD_TEST_SOFT_FIXTURE_H
-#define CSCD_TEST_SOFT_FIXTURE_H
+#pragma once
 
 #include "models/shapes/body.h"
 #include "models/softbody/soft_body.h"
@@ -30,5 +29,3 @@ soft_momentum soft_momentum_of(const soft_body *b);
 double largest_distance(const double *a, const double *b, uint32_t point_count);
 
 double lowest_vertex(const soft_body *b);
-
-#endif

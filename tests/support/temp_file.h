@@ -1,6 +1,5 @@
 /* A temporary folder for a test, and files of given bytes in it. */
-#ifndef CSCD_TEST_TEMP_FILE_H
-#define CSCD_TEST_TEMP_FILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -25,5 +24,3 @@ temp_path temp_file_path(const temp_folder *folder, const char *name);
 
 /* Writes the bytes to the file `name` in the folder and returns its path. */
 temp_path temp_file_write(const temp_folder *folder, const char *name, const void *bytes, size_t size);
-
-#endif

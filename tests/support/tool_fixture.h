@@ -1,6 +1,5 @@
 /* Recordings that the tests of the tool replay: meshes with frames, and the files that hold them. */
-#ifndef CSCD_TEST_TOOL_FIXTURE_H
-#define CSCD_TEST_TOOL_FIXTURE_H
+#pragma once
 
 #include "tests/support/temp_file.h"
 
@@ -56,5 +55,3 @@ temp_path recorded_write_cycle(const temp_folder *folder, const char *name, cons
 /* Frame k as the file whose name the pattern (f_%04d.obj) gives for k; returns the pattern with its folder.
  */
 temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r);
-
-#endif

@@ -1,6 +1,5 @@
 /* Pairs of triangles that touch along one of the seven directions of 14-DOPs, to the last bit of a double. */
-#ifndef CSCD_TEST_TOUCHING_H
-#define CSCD_TEST_TOUCHING_H
+#pragma once
 
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
@@ -8,5 +7,3 @@
 /* Triangles 2 i and 2 i + 1: the least of one is the greatest of the other along a direction, at both ends,
  * or, where that is no double, a few units in the last place less. Each has vertices of its own. */
 void make_touching_pairs(random_stream *random, uint32_t pair_count, double spread, scene *out);
-
-#endif

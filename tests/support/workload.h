@@ -1,6 +1,5 @@
 /* Every call of the API that takes long, one after the other, and a digest of what each gave. */
-#ifndef CSCD_TEST_WORKLOAD_H
-#define CSCD_TEST_WORKLOAD_H
+#pragma once
 
 #include "cscd/cscd.h"
 #include "tests/support/sequences.h"
@@ -29,5 +28,3 @@ typedef struct workload_result {
 /* Plan and detector, then over the sequence's intervals steps and, now and then, a static check, what is
  * near, the longest step, and lines. Asserts nothing, so any thread may run it. */
 workload_result workload_run(cscd_context *context, const workload *w);
-
-#endif
