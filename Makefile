@@ -47,28 +47,31 @@ CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
 TOOL_LIBS  := -lpng -lz -ljson-c $(CORE_LIBS)
 TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 
-CORE_SOURCES    := $(filter-out runtime/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c, \
-                     $(wildcard src/*.c preprocess/*.c runtime/*.c))
-KERNEL_SOURCES  := $(wildcard runtime/kernels/*.c)
-TOOL_SOURCES    := $(wildcard src/io/*.c src/picture/*.c)
-REPORT_SOURCES  := $(wildcard src/report/*.c)
-CLI_SOURCES     := $(wildcard src/cli/*.c)
-SUPPORT_SOURCES := $(wildcard tests/support/*.c)
+# A file that ends in _simd.c is compiled once per instruction set.
+CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
+CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c,$(CORE_FILES))
+KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
+# What more than one command of the tool stands on, and the commands.
+COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
+COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
+SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # The browser's tests look at pages, which no other configuration writes differently.
-NOT_HERE        := $(if $(filter 0,$(GSL)),tests/test_gsl.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/test_report_browser.c)
-TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/test_*.c))
-# ONLY="near line": the tests with one of these words in their names.
+NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c)
+TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c))
+# ONLY="bvh line_search": the tests with one of these words in their names, or of these rooms.
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
-TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),$(wildcard tests/test_*$(word)*.c))))
+TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
+                     $(wildcard tests/*/test_*$(word)*.c tests/$(word)/test_*.c))))
 endif
-FUZZ_SOURCES    := $(wildcard tests/fuzz_*.c)
+FUZZ_SOURCES    := $(wildcard tests/*/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
-SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(TOOL_SOURCES) $(REPORT_SOURCES) $(CLI_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
-           $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES)
+BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
+SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+           $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
 
 # One short line per file; V=1 shows the commands.
 V ?= 0
@@ -79,10 +82,13 @@ say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
 MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
-objects = $(patsubst %.c,$(BUILD)/%.o,$(1))
-KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(BUILD)/%.$(level).o,$(KERNEL_SOURCES)))
+# Objects have a folder of their own: a program may be called as the folder of its parts.
+OBJECTS := $(BUILD)/objects
+objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
+KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
-TOOL_OBJECTS := $(call objects,$(TOOL_SOURCES))
+COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
+IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/libcscd.so.$(VERSION)
 TOOL    := $(BUILD)/cscd
@@ -148,14 +154,15 @@ gallery: models
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 
 test: packages
-	@$(if $(filter tests/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
+	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
 # The tests that use threads, under the thread sanitizer.
-THREAD_TESTS := $(addprefix $(BUILD)/tests/test_,threads traversal progress parallel_for contexts)
+THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
+                  core/test_parallel_for core/test_contexts)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 
@@ -168,13 +175,11 @@ QUERIES ?= 0
 SEED    ?= 1
 KIND    ?= both
 fuzz-elementary: packages
-	@$(MAKE) --no-print-directory $(BUILD)/tests/fuzz_elementary
-	@$(BUILD)/tests/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
+	@$(MAKE) --no-print-directory $(BUILD)/tests/ccd/fuzz_elementary
+	@$(BUILD)/tests/ccd/fuzz_elementary $(SECONDS) $(QUERIES) $(SEED) $(KIND)
 
 benchmarks: packages
-	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/culling $(BUILD)/benchmarks/methods \
-	    $(BUILD)/benchmarks/experiments $(BUILD)/benchmarks/published_rules $(DEFORMING) \
-	    $(BUILD)/benchmarks/machine $(BUILD)/benchmarks/narrow_phase $(BUILD)/benchmarks/sensors
+	@$(MAKE) --no-print-directory $(BENCHMARKS)
 
 # All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
@@ -185,10 +190,11 @@ bench: packages
 	@$(BUILD)/benchmarks/experiments
 	@$(BUILD)/benchmarks/published_rules
 
-# The tables of docs/performance.md, some minutes; all but the rows on threads on one thread.
+# What steps cost by size, scene and machine, some minutes; all but the rows on threads on one thread.
+PERFORMANCE_PROGRAMS := machine scaling threads motion cloth topology callers
 performance: packages
-	@$(MAKE) --no-print-directory $(DEFORMING) $(BUILD)/benchmarks/machine
-	@for program in machine scaling threads motion cloth topology callers; do \
+	@$(MAKE) --no-print-directory $(addprefix $(BUILD)/benchmarks/,$(PERFORMANCE_PROGRAMS))
+	@for program in $(PERFORMANCE_PROGRAMS); do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
 # The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
@@ -205,8 +211,8 @@ bench-plot:
 # The page of the reports, bundled from its sources. The outcome is committed: only who changes them needs node.
 template:
 	@command -v node >/dev/null && command -v npm >/dev/null || { \
-	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle src/report/web' >&2; exit 1; }
-	@cd src/report/web && npm ci --no-audit --no-fund && node build.mjs
+	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle src/tool/report/web' >&2; exit 1; }
+	@cd src/tool/report/web && npm ci --no-audit --no-fund && node build.mjs
 
 lint: packages
 	@.ci/lint
@@ -234,7 +240,7 @@ help:
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
-	@echo 'make template  bundle the page of the reports, after changes in src/report/web (needs node and npm)'
+	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
 	@echo 'make lint      format, layering, file sizes, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
@@ -253,6 +259,7 @@ $(LIBRARY): $(CORE_OBJECTS)
 SHARED_FLAGS := -shared -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--as-needed \
                 $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
 $(SHARED): $(CORE_OBJECTS) $(BUILD)/cscd.map
+	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,--version-script,$(BUILD)/cscd.map -o $@ $(CORE_OBJECTS) $(CORE_LIBS)
 	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
@@ -263,118 +270,80 @@ $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
 # The tool lives on the public API alone, so it links the library and not its objects.
-$(TOOL): $(call objects,$(CLI_SOURCES) $(REPORT_SOURCES)) $(TOOL_OBJECTS) $(LIBRARY)
+$(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(LIBRARY)
+	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
 # models/*.c are programs, in models/*/ is what they are made of; they live on the public API too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
-$(MODELS): $(BUILD)/models/%: $(BUILD)/models/%.o $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
+$(MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
+	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
-$(BUILD)/benchmarks/queries: $(call objects,benchmarks/queries.c benchmarks/query_file.c) $(CORE_OBJECTS) $(TOOL_OBJECTS)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lgmp
+# Benchmarks may look inside, as tests do: benchmarks/*.c are programs, in benchmarks/lib is what they share.
+BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
+MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
+$(MACHINE_LEVELS): CFLAGS_ALL += -fno-tree-vectorize -fno-tree-slp-vectorize
+$(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(Q)ar rcs $@ $^
 
-$(BUILD)/benchmarks/narrow_phase: $(BUILD)/benchmarks/narrow_phase.o $(CORE_OBJECTS) $(TOOL_OBJECTS)
+$(BUILD)/benchmarks/embree: EMBREE_LIBS := -lembree3
+$(BENCHMARKS) $(BUILD)/benchmarks/embree: $(BUILD)/benchmarks/%: $(OBJECTS)/benchmarks/%.o $(BUILD)/benchmarks/lib.a $(BUILD)/inside.a
+	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-$(BUILD)/benchmarks/culling: $(BUILD)/benchmarks/culling.o $(TOOL_OBJECTS) $(LIBRARY)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-EXPERIMENTS_SOURCES := benchmarks/experiments.c benchmarks/scene_files.c src/timer.c
-$(BUILD)/benchmarks/experiments: $(call objects,$(EXPERIMENTS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-# Switches rules off that only the inside knows.
-RULES_SOURCES := benchmarks/published_rules.c benchmarks/contest.c benchmarks/scene_files.c
-$(BUILD)/benchmarks/published_rules: $(call objects,$(RULES_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(CORE_OBJECTS)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-METHODS_SOURCES := benchmarks/methods.c benchmarks/methods_report.c benchmarks/contest.c benchmarks/scene_files.c \
-                   benchmarks/thesis_numbers.c src/cli/provenance.c src/timer.c
-$(BUILD)/benchmarks/methods: $(call objects,$(METHODS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(LIBRARY)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-# Looks inside, for rules that the public header has not and bounds to compare with.
-SENSORS_SOURCES := benchmarks/sensors.c benchmarks/sensor_trial.c benchmarks/sensor_cost.c benchmarks/scene_files.c \
-                   src/cli/object_pairs.c
-$(BUILD)/benchmarks/sensors: $(call objects,$(SENSORS_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) $(CORE_OBJECTS)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-# Programs on bodies that deform, of any size; the public API alone.
-DEFORMING_SOURCES := benchmarks/options.c benchmarks/deforming_body.c benchmarks/stages.c benchmarks/fixed_arithmetic.c \
-                     benchmarks/scene_files.c src/cli/provenance.c src/cli/progress.c src/timer.c
-DEFORMING := $(addprefix $(BUILD)/benchmarks/,scaling motion threads cloth topology nearness callers)
-$(DEFORMING): $(BUILD)/benchmarks/%: $(BUILD)/benchmarks/%.o $(call objects,$(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) \
-              $(TOOL_OBJECTS) $(LIBRARY)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
-
-$(BUILD)/benchmarks/embree: $(call objects,benchmarks/embree.c $(DEFORMING_SOURCES)) $(MODEL_PART_OBJECTS) $(TOOL_OBJECTS) \
-                            $(LIBRARY)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS) -lembree3
-
-MACHINE_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/benchmarks/machine_kernels.$(level).o)
-$(BUILD)/benchmarks/machine.o: CFLAGS_ALL += $(CORE_DEFINITIONS)
-$(MACHINE_LEVELS): CFLAGS_ALL += $(CORE_DEFINITIONS) -fno-tree-vectorize -fno-tree-slp-vectorize
-$(BUILD)/benchmarks/machine: $(call objects,benchmarks/machine.c models/shapes/body.c src/timer.c) $(MACHINE_LEVELS)
-	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) -o $@ $^ -lm
+	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TOOL_LIBS) -lgmp $(EMBREE_LIBS)
 
 # Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
 # must be smaller than the tool).
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/tests/inside.a
+$(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
+	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
 
 # What tests compile once per instruction set themselves.
-TEST_LEVELS := $(foreach level,$(LEVELS),$(BUILD)/tests/levels/simd_operations.$(level).o)
-$(BUILD)/tests/test_simd: $(TEST_LEVELS)
+TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
+$(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES))
+	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)ar rcs $@ $^
 
 # q: objects of different folders may have one name.
-$(BUILD)/tests/inside.a: $(CORE_OBJECTS) $(TOOL_OBJECTS) $(call objects,$(REPORT_SOURCES)) $(MODEL_PART_OBJECTS)
+$(BUILD)/inside.a: $(CORE_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)ar qcs $@ $^
 
 define compile_level
-$$(BUILD)/%.$(1).o: %.c
+$$(OBJECTS)/%.$(1).o: %.c
 	@mkdir -p $$(@D)
 	$$(say) '  CC $$< ($(1))'
 	$$(Q)$$(CC) $$(CFLAGS_ALL) $$(LEVEL_$(1)) -c -o $$@ $$<
 endef
 $(foreach level,$(LEVELS),$(eval $(call compile_level,$(level))))
 
-$(BUILD)/%.o: %.c
+$(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) '  CC $<'
 	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
 # Square roots without errno and comparisons without traps: or its loops are not vectorised.
-$(BUILD)/preprocess/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
+$(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
 # The page of the reports is a part of this object.
-$(BUILD)/src/report/template.o: src/report/template.html
+$(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html
 
 # Only this file depends on the commit, and only when the commit changes.
-$(BUILD)/src/cli/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
-$(BUILD)/src/cli/provenance.o: $(BUILD)/commit
+$(OBJECTS)/src/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
+$(OBJECTS)/src/tool/common/provenance.o: $(BUILD)/commit
 $(BUILD)/commit: FORCE
 	@mkdir -p $(@D)
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(BUILD)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)
+-include $(patsubst %.c,$(OBJECTS)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)

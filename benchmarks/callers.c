@@ -1,10 +1,10 @@
 /* What detection costs three solvers: its share of a simulation step, its latency, what it allocates. */
-#include "benchmarks/options.h"
-#include "models/potential/solver.h"
-#include "models/recording/allocation_count.h"
+#include "benchmarks/lib/options.h"
+#include "models/cloth/cloth_simulation.h"
+#include "models/common/allocation_count.h"
+#include "models/ipc/solver.h"
 #include "models/softbody/recorder.h"
-#include "models/textile/cloth_simulation.h"
-#include "src/timer.h"
+#include "src/core/timer.h"
 
 #include <stdlib.h>
 #include <string.h>

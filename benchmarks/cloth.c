@@ -1,6 +1,6 @@
 /* Frames of cloth simulations with heavy contact: one interval each, what it takes and what is found. */
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* The broad phase beside Embree's: pairs of triangles whose swept volumes overlap, by refit and
  * self-collision. */
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
-#include "src/timer.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
+#include "src/core/timer.h"
 
 #include <embree3/rtcore.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The thesis's chapter 6 in numbers: a sphere, the stability of k-means; and long steps. */
-#include "benchmarks/scene_files.h"
+#include "benchmarks/lib/scene_files.h"
 #include "models/shapes/catalogue.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* What this machine can do at best, on one thread: bandwidth, arithmetic, random reads, latency. */
-#include "benchmarks/machine_kernels.h"
+#include "benchmarks/lib/machine_kernels.h"
 #include "models/shapes/body.h"
-#include "src/timer.h"
+#include "src/core/timer.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* The methods side by side on recordings: the thesis's tables, with what each method loses. */
-#include "benchmarks/methods_report.h"
-#include "benchmarks/thesis_numbers.h"
-#include "src/cli/provenance.h"
-#include "src/timer.h"
+#include "benchmarks/lib/methods_report.h"
+#include "benchmarks/lib/thesis_numbers.h"
+#include "src/core/timer.h"
+#include "src/tool/common/provenance.h"
 
 #include <dirent.h>
 #include <errno.h>

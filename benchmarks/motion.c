@@ -1,6 +1,6 @@
 /* What a bulk motion costs: the same deformation with everything moved by many body lengths an interval. */
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
 
 #include <math.h>
 #include <stdlib.h>

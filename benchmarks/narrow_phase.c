@@ -1,7 +1,7 @@
 /* Nanoseconds per pair of triangles for the sieve, and per pair of features for signs and roots: on each
  * level of vector instructions, and one by one. */
-#include "runtime/detector.h"
-#include "runtime/upkeep.h"
+#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/detector/detector.h"
 #include "src/io/mesh_file.h"
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Nearness, minimum separation, certified steps and line searches, each beside a plain step. */
-#include "benchmarks/options.h"
-#include "benchmarks/scene_files.h"
-#include "benchmarks/stages.h"
-#include "src/timer.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/scene_files.h"
+#include "benchmarks/lib/stages.h"
+#include "src/core/timer.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* What each rule of the published culling loses, one at a time. */
-#include "benchmarks/contest.h"
-#include "runtime/detector.h"
+#include "benchmarks/lib/contest.h"
+#include "runtime/detector/detector.h"
 
 #include <stdio.h>
 

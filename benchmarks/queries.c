@@ -1,7 +1,7 @@
 /* Elementary tests on query sets: false positives and negatives, which level decided, time per query. */
-#include "benchmarks/query_file.h"
+#include "benchmarks/lib/query_file.h"
+#include "src/core/timer.h"
 #include "src/io/json.h"
-#include "src/timer.h"
 
 #include <stdio.h>
 #include <stdlib.h>

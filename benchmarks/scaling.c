@@ -1,7 +1,7 @@
 /* What each stage costs per triangle, from small meshes to large ones, where nothing touches. */
-#include "benchmarks/fixed_arithmetic.h"
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
+#include "benchmarks/lib/fixed_arithmetic.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
 
 #include <stdlib.h>
 

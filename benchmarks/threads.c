@@ -1,8 +1,8 @@
 /* What a second thread gains, beside what it gains on this machine for arithmetic that shares nothing. */
-#include "benchmarks/fixed_arithmetic.h"
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
-#include "src/timer.h"
+#include "benchmarks/lib/fixed_arithmetic.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
+#include "src/core/timer.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

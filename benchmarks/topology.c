@@ -1,8 +1,8 @@
 /* What new connectivity costs: mesh, plan and detector made anew, and the first step, beside a steady step.
  */
-#include "benchmarks/options.h"
-#include "benchmarks/stages.h"
-#include "src/timer.h"
+#include "benchmarks/lib/options.h"
+#include "benchmarks/lib/stages.h"
+#include "src/core/timer.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* Records cloth that falls, drapes and folds without ever passing through anything: a model, its frames, and
  * what it falls onto. */
-#include "models/recording/allocation_count.h"
-#include "models/recording/recording_files.h"
-#include "models/recording/scene_program.h"
-#include "models/textile/cloth_simulation.h"
+#include "models/cloth/cloth_simulation.h"
+#include "models/common/allocation_count.h"
+#include "models/common/recording_files.h"
+#include "models/common/scene_program.h"
 
 #include <errno.h>
 #include <stdio.h>

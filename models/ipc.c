@@ -1,9 +1,9 @@
 /* Records bodies that meet and never pass through each other, by incremental potential contact: a model and
  * its frames. */
-#include "models/potential/solver.h"
-#include "models/recording/recording_files.h"
-#include "models/recording/scene_program.h"
-#include "models/softbody/motion.h"
+#include "models/common/motion.h"
+#include "models/common/recording_files.h"
+#include "models/common/scene_program.h"
+#include "models/ipc/solver.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* Records several closed objects that meet and part, for sensors between objects: one model and its frames.
  */
-#include "models/encounters/census.h"
-#include "models/encounters/object_scene.h"
-#include "models/encounters/tumble.h"
-#include "models/recording/clock.h"
-#include "models/recording/recording_files.h"
-#include "models/recording/scene_program.h"
+#include "models/common/clock.h"
+#include "models/common/recording_files.h"
+#include "models/common/scene_program.h"
+#include "models/objects/census.h"
+#include "models/objects/object_scene.h"
+#include "models/objects/tumble.h"
 #include "models/softbody/scenery.h"
 
 #include <stdio.h>

@@ -1,13 +1,13 @@
 /* From a mesh at rest to its plan: charge, regions, detector points, what these see. */
-#include "src/plan.h"
+#include "src/mesh/plan.h"
 
-#include "preprocess/charge.h"
-#include "preprocess/kmeans.h"
-#include "preprocess/regions.h"
-#include "preprocess/surface.h"
-#include "preprocess/visibility.h"
-#include "src/positions.h"
-#include "src/timer.h"
+#include "preprocess/charge/charge.h"
+#include "preprocess/regions/kmeans.h"
+#include "preprocess/regions/regions.h"
+#include "preprocess/regions/visibility.h"
+#include "src/core/timer.h"
+#include "src/mesh/positions.h"
+#include "src/mesh/surface.h"
 
 #include <math.h>
 #include <string.h>

@@ -63,11 +63,11 @@ wait
 configuration=$(basename "$BUILD")
 if [ "$configuration" = sanitize ] || [ "$configuration" = tsan ]; then
     echo 'data to develop against: compared by the other configurations, too slow in this one'
-elif [ -d ../shared/data ] && [ -f tests/check_shared.py ]; then
+elif [ -d ../shared/data ] && [ -f tests/io/check_recordings.py ]; then
     echo 'data to develop against: found, comparing'
-    if ! python3 tests/check_shared.py ../shared/data; then
+    if ! python3 tests/io/check_recordings.py ../shared/data; then
         failed=$((failed + 1))
-        failures="$failures check_shared.py"
+        failures="$failures check_recordings.py"
     fi
 else
     echo 'data to develop against: absent, nothing to compare'

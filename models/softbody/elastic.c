@@ -1,7 +1,7 @@
 /* Elastic tetrahedra as XPBD constraints: neo-Hookean, volume and shape apart. */
 #include "models/softbody/elastic.h"
+#include "models/common/vec3.h"
 #include "models/shapes/body.h"
-#include "models/softbody/vector.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* A lattice of cubes around a closed surface: the body that is simulated, and how the surface hangs in it. */
 #include "models/softbody/lattice.h"
+#include "models/common/vec3.h"
 #include "models/shapes/body.h"
-#include "models/softbody/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

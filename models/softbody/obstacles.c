@@ -1,6 +1,6 @@
 /* What a soft body falls onto: ground, stairs, balls. z is up. */
 #include "models/softbody/obstacles.h"
-#include "models/softbody/vector.h"
+#include "models/common/vec3.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* The response to self-contacts: pairs that cscd reports are kept on their sides, gently. */
 #include "models/softbody/self_contact.h"
+#include "models/common/vec3.h"
 #include "models/shapes/body.h"
 #include "models/softbody/soft_body.h"
-#include "models/softbody/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

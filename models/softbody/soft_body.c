@@ -1,7 +1,7 @@
 /* A soft body on a lattice: extended position-based dynamics in small steps. */
 #include "models/softbody/soft_body.h"
+#include "models/common/vec3.h"
 #include "models/shapes/body.h"
-#include "models/softbody/vector.h"
 
 #include <stdlib.h>
 #include <string.h>

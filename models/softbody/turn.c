@@ -1,6 +1,6 @@
 /* Rotations that are the same on every machine. */
 #include "models/softbody/turn.h"
-#include "models/softbody/vector.h"
+#include "models/common/vec3.h"
 
 /* Rodrigues' formula. */
 void turn_matrix(const double axis[3], double degrees, double out[3][3]) {

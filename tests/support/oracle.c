@@ -1,7 +1,7 @@
 /* Brute force over features: what every method must equal. */
 #include "tests/support/oracle.h"
 
-#include "runtime/elementary.h"
+#include "runtime/ccd/elementary.h"
 
 #include <stdlib.h>
 #include <string.h>

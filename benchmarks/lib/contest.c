@@ -1,0 +1,243 @@
+/* One method on one recording, held against the method that leaves out no pair. */
+#include "benchmarks/lib/contest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A TOI is early by less than this. */
+static const double toi_early = 1e-9;
+
+static bool explain(const recording_data *r, const char *what, io_error *error) {
+    return io_fail(error, "%s, %s: %s", r->name, what, cscd_context_detail(r->context));
+}
+
+/* ---- the truth --------------------------------------------------------------------------------------- */
+
+static bool keep_contacts(truth *t, uint32_t interval, const cscd_contacts *found) {
+    size_t count = t->offsets[interval], total = count + found->count;
+    cscd_contact *grown = realloc(t->contacts, (total + 1) * sizeof *grown);
+    if (grown == NULL) return false;
+    if (found->count > 0) memcpy(grown + count, found->items, found->count * sizeof *grown);
+    t->contacts = grown;
+    t->offsets[interval + 1] = total;
+    return true;
+}
+
+static bool all_proven(const cscd_detector *detector, const cscd_mesh *mesh) {
+    for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
+        if (!cscd_detector_guarantee(detector, c).start_embedded) return false;
+    }
+    return true;
+}
+
+static bool find_interval(truth *t, cscd_detector *none, cscd_detector *prover, uint32_t i, io_error *error) {
+    const recording_data *r = t->recording;
+    const double *start = recording_data_frame(r, i), *end = recording_data_frame(r, i + 1);
+    cscd_contacts found;
+    if (cscd_detector_step(prover, start, end, &found) != CSCD_OK) return explain(r, "single", error);
+    t->proven[i] = all_proven(prover, r->mesh);
+    t->proven_count += t->proven[i];
+    if (cscd_detector_step(none, start, end, &found) != CSCD_OK) return explain(r, "none", error);
+    return keep_contacts(t, i, &found) || io_fail(error, "%s: out of memory", r->name);
+}
+
+bool truth_find(const recording_data *r, truth *out, io_error *error) {
+    uint32_t intervals = r->frame_count - 1;
+    truth t = {.recording = r};
+    cscd_detector *none = NULL, *prover = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    t.offsets = calloc((size_t)intervals + 1, sizeof *t.offsets);
+    t.proven = calloc((size_t)intervals + 1, sizeof *t.proven);
+    t.vertex_components = calloc(r->model.vertex_count, sizeof *t.vertex_components);
+    bool good = t.offsets != NULL && t.proven != NULL && t.vertex_components != NULL;
+    if (!good) io_fail(error, "%s: out of memory", r->name);
+    for (uint32_t i = 0; good && i < r->model.triangle_count * 3; i++)
+        t.vertex_components[r->model.triangles[i]] = cscd_mesh_triangle_component(r->mesh, i / 3);
+    options.method = CSCD_METHOD_SINGLE;
+    if (good && (cscd_detector_create(r->mesh, NULL, NULL, &none) != CSCD_OK ||
+                 cscd_detector_create(r->mesh, NULL, &options, &prover) != CSCD_OK))
+        good = explain(r, "detectors", error);
+    for (uint32_t i = 0; good && i < intervals; i++) good = find_interval(&t, none, prover, i, error);
+    cscd_detector_destroy(none);
+    cscd_detector_destroy(prover);
+    if (good)
+        *out = t;
+    else
+        truth_free(&t);
+    return good;
+}
+
+void truth_free(truth *t) {
+    free(t->vertex_components);
+    free(t->contacts);
+    free(t->offsets);
+    free(t->proven);
+    *t = (truth){.recording = NULL};
+}
+
+/* ---- comparison -------------------------------------------------------------------------------------- */
+
+/* Of a contact of a component with itself, else UINT32_MAX. */
+static uint32_t own_component(const truth *t, const cscd_contact *c) {
+    uint32_t a[2] = {c->a, 0}, b[3] = {0, 0, 0};
+    if (c->kind == CSCD_CONTACT_EE) {
+        cscd_mesh_edge(t->recording->mesh, c->a, a);
+        cscd_mesh_edge(t->recording->mesh, c->b, b);
+    } else {
+        cscd_mesh_triangle(t->recording->mesh, c->b, b);
+    }
+    uint32_t first = t->vertex_components[a[0]], second = t->vertex_components[b[0]];
+    return first == second ? first : UINT32_MAX;
+}
+
+/* When a component first touches itself, INFINITY: never. Lists are sorted by time. */
+static double first_time(const truth *t, const cscd_contact *items, size_t count, uint32_t component) {
+    for (size_t i = 0; i < count; i++) {
+        if (own_component(t, &items[i]) == component) return items[i].toi;
+    }
+    return INFINITY;
+}
+
+/* Bit for bit: every method computes a contact from the same two features by the same code. */
+static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
+    return a->kind == b->kind && a->a == b->a && a->b == b->b && a->bounded == b->bounded &&
+           memcmp(&a->toi, &b->toi, sizeof a->toi) == 0 && memcmp(&a->u, &b->u, sizeof a->u) == 0 &&
+           memcmp(&a->v, &b->v, sizeof a->v) == 0 && memcmp(a->point, b->point, sizeof a->point) == 0 &&
+           memcmp(a->normal, b->normal, sizeof a->normal) == 0;
+}
+
+static bool is_published(const entrant *e) {
+    return e->method == CSCD_METHOD_PUBLISHED || e->method == CSCD_METHOD_ICCD_PUBLISHED;
+}
+
+/* Counts what is missing; false if the lists differ in a way that is not allowed. No method may report what
+ * method none does not; a published one may lose anything, mode earliest what its guarantee leaves out. */
+static bool compare(const truth *t, uint32_t interval, const cscd_detector *detector, const entrant *e,
+                    const cscd_contacts *found, score *s) {
+    const cscd_contact *expected = t->contacts + t->offsets[interval];
+    size_t count = t->offsets[interval + 1] - t->offsets[interval], next = 0;
+    bool kept = true;
+    for (size_t i = 0; i < count; i++) {
+        if (next < found->count && same_contact(&found->items[next], &expected[i])) {
+            next++;
+            continue;
+        }
+        uint32_t component = own_component(t, &expected[i]);
+        s->lost += 1.0;
+        kept = kept && e->mode == CSCD_MODE_EARLIEST && component != UINT32_MAX &&
+               !cscd_detector_guarantee(detector, component).complete;
+    }
+    uint32_t components = count > found->count ? cscd_mesh_component_count(t->recording->mesh) : 0;
+    for (uint32_t c = 0; c < components; c++) {
+        double wanted = first_time(t, expected, count, c);
+        if (isinf(wanted) || first_time(t, found->items, found->count, c) <= wanted + toi_early) continue;
+        s->earliest_lost += 1.0;
+        kept = false;
+    }
+    return next == found->count && (kept || is_published(e));
+}
+
+static void add_step(score *s, const cscd_detector *detector, size_t contacts) {
+    cscd_timings ms = cscd_detector_timings(detector);
+    cscd_counters n = cscd_detector_counters(detector);
+    s->intervals++;
+    s->update += ms.update_ms;
+    s->orientation += ms.orientation_ms;
+    s->contour += ms.contour_ms;
+    s->traversal += ms.traversal_ms;
+    s->contact += ms.contact_ms;
+    s->proof += ms.proof_ms;
+    s->total += ms.total_ms;
+    s->pcp += (double)n.pcp;
+    s->tests += (double)n.tests;
+    s->contacts += (double)contacts;
+}
+
+/* ---- runs -------------------------------------------------------------------------------------------- */
+
+static bool make_detector(const truth *t, const entrant *e, cscd_detector **out, io_error *error) {
+    const recording_data *r = t->recording;
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_plan *kmeans = NULL;
+    const cscd_plan *plan = NULL;
+    cscd_status status = CSCD_OK;
+    options.method = e->method;
+    options.mode = e->mode;
+    options.volume = e->volume;
+    if (e->method == CSCD_METHOD_KMEANS) {
+        cscd_plan_options plan_options = cscd_plan_defaults();
+        plan_options.method = CSCD_METHOD_KMEANS;
+        plan_options.k = e->k;
+        plan_options.seed = e->seed;
+        status = cscd_plan_create(r->mesh, r->model.positions, &plan_options, &kmeans);
+        plan = kmeans;
+    }
+    if (e->method == CSCD_METHOD_CHARGE || e->method == CSCD_METHOD_PUBLISHED) plan = r->charge;
+    if (status == CSCD_OK) status = cscd_detector_create(r->mesh, plan, &options, out);
+    cscd_plan_destroy(kmeans);
+    return status == CSCD_OK || explain(r, e->name, error);
+}
+
+static bool replay(const truth *t, const entrant *e, cscd_detector *detector, score classes[CLASS_COUNT],
+                   io_error *error) {
+    const recording_data *r = t->recording;
+    for (uint32_t i = 0; i + 1 < r->frame_count; i++) {
+        cscd_contacts found;
+        score *s = &classes[t->proven[i] ? CLASS_PROVEN : CLASS_OTHER];
+        if (cscd_detector_step(detector, recording_data_frame(r, i), recording_data_frame(r, i + 1),
+                               &found) != CSCD_OK)
+            return explain(r, e->name, error);
+        add_step(s, detector, found.count);
+        if (!compare(t, i, detector, e, &found, s))
+            return io_fail(
+                error, "%s, %s, interval %u: %zu contacts, method none has %zu: this breaks the guarantee",
+                r->name, e->name, i, found.count, t->offsets[i + 1] - t->offsets[i]);
+    }
+    return true;
+}
+
+bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out, io_error *error) {
+    result made = {.entrant = *e, .least_ms = INFINITY};
+    uint32_t intervals = t->recording->frame_count - 1;
+    for (uint32_t repeat = 0; repeat < repeats; repeat++) {
+        cscd_detector *detector = NULL;
+        double before = made.classes[0].total + made.classes[1].total;
+        entrant run = *e;
+        run.seed += repeat;
+        bool good =
+            make_detector(t, &run, &detector, error) && replay(t, &run, detector, made.classes, error);
+        cscd_detector_destroy(detector);
+        if (!good) return false;
+        double ms = (made.classes[0].total + made.classes[1].total - before) / intervals;
+        made.least_ms = fmin(made.least_ms, ms);
+        made.most_ms = fmax(made.most_ms, ms);
+    }
+    for (int i = 0; i < CLASS_COUNT; i++) {
+        made.classes[i].lost /= repeats;
+        made.classes[i].earliest_lost /= repeats;
+    }
+    *out = made;
+    return true;
+}
+
+score score_mean(const score classes[CLASS_COUNT], int only) {
+    score sum = {.intervals = 0};
+    for (int i = 0; i < CLASS_COUNT; i++) {
+        const score *s = &classes[i];
+        if (only < CLASS_COUNT && i != only) continue;
+        sum.intervals += s->intervals;
+        double *into[10] = {&sum.update, &sum.orientation, &sum.contour, &sum.traversal, &sum.contact,
+                            &sum.proof,  &sum.total,       &sum.pcp,     &sum.tests,     &sum.contacts};
+        const double from[10] = {s->update, s->orientation, s->contour, s->traversal, s->contact,
+                                 s->proof,  s->total,       s->pcp,     s->tests,     s->contacts};
+        for (int k = 0; k < 10; k++) *into[k] += from[k];
+        sum.lost += s->lost;
+        sum.earliest_lost += s->earliest_lost;
+    }
+    double n = sum.intervals > 0 ? sum.intervals : 1.0;
+    double *values[10] = {&sum.update, &sum.orientation, &sum.contour, &sum.traversal, &sum.contact,
+                          &sum.proof,  &sum.total,       &sum.pcp,     &sum.tests,     &sum.contacts};
+    for (int k = 0; k < 10; k++) *values[k] /= n;
+    return sum;
+}

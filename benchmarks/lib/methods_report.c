@@ -1,0 +1,92 @@
+/* The table and the JSON of benchmarks/methods. */
+#include "benchmarks/lib/methods_report.h"
+
+#include <stdio.h>
+
+/* A stage of a method that may not have it. */
+static void print_stage(double ms) {
+    if (ms > 0.0)
+        printf(" %7.3f", ms);
+    else
+        printf(" %7s", "X");
+}
+
+/* What the reference costs more, and what it would if the method's own stages cost nothing: then what is left
+ * is the update and the elementary tests. */
+static void print_ratio(const score *reference, const score *s) {
+    printf(" %5.2f (%5.2f)", reference->total / s->total, reference->total / (s->update + s->contact));
+}
+
+static void print_row(const result *r, const score *s, const score *none, const score *iccd) {
+    printf("  %-16s", r->entrant.name);
+    print_stage(s->update);
+    print_stage(s->orientation);
+    print_stage(s->contour);
+    print_stage(s->traversal);
+    print_stage(s->contact);
+    print_stage(s->proof);
+    printf(" %8.0f %8.0f %8.1f %6.1f %6.1f %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
+           s->earliest_lost, s->lost, s->total, r->least_ms, r->most_ms);
+    print_ratio(none, s);
+    print_ratio(iccd, s);
+    putchar('\n');
+}
+
+static void print_class(const report *r, int only, const char *title) {
+    score none = score_mean(r->results[0].classes, only), iccd = score_mean(r->results[1].classes, only);
+    if (none.intervals == 0) return;
+    printf("\n  %s\n  %-16s %7s %7s %7s %7s %7s %7s %8s %8s %8s %6s %6s %7s %13s %13s %13s\n", title,
+           "method", "BVHUP", "ORIENT", "CNC&CT", "TRA", "contact", "proof", "#PCPs", "tests", "contacts",
+           "e.lost", "lost", "TTCD", "all: min-max", "none/ (bound)", "ICCD/ (bound)");
+    for (uint32_t i = 0; i < r->count; i++) {
+        score s = score_mean(r->results[i].classes, only);
+        print_row(&r->results[i], &s, &none, &iccd);
+    }
+}
+
+void report_print(const report *r) {
+    const recording_data *data = r->truth->recording;
+    uint32_t intervals = data->frame_count - 1, proven = r->truth->proven_count;
+    char title[160];
+    printf("\n%s: %u triangles, %u intervals, %u regions by charge; ms per interval\n", data->name,
+           data->model.triangle_count, intervals, r->regions);
+    snprintf(title, sizeof title, "all %u intervals", intervals);
+    print_class(r, CLASS_COUNT, title);
+    if (proven == 0 || proven == intervals) return;
+    snprintf(title, sizeof title, "%u intervals that start proven to be embedded", proven);
+    print_class(r, CLASS_PROVEN, title);
+    snprintf(title, sizeof title,
+             "%u intervals that do not: a component without a proven start gets every contact, with + too",
+             intervals - proven);
+    print_class(r, CLASS_OTHER, title);
+}
+
+void report_write(const report *r, json *out, uint32_t thread_count) {
+    for (uint32_t i = 0; i < r->count; i++) {
+        const entrant *e = &r->results[i].entrant;
+        score s = score_mean(r->results[i].classes, CLASS_COUNT);
+        json_break_line(out);
+        json_begin_object(out, NULL);
+        json_string(out, "scene", r->truth->recording->name);
+        json_string(out, "method", e->name);
+        json_string(out, "mode", cscd_mode_name(e->mode));
+        json_string(out, "volume", cscd_volume_name(e->volume));
+        json_integer(out, "threads", thread_count);
+        json_integer(out, "triangles", r->truth->recording->model.triangle_count);
+        json_number(out, "ttcd_ms", s.total);
+        json_number(out, "ttcd_min_ms", r->results[i].least_ms);
+        json_number(out, "ttcd_max_ms", r->results[i].most_ms);
+        json_number(out, "bvh_ms", s.update);
+        json_number(out, "orient_ms", s.orientation);
+        json_number(out, "cnc_ms", s.contour);
+        json_number(out, "traverse_ms", s.traversal);
+        json_number(out, "contact_ms", s.contact);
+        json_number(out, "proof_ms", s.proof);
+        json_number(out, "pcp", s.pcp);
+        json_number(out, "tests", s.tests);
+        json_number(out, "contacts", s.contacts);
+        json_number(out, "earliest_lost", s.earliest_lost);
+        json_number(out, "lost", s.lost);
+        json_end_object(out);
+    }
+}

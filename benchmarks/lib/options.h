@@ -1,0 +1,35 @@
+/* Options, progress and JSON that the programs on deforming bodies have in common. */
+#pragma once
+
+#include "cscd/cscd.h"
+#include "models/shapes/catalogue.h"
+#include "src/io/json.h"
+#include "src/tool/common/terminal.h"
+
+enum { SIZES_MAX = 16, INTERVALS_MAX = 60 };
+
+typedef struct bench_options {
+    uint32_t sizes[SIZES_MAX], size_count; /* triangles */
+    uint32_t interval_count;               /* 0: fewer with size */
+    uint32_t thread_count;
+    cscd_simd simd;
+    cscd_volume volume;
+    body_kind kind;
+    bool quick, shuffled;
+    const char *data, *json_path;
+} bench_options;
+
+/* Measured intervals of a size. */
+uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count);
+
+typedef struct bench_program {
+    const char *name, *help;               /* the options are told behind the help */
+    const uint32_t *sizes;                 /* where none are asked for, */
+    uint32_t size_count, quick_size_count; /* the first ones with --quick */
+    /* Prints its tables and, where out->file is not NULL, writes a row of JSON for each of theirs. */
+    bool (*run)(const bench_options *o, json *out, io_error *error);
+} bench_program;
+
+/* Of a whole program, its exit status: parses, runs, says what went wrong, and gives the rows of --json the
+ * frame that tells where they come from. */
+int bench_main(const bench_program *program, int argument_count, char **arguments);

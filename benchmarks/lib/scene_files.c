@@ -1,0 +1,124 @@
+/* Recordings that benchmarks replay: all frames in memory, and a plan by charge from its cache. */
+#include "benchmarks/lib/scene_files.h"
+
+#include "models/softbody/recorder.h"
+#include "src/core/timer.h"
+#include "src/io/animation.h"
+#include "src/io/plan_file.h"
+#include "src/io/point_cache_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH_LENGTH = 4096 };
+
+const double *recording_data_frame(const recording_data *r, uint32_t frame) {
+    return r->frames + (size_t)frame * r->model.vertex_count * 3;
+}
+
+static bool record_frames(recorder *r, const char *path, io_error *error) {
+    point_cache_writer *writer;
+    uint32_t count = r->scene->frame_count;
+    if (!point_cache_writer_open(path, r->shape.vertex_count, count, &writer, error)) return false;
+    bool good = true;
+    for (uint32_t frame = 0; good && frame < count; frame++)
+        good =
+            (frame == 0 || recorder_advance(r, error)) && point_cache_writer_write(writer, r->frame, error);
+    io_error closing;
+    bool complete = point_cache_writer_close(writer, &closing);
+    if (good && !complete) *error = closing;
+    return good && complete;
+}
+
+/* Does nothing where both files are there. */
+static bool make_recording(const char *model, const char *frames, const char *name, io_error *error) {
+    const scene *s = scene_find(name);
+    recorder r;
+    if ((access(model, F_OK) == 0 && access(frames, F_OK) == 0) || s == NULL) return true;
+    if (!recorder_open(s, NULL, &r, error)) return false;
+    const mesh_file mesh = {r.shape.vertex_count, r.shape.triangle_count, r.shape.positions,
+                            r.shape.triangles};
+    bool made = mesh_file_write_obj(model, &mesh, error) && record_frames(&r, frames, error);
+    recorder_close(&r);
+    return made;
+}
+
+static bool read_frames(recording_data *r, const char *path, io_error *error) {
+    animation *frames;
+    size_t size = (size_t)r->model.vertex_count * 3;
+    if (!animation_open(&path, 1, r->model.vertex_count, &frames, error)) return false;
+    r->frame_count = animation_frame_count(frames);
+    bool read = r->frame_count > 1 ||
+                io_fail(error, "%s: %u frames, at least two were expected", path, r->frame_count);
+    if (read) {
+        r->frames = malloc(r->frame_count * size * sizeof *r->frames);
+        read = r->frames != NULL || io_fail(error, "%s: out of memory for %u frames", path, r->frame_count);
+    }
+    for (uint32_t i = 0; read && i < r->frame_count; i++)
+        read = animation_read(frames, i, r->frames + i * size, error);
+    animation_close(frames);
+    return read;
+}
+
+static bool any_closed(const cscd_mesh *mesh) {
+    for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
+        if (cscd_mesh_component(mesh, i).closed_manifold) return true;
+    }
+    return false;
+}
+
+static bool make_plan(recording_data *r, const char *folder, const char *cache, io_error *error) {
+    char paths[2][PATH_LENGTH];
+    snprintf(paths[0], PATH_LENGTH, "%s/%s.plan.ply", folder, r->name);
+    snprintf(paths[1], PATH_LENGTH, "%s/%s.plan.ply", cache, r->name);
+    for (int i = 0; i < 2; i++) {
+        if (access(paths[i], F_OK) == 0)
+            return plan_file_read(paths[i], r->context, r->mesh, &r->charge, error);
+    }
+    if (!any_closed(r->mesh)) return true;
+    if (cscd_plan_create(r->mesh, r->model.positions, NULL, &r->charge) != CSCD_OK)
+        return io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
+    uint8_t *colours = calloc(r->model.triangle_count, 3);
+    bool written =
+        colours != NULL && plan_file_write(paths[1], r->mesh, r->model.positions, r->charge, colours, error);
+    free(colours);
+    return written;
+}
+
+bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
+                         recording_data *out, io_error *error) {
+    recording_data r = {.frame_count = 0};
+    char model[PATH_LENGTH], frames[PATH_LENGTH];
+    double since = timer_now_ms(), ignored = 0.0;
+    snprintf(r.name, sizeof r.name, "%s", name);
+    snprintf(model, sizeof model, "%s/%s.obj", folder, name);
+    snprintf(frames, sizeof frames, "%s/%s.pc2", folder, name);
+    bool good = make_recording(model, frames, name, error);
+    timer_lap(&since, &r.made_ms);
+    good = good && mesh_file_read(model, &r.model, error) && read_frames(&r, frames, error);
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    const cscd_mesh_desc desc = {r.model.vertex_count, r.model.triangle_count, r.model.triangles};
+    if (good && (cscd_context_create(&options, &r.context) != CSCD_OK ||
+                 cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK))
+        good = io_fail(error, "%s: the mesh could not be made", model);
+    timer_lap(&since, &ignored);
+    good = good && make_plan(&r, folder, cache, error);
+    timer_lap(&since, &r.made_ms);
+    if (good)
+        *out = r;
+    else
+        recording_data_close(&r);
+    return good;
+}
+
+void recording_data_close(recording_data *r) {
+    cscd_plan_destroy(r->charge);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+    mesh_file_free(&r->model);
+    free(r->frames);
+    *r = (recording_data){.frame_count = 0};
+}

@@ -1,0 +1,118 @@
+/* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
+#include "benchmarks/lib/stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const stage_names[STAGE_COUNT] = {"update",  "orient", "contour", "travers",
+                                              "contact", "proof",  "other",   "total"};
+
+static int compare_values(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double median(const double *values, uint32_t count) {
+    double sorted[SAMPLES_MAX];
+    if (count == 0) return 0.0;
+    memcpy(sorted, values, count * sizeof *values);
+    qsort(sorted, count, sizeof *sorted, compare_values);
+    return 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+}
+
+double stage_median(const stage_samples *s, stage which) {
+    return median(s->ms[which], s->count);
+}
+
+/* ---- memory ------------------------------------------------------------------------------------------ */
+
+static void *count_allocate(void *user, size_t size, size_t alignment) {
+    subject *s = user;
+    void *block = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    if (block == NULL) return NULL;
+    s->held += size;
+    if (s->held > s->peak) s->peak = s->held;
+    return block;
+}
+
+static void count_release(void *user, void *block, size_t size) {
+    subject *s = user;
+    s->held -= size;
+    free(block);
+}
+
+/* ---- subjects ---------------------------------------------------------------------------------------- */
+
+static cscd_status make_parts(const deforming_body *b, subject *s) {
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = s->options.thread_count;
+    options.simd = s->options.simd;
+    options.allocator = (cscd_allocator){count_allocate, count_release, s};
+    cscd_status status = cscd_context_create(&options, &s->context);
+    if (status != CSCD_OK) return status;
+    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    status = cscd_mesh_create(s->context, &desc, &s->mesh);
+    size_t peak = s->peak;
+    cscd_plan_options plan = cscd_plan_defaults();
+    plan.method = s->options.method;
+    if (status == CSCD_OK && (plan.method == CSCD_METHOD_CHARGE || plan.method == CSCD_METHOD_KMEANS))
+        status = cscd_plan_create(s->mesh, b->rest, &plan, &s->plan);
+    s->peak = peak > s->held ? peak : s->held;
+    cscd_detector_options detector = cscd_detector_defaults();
+    detector.method = s->options.method;
+    detector.mode = s->options.mode;
+    detector.volume = s->options.volume;
+    return status == CSCD_OK ? cscd_detector_create(s->mesh, s->plan, &detector, &s->detector) : status;
+}
+
+static bool explain(const subject *s, cscd_status status, io_error *error) {
+    const char *detail = s->context != NULL ? cscd_context_detail(s->context) : "";
+    return io_fail(error, "method %s, mode %s: %s", cscd_method_name(s->options.method),
+                   cscd_mode_name(s->options.mode), detail[0] != '\0' ? detail : cscd_status_string(status));
+}
+
+subject *subject_make(const deforming_body *b, const subject_options *options, io_error *error) {
+    subject *s = body_allocate(1, sizeof *s);
+    s->options = *options;
+    cscd_status status = make_parts(b, s);
+    if (status == CSCD_OK) return s;
+    explain(s, status, error);
+    subject_destroy(s);
+    return NULL;
+}
+
+void subject_destroy(subject *s) {
+    if (s == NULL) return;
+    cscd_detector_destroy(s->detector);
+    cscd_plan_destroy(s->plan);
+    cscd_mesh_destroy(s->mesh);
+    cscd_context_destroy(s->context);
+    free(s);
+}
+
+static void add_sample(stage_samples *s, const cscd_detector *detector, size_t contacts) {
+    cscd_timings ms = cscd_detector_timings(detector);
+    cscd_counters n = cscd_detector_counters(detector);
+    double known = ms.update_ms + ms.orientation_ms + ms.contour_ms + ms.traversal_ms + ms.contact_ms;
+    const double values[STAGE_COUNT] = {
+        [STAGE_UPDATE] = ms.update_ms,   [STAGE_ORIENTATION] = ms.orientation_ms,
+        [STAGE_CONTOUR] = ms.contour_ms, [STAGE_TRAVERSAL] = ms.traversal_ms,
+        [STAGE_CONTACT] = ms.contact_ms, [STAGE_PROOF] = ms.proof_ms,
+        [STAGE_TOTAL] = ms.total_ms,     [STAGE_OTHER] = ms.total_ms - known - ms.proof_ms};
+    if (s->count == SAMPLES_MAX) return;
+    for (int i = 0; i < STAGE_COUNT; i++) s->ms[i][s->count] = values[i];
+    s->count++;
+    s->boxes += (double)n.boxes_tested;
+    s->pcp += (double)n.pcp;
+    s->features += (double)n.feature_pairs;
+    s->tests += (double)n.tests;
+    s->contacts += (double)contacts;
+}
+
+bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
+                  io_error *error) {
+    cscd_status status = cscd_detector_step(s->detector, start, end, found);
+    if (status != CSCD_OK) return explain(s, status, error);
+    if (counts) add_sample(&s->samples, s->detector, found->count);
+    return true;
+}

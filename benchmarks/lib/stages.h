@@ -1,0 +1,59 @@
+/* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
+#pragma once
+
+#include "benchmarks/lib/deforming_body.h"
+#include "cscd/cscd.h"
+
+typedef enum stage {
+    STAGE_UPDATE,
+    STAGE_ORIENTATION,
+    STAGE_CONTOUR,
+    STAGE_TRAVERSAL,
+    STAGE_CONTACT,
+    STAGE_PROOF,
+    STAGE_OTHER, /* of the total, what belongs to no stage: checks of the input */
+    STAGE_TOTAL,
+    STAGE_COUNT
+} stage;
+
+/* Of the tables. */
+extern const char *const stage_names[STAGE_COUNT];
+
+enum { SAMPLES_MAX = 64 };
+
+/* Counters are sums over the intervals. */
+typedef struct stage_samples {
+    uint32_t count;
+    double ms[STAGE_COUNT][SAMPLES_MAX];
+    double boxes, pcp, features, tests, contacts;
+} stage_samples;
+
+double stage_median(const stage_samples *s, stage which);
+double median(const double *values, uint32_t count);
+
+typedef struct subject_options {
+    cscd_method method; /* CHARGE and KMEANS make their plan */
+    cscd_mode mode;
+    uint32_t thread_count;
+    cscd_simd simd;
+    cscd_volume volume;
+} subject_options;
+
+/* Does not move: the context knows where its bytes are counted. */
+typedef struct subject {
+    subject_options options;
+    size_t held, peak; /* bytes of this context; the peak leaves out what only preprocessing held */
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_detector *detector;
+    stage_samples samples;
+} subject;
+
+/* NULL: *error says why. */
+subject *subject_make(const deforming_body *b, const subject_options *options, io_error *error);
+void subject_destroy(subject *s);
+
+/* One interval; it counts as a sample when `counts`: a first one, which builds trees, should not. */
+bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
+                  io_error *error);

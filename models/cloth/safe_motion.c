@@ -1,0 +1,241 @@
+/* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
+#include "models/cloth/safe_motion.h"
+#include "models/cloth/apart.h"
+#include "models/common/vec3.h"
+#include "models/shapes/body.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* First contacts only stop what approaches; what then still meets moves together. */
+enum { STOPPING_ROUNDS = 6, STOPPING_PASSES = 40, ROUNDS = 16 };
+
+/* How much of the way to a contact is left to its features. */
+static const double share_of_way = 0.7;
+
+/* How much of an excess is taken away in a pass: all of it at once would throw back what comes first. */
+static const double share_of_excess = 0.25;
+
+/* Each separation is a quarter of the one before. */
+static cscd_status set_separation(safe_motion *s, uint32_t which) {
+    return cscd_detector_set_separation(s->detector, ldexp(s->separation, -2 * (int)which), 0.0);
+}
+
+cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const double *inverse_masses,
+                             const uint32_t *seams, uint32_t seam_count, safe_motion *out) {
+    safe_motion s = {.mesh = mesh,
+                     .separation = separation,
+                     .inverse_masses = inverse_masses,
+                     .seams = seams,
+                     .seam_count = seam_count};
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = separation;
+    options.seams = seams;
+    options.seam_count = seam_count;
+    cscd_status status = cscd_detector_create(mesh, NULL, &options, &s.detector);
+    if (status != CSCD_OK) return status;
+    s.vertex_count = cscd_mesh_vertex_count(mesh);
+    s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
+    s.zones = body_allocate(s.vertex_count, sizeof *s.zones);
+    s.told = body_allocate(s.vertex_count, sizeof *s.told);
+    *out = s;
+    return CSCD_OK;
+}
+
+void safe_motion_close(safe_motion *s) {
+    cscd_detector_destroy(s->detector);
+    free(s->stops);
+    free(s->parents);
+    free(s->zones);
+    free(s->told);
+    *s = (safe_motion){0};
+}
+
+void safe_motion_sew(const safe_motion *s, double *positions) {
+    for (uint32_t i = 0; i < s->seam_count; i++) {
+        uint32_t a = s->seams[2 * i], b = s->seams[2 * i + 1];
+        double wa = s->inverse_masses[a], wb = s->inverse_masses[b];
+        for (uint32_t k = 0; k < 3; k++) {
+            double *x = &positions[a * 3 + k], *y = &positions[b * 3 + k];
+            if (*x != *y) *x = *y = (wb * *x + wa * *y) / (wa + wb);
+        }
+    }
+}
+
+/* How far the two points come nearer along the normal. */
+static double approach_of(const safe_motion_stop *stop, const double *x0, const double *x1) {
+    double from[3], to[3];
+    apart_sum(&stop->stencil, x0, from);
+    apart_sum(&stop->stencil, x1, to);
+    return dot(from, stop->normal) - dot(to, stop->normal);
+}
+
+static void take_stops(safe_motion *s, const cscd_contacts *found, const double *x0, const double *x1) {
+    if (s->stop_count + found->count > s->stop_capacity) {
+        s->stop_capacity = 2 * (s->stop_count + found->count);
+        safe_motion_stop *grown = body_allocate(s->stop_capacity, sizeof *grown);
+        if (s->stop_count > 0) memcpy(grown, s->stops, s->stop_count * sizeof *grown);
+        free(s->stops);
+        s->stops = grown;
+    }
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        safe_motion_stop *stop = &s->stops[s->stop_count];
+        stop->stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        memcpy(stop->normal, c->normal, sizeof stop->normal);
+        double approach = approach_of(stop, x0, x1);
+        if (approach <= 0.0) continue;
+        stop->allowed = share_of_way * c->toi * approach;
+        s->stop_count++;
+    }
+}
+
+/* What was found in this and earlier rounds approaches only for a share of its way to the contact. */
+static void stop_approaches(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+    take_stops(s, found, x0, x1);
+    for (size_t i = 0; i < s->stop_count * STOPPING_PASSES; i++) {
+        const safe_motion_stop *stop = &s->stops[i % s->stop_count];
+        double excess = approach_of(stop, x0, x1) - stop->allowed, change[3];
+        if (excess <= 0.0) continue;
+        for (int k = 0; k < 3; k++) change[k] = share_of_excess * excess * stop->normal[k];
+        apart_push(&stop->stencil, s->inverse_masses, change, x1);
+    }
+}
+
+static void part_zones(safe_motion *s) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) s->parents[v] = v;
+    memset(s->told, 0, s->vertex_count * sizeof *s->told);
+    for (uint32_t i = 0; i < s->seam_count; i++) s->parents[s->seams[2 * i + 1]] = s->seams[2 * i];
+}
+
+static uint32_t zone_of(safe_motion *s, uint32_t vertex) {
+    while (s->parents[vertex] != vertex) {
+        s->parents[vertex] = s->parents[s->parents[vertex]];
+        vertex = s->parents[vertex];
+    }
+    return vertex;
+}
+
+static bool is_told(const safe_motion *s, uint32_t vertex) {
+    return s->inverse_masses[vertex] == 0.0;
+}
+
+/* The vertices of a contact come into one zone; but for an obstacle's, which only tell it how they move: or
+ * all that lies on a floor were one. Returns UINT32_MAX for vertices of obstacles only. */
+static uint32_t join(safe_motion *s, const cscd_stencil *stencil, const double *x0, const double *x1) {
+    uint32_t zone = UINT32_MAX;
+    for (int i = 0; i < 4; i++) {
+        if (is_told(s, stencil->vertices[i])) continue;
+        uint32_t other = zone_of(s, stencil->vertices[i]);
+        if (zone == UINT32_MAX) zone = other;
+        uint32_t least = zone < other ? zone : other;
+        s->parents[zone] = s->parents[other] = least;
+        zone = least;
+    }
+    for (int i = 0; i < 4 && zone != UINT32_MAX; i++) {
+        size_t v = stencil->vertices[i];
+        if (!is_told(s, stencil->vertices[i])) continue;
+        add_scaled(s->told[zone], 1.0, x1 + v * 3);
+        add_scaled(s->told[zone], -1.0, x0 + v * 3);
+        s->told[zone][3] += 1.0;
+    }
+    return zone;
+}
+
+static void sum_up_zones(safe_motion *s, const double *x0, const double *x1) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) s->zones[v] = (safe_motion_zone){.share = 1.0};
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (is_told(s, v)) continue;
+        safe_motion_zone *zone = &s->zones[zone_of(s, v)];
+        double mass = 1.0 / s->inverse_masses[v];
+        add_scaled(zone->motion, mass, x1 + (size_t)v * 3);
+        add_scaled(zone->motion, -mass, x0 + (size_t)v * 3);
+        zone->mass += mass;
+        add_scaled(zone->told, 1.0, s->told[v]);
+        zone->tellers += s->told[v][3];
+    }
+}
+
+/* What meets comes nearer to the common motion of its zone: that of the obstacles in it, or of its centre of
+ * mass, which keeps momentum. Vertices that all move alike keep their distances. */
+static void move_together(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
+    cscd_stencil stencil;
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        join(s, &stencil, x0, x1);
+    }
+    sum_up_zones(s, x0, x1);
+    for (size_t i = 0; i < found->count; i++) {
+        const cscd_contact *c = &found->items[i];
+        stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
+        for (int j = 0; j < 4; j++) {
+            if (is_told(s, stencil.vertices[j])) continue;
+            safe_motion_zone *zone = &s->zones[zone_of(s, stencil.vertices[j])];
+            zone->share = fmin(zone->share, share_of_way * c->toi);
+        }
+    }
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        if (is_told(s, v)) continue;
+        const safe_motion_zone *zone = &s->zones[zone_of(s, v)];
+        if (zone->share == 1.0) continue;
+        for (int k = 0; k < 3; k++) {
+            size_t i = (size_t)v * 3 + (size_t)k;
+            double common =
+                zone->tellers > 0.0 ? zone->told[k] / zone->tellers : zone->motion[k] / zone->mass;
+            x1[i] = x0[i] + common + zone->share * (x1[i] - x0[i] - common);
+        }
+    }
+}
+
+/* The whole motion, shortened. */
+static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
+    cscd_free_step way = {.length = 0.0};
+    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
+    s->counts.fallbacks++;
+    *length = way.length;
+    if (status != CSCD_IN_CONTACT) return status;
+    s->counts.waits++;
+    memcpy(x1, x0, (size_t)s->vertex_count * 3 * sizeof *x1);
+    return CSCD_OK;
+}
+
+static cscd_status find_contacts(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
+    cscd_status status = cscd_detector_step(s->detector, x0, x1, found);
+    if (status != CSCD_OK) return status;
+    s->counts.steps++;
+    s->counts.contacts += found->count;
+    return CSCD_OK;
+}
+
+/* With the first separation that x0 keeps; else, with the last. A contact at time 0 is one of x0. */
+static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
+    for (uint32_t which = 0; which < SAFE_MOTION_SEPARATIONS; which++) {
+        cscd_status status = set_separation(s, which);
+        if (status == CSCD_OK) status = find_contacts(s, x0, x1, found);
+        if (status != CSCD_OK) return status;
+        s->counts.tight += which == 1;
+        if (which > s->counts.tightest) s->counts.tightest = which;
+        if (found->count == 0 || found->items[0].toi > 0.0) break;
+    }
+    s->counts.cut += found->count > 0;
+    return CSCD_OK;
+}
+
+cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length) {
+    cscd_contacts found;
+    *length = 1.0;
+    s->stop_count = 0;
+    cscd_status status = find_first(s, x0, x1, &found);
+    for (int round = 0; status == CSCD_OK && found.count > 0; round++) {
+        if (round == ROUNDS) return fall_back(s, x0, x1, length);
+        if (round == STOPPING_ROUNDS) part_zones(s);
+        if (round < STOPPING_ROUNDS)
+            stop_approaches(s, &found, x0, x1);
+        else
+            move_together(s, &found, x0, x1);
+        safe_motion_sew(s, x1);
+        status = find_contacts(s, x0, x1, &found);
+    }
+    return status;
+}

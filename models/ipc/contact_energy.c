@@ -1,0 +1,100 @@
+/* The barrier's energy over all pairs of features that are near, as a list of terms. */
+#include "models/ipc/contact_energy.h"
+#include "models/common/vec3.h"
+#include "models/ipc/barrier.h"
+#include "models/shapes/body.h"
+
+#include <stdlib.h>
+
+/* Edges are nearly parallel where the square of the sine between them, at rest lengths, is below. */
+static const double parallel_share = 1e-3;
+
+static double squared_length(const double *positions, const uint32_t edge[2]) {
+    double along[3];
+    difference(positions + (size_t)edge[1] * 3, positions + (size_t)edge[0] * 3, along);
+    return dot(along, along);
+}
+
+/* Energy times mollifier, and the mollifier's part of the gradient: crossing is |a x b|^2, whose derivative
+ * by a is 2 b x (a x b), by b 2 (a x b) x a. */
+static void fade_parallel(ipc_contact *c, const double *rest, const double *positions) {
+    const uint32_t *v = c->vertices;
+    double a[3], b[3], across[3], by_a[3], by_b[3];
+    difference(positions + (size_t)v[1] * 3, positions + (size_t)v[0] * 3, a);
+    difference(positions + (size_t)v[3] * 3, positions + (size_t)v[2] * 3, b);
+    cross(a, b, across);
+    double threshold = parallel_share * squared_length(rest, v) * squared_length(rest, v + 2);
+    ipc_curve fade = ipc_mollifier(dot(across, across), threshold);
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) c->gradient[i][k] *= fade.value;
+    }
+    cross(b, across, by_a);
+    cross(across, a, by_b);
+    double factor = 2.0 * fade.slope * c->energy;
+    add_scaled(c->gradient[0], -factor, by_a);
+    add_scaled(c->gradient[1], factor, by_a);
+    add_scaled(c->gradient[2], -factor, by_b);
+    add_scaled(c->gradient[3], factor, by_b);
+    c->energy *= fade.value;
+    c->curvature *= fade.value;
+}
+
+static ipc_contact make_contact(const cscd_mesh *mesh, const double *rest, const double *positions,
+                                const cscd_proximity *pair, const ipc_barrier_options *options) {
+    const cscd_stencil s = cscd_mesh_stencil(mesh, pair->kind, pair->a, pair->b, pair->u, pair->v);
+    const ipc_curve barrier = ipc_barrier(pair->distance, options->reach);
+    ipc_contact c = {.energy = options->stiffness * barrier.value,
+                     .curvature = options->stiffness * barrier.curvature};
+    for (int k = 0; k < 3; k++) c.normal[k] = pair->normal[k];
+    for (int i = 0; i < 4; i++) {
+        c.vertices[i] = s.vertices[i];
+        c.weights[i] = s.weights[i];
+        add_scaled(c.gradient[i], options->stiffness * barrier.slope * s.weights[i], c.normal);
+    }
+    if (pair->kind == CSCD_CONTACT_EE) fade_parallel(&c, rest, positions);
+    return c;
+}
+
+static void reserve(ipc_contacts *contacts, size_t count) {
+    if (count <= contacts->capacity) return;
+    free(contacts->items);
+    contacts->capacity = count + count / 2;
+    contacts->items = body_allocate(contacts->capacity, sizeof *contacts->items);
+}
+
+void ipc_contacts_find(ipc_contacts *contacts, const cscd_mesh *mesh, const double *rest,
+                       const double *positions, const cscd_proximities *near,
+                       const ipc_barrier_options *options) {
+    reserve(contacts, near->count);
+    contacts->count = near->count;
+    contacts->energy = 0.0;
+    contacts->least_distance = INFINITY;
+    for (size_t i = 0; i < near->count; i++) {
+        contacts->items[i] = make_contact(mesh, rest, positions, &near->items[i], options);
+        contacts->energy += contacts->items[i].energy;
+        contacts->least_distance = fmin(contacts->least_distance, near->items[i].distance);
+    }
+}
+
+void ipc_contacts_free(ipc_contacts *contacts) {
+    free(contacts->items);
+    *contacts = (ipc_contacts){0};
+}
+
+void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient) {
+    for (size_t i = 0; i < contacts->count; i++) {
+        const ipc_contact *c = &contacts->items[i];
+        for (int k = 0; k < 4; k++) add_scaled(gradient + (size_t)c->vertices[k] * 3, 1.0, c->gradient[k]);
+    }
+}
+
+void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out) {
+    for (size_t i = 0; i < contacts->count; i++) {
+        const ipc_contact *c = &contacts->items[i];
+        double approach = 0.0;
+        for (int k = 0; k < 4; k++)
+            approach += c->weights[k] * dot(c->normal, x + (size_t)c->vertices[k] * 3);
+        for (int k = 0; k < 4; k++)
+            add_scaled(out + (size_t)c->vertices[k] * 3, c->curvature * approach * c->weights[k], c->normal);
+    }
+}

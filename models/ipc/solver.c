@@ -1,0 +1,175 @@
+/* Time steps of implicit Euler as minimisations by Newton's method, along lines that stay free of contact. */
+#include "models/ipc/solver.h"
+#include "models/common/clock.h"
+#include "models/common/vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { NEWTON_MOST = 60, GRADIENTS_MOST = 400, HALVINGS_MOST = 40 };
+
+/* The linear system's residual; what share of the slope a step must win (Armijo); and when a minimisation is
+ * done: no vertex would move farther than this share of the barrier's reach. */
+static const double solve_tolerance = 3e-2, least_gain = 1e-4, done_share = 0.05;
+
+/* Time in cscd since then: of a stage and in all. */
+static void add_detection(ipc_solver *p, double since, double *stage) {
+    double spent = clock_now_ms() - since;
+    *stage += spent;
+    p->statistics.detect_ms += spent;
+}
+
+double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc_contacts *contacts) {
+    double inertia = 0.0;
+    for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
+        double away[3];
+        difference(positions + (size_t)v * 3, p->predicted + (size_t)v * 3, away);
+        inertia += 0.5 * p->inertia[v] * dot(away, away);
+    }
+    return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
+}
+
+/* Where an obstacle's coordinate i is to be at the end of the time step. */
+static double goal(const ipc_solver *p, uint32_t i) {
+    return p->shape.positions[i] + p->to_travel * p->travels[i];
+}
+
+/* The way left to go for each obstacle. */
+static void aim_obstacles(ipc_solver *p) {
+    p->arrived = true;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) {
+        if (p->inertia[i / 3] > 0.0) continue;
+        p->direction[i] = goal(p, i) - p->positions[i];
+        p->arrived = p->arrived && p->direction[i] == 0.0;
+    }
+}
+
+/* Newton's: how bodies go with the obstacles that press them is in the Hessian of the barrier. Returns the
+ * slope of the energy along it. */
+static double find_direction(ipc_solver *p) {
+    double slope = 0.0;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->gradient[i] = p->inertia[i / 3] * (p->positions[i] - p->predicted[i]);
+    ipc_springs_add_gradient(&p->springs, p->positions, p->gradient);
+    ipc_contacts_add_gradient(&p->contacts, p->gradient);
+    ipc_system_set(&p->system, p->positions, &p->contacts);
+    aim_obstacles(p);
+    p->statistics.conjugate_gradients +=
+        ipc_system_solve(&p->system, p->gradient, solve_tolerance, GRADIENTS_MOST, p->direction);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) slope += p->gradient[i] * p->direction[i];
+    return slope;
+}
+
+/* The energy at the trial point, `length` along the line. */
+static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
+    cscd_proximities near;
+    double since = clock_now_ms();
+    cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
+    add_detection(p, since, &p->statistics.near_ms);
+    if (status != CSCD_OK) return status;
+    ipc_contacts_find(&p->trial_contacts, p->mesh, p->shape.positions, p->trial, &near, &p->scene->barrier);
+    p->statistics.near += near.count;
+    p->statistics.trials++;
+    *energy = ipc_solver_energy(p, p->trial, &p->trial_contacts);
+    return CSCD_OK;
+}
+
+/* Certified: p->trial is what the library verified, at most `longest` along the line. */
+static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
+    double since = clock_now_ms();
+    cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
+    add_detection(p, since, &p->statistics.certify_ms);
+    return status;
+}
+
+static cscd_status begin_line(ipc_solver *p) {
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal(p, i);
+    double since = clock_now_ms();
+    cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
+    add_detection(p, since, &p->statistics.begin_ms);
+    if (status == CSCD_OK) p->statistics.candidates += cscd_line_candidate_count(p->line);
+    return status;
+}
+
+/* From the longest step that is free of contact on backwards, until the energy has fallen by enough (Armijo's
+ * rule); while obstacles move, which may do work, the longest. What is evaluated is what the library has
+ * verified. *found false: no step leads down. */
+static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
+    double longest = 1.0;
+    cscd_status status = begin_line(p);
+    for (int i = 0; status == CSCD_OK && !*found && i < HALVINGS_MOST; i++) {
+        cscd_free_step step;
+        double energy = INFINITY;
+        status = reach(p, longest, &step);
+        if (status == CSCD_OK) status = evaluate(p, step.length, &energy);
+        if (status != CSCD_OK) return status;
+        p->statistics.cut += i == 0 && step.limited;
+        *found = !p->arrived || energy <= p->energy + least_gain * step.length * slope;
+        if (*found) p->energy = energy;
+        longest = 0.5 * step.length;
+    }
+    return status;
+}
+
+/* What was tried is where the vertices are. */
+static void accept(ipc_solver *p) {
+    double *positions = p->positions;
+    ipc_contacts contacts = p->contacts;
+    p->positions = p->trial;
+    p->contacts = p->trial_contacts;
+    p->trial = positions;
+    p->trial_contacts = contacts;
+    p->statistics.least_distance = fmin(p->statistics.least_distance, p->contacts.least_distance);
+}
+
+static double farthest(const ipc_solver *p) {
+    double most = 0.0;
+    for (uint32_t v = 0; v < p->shape.vertex_count; v++)
+        most = fmax(most, norm(p->direction + (size_t)v * 3));
+    return most;
+}
+
+cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
+    bool found = false;
+    double slope = find_direction(p);
+    cscd_status status = search_line(p, slope, &found);
+    if (status != CSCD_OK) return status;
+    p->statistics.newton++;
+    p->statistics.driven += !p->arrived;
+    p->statistics.unfinished += !found;
+    if (found) accept(p);
+    *done = p->arrived && (!found || farthest(p) < done_share * p->scene->barrier.reach);
+    return CSCD_OK;
+}
+
+void ipc_solver_begin_step(ipc_solver *p) {
+    double step = p->scene->step_seconds;
+    p->to_travel = ipc_scene_travelled(p->scene, p->time + step);
+    memcpy(p->before, p->positions, (size_t)p->shape.vertex_count * 3 * sizeof *p->before);
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->predicted[i] =
+            p->positions[i] + step * p->velocities[i] - (i % 3 == 2 ? step * step * p->scene->gravity : 0.0);
+    p->energy = ipc_solver_energy(p, p->positions, &p->contacts);
+}
+
+void ipc_solver_end_step(ipc_solver *p) {
+    double step = p->scene->step_seconds;
+    p->time += step;
+    p->statistics.steps++;
+    for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
+        p->velocities[i] = p->inertia[i / 3] > 0.0 ? (p->positions[i] - p->before[i]) / step : 0.0;
+}
+
+cscd_status ipc_solver_advance(ipc_solver *p) {
+    double since = clock_now_ms();
+    bool done = false;
+    cscd_status status = CSCD_OK;
+    ipc_solver_begin_step(p);
+    for (int i = 0; i < NEWTON_MOST && status == CSCD_OK && !done; i++) status = ipc_solver_iterate(p, &done);
+    if (status != CSCD_OK) return status;
+    p->statistics.unfinished += !done;
+    ipc_solver_end_step(p);
+    p->statistics.total_ms += clock_now_ms() - since;
+    return CSCD_OK;
+}

@@ -1,0 +1,173 @@
+/* The system of equations for the charges of one component: matrix, factors, refinement. */
+#include "preprocess/charge/charge_system.h"
+#include "preprocess/charge/dense_solve.h"
+#include "src/core/timer.h"
+
+#include <float.h>
+#include <math.h>
+
+enum { COLUMNS_PER_TASK = 8, POINTS_PER_BLOCK = 256, CORRECTIONS_MAX = 20 };
+
+/* Of the largest density: what may be missing in the end. */
+static const double TOLERANCE = 1e-10;
+
+static uint32_t tasks_of(uint32_t count, uint32_t per_task) {
+    return count / per_task + (count % per_task != 0);
+}
+
+static uint32_t block_size(const charge_system *system, uint32_t begin) {
+    return system->count - begin < POINTS_PER_BLOCK ? system->count - begin : POINTS_PER_BLOCK;
+}
+
+/* Potentials at points begin.. of a charge of 1 on source k, eq. 3.6 over the area. */
+static void potentials_of_source(const charge_system *system, uint32_t k, uint32_t begin, uint32_t size,
+                                 double *potentials) {
+    const potential_source *source = &system->sources[k];
+    potential_at(source, system->x + begin, system->y + begin, system->z + begin, size, potentials);
+    double inverse_area = 1.0 / source->area;
+    for (uint32_t i = 0; i < size; i++) potentials[i] *= inverse_area;
+}
+
+static void assemble_columns(void *data, uint32_t task) {
+    charge_system *system = data;
+    uint32_t n = system->count, first = task * COLUMNS_PER_TASK;
+    if (!progress_go_on(system->context, (double)first / n)) return;
+    for (uint32_t k = first; k < n && k < first + COLUMNS_PER_TASK; k++) {
+        float *column = system->matrix + (size_t)k * n;
+        for (uint32_t begin = 0; begin < n; begin += POINTS_PER_BLOCK) {
+            double potentials[POINTS_PER_BLOCK];
+            uint32_t size = block_size(system, begin);
+            potentials_of_source(system, k, begin, size, potentials);
+            for (uint32_t i = 0; i < size; i++) column[begin + i] = (float)potentials[i];
+        }
+    }
+}
+
+/* residual = 1 - (potential of charges) at one block of points, with entries in double precision, computed
+ * anew. */
+static void evaluate_residual(void *data, uint32_t task) {
+    charge_system *system = data;
+    uint32_t begin = task * POINTS_PER_BLOCK, size = block_size(system, begin);
+    if (!progress_go_on(system->context, (double)begin / system->count)) return;
+    double sums[POINTS_PER_BLOCK] = {0.0}, potentials[POINTS_PER_BLOCK];
+    for (uint32_t k = 0; k < system->count; k++) {
+        potentials_of_source(system, k, begin, size, potentials);
+        for (uint32_t i = 0; i < size; i++) sums[i] += potentials[i] * system->charges[k];
+    }
+    for (uint32_t i = 0; i < size; i++) system->residual[begin + i] = 1.0 - sums[i];
+}
+
+/* Solves for the residual and adds the solution to the charges. Returns the largest correction of a density
+ * over the largest density. */
+static double apply_correction(charge_system *system) {
+    uint32_t n = system->count;
+    for (uint32_t k = 0; k < n; k++) system->correction[k] = (float)system->residual[k];
+    dense_substitute(system->matrix, n, system->pivots, system->correction);
+    double change = 0.0, largest = DBL_MIN;
+    for (uint32_t k = 0; k < n; k++) {
+        double correction = (double)system->correction[k], area = system->sources[k].area;
+        system->charges[k] += correction;
+        change = fmax(change, fabs(correction) / area);
+        largest = fmax(largest, fabs(system->charges[k]) / area);
+        if (!isfinite(correction)) return INFINITY;
+    }
+    return change / largest;
+}
+
+/* The triangle whose pivot is the smallest against what was its diagonal, the potential of a disc of its
+ * area. */
+static uint32_t most_dependent_triangle(const charge_system *system) {
+    uint32_t worst = 0;
+    double smallest = INFINITY;
+    for (uint32_t k = 0; k < system->count; k++) {
+        double pivot = fabs((double)system->matrix[(size_t)k * system->count + k]);
+        double ratio = pivot * sqrt(system->sources[k].area);
+        if (ratio >= smallest) continue;
+        smallest = ratio;
+        worst = k;
+    }
+    uint32_t i = 0;
+    while (system->points[i].unknown != worst) i++;
+    return system->points[i].triangle;
+}
+
+static cscd_status fail_singular(const charge_system *system) {
+    return context_fail(
+        system->context, CSCD_INVALID_ARGUMENT,
+        "charge: the charges of component %u cannot be told apart in its %u equations, least of "
+        "all that of triangle %u: some triangles there lie (almost) on each other or on one "
+        "line; move or remove them",
+        system->component, system->count, most_dependent_triangle(system));
+}
+
+/* In ns on one thread, by estimate: entries take some 10 each, in the matrix and in three residuals, and a
+ * multiplication of the factors a hundredth. */
+static double entries_work(double n) {
+    return 10.0 * n * n;
+}
+
+static double factors_work(double n) {
+    return n * n * n / 300.0;
+}
+
+double charge_system_work(uint32_t count) {
+    return 4.0 * entries_work(count) + factors_work(count);
+}
+
+/* Begin and end are parts of the work. */
+static void enter_stage(const charge_system *system, const char *name, double begin, double end) {
+    double work = charge_system_work(system->count);
+    progress_stage(system->context, name, begin / work, end / work);
+}
+
+static cscd_status assemble(charge_system *system) {
+    enter_stage(system, "charge: matrix", 0.0, entries_work(system->count));
+    parallel_run(system->context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns,
+                 system);
+    return progress_status(system->context);
+}
+
+static cscd_status factor(charge_system *system, uint32_t *zero_pivot) {
+    double begin = entries_work(system->count);
+    enter_stage(system, "charge: factors", begin, begin + factors_work(system->count));
+    return dense_factor(system->context, system->matrix, system->count, system->pivots, zero_pivot);
+}
+
+/* Iterative refinement. Each step shrinks the error by about condition number * 2^-24, so from two steps the
+ * next one is known: change * (change / change before). */
+static cscd_status refine(charge_system *system) {
+    parallel *threads = system->context->threads;
+    double before = 1.0, work = charge_system_work(system->count);
+    for (uint32_t k = 0; k < system->count; k++) {
+        system->charges[k] = 0.0;
+        system->residual[k] = 1.0;
+    }
+    apply_correction(system);
+    for (int i = 0; i < CORRECTIONS_MAX; i++) {
+        double left = 3.0 - i > 1.0 ? 3.0 - i : 1.0; /* mostly it takes three */
+        enter_stage(system, "charge: refinement", work - left * entries_work(system->count),
+                    work - (left - 1.0) * entries_work(system->count));
+        parallel_run(threads, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
+        cscd_status status = progress_status(system->context);
+        if (status != CSCD_OK) return status;
+        double change = apply_correction(system);
+        double rate = change / before;
+        if (!(rate < 0.5)) break;
+        if (change * rate < TOLERANCE) return CSCD_OK;
+        before = change;
+    }
+    return fail_singular(system);
+}
+
+cscd_status charge_system_solve(charge_system *system, charge_timings *timings) {
+    if (system->count == 0) return CSCD_OK;
+    uint32_t zero_pivot = 0;
+    double clock = timer_now_ms();
+    cscd_status status = assemble(system);
+    timer_lap(&clock, &timings->assembly_ms);
+    if (status == CSCD_OK) status = factor(system, &zero_pivot);
+    timer_lap(&clock, &timings->factor_ms);
+    if (status == CSCD_OK) status = zero_pivot == 0 ? refine(system) : fail_singular(system);
+    timer_lap(&clock, &timings->refine_ms);
+    return status;
+}

@@ -1,0 +1,43 @@
+/* The system of equations for the charges of one component. */
+#pragma once
+
+#include "preprocess/charge/charge.h"
+#include "preprocess/charge/potential.h"
+
+/* A triangle and its collocation point. */
+typedef struct charge_point {
+    double position[3];
+    uint32_t triangle;
+    uint32_t unknown;
+} charge_point;
+
+/* Unknown k is the charge on a triangle, or on all triangles that coincide with it. Lengths are scaled by a
+ * power of two so that the component's extent lies in [1/2, 1), about its box's middle. */
+typedef struct charge_system {
+    cscd_context *context;
+    uint32_t component, count;  /* of unknowns */
+    uint32_t point_count;       /* of triangles with an area */
+    double scale;               /* scaled length / length */
+    charge_point *points;       /* sorted by position, so by unknown too */
+    charge_point *scratch;      /* for sorting */
+    potential_source *sources;  /* of the unknowns, as all below */
+    double *x, *y, *z;          /* collocation points */
+    double *charges, *residual; /* at potential 1 in scaled lengths */
+    float *correction;
+    int32_t *pivots;
+    float *matrix; /* count x count by columns: potential at point j of charge 1 on source k */
+} charge_system;
+
+/* Points the arrays for up to capacity triangles into memory, which is at least as large as the result; with
+ * memory NULL it only counts bytes. SIZE_MAX: too many. */
+size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *memory);
+
+/* Takes the component whose triangles are given; ends with unknowns, sources and collocation points. */
+cscd_status charge_system_collect(charge_system *system, const cscd_mesh *mesh, const double *positions,
+                                  uint32_t component, const uint32_t *triangles, uint32_t triangle_count);
+
+/* What a system of so many unknowns costs, to be compared with others. */
+double charge_system_work(uint32_t count);
+
+/* Assembles, factors and solves; adds to timings. CANCELLED: nothing is solved. */
+cscd_status charge_system_solve(charge_system *system, charge_timings *timings);

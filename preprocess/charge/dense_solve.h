@@ -1,0 +1,14 @@
+/* Dense linear systems in single precision: LU with partial pivoting, by LAPACK and BLAS on the context's
+ * threads. */
+#pragma once
+
+#include "src/core/context.h"
+
+/* matrix: count x count, column after column, replaced by its factors; pivots: count. *zero_pivot becomes 0,
+ * or k when the k-th pivot (from 1) is exactly 0. CANCELLED: neither means anything. The bits of the factors
+ * depend on neither the number of threads nor who runs them. */
+cscd_status dense_factor(cscd_context *context, float *matrix, uint32_t count, int32_t *pivots,
+                         uint32_t *zero_pivot);
+
+/* vector is replaced by the solution. */
+void dense_substitute(const float *factors, uint32_t count, const int32_t *pivots, float *vector);

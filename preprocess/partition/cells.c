@@ -1,0 +1,206 @@
+/* Cells of parts: near vertices with like normals, connected. */
+#include "preprocess/partition/cells.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+/* Edges between vertices of equal labels, in both directions, ascending from each vertex; those labelled
+ * PARTITION_NONE have no edge. offsets: vertex_count + 1, neighbours: 2 * edge_count. */
+static void list_neighbours(const cscd_mesh *mesh, const uint32_t *labels, uint32_t *offsets,
+                            uint32_t *neighbours) {
+    uint32_t *ends = offsets + 1, begin = 0;
+    memset(offsets, 0, ((size_t)mesh->vertex_count + 1) * sizeof *offsets);
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const uint32_t *v = mesh->edges[e];
+        if (labels[v[0]] != labels[v[1]]) continue;
+        ends[v[0]]++;
+        ends[v[1]]++;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        uint32_t count = ends[v];
+        ends[v] = begin;
+        begin += count;
+    }
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        const uint32_t *v = mesh->edges[e];
+        if (labels[v[0]] != labels[v[1]]) continue;
+        neighbours[ends[v[0]]++] = v[1];
+        neighbours[ends[v[1]]++] = v[0];
+    }
+}
+
+/* ---- room -------------------------------------------------------------------------------------------- */
+
+static cscd_status allocate(cell_maker *maker, size_t largest) {
+    const cscd_mesh *mesh = maker->partition->mesh;
+    cscd_context *context = mesh->context;
+    size_t vertices = mesh->vertex_count, edges = mesh->edge_count, parts = maker->partition->part_count;
+    maker->offsets = context_allocate(context, vertices + 1, sizeof(uint32_t));
+    maker->neighbours = context_allocate(context, 2 * edges, sizeof(uint32_t));
+    maker->labels = context_allocate(context, vertices, sizeof(uint32_t));
+    maker->counts = context_allocate(context, parts, sizeof(uint32_t));
+    maker->distortions = context_allocate(context, parts, sizeof(double));
+    maker->vectors = context_allocate(context, largest * LBG_DIMENSIONS, sizeof(double));
+    maker->vector_labels = context_allocate(context, largest, sizeof(uint32_t));
+    maker->order = context_allocate(context, largest, sizeof(uint32_t));
+    maker->candidates = context_allocate(context, largest, sizeof(uint32_t));
+    maker->codes = context_allocate(context, largest, sizeof(lbg_code));
+    connect_work *c = &maker->connecting;
+    c->pieces = context_allocate(context, vertices, sizeof(uint32_t));
+    c->queue = context_allocate(context, largest, sizeof(uint32_t));
+    c->piece_offsets = context_allocate(context, largest + 1, sizeof(uint32_t));
+    c->piece_labels = context_allocate(context, largest, sizeof(uint32_t));
+    c->settled = context_allocate(context, largest, sizeof(bool));
+    c->best = context_allocate(context, largest, sizeof(uint32_t));
+    bool complete = maker->offsets != NULL && maker->neighbours != NULL && maker->labels != NULL &&
+                    maker->counts != NULL && maker->distortions != NULL && maker->vectors != NULL &&
+                    maker->vector_labels != NULL && maker->order != NULL && maker->candidates != NULL &&
+                    maker->codes != NULL && c->pieces != NULL && c->queue != NULL &&
+                    c->piece_offsets != NULL && c->piece_labels != NULL && c->settled != NULL &&
+                    c->best != NULL;
+    return complete ? CSCD_OK : context_out_of_memory(context);
+}
+
+void cell_maker_free(cell_maker *maker) {
+    connect_work *c = &maker->connecting;
+    void *blocks[] = {maker->offsets,       maker->neighbours, maker->labels, maker->counts,
+                      maker->distortions,   maker->vectors,    maker->order,  maker->candidates,
+                      maker->vector_labels, maker->codes,      c->pieces,     c->queue,
+                      c->piece_offsets,     c->piece_labels,   c->settled,    c->best};
+    cscd_context *context = maker->partition->context;
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+/* Cells as they are, numbered from 0 in each part. */
+static void take_cells(cell_maker *maker) {
+    const cscd_partition *partition = maker->partition;
+    for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
+        uint32_t part = partition->vertex_parts[v];
+        if (part != PARTITION_NONE)
+            maker->labels[v] = partition->vertex_cells[v] - partition->parts[part].first_cell;
+    }
+    for (uint32_t p = 0; p < partition->part_count; p++) {
+        maker->counts[p] = partition->parts[p].cell_count;
+        maker->distortions[p] = partition->distortions[p];
+    }
+}
+
+cscd_status cell_maker_create(cscd_partition *partition, const double *positions, uint32_t largest,
+                              cell_maker *out) {
+    *out = (cell_maker){.partition = partition, .positions = positions};
+    cscd_status status = allocate(out, largest);
+    if (status != CSCD_OK) {
+        cell_maker_free(out);
+        return status;
+    }
+    list_neighbours(partition->mesh, partition->vertex_parts, out->offsets, out->neighbours);
+    out->connecting.offsets = out->offsets;
+    out->connecting.neighbours = out->neighbours;
+    out->connecting.labels = out->labels;
+    take_cells(out);
+    return CSCD_OK;
+}
+
+/* ---- vectors ----------------------------------------------------------------------------------------- */
+
+/* Of all triangles about the vertex, weighted by their areas; of length 1, or 0. */
+static void vertex_normal(const cscd_mesh *mesh, const double *positions, uint32_t vertex, double out[3]) {
+    memset(out, 0, 3 * sizeof *out);
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        double normal[3];
+        surface_normal(mesh, positions, mesh->vertex_stars[i], normal);
+        for (int k = 0; k < 3; k++) out[k] += normal[k];
+    }
+    double norm = surface_norm(out);
+    for (int k = 0; k < 3 && norm > 0.0; k++) out[k] /= norm;
+}
+
+/* Differences to the first vertex only, so that a part that is moved without rounding has the same ones. */
+static void difference(const cell_maker *maker, const uint32_t *vertices, uint32_t i, double out[3]) {
+    const double *p = maker->positions + (size_t)vertices[i] * 3;
+    const double *first = maker->positions + (size_t)vertices[0] * 3;
+    for (int k = 0; k < 3; k++) out[k] = p[k] - first[k];
+}
+
+/* Positions about their mean, of a root mean square of 1; beside them weighted normals. */
+static void fill_vectors(const cell_maker *maker, const uint32_t *vertices, uint32_t count) {
+    double mean[3] = {0, 0, 0}, squares = 0.0, d[3];
+    for (uint32_t i = 0; i < count; i++) {
+        difference(maker, vertices, i, d);
+        for (int k = 0; k < 3; k++) mean[k] += d[k] / count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        difference(maker, vertices, i, d);
+        for (int k = 0; k < 3; k++) squares += (d[k] - mean[k]) * (d[k] - mean[k]);
+    }
+    double radius = sqrt(squares / count), weight = maker->partition->options.normal_weight;
+    for (uint32_t i = 0; i < count; i++) {
+        double *vector = maker->vectors + (size_t)i * LBG_DIMENSIONS;
+        difference(maker, vertices, i, d);
+        for (int k = 0; k < 3; k++) vector[k] = radius > 0.0 ? (d[k] - mean[k]) / radius : 0.0;
+        vertex_normal(maker->partition->mesh, maker->positions, vertices[i], vector + 3);
+        for (int k = 3; k < LBG_DIMENSIONS; k++) vector[k] *= weight;
+    }
+}
+
+/* ---- cells ------------------------------------------------------------------------------------------- */
+
+void make_cells(cell_maker *maker, uint32_t part) {
+    const cscd_partition *partition = maker->partition;
+    const uint32_t *vertices = partition->part_vertices + partition->part_vertex_offsets[part];
+    uint32_t count = partition->part_vertex_offsets[part + 1] - partition->part_vertex_offsets[part];
+    if (count == 0) return;
+    fill_vectors(maker, vertices, count);
+    lbg l = {.vectors = maker->vectors,
+             .vector_count = count,
+             .codes_max = maker->counts[part],
+             .epsilon = partition->options.epsilon,
+             .labels = maker->vector_labels,
+             .codes = maker->codes,
+             .order = maker->order,
+             .candidates = maker->candidates};
+    uint32_t code_count = lbg_run(&l);
+    for (uint32_t i = 0; i < count; i++) maker->labels[vertices[i]] = l.labels[i];
+    code_count = connect_labels(&maker->connecting, vertices, count, code_count);
+    for (uint32_t i = 0; i < count; i++) l.labels[i] = maker->labels[vertices[i]];
+    lbg_find_codes(&l, code_count);
+    maker->counts[part] = code_count;
+    maker->distortions[part] = lbg_distortion(&l, code_count);
+}
+
+static void list_cells(cscd_partition *partition) {
+    uint32_t *ends = partition->cell_offsets + 1, begin = 0;
+    memset(partition->cell_offsets, 0, ((size_t)partition->cell_count + 1) * sizeof *ends);
+    for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
+        if (partition->vertex_cells[v] != PARTITION_NONE) ends[partition->vertex_cells[v]]++;
+    }
+    for (uint32_t c = 0; c < partition->cell_count; c++) {
+        uint32_t count = ends[c];
+        ends[c] = begin;
+        begin += count;
+    }
+    for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
+        uint32_t cell = partition->vertex_cells[v];
+        if (cell != PARTITION_NONE) partition->cell_vertices[ends[cell]++] = v;
+    }
+}
+
+void hand_over_cells(const cell_maker *maker) {
+    cscd_partition *partition = maker->partition;
+    uint32_t cell_count = 0;
+    for (uint32_t p = 0; p < partition->part_count; p++) {
+        partition->parts[p].first_cell = cell_count;
+        partition->parts[p].cell_count = maker->counts[p];
+        partition->distortions[p] = maker->distortions[p];
+        for (uint32_t i = 0; i < maker->counts[p]; i++) partition->cell_parts[cell_count++] = p;
+    }
+    partition->cell_count = cell_count;
+    for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
+        uint32_t part = partition->vertex_parts[v];
+        partition->vertex_cells[v] =
+            part == PARTITION_NONE ? PARTITION_NONE : partition->parts[part].first_cell + maker->labels[v];
+    }
+    list_cells(partition);
+    list_neighbours(partition->mesh, partition->vertex_cells, partition->neighbour_offsets,
+                    partition->neighbours);
+}

@@ -1,0 +1,151 @@
+/* Partitions of parts into cells, each for one particle of the sensors. */
+#include "preprocess/partition/cells.h"
+#include "preprocess/partition/convexity.h"
+#include "preprocess/partition/parts.h"
+#include "preprocess/partition/spheres.h"
+#include "src/mesh/positions.h"
+
+static const double normal_weight_max = 1e6;
+
+cscd_partition_options cscd_partition_defaults(void) {
+    return (cscd_partition_options){.struct_size = sizeof(cscd_partition_options),
+                                    .cells_max = 64,
+                                    .normal_weight = 1.0,
+                                    .epsilon = 1e-3};
+}
+
+static cscd_status check_options(cscd_context *context, const cscd_partition_options *options) {
+    if (options->struct_size != sizeof *options)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "partition options were not made by cscd_partition_defaults (struct_size %u, expected %zu)",
+            options->struct_size, sizeof *options);
+    if (options->cells_max == 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cells_max is 0, expected 1 or more");
+    if (!(options->normal_weight >= 0.0 && options->normal_weight <= normal_weight_max))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "normal_weight is %g, expected a number from 0 to %g", options->normal_weight,
+                            normal_weight_max);
+    if (!(options->epsilon >= 0.0 && options->epsilon < 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "epsilon is %g, expected a share of the distortion in [0,1)", options->epsilon);
+    return CSCD_OK;
+}
+
+/* ---- making cells ------------------------------------------------------------------------------------ */
+
+/* What is measured of all parts, for how many cells one gets depends on the others. */
+typedef struct measures {
+    double *radii;
+    bool *convex, *convex_components;
+    uint32_t *counts;
+} measures;
+
+static void free_measures(cscd_context *context, measures *m) {
+    context_free(context, m->radii);
+    context_free(context, m->convex);
+    context_free(context, m->convex_components);
+    context_free(context, m->counts);
+}
+
+/* A part is convex where it is its whole object, and that is one convex component. */
+static void find_convex_parts(const cscd_partition *partition, measures *m) {
+    const cscd_mesh *mesh = partition->mesh;
+    for (uint32_t p = 0; p < partition->part_count; p++) m->counts[p] = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) m->counts[partition->triangle_parts[t]]++;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        uint32_t part = partition->triangle_parts[t], c = mesh->triangle_components[t];
+        uint32_t whole = mesh->components[c].triangle_count;
+        uint32_t object = partition->parts[part].object;
+        if (mesh->object_count > 1) whole = mesh->objects[object].triangle_count;
+        m->convex[part] = m->convex_components[c] && m->counts[part] == whole;
+    }
+}
+
+static cscd_status measure(const cscd_partition *partition, const double *positions, measures *m) {
+    cscd_context *context = partition->context;
+    m->radii = context_allocate(context, partition->part_count, sizeof *m->radii);
+    m->convex = context_allocate(context, partition->part_count, sizeof *m->convex);
+    m->convex_components =
+        context_allocate(context, partition->mesh->component_count, sizeof *m->convex_components);
+    m->counts = context_allocate(context, partition->part_count, sizeof *m->counts);
+    if (m->radii == NULL || m->convex == NULL || m->convex_components == NULL || m->counts == NULL)
+        return context_out_of_memory(context);
+    find_radii(partition, positions, m->radii);
+    cscd_status status = find_convex_components(partition->mesh, positions, m->convex_components);
+    if (status != CSCD_OK) return status;
+    find_convex_parts(partition, m);
+    return count_cells(partition, m->radii, m->convex, m->counts);
+}
+
+static uint32_t most_vertices(const cscd_partition *partition, uint32_t first, uint32_t end) {
+    uint32_t most = 0;
+    for (uint32_t p = first; p < end; p++) {
+        uint32_t count = partition->part_vertex_offsets[p + 1] - partition->part_vertex_offsets[p];
+        if (count > most) most = count;
+    }
+    return most;
+}
+
+/* Cells of the parts in [first, end); all or nothing. */
+static cscd_status make(cscd_partition *partition, const double *positions, uint32_t first, uint32_t end) {
+    measures m = {0};
+    cell_maker maker;
+    cscd_status status = measure(partition, positions, &m);
+    if (status == CSCD_OK)
+        status = cell_maker_create(partition, positions, most_vertices(partition, first, end), &maker);
+    if (status == CSCD_OK) {
+        partition->generation++;
+        for (uint32_t p = first; p < end; p++) {
+            maker.counts[p] = m.counts[p];
+            make_cells(&maker, p);
+            partition->parts[p].radius = m.radii[p];
+            partition->parts[p].convex = m.convex[p];
+            partition->part_generations[p] = partition->generation;
+        }
+        hand_over_cells(&maker);
+        cell_maker_free(&maker);
+    }
+    free_measures(partition->context, &m);
+    return status;
+}
+
+/* ---- the interface ----------------------------------------------------------------------------------- */
+
+cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                  const cscd_partition_options *options, cscd_partition **out) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_partition_create: out is NULL");
+    cscd_partition_options chosen = options != NULL ? *options : cscd_partition_defaults();
+    cscd_status status = check_options(context, &chosen);
+    if (status == CSCD_OK && plan != NULL && plan->mesh_hash != cscd_mesh_hash(mesh))
+        status = context_fail(context, CSCD_INVALID_ARGUMENT,
+                              "the plan was made for another mesh (hash %016llx, this one has %016llx)",
+                              (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
+    if (status == CSCD_OK) status = positions_check(context, positions, mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+    cscd_partition *partition = partition_of_parts(mesh, plan);
+    if (partition == NULL) return context_out_of_memory(context);
+    partition->options = chosen;
+    status = make(partition, positions, 0, partition->part_count);
+    if (status == CSCD_OK)
+        *out = partition;
+    else
+        cscd_partition_destroy(partition);
+    return status;
+}
+
+cscd_status cscd_partition_renew(cscd_partition *partition, const double *positions, uint32_t part) {
+    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
+    if (part != UINT32_MAX && part >= partition->part_count)
+        return context_fail(partition->context, CSCD_INVALID_ARGUMENT,
+                            "part is %u, but there are %u: expected one of them, or UINT32_MAX for all", part,
+                            partition->part_count);
+    cscd_status status =
+        positions_check(partition->context, positions, partition->mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+    bool all = part == UINT32_MAX;
+    return make(partition, positions, all ? 0 : part, all ? partition->part_count : part + 1);
+}

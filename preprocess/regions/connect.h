@@ -1,0 +1,23 @@
+/* Labels of vertices made connected along edges. */
+#pragma once
+
+#include "src/core/context.h"
+
+/* A graph of all vertices, of which a part's are looked at, and room to do so. */
+typedef struct connect_work {
+    const uint32_t *offsets, *neighbours; /* of vertices, in their part only */
+    uint32_t *labels;                     /* of vertices, changed */
+    uint32_t *pieces;                     /* of vertices */
+    uint32_t *queue;                      /* one per vertex of a part, as all below */
+    uint32_t *piece_offsets;              /* and one more */
+    uint32_t *piece_labels;
+    bool *settled;  /* per piece */
+    uint32_t *best; /* per label: something of each */
+} connect_work;
+
+/* vertices: all of a part, ascending; labels are below label_count. A label keeps its largest connected piece
+ * (ties: the first). Another piece joins the neighbouring label with most edges to it (ties: the smaller),
+ * and gets a label of its own where no piece of a label is to be reached. Then labels are numbered anew from
+ * 0, by their first vertices; returns how many there are. */
+uint32_t connect_labels(const connect_work *work, const uint32_t *vertices, uint32_t count,
+                        uint32_t label_count);

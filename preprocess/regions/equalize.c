@@ -1,0 +1,76 @@
+/* Equalization of charge densities: from values to the share of triangles that have no higher one. */
+#include "preprocess/regions/equalize.h"
+#include "src/core/sort.h"
+
+#include <math.h>
+
+enum { BIN_COUNT = 256 };
+
+typedef struct ranked {
+    uint32_t component, triangle;
+    double density;
+} ranked;
+
+/* Independent of the range, unlike a conversion to float. */
+static double round_to_24_bits(double value) {
+    int exponent;
+    double mantissa = frexp(value, &exponent);
+    return ldexp(nearbyint(ldexp(mantissa, 24)), exponent - 24);
+}
+
+/* The sort is stable and the items come by triangle, so ties stay in that order. */
+static int compare_ranked(const void *a, const void *b) {
+    const ranked *x = a, *y = b;
+    if (x->component != y->component) return x->component < y->component ? -1 : 1;
+    return (x->density > y->density) - (x->density < y->density);
+}
+
+static void rank_exactly(const ranked *items, uint32_t count, double *equalized) {
+    for (uint32_t i = 0; i < count; i++) equalized[items[i].triangle] = (i + 1.0) / count;
+}
+
+/* Halves avoid an overflow of the range; equal densities all go to the first bin. */
+static uint32_t bin_of(double density, double low, double high) {
+    double range = 0.5 * high - 0.5 * low;
+    if (!(range > 0.0)) return 0;
+    uint32_t bin = (uint32_t)((0.5 * density - 0.5 * low) / range * BIN_COUNT);
+    return bin < BIN_COUNT ? bin : BIN_COUNT - 1;
+}
+
+static void rank_by_bins(const ranked *items, uint32_t count, double *equalized) {
+    uint32_t cumulative[BIN_COUNT] = {0};
+    double low = items[0].density, high = items[count - 1].density;
+    for (uint32_t i = 0; i < count; i++) cumulative[bin_of(items[i].density, low, high)]++;
+    for (uint32_t bin = 1; bin < BIN_COUNT; bin++) cumulative[bin] += cumulative[bin - 1];
+    for (uint32_t i = 0; i < count; i++)
+        equalized[items[i].triangle] = (double)cumulative[bin_of(items[i].density, low, high)] / count;
+}
+
+cscd_status equalize(const cscd_mesh *mesh, const double *density, bool published, double *equalized) {
+    cscd_context *context = mesh->context;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (!isfinite(density[t]))
+            return context_fail(context, CSCD_INVALID_ARGUMENT,
+                                "the charge density of triangle %u is %g; densities must be finite", t,
+                                density[t]);
+    }
+    ranked *items = context_allocate(context, mesh->triangle_count, sizeof *items);
+    ranked *scratch = context_allocate(context, mesh->triangle_count, sizeof *items);
+    if (items == NULL || scratch == NULL) {
+        context_free(context, items);
+        context_free(context, scratch);
+        return context_out_of_memory(context);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        items[t] = (ranked){mesh->triangle_components[t], t, round_to_24_bits(density[t])};
+    sort_items(items, scratch, mesh->triangle_count, sizeof *items, compare_ranked);
+    const ranked *first = items;
+    for (uint32_t c = 0; c < mesh->component_count; c++) {
+        uint32_t count = mesh->components[c].triangle_count;
+        (published ? rank_by_bins : rank_exactly)(first, count, equalized);
+        first += count;
+    }
+    context_free(context, items);
+    context_free(context, scratch);
+    return CSCD_OK;
+}

@@ -1,0 +1,245 @@
+/* K-means regions: vertices in k clusters, triangles by the fewest edges to a cluster's centre. */
+#include "preprocess/regions/kmeans.h"
+#include "preprocess/regions/dual_graph.h"
+#include "preprocess/regions/lloyd.h"
+
+#include <string.h>
+
+enum { NONE = UINT32_MAX };
+
+typedef struct work {
+    const cscd_mesh *mesh;
+    const double *positions;
+    dual_graph graph;
+    uint32_t *used, *used_offsets; /* vertices with triangles, by component */
+    uint32_t *shares, *firsts;     /* centroids by component: how many, and the first */
+    uint32_t centroid_count;
+    double *centroids;
+    uint64_t *counts;
+    uint32_t *labels;    /* centroid of each vertex */
+    uint32_t *distances; /* of vertices, in edges */
+    uint32_t *queue;
+    uint32_t *regions, *pieces, *scratch; /* of triangles */
+    uint32_t *piece_sizes;
+    uint32_t *best; /* something of each centroid */
+} work;
+
+uint32_t kmeans_capacity(const cscd_mesh *mesh, uint32_t k) {
+    uint32_t useful = k < mesh->vertex_count ? k : mesh->vertex_count;
+    return useful > mesh->component_count ? useful : mesh->component_count;
+}
+
+static cscd_status allocate_work(work *w, uint32_t capacity) {
+    cscd_context *context = w->mesh->context;
+    size_t vertices = w->mesh->vertex_count, triangles = w->mesh->triangle_count;
+    size_t larger = vertices > triangles ? vertices : triangles;
+    size_t component_count = w->mesh->component_count;
+    w->used = context_allocate(context, vertices, sizeof(uint32_t));
+    w->used_offsets = context_allocate(context, component_count + 2, sizeof(uint32_t));
+    w->shares = context_allocate(context, component_count, sizeof(uint32_t));
+    w->firsts = context_allocate(context, component_count, sizeof(uint32_t));
+    w->centroids = context_allocate(context, (size_t)capacity * 3, sizeof(double));
+    w->counts = context_allocate(context, capacity, sizeof(uint64_t));
+    w->labels = context_allocate(context, vertices, sizeof(uint32_t));
+    w->distances = context_allocate(context, vertices, sizeof(uint32_t));
+    w->queue = context_allocate(context, larger, sizeof(uint32_t));
+    w->regions = context_allocate(context, triangles, sizeof(uint32_t));
+    w->pieces = context_allocate(context, triangles, sizeof(uint32_t));
+    w->scratch = context_allocate(context, triangles, sizeof(uint32_t));
+    w->best = context_allocate(context, capacity, sizeof(uint32_t));
+    w->piece_sizes = context_allocate(context, triangles, sizeof(uint32_t));
+    bool complete = w->used && w->used_offsets && w->shares && w->firsts && w->centroids && w->counts &&
+                    w->labels && w->distances && w->queue && w->regions && w->pieces && w->scratch &&
+                    w->best && w->piece_sizes;
+    return complete ? CSCD_OK : context_out_of_memory(context);
+}
+
+static void free_work(work *w) {
+    void *blocks[] = {w->used,   w->used_offsets, w->shares, w->firsts,     w->centroids,
+                      w->counts, w->labels,       w->queue,  w->distances,  w->regions,
+                      w->pieces, w->scratch,      w->best,   w->piece_sizes};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(w->mesh->context, blocks[i]);
+    dual_graph_free(w->mesh, &w->graph);
+}
+
+static bool is_used(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex] < mesh->vertex_star_offsets[vertex + 1];
+}
+
+static uint32_t vertex_component(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->triangle_components[mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]];
+}
+
+static void list_vertices(work *w) {
+    const cscd_mesh *mesh = w->mesh;
+    uint32_t *ends = w->used_offsets + 1;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (is_used(mesh, v)) ends[vertex_component(mesh, v) + 1]++;
+    }
+    for (uint32_t c = 0; c < mesh->component_count; c++) ends[c + 1] += ends[c];
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        if (is_used(mesh, v)) w->used[ends[vertex_component(mesh, v)]++] = v;
+    }
+}
+
+static uint32_t vertices_of(const work *w, uint32_t component) {
+    return w->used_offsets[component + 1] - w->used_offsets[component];
+}
+
+/* One each, the others one by one to the component with most vertices per centroid. */
+static void share_out(work *w, uint32_t k) {
+    uint32_t component_count = w->mesh->component_count, given = component_count;
+    for (uint32_t c = 0; c < component_count; c++) w->shares[c] = 1;
+    for (; given < k; given++) {
+        uint32_t best = NONE;
+        for (uint32_t c = 0; c < component_count; c++) {
+            if (w->shares[c] == vertices_of(w, c)) continue;
+            if (best == NONE ||
+                (uint64_t)vertices_of(w, c) * w->shares[best] > (uint64_t)vertices_of(w, best) * w->shares[c])
+                best = c;
+        }
+        if (best == NONE) break;
+        w->shares[best]++;
+    }
+    w->centroid_count = given;
+    for (uint32_t c = 1; c < component_count; c++) w->firsts[c] = w->firsts[c - 1] + w->shares[c - 1];
+}
+
+/* labels become numbers over all components. */
+static cscd_status find_centroids(work *w, uint32_t seed) {
+    for (uint32_t c = 0; c < w->mesh->component_count; c++) {
+        lloyd l = {w->mesh->context,  w->positions, w->used + w->used_offsets[c],
+                   vertices_of(w, c), w->shares[c], w->centroids + (size_t)w->firsts[c] * 3,
+                   w->labels,         w->counts,    w->queue};
+        double used = w->used_offsets[w->mesh->component_count];
+        progress_stage(w->mesh->context, "k-means", 0.8 * w->used_offsets[c] / used,
+                       0.8 * w->used_offsets[c + 1] / used);
+        cscd_status status = lloyd_run(&l, (uint64_t)seed << 32 | c);
+        if (status != CSCD_OK) return status;
+        for (uint32_t i = 0; i < l.point_count; i++) w->labels[l.points[i]] += w->firsts[c];
+    }
+    return CSCD_OK;
+}
+
+static double squared_distance(const double a[3], const double b[3]) {
+    double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x * x + y * y + z * z;
+}
+
+/* best[i] = the vertex of cluster i that is nearest to its centroid; NONE in an empty cluster. */
+static void find_anchors(work *w) {
+    uint32_t used_count = w->used_offsets[w->mesh->component_count];
+    for (uint32_t i = 0; i < w->centroid_count; i++) w->best[i] = NONE;
+    for (uint32_t i = 0; i < used_count; i++) {
+        uint32_t v = w->used[i], label = w->labels[v], best = w->best[label];
+        const double *centroid = w->centroids + (size_t)label * 3;
+        if (best == NONE || squared_distance(w->positions + (size_t)v * 3, centroid) <
+                                squared_distance(w->positions + (size_t)best * 3, centroid))
+            w->best[label] = v;
+    }
+}
+
+/* Breadth first along edges from all anchors at once; the queue keeps labels of one distance in order. */
+static void measure_edges(work *w) {
+    const cscd_mesh *mesh = w->mesh;
+    uint32_t end = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) w->distances[v] = NONE;
+    for (uint32_t i = 0; i < w->centroid_count; i++) {
+        if (w->best[i] == NONE) continue;
+        w->distances[w->best[i]] = 0;
+        w->labels[w->best[i]] = i;
+        w->queue[end++] = w->best[i];
+    }
+    for (uint32_t next = 0; next < end; next++) {
+        uint32_t v = w->queue[next];
+        for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
+            for (int corner = 0; corner < 3; corner++) {
+                uint32_t neighbour = mesh->triangles[mesh->vertex_stars[i]][corner];
+                if (w->distances[neighbour] != NONE) continue;
+                w->distances[neighbour] = w->distances[v] + 1;
+                w->labels[neighbour] = w->labels[v];
+                w->queue[end++] = neighbour;
+            }
+        }
+    }
+}
+
+static void assign_triangles(work *w) {
+    for (uint32_t t = 0; t < w->mesh->triangle_count; t++) {
+        const uint32_t *v = w->mesh->triangles[t];
+        uint32_t nearest = v[0];
+        for (int corner = 1; corner < 3; corner++) {
+            uint32_t x = v[corner];
+            if (w->distances[x] < w->distances[nearest] ||
+                (w->distances[x] == w->distances[nearest] && w->labels[x] < w->labels[nearest]))
+                nearest = x;
+        }
+        w->regions[t] = w->labels[nearest];
+    }
+}
+
+/* Of each region its largest piece stays; the others are taken over by neighbours, ring by ring. */
+static void join_strays(work *w) {
+    uint32_t n = w->mesh->triangle_count, end = 0;
+    for (uint32_t t = 0; t < n; t++) w->queue[t] = t;
+    dual_graph_pieces(&w->graph, w->queue, n, w->regions, w->pieces, w->scratch);
+    for (uint32_t t = 0; t < n; t++) w->piece_sizes[w->pieces[t]]++;
+    for (uint32_t i = 0; i < w->centroid_count; i++) w->best[i] = NONE;
+    for (uint32_t t = 0; t < n; t++) {
+        uint32_t *best = &w->best[w->regions[t]];
+        if (*best == NONE || w->piece_sizes[w->pieces[t]] > w->piece_sizes[*best]) *best = w->pieces[t];
+    }
+    for (uint32_t t = 0; t < n; t++) {
+        if (w->best[w->regions[t]] == w->pieces[t])
+            w->queue[end++] = t;
+        else
+            w->pieces[t] = NONE;
+    }
+    for (uint32_t next = 0; next < end; next++) {
+        uint32_t t = w->queue[next];
+        for (uint32_t i = w->graph.offsets[t]; i < w->graph.offsets[t + 1]; i++) {
+            uint32_t neighbour = w->graph.neighbours[i];
+            if (w->pieces[neighbour] != NONE) continue;
+            w->pieces[neighbour] = w->pieces[t];
+            w->regions[neighbour] = w->regions[t];
+            w->queue[end++] = neighbour;
+        }
+    }
+}
+
+/* Numbers what has triangles, and moves the centroids along. */
+static void write_result(work *w, uint32_t *region_of_triangle, uint32_t *region_count, double *points) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < w->centroid_count; i++) w->best[i] = NONE;
+    for (uint32_t t = 0; t < w->mesh->triangle_count; t++) {
+        uint32_t label = w->regions[t];
+        if (w->best[label] == NONE) {
+            w->best[label] = count;
+            memcpy(points + (size_t)count++ * 3, w->centroids + (size_t)label * 3, 3 * sizeof *points);
+        }
+        region_of_triangle[t] = w->best[label];
+    }
+    *region_count = count;
+}
+
+cscd_status regions_kmeans(const cscd_mesh *mesh, const double *positions, uint32_t k, uint32_t seed,
+                           uint32_t *region_of_triangle, uint32_t *region_count, double *detector_points) {
+    if (k == 0) return context_fail(mesh->context, CSCD_INVALID_ARGUMENT, "k-means wants one region or more");
+    work w = {.mesh = mesh, .positions = positions};
+    cscd_status status = allocate_work(&w, kmeans_capacity(mesh, k));
+    if (status == CSCD_OK) status = dual_graph_build(mesh, &w.graph);
+    if (status == CSCD_OK) {
+        list_vertices(&w);
+        share_out(&w, k);
+        status = find_centroids(&w, seed);
+    }
+    if (status == CSCD_OK) {
+        find_anchors(&w);
+        measure_edges(&w);
+        assign_triangles(&w);
+        join_strays(&w);
+        write_result(&w, region_of_triangle, region_count, detector_points);
+    }
+    free_work(&w);
+    return status;
+}

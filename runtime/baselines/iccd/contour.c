@@ -1,0 +1,208 @@
+/* The continuous contour test. Planar edges touch when an end of one comes to lie on the other (four planar
+ * vertex-edge tests), or when they cross from the start. */
+#include "runtime/baselines/iccd/contour.h"
+
+#include <float.h>
+#include <math.h>
+
+enum { DEPTH_MAX = 8 };
+
+/* The plane across the axis, and how far computed coordinates may be from those of the exact projection. Its
+ * origin moves with a vertex: what all of a body does together takes no part in whether it meets itself. */
+typedef struct plane {
+    double origin[2][3], right[3], up[3];
+    double error;
+} plane;
+
+/* Bernstein coefficients of a quadratic in time. */
+typedef struct quadratic {
+    double b[3];
+} quadratic;
+
+static void cross3(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* right and up are perpendicular to the axis up to rounding: the exact projection, along right x up, is along
+ * an axis that is off by 1e-14 or so, which normal_cone_limit allows for. */
+static plane make_plane(const float axis[3], const double *start, const double *end) {
+    plane p = {.error = 0.0};
+    double direction[3], helper[3] = {0.0, 0.0, 0.0}, least = INFINITY, length = 0.0;
+    int smallest = 0;
+    for (int k = 0; k < 3; k++) {
+        direction[k] = (double)axis[k];
+        p.origin[0][k] = start[k];
+        p.origin[1][k] = end[k];
+        if (fabs(direction[k]) < least) {
+            least = fabs(direction[k]);
+            smallest = k;
+        }
+    }
+    helper[smallest] = 1.0;
+    cross3(direction, helper, p.right);
+    for (int k = 0; k < 3; k++) length += p.right[k] * p.right[k];
+    for (int k = 0; k < 3; k++) p.right[k] /= sqrt(length);
+    cross3(direction, p.right, p.up);
+    return p;
+}
+
+/* A projected coordinate is a sum of three products of differences: off by less than 8 u times their sum. */
+static void project(plane *p, const double *x, int time, double out[2]) {
+    double size = 0.0, from[3];
+    for (int k = 0; k < 3; k++) {
+        from[k] = x[k] - p->origin[time][k];
+        size += fabs(from[k]);
+    }
+    out[0] = p->right[0] * from[0] + p->right[1] * from[1] + p->right[2] * from[2];
+    out[1] = p->up[0] * from[0] + p->up[1] * from[1] + p->up[2] * from[2];
+    p->error = fmax(p->error, 8.0 * DBL_EPSILON * size);
+}
+
+static void set_boxes(contour_edge *e, double error) {
+    for (int k = 0; k < 2; k++) {
+        e->start_low[k] = fmin(e->a[0][k], e->b[0][k]) - error;
+        e->start_high[k] = fmax(e->a[0][k], e->b[0][k]) + error;
+        e->low[k] = fmin(e->start_low[k], fmin(e->a[1][k], e->b[1][k]) - error);
+        e->high[k] = fmax(e->start_high[k], fmax(e->a[1][k], e->b[1][k]) + error);
+    }
+}
+
+/* Shell's sort by the left ends of the boxes. */
+static void sort_edges(contour_edge *edges, uint32_t count) {
+    uint32_t gap = 1;
+    while (gap < count / 3) gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3) {
+        for (uint32_t i = gap; i < count; i++) {
+            contour_edge moved = edges[i];
+            uint32_t at = i;
+            for (; at >= gap && edges[at - gap].low[0] > moved.low[0]; at -= gap) edges[at] = edges[at - gap];
+            edges[at] = moved;
+        }
+    }
+}
+
+static double cross2(const double a[2], const double b[2]) {
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot2(const double a[2], const double b[2]) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/* Linear motions, [time][axis], of the difference of two points. */
+static void subtract(double a[2][2], double b[2][2], double out[2][2]) {
+    for (int i = 0; i < 4; i++) out[i / 2][i % 2] = a[i / 2][i % 2] - b[i / 2][i % 2];
+}
+
+static quadratic product(double a[2][2], double b[2][2], double (*of)(const double *, const double *)) {
+    return (quadratic){{of(a[0], b[0]), 0.5 * (of(a[0], b[1]) + of(a[1], b[0])), of(a[1], b[1])}};
+}
+
+static double largest(double a[2][2]) {
+    return fmax(fmax(fabs(a[0][0]), fabs(a[0][1])), fmax(fabs(a[1][0]), fabs(a[1][1])));
+}
+
+/* The error of a coefficient of a product of two such differences. With eps the error of a coordinate, each
+ * factor is off by 2 eps (and by rounding, 2^-52 of it, which is less), so each of two terms by 4 eps L + 4
+ * eps^2; halving the interval up to eight times adds 16 u L^2, which is less than 4 eps L. */
+static double product_error(const plane *p, double length) {
+    return 24.0 * p->error * length + 16.0 * p->error * p->error;
+}
+
+static bool all_above(const quadratic *q, double bound) {
+    return q->b[0] > bound && q->b[1] > bound && q->b[2] > bound;
+}
+
+static bool all_below(const quadratic *q, double bound) {
+    return q->b[0] < -bound && q->b[1] < -bound && q->b[2] < -bound;
+}
+
+static void halve(const quadratic *q, quadratic *first, quadratic *second) {
+    double left = 0.5 * (q->b[0] + q->b[1]), right = 0.5 * (q->b[1] + q->b[2]);
+    *first = (quadratic){{q->b[0], left, 0.5 * (left + right)}};
+    *second = (quadratic){{0.5 * (left + right), right, q->b[2]}};
+}
+
+/* Is at every moment `area` not zero or `outside` positive? Halves the interval where signs do not tell. */
+static bool excluded(quadratic area, quadratic outside, double error) {
+    quadratic areas[DEPTH_MAX + 1], outsides[DEPTH_MAX + 1];
+    int depths[DEPTH_MAX + 1], count = 1;
+    areas[0] = area;
+    outsides[0] = outside;
+    depths[0] = 0;
+    while (count > 0) {
+        count--;
+        quadratic a = areas[count], o = outsides[count];
+        int depth = depths[count];
+        if (all_above(&a, error) || all_below(&a, error) || all_above(&o, error)) continue;
+        if (depth == DEPTH_MAX) return false;
+        halve(&a, &areas[count], &areas[count + 1]);
+        halve(&o, &outsides[count], &outsides[count + 1]);
+        depths[count] = depths[count + 1] = depth + 1;
+        count += 2;
+    }
+    return true;
+}
+
+/* The vertex never lies on the edge. *start: on which side of it at the start, 0: not certain. */
+static bool vertex_stays_off(const plane *p, double vertex[2][2], contour_edge *edge, int *start) {
+    double along[2][2], from_a[2][2], from_b[2][2];
+    subtract(edge->b, edge->a, along);
+    subtract(vertex, edge->a, from_a);
+    subtract(vertex, edge->b, from_b);
+    double error = product_error(p, fmax(largest(along), fmax(largest(from_a), largest(from_b))));
+    quadratic area = product(along, from_a, cross2);
+    *start = area.b[0] > error ? 1 : area.b[0] < -error ? -1 : 0;
+    return excluded(area, product(from_a, from_b, dot2), error);
+}
+
+static bool boxes_overlap(const double low_a[2], const double high_a[2], const double low_b[2],
+                          const double high_b[2]) {
+    return low_a[0] <= high_b[0] && low_b[0] <= high_a[0] && low_a[1] <= high_b[1] && low_b[1] <= high_a[1];
+}
+
+/* Planar edges without a common vertex. Whether they cross changes only when an end of one comes to lie on
+ * the other; at the start they do not where both ends of one are on the same side of the other. */
+static bool stay_apart(const plane *p, contour_edge *e, contour_edge *f, bool published) {
+    int sides[4];
+    if (!vertex_stays_off(p, e->a, f, &sides[0]) || !vertex_stays_off(p, e->b, f, &sides[1]) ||
+        !vertex_stays_off(p, f->a, e, &sides[2]) || !vertex_stays_off(p, f->b, e, &sides[3]))
+        return false;
+    if (published || !boxes_overlap(e->start_low, e->start_high, f->start_low, f->start_high)) return true;
+    return sides[0] * sides[1] > 0 || sides[2] * sides[3] > 0;
+}
+
+/* Edges with a common vertex need no test of their own: where they fold onto each other, the other end of the
+ * shorter one lies on the longer one, and there begins an edge that has no vertex in common with the longer.
+ */
+bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
+    const cscd_mesh *mesh = query->mesh;
+    uint32_t count = query->edge_count;
+    if (count == 0) return true;
+    size_t first = (size_t)mesh->edges[query->edges[0]][0] * 3;
+    plane p = make_plane(query->axis, query->x0 + first, query->x1 + first);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t *v = mesh->edges[query->edges[i]];
+        contour_edge *e = &scratch[i];
+        project(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
+        project(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
+        project(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
+        project(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
+        e->vertices[0] = v[0];
+        e->vertices[1] = v[1];
+        e->index = i;
+    }
+    for (uint32_t i = 0; i < count; i++) set_boxes(&scratch[i], p.error);
+    sort_edges(scratch, count);
+    for (uint32_t i = 0; i < count; i++) {
+        contour_edge *e = &scratch[i];
+        for (uint32_t j = i + 1; j < count && scratch[j].low[0] <= e->high[0]; j++) {
+            contour_edge *f = &scratch[j];
+            if (f->low[1] > e->high[1] || e->low[1] > f->high[1]) continue;
+            if (e->index < query->skipped && f->index < query->skipped) continue;
+            if (edges_share_vertex(e->vertices, f->vertices)) continue;
+            if (!stay_apart(&p, e, f, query->published)) return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,29 @@
+/* The continuous contour test: does the projection of a patch's contour stay a simple closed curve? */
+#pragma once
+
+#include "src/mesh/mesh.h"
+
+/* An edge of a contour, projected: ends a and b, at both ends of the interval. */
+typedef struct contour_edge {
+    double a[2][2], b[2][2];            /* [time][axis] */
+    double low[2], high[2];             /* the box that it stays in, rounding included */
+    double start_low[2], start_high[2]; /* the same for its place at the start */
+    uint32_t vertices[2];
+    uint32_t index; /* in the list of edges */
+} contour_edge;
+
+/* What a test looks at. */
+typedef struct contour_query {
+    const cscd_mesh *mesh;
+    const uint32_t *edges; /* of the mesh */
+    uint32_t edge_count;
+    const double *x0, *x1;
+    const float *axis; /* along which the contour is projected, of about unit length */
+    uint32_t skipped;  /* pairs of the first so many edges are taken to be tested already */
+    bool published;    /* only motions are tested, not the start */
+} contour_query;
+
+/* Certified, for edges that form one loop: true only if no two touch in the projection at any moment of the
+ * interval, but for the common vertices of neighbours. Of a loop of three edges it looks at nothing; that one
+ * is simple as long as its projection has an area. scratch: room for edge_count edges. */
+bool contour_stays_simple(const contour_query *query, contour_edge *scratch);

@@ -1,0 +1,389 @@
+/* Patches of the tree's nodes: their contours, once; cones and contour tests, per interval. */
+#include "runtime/baselines/iccd/patch.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <string.h>
+
+/* A subtree of 2^SMALL_HEIGHT triangles at most is one thread's; nodes above it are tested level by level. */
+enum { SMALL_HEIGHT = 6 };
+
+/* Lists of edge numbers, one per node, while they are made: the last node's first. */
+typedef struct contour_lists {
+    cscd_context *context;
+    uint32_t *edges;
+    size_t count, capacity;
+    size_t *begins; /* per node */
+    uint32_t *sizes;
+} contour_lists;
+
+static bool reserve(contour_lists *l, size_t more) {
+    if (l->count + more <= l->capacity) return true;
+    size_t capacity = 2 * (l->count + more);
+    uint32_t *grown = context_grow(l->context, l->edges, l->count, capacity, sizeof *grown);
+    if (grown == NULL) return false;
+    l->edges = grown;
+    l->capacity = capacity;
+    return true;
+}
+
+static void sort_three(uint32_t e[3]) {
+    for (int i = 0; i < 3; i++) {
+        int a = i == 1 ? 1 : 0, b = a + 1;
+        uint32_t low = e[a] < e[b] ? e[a] : e[b], high = e[a] < e[b] ? e[b] : e[a];
+        e[a] = low;
+        e[b] = high;
+    }
+}
+
+/* What is in one of two ascending lists only: the contour of two patches together. */
+static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_t *b, uint32_t b_count,
+                              uint32_t *out) {
+    uint32_t i = 0, j = 0, count = 0;
+    while (i < a_count || j < b_count) {
+        if (j == b_count || (i < a_count && a[i] < b[j]))
+            out[count++] = a[i++];
+        else if (i == a_count || b[j] < a[i])
+            out[count++] = b[j++];
+        else {
+            i++;
+            j++;
+        }
+    }
+    return count;
+}
+
+static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const patch_tree *tree, uint32_t node) {
+    const patch_node *n = &tree->nodes[node];
+    if (patch_is_leaf(n)) {
+        if (!reserve(l, 3)) return false;
+        memcpy(l->edges + l->count, mesh->triangle_edges[n->triangle], 3 * sizeof(uint32_t));
+        sort_three(l->edges + l->count);
+        l->sizes[node] = 3;
+    } else {
+        uint32_t left = node + 1, right = n->right;
+        if (!reserve(l, (size_t)l->sizes[left] + l->sizes[right])) return false;
+        l->sizes[node] = difference_of(l->edges + l->begins[left], l->sizes[left],
+                                       l->edges + l->begins[right], l->sizes[right], l->edges + l->count);
+    }
+    l->begins[node] = l->count;
+    l->count += l->sizes[node];
+    return true;
+}
+
+/* What a look at one patch leaves behind: per vertex, when it was last seen, and its neighbours on the
+ * contour. */
+typedef struct vertex_visit {
+    uint32_t seen, degree, neighbours[2];
+} vertex_visit;
+
+/* Of triangles of one oriented manifold component: one loop through all edges, and the Euler characteristic
+ * of a disk; leaves are the patch's triangles. */
+static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const patch_node *first,
+                    const patch_node *end, vertex_visit *visits, uint32_t stamp) {
+    uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
+    for (const patch_node *n = first; n < end; n++) {
+        if (!patch_is_leaf(n)) continue;
+        if (triangles++ == 0) component = mesh->triangle_components[n->triangle];
+        if (mesh->triangle_components[n->triangle] != component) return false;
+        for (int i = 0; i < 3; i++) {
+            vertex_visit *v = &visits[mesh->triangles[n->triangle][i]];
+            if (v->seen == stamp) continue;
+            *v = (vertex_visit){.seen = stamp};
+            vertices++;
+        }
+    }
+    /* V - E + F = 1, where 2 E = 3 F + the contour's edges */
+    if (size == 0 || 2 * ((int64_t)vertices + triangles - 1) != 3 * (int64_t)triangles + size) return false;
+    for (uint32_t i = 0; i < size; i++) {
+        const uint32_t *v = mesh->edges[contour[i]];
+        for (int k = 0; k < 2; k++) {
+            vertex_visit *visit = &visits[v[k]];
+            if (visit->degree == 2) return false;
+            visit->neighbours[visit->degree++] = v[1 - k];
+        }
+    }
+    uint32_t start = mesh->edges[contour[0]][0], before = start, at = mesh->edges[contour[0]][1], length = 1;
+    for (; at != start; length++) {
+        const vertex_visit *visit = &visits[at];
+        if (visit->degree != 2) return false;
+        uint32_t next = visit->neighbours[0] == before ? visit->neighbours[1] : visit->neighbours[0];
+        before = at;
+        at = next;
+    }
+    return length == size;
+}
+
+/* Oriented manifolds only. In one component a patch of one loop has no closed part beside it. */
+static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
+                       vertex_visit *visits) {
+    uint32_t *ends = p->stack; /* one past the last node of each subtree */
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        const patch_node *n = &tree->nodes[i];
+        ends[i] = patch_is_leaf(n) ? i + 1 : ends[n->right];
+        const patch_node *leaf = n;
+        while (!patch_is_leaf(leaf)) leaf++;
+        const cscd_component *c = &mesh->components[mesh->triangle_components[leaf->triangle]];
+        bool oriented =
+            c->non_manifold_edges == 0 && c->non_manifold_vertices == 0 && c->inconsistent_edges == 0;
+        p->disks[i] = oriented && is_disk(mesh, l->edges + l->begins[i], l->sizes[i], n,
+                                          tree->nodes + ends[i], visits, p->tree.node_count - i);
+    }
+}
+
+/* Ascending lists into their places, with what the parent's has too in front. */
+static void place_contour(patches *p, const contour_lists *l, uint32_t node, uint32_t parent) {
+    const uint32_t *own = l->edges + l->begins[node];
+    const uint32_t *above = parent == UINT32_MAX ? own : l->edges + l->begins[parent];
+    uint32_t own_size = l->sizes[node], above_size = parent == UINT32_MAX ? 0 : l->sizes[parent];
+    uint32_t *out = p->contour_edges + p->contour_offsets[node], count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0, j = 0; i < own_size; i++) {
+            while (j < above_size && above[j] < own[i]) j++;
+            bool common = j < above_size && above[j] == own[i];
+            if (common == (pass == 0)) out[count++] = own[i];
+        }
+        if (pass == 0) p->inherited[node] = count;
+    }
+}
+
+/* Subtrees that one thread works on at a time. */
+static void find_small(patches *p, const uint32_t *ends) {
+    for (uint32_t i = 0; i < p->tree.node_count;) {
+        if (p->tree.nodes[i].height > SMALL_HEIGHT) {
+            i++;
+            continue;
+        }
+        p->small_roots[p->small_count] = i;
+        p->small_ends[p->small_count++] = ends[i];
+        i = ends[i];
+    }
+}
+
+static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
+                 vertex_visit *visits) {
+    uint32_t longest = 0;
+    size_t total = 0;
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        if (!list_contour(l, mesh, tree, i)) return false;
+        if (l->sizes[i] > longest) longest = l->sizes[i];
+    }
+    p->contour_edges = context_allocate(l->context, l->count + 1, sizeof *p->contour_edges);
+    p->longest = (size_t)longest + 1;
+    size_t lanes = parallel_thread_count(l->context->threads);
+    p->scratch = context_allocate(l->context, lanes * p->longest, sizeof *p->scratch);
+    if (p->contour_edges == NULL || p->scratch == NULL) return false;
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
+        p->contour_offsets[i] = total;
+        total += l->sizes[i];
+    }
+    p->contour_offsets[p->tree.node_count] = total;
+    for (uint32_t i = 0; i < tree->root_count; i++) place_contour(p, l, tree->roots[i], UINT32_MAX);
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
+        if (patch_is_leaf(&tree->nodes[i])) continue;
+        place_contour(p, l, i + 1, i);
+        place_contour(p, l, tree->nodes[i].right, i);
+    }
+    find_disks(p, mesh, tree, l, visits);
+    find_small(p, p->stack);
+    return true;
+}
+
+static bool allocate_within(forest *f) {
+    cscd_context *context = f->mesh->context;
+    if (f->leaf_within == NULL)
+        f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
+    bool allocated = f->leaf_within != NULL;
+    for (int i = 0; i < f->part_level; i++) {
+        forest_level *level = &f->levels[i];
+        if (level->within == NULL)
+            level->within = context_allocate(context, level->block_count, sizeof *level->within);
+        allocated &= level->within != NULL;
+    }
+    forest_show_all(f);
+    return allocated;
+}
+
+static bool allocate(patches *p, contour_lists *lists) {
+    cscd_context *context = lists->context;
+    size_t count = p->tree.node_count;
+    lists->begins = context_allocate(context, count, sizeof *lists->begins);
+    lists->sizes = context_allocate(context, count, sizeof *lists->sizes);
+    p->contour_offsets = context_allocate(context, count + 1, sizeof *p->contour_offsets);
+    p->inherited = context_allocate(context, count, sizeof *p->inherited);
+    p->disks = context_allocate(context, count, sizeof *p->disks);
+    p->cones = context_allocate(context, count, sizeof *p->cones);
+    p->stack = context_allocate(context, count, sizeof *p->stack);
+    p->parent_tested = context_allocate(context, count, sizeof *p->parent_tested);
+    p->passed = context_allocate(context, count, sizeof *p->passed);
+    p->tested = context_allocate(context, count, sizeof *p->tested);
+    p->reached = context_allocate(context, count, sizeof *p->reached);
+    p->small_roots = context_allocate(context, count, sizeof *p->small_roots);
+    p->small_ends = context_allocate(context, count, sizeof *p->small_ends);
+    return lists->begins != NULL && lists->sizes != NULL && p->contour_offsets != NULL &&
+           p->inherited != NULL && p->disks != NULL && p->cones != NULL && p->stack != NULL &&
+           p->parent_tested != NULL && p->passed != NULL && p->tested != NULL && p->reached != NULL &&
+           p->small_roots != NULL && p->small_ends != NULL;
+}
+
+cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out) {
+    cscd_context *context = mesh->context;
+    patches p = {0};
+    contour_lists lists = {.context = context};
+    vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
+    bool made = visits != NULL && allocate_within(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
+                allocate(&p, &lists) && fill(&p, mesh, &p.tree, &lists, visits);
+    context_free(context, visits);
+    context_free(context, lists.begins);
+    context_free(context, lists.sizes);
+    context_free(context, lists.edges);
+    if (!made) {
+        patches_free(context, &p);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = p;
+    return CSCD_OK;
+}
+
+void patches_free(cscd_context *context, patches *p) {
+    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited,     p->disks,  p->cones,
+                      p->scratch,         p->stack,         p->parent_tested, p->passed, p->tested,
+                      p->reached,         p->small_roots,   p->small_ends};
+    patch_tree_free(context, &p->tree);
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    *p = (patches){0};
+}
+
+/* ---- one interval ---------------------------------------------------------------------------------- */
+
+/* Nodes are decided from the roots down, each by itself once its parent has not passed: so threads take large
+ * nodes of one wave, the children of those before, and then small subtrees, in any order. */
+typedef struct sealing {
+    patches *p;
+    const cscd_mesh *mesh;
+    const double *x0, *x1;
+    bool published;
+    uint32_t wave_end; /* in p->stack */
+    atomic_uint next;
+} sealing;
+
+static void set_cone(const sealing *s, uint32_t node) {
+    const float pi = 3.14159265f, limit = s->published ? pi : normal_cone_limit;
+    const patch_node *n = &s->p->tree.nodes[node];
+    normal_cone *cones = s->p->cones;
+    if (patch_is_leaf(n)) {
+        const uint32_t *corners = s->mesh->triangles[n->triangle];
+        cones[node] = (s->published ? normal_cone_of_ends : normal_cone_of)(corners, s->x0, s->x1);
+    } else {
+        cones[node] = normal_cone_union(&cones[node + 1], &cones[n->right], limit);
+    }
+}
+
+static void merge_small_cones(void *data, uint32_t index) {
+    const sealing *s = data;
+    for (uint32_t i = s->p->small_ends[index]; i-- > s->p->small_roots[index];) set_cone(s, i);
+}
+
+static void merge_cones(sealing *s) {
+    patches *p = s->p;
+    parallel_run(s->mesh->context->threads, p->small_count, merge_small_cones, s);
+    for (uint32_t i = p->tree.node_count; i-- > 0;) {
+        if (p->tree.nodes[i].height > SMALL_HEIGHT) set_cone(s, i);
+    }
+}
+
+static bool passes(const sealing *s, uint32_t node, contour_edge *scratch) {
+    const patches *p = s->p;
+    size_t first = p->contour_offsets[node];
+    const contour_query query = {.mesh = s->mesh,
+                                 .edges = p->contour_edges + first,
+                                 .edge_count = (uint32_t)(p->contour_offsets[node + 1] - first),
+                                 .x0 = s->x0,
+                                 .x1 = s->x1,
+                                 .axis = p->cones[node].axis,
+                                 .skipped = s->published && p->parent_tested[node] ? p->inherited[node] : 0,
+                                 .published = s->published};
+    return contour_stays_simple(&query, scratch);
+}
+
+/* Returns whether the children are to be decided, too. */
+static bool decide(const sealing *s, uint32_t node, contour_edge *scratch) {
+    patches *p = s->p;
+    const patch_node *n = &p->tree.nodes[node];
+    if (patch_is_leaf(n)) return false;
+    bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
+    p->tested[node] = tested;
+    p->passed[node] = tested && passes(s, node, scratch);
+    if (p->passed[node]) return false;
+    p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
+    p->reached[node + 1] = p->reached[n->right] = true;
+    return true;
+}
+
+static void decide_wave(void *data, uint32_t lane) {
+    sealing *s = data;
+    patches *p = s->p;
+    for (;;) {
+        uint32_t at = atomic_fetch_add(&s->next, 1);
+        if (at >= s->wave_end) return;
+        decide(s, p->stack[at], p->scratch + lane * p->longest);
+    }
+}
+
+static void decide_small(void *data, uint32_t lane) {
+    sealing *s = data;
+    patches *p = s->p;
+    for (;;) {
+        uint32_t at = atomic_fetch_add(&s->next, 1);
+        if (at >= p->small_count) return;
+        for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
+            if (p->reached[i]) decide(s, i, p->scratch + lane * p->longest);
+        }
+    }
+}
+
+/* The large nodes of a wave stand in the stack after those of the wave before. */
+static void append_large(patches *p, uint32_t node, uint32_t *end) {
+    if (p->tree.nodes[node].height > SMALL_HEIGHT) p->stack[(*end)++] = node;
+}
+
+static void decide_all(sealing *s) {
+    patches *p = s->p;
+    parallel *threads = s->mesh->context->threads;
+    uint32_t lanes = parallel_thread_count(threads), begin = 0, end = 0;
+    for (uint32_t i = 0; i < p->tree.root_count; i++) {
+        p->reached[p->tree.roots[i]] = true;
+        append_large(p, p->tree.roots[i], &end);
+    }
+    while (begin < end) {
+        s->wave_end = end;
+        atomic_store(&s->next, begin);
+        parallel_run(threads, end - begin < lanes ? end - begin : lanes, decide_wave, s);
+        for (uint32_t last = end; begin < last; begin++) {
+            uint32_t node = p->stack[begin];
+            if (p->passed[node]) continue;
+            append_large(p, node + 1, &end);
+            append_large(p, p->tree.nodes[node].right, &end);
+        }
+    }
+    atomic_store(&s->next, 0);
+    parallel_run(threads, lanes, decide_small, s);
+}
+
+void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
+                  bool published) {
+    sealing s = {.p = p, .mesh = mesh, .x0 = x0, .x1 = x1, .published = published};
+    size_t size = p->tree.node_count * sizeof *p->passed;
+    merge_cones(&s);
+    memset(p->parent_tested, 0, size);
+    memset(p->passed, 0, size);
+    memset(p->tested, 0, size);
+    memset(p->reached, 0, size);
+    decide_all(&s);
+    p->contours = p->sealed = 0;
+    for (uint32_t i = 0; i < p->tree.node_count; i++) {
+        p->contours += p->tested[i];
+        p->sealed += p->passed[i];
+    }
+    patch_tree_hide(&p->tree, p->passed, f);
+}

@@ -1,0 +1,84 @@
+/* The forest's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+#include "runtime/baselines/iccd/patch_tree.h"
+
+enum { LEAF_HEIGHT = 3, HEIGHT_PER_LEVEL = 3, DEPTH_MAX = 64 };
+
+/* Slots [0, count) of a part from `first` on, in 2^height of them; parent: whose right child it is. */
+typedef struct pending_node {
+    uint32_t first, height, parent;
+} pending_node;
+
+static uint32_t triangles_of(const forest *f, const forest_part *p) {
+    uint32_t last = p->first_leaf + p->leaf_count - 1;
+    return (p->leaf_count - 1) * FOREST_LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
+}
+
+static void add_tree(const forest *f, uint32_t index, patch_tree *tree) {
+    const forest_part *p = &f->parts[index];
+    uint32_t count = triangles_of(f, p), depth = 0, height = 0;
+    pending_node stack[DEPTH_MAX];
+    while ((uint64_t)1 << height < count) height++;
+    tree->roots[tree->root_count++] = tree->node_count;
+    stack[depth++] = (pending_node){0, height, UINT32_MAX};
+    while (depth > 0) {
+        pending_node at = stack[--depth];
+        while (at.height > 0 && at.first + (1u << (at.height - 1)) >= count) at.height--;
+        uint32_t node = tree->node_count++;
+        if (at.parent != UINT32_MAX) tree->nodes[at.parent].right = node;
+        tree->nodes[node] = (patch_node){.part = index, .first_slot = at.first, .height = at.height};
+        if (at.height == 0) {
+            const forest_leaf *l = &f->leaves[p->first_leaf + at.first / FOREST_LANES];
+            tree->nodes[node].triangle = l->triangles[at.first % FOREST_LANES];
+            continue;
+        }
+        uint32_t half = 1u << (at.height - 1);
+        stack[depth++] = (pending_node){at.first + half, at.height - 1, node};
+        stack[depth++] = (pending_node){at.first, at.height - 1, UINT32_MAX};
+    }
+}
+
+cscd_status patch_tree_build(const forest *f, patch_tree *out) {
+    cscd_context *context = f->mesh->context;
+    patch_tree tree = {0};
+    tree.nodes = context_allocate(context, (size_t)f->mesh->triangle_count * 2, sizeof *tree.nodes);
+    tree.roots = context_allocate(context, f->part_count, sizeof *tree.roots);
+    if (tree.nodes == NULL || tree.roots == NULL) {
+        patch_tree_free(context, &tree);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    for (uint32_t i = 0; i < f->part_count; i++) add_tree(f, i, &tree);
+    *out = tree;
+    return CSCD_OK;
+}
+
+void patch_tree_free(cscd_context *context, patch_tree *tree) {
+    context_free(context, tree->nodes);
+    context_free(context, tree->roots);
+    *tree = (patch_tree){0};
+}
+
+/* Rows and columns first to first + count - 1 of an 8 x 8 square of bits. */
+static uint64_t square(uint32_t first, uint32_t count) {
+    uint64_t row = (uint64_t)(((1u << count) - 1) << first), bits = 0;
+    for (uint32_t i = first; i < first + count; i++) bits |= row << (8 * i);
+    return bits;
+}
+
+static void hide(const patch_node *node, forest *f) {
+    if (node->height <= LEAF_HEIGHT) {
+        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / FOREST_LANES;
+        f->leaf_within[index] &= ~square(node->first_slot % FOREST_LANES, 1u << node->height);
+        return;
+    }
+    int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
+    uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
+    uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
+    uint32_t block = f->parts[node->part].first_blocks[level] + child / FOREST_LANES;
+    f->levels[level].within[block] &= ~square(child % FOREST_LANES, count);
+}
+
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, forest *f) {
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        if (sealed[i]) hide(&tree->nodes[i], f);
+    }
+}

@@ -1,0 +1,31 @@
+/* The forest's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+#pragma once
+
+#include "runtime/bvh/bvh.h"
+
+/* Nodes stand in depth-first order, the trees of the parts one after another: the left child follows its
+ * parent, so children come after parents. A node of height h covers the slots from a multiple of 2^h, counted
+ * in its part, to the next. */
+typedef struct patch_node {
+    uint32_t right;    /* index of the right child; 0 marks a leaf */
+    uint32_t triangle; /* of a leaf */
+    uint32_t part, first_slot, height;
+} patch_node;
+
+typedef struct patch_tree {
+    patch_node *nodes;
+    uint32_t node_count;
+    uint32_t *roots; /* per part */
+    uint32_t root_count;
+} patch_tree;
+
+/* *out is untouched unless CSCD_OK. */
+cscd_status patch_tree_build(const forest *f, patch_tree *out);
+void patch_tree_free(cscd_context *context, patch_tree *tree);
+
+static inline bool patch_is_leaf(const patch_node *node) {
+    return node->right == 0;
+}
+
+/* Hides in a forest the pairs that lie in one patch of `sealed`, which is given per node. */
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, forest *f);

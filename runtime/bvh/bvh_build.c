@@ -1,0 +1,381 @@
+/* The shape of the trees: the order of triangles, leaves, blocks, records. */
+#include "runtime/bvh/bvh.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK_RECORDS = 1024 };
+
+/* Things to be put in an order in which neighbours are near: triangles of a region, or regions. */
+typedef struct ordering {
+    uint32_t *items;
+    float (*centres)[3]; /* indexed by what items holds */
+} ordering;
+
+typedef struct builder {
+    cscd_context *context;
+    const cscd_mesh *mesh;
+    forest_regions given;
+    ordering triangles, regions;
+    uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
+    uint32_t *record_of;      /* per vertex, in the part at hand if not below its first */
+} builder;
+
+/* ---- order --------------------------------------------------------------------------------------------- */
+
+static int longest_axis(const ordering *o, uint32_t begin, uint32_t end) {
+    float longest_extent = -1.0f;
+    int longest = 0;
+    for (int k = 0; k < 3; k++) {
+        float low = INFINITY, high = -INFINITY;
+        for (uint32_t i = begin; i < end; i++) {
+            float value = o->centres[o->items[i]][k];
+            low = value < low ? value : low;
+            high = value > high ? value : high;
+        }
+        if (high - low > longest_extent) {
+            longest_extent = high - low;
+            longest = k;
+        }
+    }
+    return longest;
+}
+
+static bool comes_before(const ordering *o, int axis, uint32_t a, uint32_t b) {
+    float x = o->centres[a][axis], y = o->centres[b][axis];
+    return x != y ? x < y : a < b;
+}
+
+static void swap_items(uint32_t *items, uint32_t i, uint32_t j) {
+    uint32_t item = items[i];
+    items[i] = items[j];
+    items[j] = item;
+}
+
+/* Hoare's selection: the items of the least coordinates come to stand before position nth. */
+static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end, uint32_t nth) {
+    uint32_t *items = o->items;
+    while (end - begin > 1) {
+        uint32_t pivot = items[begin + (end - begin) / 2], i = begin, j = end - 1;
+        for (;;) {
+            while (comes_before(o, axis, items[i], pivot)) i++;
+            while (comes_before(o, axis, pivot, items[j])) j--;
+            if (i >= j) break;
+            swap_items(items, i++, j--);
+        }
+        /* Where i and j meet on one item, that is the pivot, and in its place. */
+        if (i == j && nth == i) return;
+        if (nth < i)
+            end = i;
+        else
+            begin = j + 1;
+    }
+}
+
+/* How many items of a run come first: the largest power of two below count. Runs of 8 and 8^k items so begin
+ * at multiples of these, and all runs at multiples of their size. */
+static uint32_t first_share(uint32_t count) {
+    uint32_t share = 1;
+    while (share < count - share) share *= 2;
+    return share;
+}
+
+/* Splits at the middle of the longest extent, then each side, down to single items. */
+static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
+    uint32_t begins[64], ends[64], depth = 0;
+    begins[depth] = begin;
+    ends[depth++] = end;
+    while (depth > 0) {
+        depth--;
+        uint32_t from = begins[depth], to = ends[depth];
+        if (to - from < 2) continue;
+        uint32_t middle = from + first_share(to - from);
+        select_nth(o, longest_axis(o, from, to), from, to, middle);
+        /* The longer side waits, so no more than one side per halving does. */
+        bool first_longer = middle - from > to - middle;
+        begins[depth] = first_longer ? from : middle;
+        ends[depth++] = first_longer ? middle : to;
+        begins[depth] = first_longer ? middle : from;
+        ends[depth++] = first_longer ? to : middle;
+    }
+}
+
+/* Of triangles, and of regions the mean of these; relative to the first corner, scaled to floats. */
+static void find_centres(builder *b, const double *positions, double scale) {
+    const cscd_mesh *mesh = b->mesh;
+    const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        uint32_t region = b->given.of_triangle[t];
+        float share = 1.0f / (float)(b->region_offsets[region + 1] - b->region_offsets[region]);
+        for (size_t k = 0; k < 3; k++) {
+            double sum = 0.0;
+            for (int i = 0; i < 3; i++) sum += positions[(size_t)mesh->triangles[t][i] * 3 + k] - origin[k];
+            b->triangles.centres[t][k] = (float)(sum / 3.0 * scale);
+            b->regions.centres[region][k] += share * b->triangles.centres[t][k];
+        }
+    }
+}
+
+/* Triangles sorted by region. */
+static void list_triangles(builder *b) {
+    uint32_t triangle_count = b->mesh->triangle_count, sum = 0;
+    uint32_t *next = b->region_offsets + 1; /* counts, then the next free places: at last the runs' ends */
+    for (uint32_t t = 0; t < triangle_count; t++) next[b->given.of_triangle[t]]++;
+    for (uint32_t r = 0; r < b->given.count; r++) {
+        uint32_t size = next[r];
+        b->regions.items[r] = r;
+        next[r] = sum;
+        sum += size;
+    }
+    for (uint32_t t = 0; t < triangle_count; t++) b->triangles.items[next[b->given.of_triangle[t]]++] = t;
+}
+
+/* ---- parts, leaves, records ---------------------------------------------------------------------------- */
+
+static uint32_t rounded_up(uint32_t count) {
+    return (count + FOREST_LANES - 1) / FOREST_LANES * FOREST_LANES;
+}
+
+static uint32_t record_of(builder *b, forest *f, const forest_part *p, uint32_t vertex) {
+    uint32_t known = b->record_of[vertex];
+    if (known != UINT32_MAX && known >= p->first_record) return known;
+    f->record_vertices[f->record_count] = vertex;
+    return b->record_of[vertex] = f->record_count++;
+}
+
+static void fill_leaf(builder *b, forest *f, const forest_part *p, const uint32_t *triangles,
+                      uint32_t count) {
+    uint32_t index = f->leaf_count++;
+    forest_leaf *out = &f->leaves[index];
+    f->leaf_parts[index] = (uint32_t)(p - f->parts);
+    f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
+    for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+        uint32_t t = triangles[lane < count ? lane : 0];
+        out->triangles[lane] = lane < count ? t : UINT32_MAX;
+        for (int i = 0; i < 3; i++) {
+            uint32_t record = record_of(b, f, p, b->mesh->triangles[t][i]);
+            out->corners[i][lane] = record;
+            if (lane < count) f->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
+        }
+        if (lane < count) f->slots[t] = index * FOREST_LANES + lane;
+    }
+}
+
+/* Chunks of a part's records. */
+static void add_chunks(forest *f, uint32_t index) {
+    const forest_part *p = &f->parts[index];
+    uint32_t end = p->first_record + p->record_count;
+    for (uint32_t i = p->first_record; i < end; i += CHUNK_RECORDS) {
+        uint32_t stop = end - i < CHUNK_RECORDS ? end : i + CHUNK_RECORDS;
+        f->chunks[f->chunk_count++] = (record_chunk){.part = index, .begin = i, .end = stop};
+    }
+}
+
+static void fill_part(builder *b, forest *f, uint32_t index) {
+    forest_part *p = &f->parts[index];
+    uint32_t region = b->regions.items[index];
+    uint32_t begin = b->region_offsets[region], end = b->region_offsets[region + 1];
+    order_run(&b->triangles, begin, end);
+    *p = (forest_part){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
+    for (uint32_t i = begin; i < end; i += FOREST_LANES)
+        fill_leaf(b, f, p, b->triangles.items + i, end - i < FOREST_LANES ? end - i : FOREST_LANES);
+    p->leaf_count = f->leaf_count - p->first_leaf;
+    while (f->record_count % FOREST_LANES != 0)
+        f->record_vertices[f->record_count++] = f->record_vertices[p->first_record];
+    p->record_count = f->record_count - p->first_record;
+    add_chunks(f, index);
+}
+
+/* ---- levels -------------------------------------------------------------------------------------------- */
+
+static uint32_t blocks_over(uint32_t children) {
+    return (children + FOREST_LANES - 1) / FOREST_LANES;
+}
+
+static bool allocate_level(cscd_context *context, forest_level *level, uint32_t block_count, int axis_count) {
+    size_t floats = (size_t)axis_count * 2 * FOREST_LANES;
+    level->block_count = block_count;
+    level->first_children = context_allocate(context, block_count, sizeof *level->first_children);
+    level->bounds = context_allocate(context, block_count * floats, sizeof *level->bounds);
+    level->flags = context_allocate(context, block_count, sizeof *level->flags);
+    return level->first_children != NULL && level->bounds != NULL && level->flags != NULL;
+}
+
+static uint32_t add_blocks(forest_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
+    for (uint32_t i = 0; i < child_count; i += FOREST_LANES, at++) {
+        uint32_t count = child_count - i < FOREST_LANES ? child_count - i : FOREST_LANES;
+        level->first_children[at] = first_child + i;
+        level->flags[at].used = (uint8_t)((1u << count) - 1);
+    }
+    return at;
+}
+
+/* How many levels the largest part has, at least one. */
+static int height_of(const forest *f) {
+    int height = 1;
+    for (uint32_t p = 0; p < f->part_count; p++) {
+        int own = 1;
+        for (uint32_t n = blocks_over(f->parts[p].leaf_count); n > 1; n = blocks_over(n)) own++;
+        height = own > height ? own : height;
+    }
+    return height;
+}
+
+/* Blocks of one level of all parts; counts: of each part's children there, and then of its blocks. */
+static bool add_part_level(forest *f, int level, uint32_t *counts) {
+    uint32_t total = 0, at = 0, child = 0;
+    for (uint32_t p = 0; p < f->part_count; p++) total += blocks_over(counts[p]);
+    if (!allocate_level(f->mesh->context, &f->levels[level], total, f->axis_count)) return false;
+    for (uint32_t p = 0; p < f->part_count; p++) {
+        uint32_t first = f->parts[p].first_blocks[level] = at;
+        at = add_blocks(&f->levels[level], at, child, counts[p]);
+        for (uint32_t i = first; level == 0 && i < at; i++) f->block_parts[i] = p;
+        child += counts[p];
+        counts[p] = at - first;
+    }
+    return true;
+}
+
+static bool build_levels(forest *f, uint32_t *counts) {
+    uint32_t blocks = 0;
+    f->part_level = f->level_count = height_of(f);
+    for (uint32_t p = 0; p < f->part_count; p++) {
+        counts[p] = f->parts[p].leaf_count;
+        blocks += blocks_over(counts[p]);
+    }
+    f->block_parts = context_allocate(f->mesh->context, blocks, sizeof *f->block_parts);
+    if (f->block_parts == NULL) return false;
+    for (int level = 0; level < f->part_level; level++) {
+        if (!add_part_level(f, level, counts)) return false;
+    }
+    uint32_t children = f->part_count;
+    do {
+        forest_level *level = &f->levels[f->level_count++];
+        if (!allocate_level(f->mesh->context, level, blocks_over(children), f->axis_count)) return false;
+        add_blocks(level, 0, 0, children);
+        children = level->block_count;
+    } while (children > 1);
+    return true;
+}
+
+/* ---- all of it ----------------------------------------------------------------------------------------- */
+
+static bool allocate_builder(builder *b) {
+    cscd_context *context = b->context;
+    uint32_t triangle_count = b->mesh->triangle_count, region_count = b->given.count;
+    b->triangles.items = context_allocate(context, triangle_count, sizeof(uint32_t));
+    b->triangles.centres = context_allocate(context, triangle_count, sizeof(float[3]));
+    b->regions.items = context_allocate(context, region_count, sizeof(uint32_t));
+    b->regions.centres = context_allocate(context, region_count, sizeof(float[3]));
+    b->region_offsets = context_allocate(context, (size_t)region_count + 1, sizeof(uint32_t));
+    b->record_of = context_allocate(context, b->mesh->vertex_count, sizeof(uint32_t));
+    if (b->record_of != NULL) memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
+    return b->triangles.items != NULL && b->triangles.centres != NULL && b->regions.items != NULL &&
+           b->regions.centres != NULL && b->region_offsets != NULL && b->record_of != NULL;
+}
+
+static void free_builder(builder *b) {
+    void *blocks[] = {b->triangles.items, b->triangles.centres, b->regions.items,
+                      b->regions.centres, b->region_offsets,    b->record_of};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(b->context, blocks[i]);
+}
+
+/* A vertex has a record in each part that it is in: at most one per corner. */
+static uint32_t most_records(const builder *b) {
+    const cscd_mesh *mesh = b->mesh;
+    uint64_t sum = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        uint32_t begin = mesh->vertex_star_offsets[v], end = mesh->vertex_star_offsets[v + 1], several = 1;
+        for (uint32_t i = begin; i < end; i++) {
+            bool other = b->given.of_triangle[mesh->vertex_stars[i]] !=
+                         b->given.of_triangle[mesh->vertex_stars[begin]];
+            several = other ? end - begin : several;
+        }
+        sum += several;
+    }
+    return (uint32_t)sum + b->given.count * FOREST_LANES;
+}
+
+static uint32_t all_leaves(const builder *b) {
+    uint32_t sum = 0;
+    for (uint32_t r = 0; r < b->given.count; r++)
+        sum += rounded_up(b->region_offsets[r + 1] - b->region_offsets[r]) / FOREST_LANES;
+    return sum;
+}
+
+static bool allocate_forest(const builder *b, forest *f) {
+    cscd_context *context = b->context;
+    uint32_t leaf_count = all_leaves(b), record_count = most_records(b);
+    f->parts = context_allocate(context, f->part_count, sizeof *f->parts);
+    f->leaves = context_allocate(context, leaf_count, sizeof *f->leaves);
+    f->leaf_flags = context_allocate(context, leaf_count, sizeof *f->leaf_flags);
+    f->flags_before = context_allocate(context, leaf_count, sizeof *f->flags_before);
+    f->leaf_parts = context_allocate(context, leaf_count, sizeof *f->leaf_parts);
+    f->record_vertices = context_allocate(context, record_count, sizeof *f->record_vertices);
+    f->record_weights = context_allocate(context, record_count, sizeof *f->record_weights);
+    f->records = context_allocate(context, record_count, sizeof *f->records);
+    f->chunks = context_allocate(context, record_count / CHUNK_RECORDS + f->part_count, sizeof *f->chunks);
+    f->slots = context_allocate(context, f->mesh->triangle_count, sizeof *f->slots);
+    return f->parts != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
+           f->leaf_parts != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
+           f->records != NULL && f->chunks != NULL && f->slots != NULL;
+}
+
+/* The power of two that brings the positions' extent near 1. */
+static double scale_for(const cscd_mesh *mesh, const double *positions) {
+    const uint32_t *corners = mesh->triangles[0];
+    const double *origin = positions + (size_t)corners[0] * 3;
+    double extent = 0.0;
+    int exponent = 0;
+    for (size_t i = 0; i < (size_t)mesh->triangle_count * 3; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            double distance = fabs(positions[(size_t)corners[i] * 3 + k] - origin[k]);
+            extent = distance > extent ? distance : extent;
+        }
+    }
+    frexp(extent, &exponent);
+    return ldexp(1.0, -exponent);
+}
+
+cscd_status forest_build(const cscd_mesh *mesh, forest_regions regions, const double *positions,
+                         int axis_count, forest *out) {
+    builder b = {.context = mesh->context, .mesh = mesh, .given = regions};
+    forest f = {.mesh = mesh,
+                .kernels = kernels_of(mesh->context),
+                .axis_count = axis_count,
+                .part_count = regions.count,
+                .scale = scale_for(mesh, positions)};
+    bool made = allocate_builder(&b);
+    if (made) {
+        list_triangles(&b);
+        find_centres(&b, positions, f.scale);
+        order_run(&b.regions, 0, regions.count);
+        made = allocate_forest(&b, &f);
+        for (uint32_t p = 0; made && p < f.part_count; p++) fill_part(&b, &f, p);
+        made = made && build_levels(&f, b.regions.items) && forest_mark_obstacles(&f);
+    }
+    free_builder(&b);
+    if (!made) {
+        forest_free(&f);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = f;
+    return CSCD_OK;
+}
+
+void forest_free(forest *f) {
+    if (f->mesh == NULL) return;
+    cscd_context *context = f->mesh->context;
+    void *blocks[] = {f->parts,       f->leaves,      f->leaf_flags,      f->flags_before,
+                      f->leaf_within, f->block_parts, f->record_vertices, f->record_weights,
+                      f->records,     f->slots,       f->chunks,          f->leaf_parts};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    for (int i = 0; i < FOREST_LEVEL_MAX; i++) {
+        context_free(context, f->levels[i].first_children);
+        context_free(context, f->levels[i].bounds);
+        context_free(context, f->levels[i].flags);
+        context_free(context, f->levels[i].within);
+        context_free(context, f->levels[i].passive);
+    }
+    *f = (forest){0};
+}

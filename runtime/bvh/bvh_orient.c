@@ -1,0 +1,161 @@
+/* The forest's flags: what faces the detector points, and what has lost its flag. */
+#include "runtime/bvh/bvh.h"
+
+enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
+
+typedef struct orienting {
+    const forest *forest;
+    const forest_view *view;
+    uint8_t *orientations;
+} orienting;
+
+/* A point in a part's frame is where it is there by definition: rounding only moves the detector point. */
+static void place_detector(const forest *f, forest_part *p, const forest_view *view) {
+    for (int e = 0; e < 2; e++) {
+        for (int k = 0; k < 3; k++) {
+            double offset = view->detector_offsets[p->region][k];
+            p->detector[e][k] = (float)(p->weighted[e][k] + offset * f->scale);
+            if (view->still && e == 1)
+                p->detector[1][k] =
+                    (float)((double)p->detector[0][k] + (p->origin[0][k] - p->origin[1][k]) * f->scale);
+        }
+    }
+}
+
+void forest_detector_points(const forest *f, const forest_view *view, double (*points)[2][3]) {
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        for (int e = 0; e < 2; e++) {
+            int end = view->still ? 0 : e;
+            for (int k = 0; k < 3; k++)
+                points[p->region][e][k] =
+                    p->origin[end][k] + p->weighted[end][k] / f->scale + view->detector_offsets[p->region][k];
+        }
+    }
+}
+
+static uint32_t component_of(const forest *f, const forest_part *p) {
+    return f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
+}
+
+static uint32_t part_of_leaf(const forest *f, uint32_t index) {
+    uint32_t first = 0, last = f->part_count - 1;
+    while (first < last) {
+        uint32_t middle = first + (last - first + 1) / 2;
+        if (f->parts[middle].first_leaf <= index)
+            first = middle;
+        else
+            last = middle - 1;
+    }
+    return first;
+}
+
+static void orient_task(void *data, uint32_t index) {
+    const orienting *now = data;
+    const forest *f = now->forest;
+    uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
+    end = end < f->leaf_count ? end : f->leaf_count;
+    for (uint32_t i = part_of_leaf(f, begin); i < f->part_count && f->parts[i].first_leaf < end; i++) {
+        const forest_part *p = &f->parts[i];
+        if (!now->view->culled[component_of(f, p)]) continue;
+        uint32_t stop = p->first_leaf + p->leaf_count;
+        f->kernels->orient(f, p, begin > p->first_leaf ? begin : p->first_leaf, end < stop ? end : stop,
+                           now->view->states, now->orientations);
+    }
+}
+
+/* ---- flags of blocks --------------------------------------------------------------------------------- */
+
+typedef struct marking {
+    const forest *forest;
+    int level;
+} marking;
+
+static void mark_block(const forest *f, int index, uint32_t block) {
+    const forest_level *level = &f->levels[index];
+    lane_flags *flags = &level->flags[block];
+    uint32_t plus = 0, minus = 0, fresh = 0;
+    const lane_flags *children =
+        (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[block];
+    for (uint32_t i = 0; i < FOREST_LANES && (flags->used >> i & 1) != 0; i++) {
+        plus |= (uint32_t)(children[i].plus == children[i].used) << i;
+        minus |= (uint32_t)(children[i].minus == children[i].used) << i;
+        fresh |= (uint32_t)(children[i].fresh != 0) << i;
+    }
+    bool one_part = index < f->part_level;
+    flags->plus = (uint8_t)(one_part ? plus : 0);
+    flags->minus = (uint8_t)(one_part ? minus : 0);
+    flags->fresh = (uint8_t)fresh;
+}
+
+static void mark_task(void *data, uint32_t index) {
+    const marking *now = data;
+    uint32_t begin = index * BLOCKS_PER_TASK, end = begin + BLOCKS_PER_TASK;
+    uint32_t count = now->forest->levels[now->level].block_count;
+    for (uint32_t b = begin; b < end && b < count; b++) mark_block(now->forest, now->level, b);
+}
+
+static void mark_blocks(const forest *f) {
+    marking now = {f, 0};
+    for (; now.level < f->level_count; now.level++) {
+        uint32_t tasks = (f->levels[now.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK;
+        parallel_run(f->mesh->context->threads, tasks, mark_task, &now);
+    }
+}
+
+/* ---- flags of leaves --------------------------------------------------------------------------------- */
+
+static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orientations) {
+    lane_flags flags = {.used = f->leaf_flags[index].used};
+    for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++) {
+        uint8_t flag = orientations[f->leaves[index].triangles[lane]];
+        flags.plus |= (uint8_t)((flag == ORIENTATION_PLUS) << lane);
+        flags.minus |= (uint8_t)((flag == ORIENTATION_MINUS) << lane);
+    }
+    return flags;
+}
+
+typedef struct refreshing {
+    const forest *forest;
+    const uint8_t *before, *now;
+} refreshing;
+
+static void refresh_task(void *data, uint32_t index) {
+    const refreshing *r = data;
+    const forest *f = r->forest;
+    uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
+    for (uint32_t i = begin; i < end && i < f->leaf_count; i++) {
+        lane_flags earlier = flags_of(f, i, r->before), flags = flags_of(f, i, r->now);
+        flags.fresh = (uint8_t)((earlier.plus | earlier.minus) & ~(flags.plus | flags.minus));
+        f->flags_before[i] = earlier;
+        f->leaf_flags[i] = flags;
+    }
+}
+
+static void run_over_leaves(const forest *f, parallel_task *task, void *data) {
+    parallel_run(f->mesh->context->threads, (f->leaf_count + LEAVES_PER_TASK - 1) / LEAVES_PER_TASK, task,
+                 data);
+}
+
+void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now) {
+    refreshing r = {f, before, now};
+    run_over_leaves(f, refresh_task, &r);
+    mark_blocks(f);
+}
+
+void forest_mark_suspects(forest *f, const bool *suspects) {
+    for (uint32_t i = 0; i < f->leaf_count; i++) {
+        lane_flags flags = {.used = f->leaf_flags[i].used};
+        for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++)
+            flags.fresh |= (uint8_t)(suspects[f->leaves[i].triangles[lane]] << lane);
+        f->leaf_flags[i] = flags;
+    }
+    mark_blocks(f);
+}
+
+void forest_orient(forest *f, const forest_view *view, uint8_t *orientations) {
+    orienting now = {f, view, orientations};
+    for (uint32_t i = 0; i < f->part_count; i++) place_detector(f, &f->parts[i], view);
+    run_over_leaves(f, orient_task, &now);
+    mark_blocks(f);
+}

@@ -1,0 +1,106 @@
+/* Orientations of triangles over an interval, eight at a time.
+ *
+ * s(t) = c . (a x b), with a = p1 - p0, b = p2 - p0 and c = p0 - d moving linearly, is a cubic in t; its
+ * Bernstein coefficients are compared with a bound on their error, the middle two times 3.
+ *
+ * With u = 2^-24 and M the part's reach, a coordinate of a record is off by at most u M (1 + 2^-20); d is
+ * what it is by definition. So components of a and b are off by 2.01 u M + u |a|, those of c by 1.01 u M + u
+ * |c|. Let A, B and C be the largest magnitudes of computed components over both ends, A, B <= 2 M. A
+ * coefficient (times 3 for the middle ones, which are sums of three determinants) is at most a sum of 18
+ * products, each at most A B C. Inputs off by u(2.01 M + A) and so on change a product by at most u (2.01 M B
+ * C + 2.01 M A C + 1.01 M A B + 3 A B C) and terms of u^2, less than one in 2^20 of that; its two
+ * multiplications and at most 6 additions add 8.01 u A B C. With C <= M' = M + |d|: 18 products stay below
+ * u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B), computed with room in
+ * 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B); nothing of this underflows by more than
+ * the 2^-100 that is added. */
+#include "runtime/bvh/this_level.h"
+
+#include "runtime/bvh/leaf_volumes.h"
+#include "runtime/culling/start_state.h"
+
+static f32x8 largest_component(f32x8 (*v)[3]) {
+    f32x8 largest = f32x8_abs(v[0][0]);
+    for (int i = 1; i < 6; i++) largest = f32x8_max(largest, f32x8_abs(v[i / 3][i % 3]));
+    return largest;
+}
+
+static void cross(const f32x8 a[3], const f32x8 b[3], f32x8 out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static f32x8 dot(const f32x8 a[3], const f32x8 b[3]) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+/* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
+static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+    f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
+    float detector_reach = 0.0f;
+    for (int e = 0; e < 2; e++) {
+        for (int k = 0; k < 3; k++) {
+            a[e][k] = corners[1][e][k] - corners[0][e][k];
+            b[e][k] = corners[2][e][k] - corners[0][e][k];
+            c[e][k] = corners[0][e][k] - f32x8_all(p->detector[e][k]);
+            float d = p->detector[e][k] < 0.0f ? -p->detector[e][k] : p->detector[e][k];
+            detector_reach = d > detector_reach ? d : detector_reach;
+        }
+    }
+    f32x8 size_a = largest_component(a), size_b = largest_component(b), size_c = largest_component(c);
+    f32x8 bound = f32x8_all(0x1p-18f * (p->reach + detector_reach)) *
+                      (size_c * (size_a + size_b) + f32x8_all(4.0f) * size_a * size_b) +
+                  f32x8_all(0x1p-100f);
+    cross(a[0], b[0], start);
+    cross(a[1], b[1], end);
+    cross(a[1], b[0], one);
+    cross(a[0], b[1], other);
+    for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
+    f32x8 s[4] = {dot(start, c[0]), dot(mixed, c[0]) + dot(start, c[1]), dot(mixed, c[1]) + dot(end, c[0]),
+                  dot(end, c[1])};
+    f32x8 least = f32x8_min(f32x8_min(s[0], s[3]), f32x8_min(s[1], s[2]));
+    f32x8 greatest = f32x8_max(f32x8_max(s[0], s[3]), f32x8_max(s[1], s[2]));
+    *plus = f32x8_below(bound, least);
+    *minus = f32x8_below(greatest, -bound);
+}
+
+/* Of the triangles used, those that are clean. */
+static uint32_t clean_lanes(const forest_leaf *l, uint32_t used, const uint8_t *states) {
+    uint32_t clean = 0;
+    for (int lane = 0; lane < LANES; lane++) {
+        uint32_t triangle = l->triangles[(used >> lane & 1) != 0 ? lane : 0];
+        clean |= (uint32_t)(states[triangle] == TRIANGLE_CLEAN) << lane;
+    }
+    return clean & used;
+}
+
+_Static_assert((ORIENTATION_ZERO ^ 2) == ORIENTATION_PLUS && (ORIENTATION_ZERO ^ 1) == ORIENTATION_MINUS,
+               "written without branches below");
+
+/* Lanes that are not used are after those that are, and repeat the first triangle. */
+static void store_orientations(const forest_leaf *l, uint32_t used, uint32_t plus, uint32_t minus,
+                               uint8_t *orientations) {
+    for (int lane = LANES - 1; lane >= 0; lane--) {
+        int from = (used >> lane & 1) != 0 ? lane : 0;
+        uint32_t flag = ORIENTATION_ZERO ^ (plus >> from & 1) << 1 ^ (minus >> from & 1);
+        orientations[l->triangles[from]] = (uint8_t)flag;
+    }
+}
+
+static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *states,
+                        uint8_t *orientations) {
+    const forest_leaf *l = &f->leaves[index];
+    uint32_t plus, minus, used = f->leaf_flags[index].used;
+    uint32_t clean = states != NULL ? clean_lanes(l, used, states) : used;
+    leaf_corners corners;
+    load_corners(f, l, corners);
+    orient(p, corners, &plus, &minus);
+    plus &= clean;
+    minus &= clean;
+    f->leaf_flags[index].plus = (uint8_t)plus;
+    f->leaf_flags[index].minus = (uint8_t)minus;
+    store_orientations(l, used, plus, minus, orientations);
+}
+
+void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
+                       const uint8_t *states, uint8_t *orientations) {
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, states, orientations);
+}

@@ -1,0 +1,119 @@
+/* Refit: bounds of leaves and blocks over an interval. */
+#include "runtime/bvh/this_level.h"
+
+#include "runtime/bvh/leaf_volumes.h"
+
+/* Least and greatest of a leaf's records, lane by lane. */
+static void enclose_records(const forest *f, const forest_leaf *l, f32x8 *low, f32x8 *high) {
+    f32x8 least = f32x8_load(f->records[l->corners[0][0]]), greatest = least;
+    for (int i = 0; i < 3; i++) {
+        for (int lane = 0; lane < LANES; lane++) {
+            f32x8 record = f32x8_load(f->records[l->corners[i][lane]]);
+            least = f32x8_min(least, record);
+            greatest = f32x8_max(greatest, record);
+        }
+    }
+    *low = least;
+    *high = greatest;
+}
+
+/* Rows of eight leaves become bounds of a block along x, y, z. */
+static void store_boxes(f32x8 low[8], f32x8 high[8], float slack, float *bounds) {
+    f32x8_transpose(low);
+    f32x8_transpose(high);
+    for (int k = 0; k < 3; k++) {
+        f32x8_store(bounds + 2 * k * LANES, f32x8_min(low[k], low[4 + k]) - f32x8_all(slack));
+        f32x8_store(bounds + (2 * k + 1) * LANES, f32x8_max(high[k], high[4 + k]) + f32x8_all(slack));
+    }
+}
+
+/* Bounds of one child along the diagonals. */
+static void store_diagonals(leaf_corners corners, const float slack[2], int lane, float *bounds) {
+    leaf_volumes v;
+    volumes_of(corners, slack, &v);
+    for (int k = BOX_AXES; k < KDOP_AXES; k++) {
+        bounds[2 * k * LANES + lane] = f32x8_least(f32x8_min(v.low[0][k], v.low[1][k]));
+        bounds[(2 * k + 1) * LANES + lane] = f32x8_greatest(f32x8_max(v.high[0][k], v.high[1][k]));
+    }
+}
+
+/* A block of level 0. */
+static void enclose_leaves(const forest *f, uint32_t block) {
+    const forest_part *p = &f->parts[f->block_parts[block]];
+    const forest_level *level = &f->levels[0];
+    float *bounds = level->bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+    f32x8 low[8], high[8];
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        uint32_t index = level->first_children[block] + lane;
+        if ((level->flags[block].used >> lane & 1) == 0) {
+            low[lane] = f32x8_all(__builtin_inff());
+            high[lane] = f32x8_all(-__builtin_inff());
+            for (int k = 3; k < f->axis_count; k++) {
+                bounds[2 * k * LANES + (int)lane] = __builtin_inff();
+                bounds[(2 * k + 1) * LANES + (int)lane] = -__builtin_inff();
+            }
+            continue;
+        }
+        enclose_records(f, &f->leaves[index], &low[lane], &high[lane]);
+        if (f->axis_count == BOX_AXES) continue;
+        leaf_corners corners;
+        load_corners(f, &f->leaves[index], corners);
+        store_diagonals(corners, p->slack, (int)lane, bounds);
+    }
+    store_boxes(low, high, p->slack[0], bounds);
+}
+
+/* A block of a higher level. */
+static void enclose_blocks(const forest *f, int index, uint32_t block) {
+    const forest_level *level = &f->levels[index], *below = level - 1;
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    float *bounds = level->bounds + block * stride;
+    const float *children = below->bounds + level->first_children[block] * stride;
+    for (int k = 0; k < f->axis_count; k++) {
+        f32x8 low[8], high[8];
+        for (uint32_t i = 0; i < LANES; i++) {
+            bool used = (level->flags[block].used >> i & 1) != 0;
+            const float *child = children + i * stride + (size_t)k * 2 * LANES;
+            low[i] = used ? f32x8_load(child) : f32x8_all(__builtin_inff());
+            high[i] = used ? f32x8_load(child + LANES) : f32x8_all(-__builtin_inff());
+        }
+        f32x8_transpose(low);
+        f32x8_transpose(high);
+        for (int i = 1; i < LANES; i++) {
+            low[0] = f32x8_min(low[0], low[i]);
+            high[0] = f32x8_max(high[0], high[i]);
+        }
+        f32x8_store(bounds + 2 * k * LANES, low[0]);
+        f32x8_store(bounds + (2 * k + 1) * LANES, high[0]);
+    }
+}
+
+void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end) {
+    for (uint32_t block = begin; block < end; block++) {
+        if (level == 0)
+            enclose_leaves(f, block);
+        else
+            enclose_blocks(f, level, block);
+    }
+}
+
+/* Empty lanes repeat the first triangle, so they do not extend the leaf; they count as triangles, the same
+ * ones every time. */
+extents SIMD_NAME(extents_at_start)(const forest *f) {
+    extents sum = {0.0, 0.0};
+    for (uint32_t i = 0; i < f->leaf_count; i++) {
+        leaf_corners corners;
+        float whole = 0.0f;
+        f32x8 of_triangles = f32x8_all(0.0f);
+        load_corners(f, &f->leaves[i], corners);
+        for (int k = 0; k < BOX_AXES; k++) {
+            f32x8 low = f32x8_min(f32x8_min(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);
+            f32x8 high = f32x8_max(f32x8_max(corners[0][0][k], corners[1][0][k]), corners[2][0][k]);
+            whole += f32x8_greatest(high) - f32x8_least(low);
+            of_triangles += high - low;
+        }
+        sum.leaves += (double)whole;
+        for (int lane = 0; lane < LANES; lane++) sum.triangles += (double)of_triangles[lane];
+    }
+    return sum;
+}

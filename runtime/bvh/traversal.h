@@ -1,0 +1,88 @@
+/* Self-traversal of the forest: batches of triangle pairs whose volumes overlap, without recursion. */
+#pragma once
+
+#include "runtime/bvh/bvh.h"
+
+#include <stdatomic.h>
+
+/* A potentially colliding pair of different triangles, by their slots. */
+typedef struct triangle_pair {
+    uint32_t a, b;
+} triangle_pair;
+
+/* Two blocks of one level whose children are still to be compared; the same block twice: with itself. Parts
+ * are those of the blocks, below the part level. */
+typedef struct block_pair {
+    uint32_t a, b, part_a, part_b;
+    int32_t level;
+} block_pair;
+
+/* Which pairs of triangles are looked for, of those whose volumes overlap: all but those that are marked as
+ * never touching (by flags, or by `within`); those that the flags before left out and the present ones do
+ * not; those of two suspects. */
+typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECTS } traversal_pass;
+
+/* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
+ * They are the kernels' own (leaf_volumes); here is only how large they are. */
+enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * FOREST_LANES };
+
+typedef struct leaf_cache {
+    uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */
+    float (*volumes)[LEAF_VOLUME_FLOATS];
+} leaf_cache;
+
+/* What one thread works on: its share of the open block pairs and its batch of results. */
+typedef struct traversal_lane {
+    _Alignas(CACHE_LINE_SIZE) block_pair *stack;
+    size_t stack_count, stack_capacity;
+    triangle_pair *pairs;
+    uint32_t pair_count;
+    uint64_t boxes_tested, adjacent; /* pairs left out as adjacent, whose volumes overlap, too */
+    uint64_t pairs_found;            /* by the caller */
+    double search_ms, consume_ms;    /* of filling batches since the begin, and, by the caller, of the rest */
+    leaf_cache cache;
+    bool out_of_memory;
+} traversal_lane;
+
+/* A visit adds no more: pairs of 64 leaf pairs; 64 pairs of children and 8 children with themselves. */
+enum { TRAVERSAL_PAIRS_PER_VISIT = 64 * 64, TRAVERSAL_PUSHES_PER_VISIT = 72 };
+enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT, TRAVERSAL_BATCH_ENOUGH = 1024 };
+
+typedef struct traversal {
+    cscd_context *context;
+    const forest *forest;
+    traversal_pass pass;
+    traversal_lane *lanes; /* one per thread of the context */
+    uint32_t lane_count;
+    uint32_t busy_lanes; /* the first so many share this traversal; 1: it is too small to be shared */
+
+    /* Open block pairs that no lane has taken yet: from next_share on. */
+    block_pair *shares;
+    uint32_t share_count;
+    atomic_uint next_share;
+} traversal;
+
+/* On failure the traversal holds nothing. */
+cscd_status traversal_create(cscd_context *context, traversal *out);
+void traversal_destroy(traversal *t);
+
+/* Starts anew at the root of f, which is up to date. */
+void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
+
+/* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
+ * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and
+ * nothing is left that is not in the hands of another lane, or the call is cancelled. The union of all
+ * batches, and the sum of boxes_tested, are the same for any lane count. */
+bool traversal_fill(traversal *t, uint32_t lane);
+
+/* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
+cscd_status traversal_status(const traversal *t);
+
+/* All lanes at once, and batches as full as they get; *more is false when every batch is empty. Between two
+ * rounds the caller consumes the batches. */
+cscd_status traversal_round(traversal *t, bool *more);
+
+/* The share that lanes have taken, by block pairs; 0 as long as it is not known. */
+double traversal_done(const traversal *t);
+
+uint64_t traversal_boxes_tested(const traversal *t);

@@ -1,0 +1,276 @@
+/* The visit of the traversal: eight children against eight, then the triangles of leaves that overlap. */
+#include "runtime/bvh/this_level.h"
+
+#include "runtime/bvh/leaf_volumes.h"
+
+/* Where part b lies relative to part a, per axis at each end of the interval, and how far that is rounded;
+ * low and high hold it throughout. Volumes of a, moved by as much back, are compared with those of b. */
+typedef struct displacement {
+    float at[2][KDOP_AXES], slack, low[KDOP_AXES], high[KDOP_AXES];
+} displacement;
+
+static double along(const double v[3], int axis) {
+    static const signed char axes[KDOP_AXES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+                                                   {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    return axes[axis][0] * v[0] + axes[axis][1] * v[1] + axes[axis][2] * v[2];
+}
+
+/* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
+ * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
+static displacement between(const forest *f, const forest_part *a, const forest_part *b) {
+    displacement out;
+    double start[3], end[3], size = (double)a->reach + (double)b->reach;
+    for (int k = 0; k < 3; k++) {
+        start[k] = (b->origin[0][k] - a->origin[0][k]) * f->scale;
+        end[k] = (b->origin[1][k] - a->origin[1][k]) * f->scale;
+        size += (start[k] < 0 ? -start[k] : start[k]) + (end[k] < 0 ? -end[k] : end[k]);
+        for (int e = 0; e < 2; e++) {
+            double from = a->origin[e][k] * f->scale, to = b->origin[e][k] * f->scale;
+            size += 0x1p-30 * ((from < 0 ? -from : from) + (to < 0 ? -to : to));
+        }
+    }
+    out.slack = (float)(size * 0x1p-20);
+    for (int axis = 0; axis < KDOP_AXES; axis++) {
+        out.at[0][axis] = (float)along(start, axis);
+        out.at[1][axis] = (float)along(end, axis);
+        bool forward = out.at[0][axis] < out.at[1][axis];
+        out.low[axis] = out.at[forward ? 0 : 1][axis] - out.slack;
+        out.high[axis] = out.at[forward ? 1 : 0][axis] + out.slack;
+    }
+    return out;
+}
+
+/* Of lanes, those of b whose volumes over the interval do not overlap lane i of a. */
+static inline uint32_t apart(const float *a, const float *b, int i, int axis_count, const displacement *d) {
+    uint32_t lanes = 0;
+    for (int k = 0; k < axis_count; k++) {
+        float low = a[2 * k * LANES + i], high = a[(2 * k + 1) * LANES + i];
+        if (d != NULL) {
+            low -= d->high[k];
+            high -= d->low[k];
+        }
+        lanes |= f32x8_below(f32x8_all(high), f32x8_load(b + 2 * k * LANES));
+        lanes |= f32x8_below(f32x8_load(b + (2 * k + 1) * LANES), f32x8_all(low));
+    }
+    return lanes;
+}
+
+/* Of lanes, those of b that lie on one side of lane i of a at both ends, along one of the axes from first on:
+ * then they do so throughout, for points move linearly. */
+static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *b, int i, int first,
+                                     int axis_end, const displacement *d) {
+    uint32_t lanes = 0;
+    for (int k = first; k < axis_end; k++) {
+        uint32_t before = ALL_LANES, behind = ALL_LANES;
+        for (int e = 0; e < 2; e++) {
+            float low = a->low[e][k][i], high = a->high[e][k][i];
+            if (d != NULL) {
+                low -= d->at[e][k] + d->slack;
+                high -= d->at[e][k] - d->slack;
+            }
+            before &= f32x8_below(f32x8_all(high), b->low[e][k]);
+            behind &= f32x8_below(b->high[e][k], f32x8_all(low));
+        }
+        lanes |= before | behind;
+    }
+    return lanes;
+}
+
+/* One pair of blocks or of leaves, whose lanes are compared. */
+typedef struct comparison {
+    lane_flags a, b;
+    lane_flags before_a, before_b; /* leaves in pass FRESH */
+    uint64_t within;
+    uint32_t passive_a, passive_b; /* lanes that hold obstacles only */
+    bool itself, one_part, leaves;
+    traversal_pass pass;
+} comparison;
+
+static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus_b, uint32_t minus_b, int i) {
+    return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
+}
+
+/* Of b's lanes, those to be compared with lane i of a. */
+static inline uint32_t wanted(const comparison *c, int i) {
+    uint32_t lanes = c->b.used;
+    if ((c->passive_a >> i & 1) != 0) lanes &= ~c->passive_b;
+    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)FOREST_ALL_LANES << (i + 1));
+    if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
+    if (c->pass == TRAVERSAL_FRESH) {
+        if (!c->one_part) return 0;
+        if ((c->a.fresh >> i & 1) == 0) lanes &= c->b.fresh;
+        if (c->leaves)
+            lanes &= one_sign(c->before_a.plus, c->before_a.minus, c->before_b.plus, c->before_b.minus, i);
+    } else if (c->one_part) {
+        lanes &= ~one_sign(c->a.plus, c->a.minus, c->b.plus, c->b.minus, i);
+    }
+    return lanes;
+}
+
+/* ---- triangles of leaves ------------------------------------------------------------------------------- */
+
+_Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
+               "traversal.h makes room for these");
+
+static const leaf_volumes *leaf_volumes_of(const forest *f, leaf_cache *cache, uint32_t index,
+                                           const forest_part *p) {
+    uint32_t place = index % LEAF_CACHE_SIZE;
+    leaf_volumes *out = (leaf_volumes *)cache->volumes + place;
+    if (cache->tags[place] == index + 1) return out;
+    leaf_corners corners;
+    load_corners(f, &f->leaves[index], corners);
+    volumes_of(corners, p->slack, out);
+    cache->tags[place] = index + 1;
+    return out;
+}
+
+/* Of a leaf's triangles, those whose boxes overlap lane i of bounds, a block's. */
+static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bounds, int i,
+                                 const displacement *d) {
+    return ~apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
+}
+
+static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
+    while (lanes != 0) {
+        lane->pairs[lane->pair_count++] = (triangle_pair){slot, first + (uint32_t)__builtin_ctz(lanes)};
+        lanes &= lanes - 1;
+    }
+}
+
+typedef struct leaf_pair {
+    uint32_t a, b;
+    const leaf_volumes *volumes_a, *volumes_b;
+    uint32_t rows, columns; /* lanes worth a look */
+} leaf_pair;
+
+/* Of lanes, those of b whose triangles share no vertex with triangle i of a. */
+static inline uint32_t strangers(const forest *f, const leaf_pair *pair, int i, uint32_t lanes,
+                                 bool one_part) {
+    const forest_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
+    if (one_part) {
+        i32x8 shared = {0};
+        for (int j = 0; j < 3; j++) {
+            i32x8 corner = i32x8_load(b->corners[j]);
+            for (int k = 0; k < 3; k++) shared |= corner == (int32_t)a->corners[k][i];
+        }
+        return lanes & ~i32x8_negative(shared);
+    }
+    uint32_t kept = lanes;
+    for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        int lane = __builtin_ctz(rest);
+        bool shared = false;
+        for (int j = 0; j < 9; j++)
+            shared |= f->record_vertices[a->corners[j / 3][i]] == f->record_vertices[b->corners[j % 3][lane]];
+        kept ^= (uint32_t)shared << lane;
+    }
+    return kept;
+}
+
+static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
+                                  bool skip_adjacent, bool one_part, const displacement *d) {
+    const forest *f = t->forest;
+    const comparison c = {.a = f->leaf_flags[pair->a],
+                          .b = f->leaf_flags[pair->b],
+                          .before_a = f->flags_before[pair->a],
+                          .before_b = f->flags_before[pair->b],
+                          .within = f->leaf_within != NULL ? f->leaf_within[pair->a] : UINT64_MAX,
+                          .itself = pair->a == pair->b,
+                          .one_part = one_part,
+                          .leaves = true,
+                          .pass = t->pass};
+    for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
+        int i = __builtin_ctz(rows);
+        uint32_t lanes = wanted(&c, i) & pair->columns;
+        if (lanes == 0) continue;
+        lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
+        if (lanes != 0 && skip_adjacent) {
+            uint32_t kept = strangers(f, pair, i, lanes, one_part);
+            lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
+            lanes = kept;
+        }
+        if (lanes == 0) continue;
+        lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, BOX_AXES, KDOP_AXES, d);
+        add_pairs(lane, pair->a * LANES + (uint32_t)i, pair->b * LANES, lanes);
+    }
+}
+
+/* ---- blocks -------------------------------------------------------------------------------------------- */
+
+/* Lane i of block a against lanes of block b. */
+static inline void descend(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
+                           uint32_t lanes, const displacement *d) {
+    const forest *f = t->forest;
+    const forest_level *level = &f->levels[at->level];
+    uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
+    bool skip_adjacent = f->parts[at->part_a].skip_adjacent; /* part b is of the component, or not adjacent */
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        int j = __builtin_ctz(lanes);
+        uint32_t child_b = first_b + (uint32_t)j;
+        if (at->level > 0) {
+            bool parts = at->level == f->part_level;
+            lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, parts ? child_a : at->part_a,
+                                                            parts ? child_b : at->part_b, at->level - 1};
+            continue;
+        }
+        leaf_pair pair = {child_a, child_b, NULL, NULL, FOREST_ALL_LANES, FOREST_ALL_LANES};
+        pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
+        if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
+            leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
+            *copy = *pair.volumes_a;
+            pair.volumes_a = copy;
+        }
+        pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->parts[at->part_b]);
+        if (child_a != child_b) {
+            pair.columns = near_lane(pair.volumes_b, level->bounds + at->a * stride, i, d);
+            if (pair.columns == 0) continue;
+            if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
+        }
+        if (d == NULL) /* compiled apart, for it is most of the work */
+            compare_leaves(t, lane, &pair, skip_adjacent, true, NULL);
+        else
+            compare_leaves(t, lane, &pair, skip_adjacent, false, d);
+    }
+}
+
+static inline void visit(const traversal *t, traversal_lane *lane, block_pair at) {
+    const forest *f = t->forest;
+    const forest_level *level = &f->levels[at.level];
+    bool below = at.level < f->part_level, crosses = below && at.part_a != at.part_b;
+    displacement between_parts;
+    if (crosses) between_parts = between(f, &f->parts[at.part_a], &f->parts[at.part_b]);
+    const displacement *d = crosses ? &between_parts : NULL;
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
+    const comparison c = {.a = level->flags[at.a],
+                          .b = level->flags[at.b],
+                          .within = level->within != NULL ? level->within[at.a] : UINT64_MAX,
+                          .passive_a = level->passive != NULL ? level->passive[at.a] : 0,
+                          .passive_b = level->passive != NULL ? level->passive[at.b] : 0,
+                          .itself = at.a == at.b,
+                          .one_part = below && !crosses,
+                          .pass = t->pass};
+    for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
+        int i = __builtin_ctz(rows);
+        uint32_t lanes = wanted(&c, i);
+        if (lanes != 0) {
+            lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
+            lanes &= ~apart(bounds_a, bounds_b, i, f->axis_count, d);
+        }
+        if (c.itself) {
+            bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
+            if (t->pass != TRAVERSAL_KEPT) own = (c.a.fresh >> i & 1) != 0;
+            if (own && (c.passive_a >> i & 1) == 0) lanes |= 1u << i;
+        }
+        if (lanes != 0) descend(t, lane, &at, i, lanes, d);
+    }
+}
+
+void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max) {
+    while (lane->stack_count > 0 && visits_max-- > 0) {
+        if (lane->pair_count + TRAVERSAL_PAIRS_PER_VISIT > TRAVERSAL_BATCH_SIZE) return;
+        if (lane->stack_count + TRAVERSAL_PUSHES_PER_VISIT > lane->stack_capacity) return;
+        visit(t, lane, lane->stack[--lane->stack_count]);
+    }
+}

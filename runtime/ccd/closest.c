@@ -1,0 +1,159 @@
+/* Closest points of features at rest. */
+#include "runtime/ccd/closest.h"
+
+#include "src/core/vec3.h"
+
+#include <stdbool.h>
+
+static double clamp01(double x) {
+    return x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
+}
+
+/* Parameter of the point of segment a b nearest to p; 0 where the segment is a point. */
+static double nearest_on_segment(const double p[3], const double a[3], const double b[3]) {
+    double direction[3], offset[3];
+    vector_subtract(b, a, direction);
+    vector_subtract(p, a, offset);
+    double length = vector_dot(direction, direction);
+    return length > 0.0 ? clamp01(vector_dot(offset, direction) / length) : 0.0;
+}
+
+static double squared_distance_at(const double p[3], const double a[3], const double b[3], const double c[3],
+                                  double u, double v) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double offset = (p[k] - a[k]) - u * (b[k] - a[k]) - v * (c[k] - a[k]);
+        sum += offset * offset;
+    }
+    return sum;
+}
+
+/* The nearest point on the three sides. */
+static double closest_on_sides(const double p[3], const double a[3], const double b[3], const double c[3],
+                               double *u, double *v) {
+    double ab = nearest_on_segment(p, a, b), bc = nearest_on_segment(p, b, c),
+           ca = nearest_on_segment(p, c, a);
+    const double candidates[3][2] = {{ab, 0.0}, {1.0 - bc, bc}, {0.0, 1.0 - ca}};
+    double best = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        double distance = squared_distance_at(p, a, b, c, candidates[i][0], candidates[i][1]);
+        if (distance < best) {
+            best = distance;
+            *u = candidates[i][0];
+            *v = candidates[i][1];
+        }
+    }
+    return best;
+}
+
+enum { PROJECTIONS_MAX = 16 };
+
+/* Adds to u and v what the residual of p at them projects to, and says whether that changed them. Repeated,
+ * the point becomes good to rounding even in a thin triangle, where the first answer is not. */
+static bool project(const double p[3], const double a[3], const double ab[3], const double ac[3],
+                    const double normal[3], double area, double *u, double *v) {
+    double residual[3], side[3];
+    for (int k = 0; k < 3; k++) residual[k] = (p[k] - a[k]) - *u * ab[k] - *v * ac[k];
+    vector_cross(residual, ac, side);
+    double step_u = vector_dot(side, normal) / area;
+    vector_cross(ab, residual, side);
+    double step_v = vector_dot(side, normal) / area, old_u = *u, old_v = *v;
+    *u += step_u;
+    *v += step_v;
+    return *u != old_u || *v != old_v;
+}
+
+/* Squared distances below this share of the squared lengths are rounding: nothing is nearer. */
+static const double touching = 0x1p-90;
+
+/* Of the plane, if it is in the triangle; else INFINITY. */
+static double closest_in_plane(const double p[3], const double a[3], const double b[3], const double c[3],
+                               double *u, double *v, double *size) {
+    double ab[3], ac[3], normal[3], inside_u = 0.0, inside_v = 0.0;
+    vector_subtract(b, a, ab);
+    vector_subtract(c, a, ac);
+    vector_cross(ab, ac, normal);
+    double area = vector_dot(normal, normal);
+    *size = vector_dot(ab, ab) + vector_dot(ac, ac);
+    if (!(area > 0.0)) return INFINITY;
+    for (int i = 0; i < PROJECTIONS_MAX; i++) {
+        if (!project(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
+    }
+    if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return INFINITY;
+    *u = inside_u;
+    *v = inside_v;
+    return squared_distance_at(p, a, b, c, inside_u, inside_v);
+}
+
+double closest_point_triangle(const double p[3], const double a[3], const double b[3], const double c[3],
+                              double *u, double *v) {
+    double size, inside_u = 0.0, inside_v = 0.0,
+                 distance = closest_in_plane(p, a, b, c, &inside_u, &inside_v, &size);
+    double best = distance <= touching * size ? INFINITY : closest_on_sides(p, a, b, c, u, v);
+    if (distance > best || !(distance < INFINITY)) return best;
+    /* Where rounding sees no difference, the inner point is the better one. */
+    *u = inside_u;
+    *v = inside_v;
+    return distance;
+}
+
+static double segment_distance_at(const double a0[3], const double a1[3], const double b0[3],
+                                  const double b1[3], double u, double v) {
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double offset = (a0[k] - b0[k]) + u * (a1[k] - a0[k]) - v * (b1[k] - b0[k]);
+        sum += offset * offset;
+    }
+    return sum;
+}
+
+/* The crossing of the lines; between nearly parallel ones it is inexact, which projecting back and forth
+ * mends. INFINITY: they are parallel. */
+static double crossing(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
+                       double *u, double *v, double *size) {
+    double along_a[3], along_b[3], offset[3], normal[3], side[3], point[3];
+    vector_subtract(a1, a0, along_a);
+    vector_subtract(b1, b0, along_b);
+    vector_subtract(b0, a0, offset);
+    vector_cross(along_a, along_b, normal);
+    double area = vector_dot(normal, normal);
+    *size = vector_dot(along_a, along_a) + vector_dot(along_b, along_b);
+    if (!(area > 0.0)) return INFINITY;
+    vector_cross(offset, along_b, side);
+    *u = clamp01(vector_dot(side, normal) / area);
+    vector_add_scaled(a0, *u, along_a, point);
+    *v = nearest_on_segment(point, b0, b1);
+    vector_add_scaled(b0, *v, along_b, point);
+    *u = nearest_on_segment(point, a0, a1);
+    return segment_distance_at(a0, a1, b0, b1, *u, *v);
+}
+
+/* The best of the four ends. */
+static double closest_ends(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
+                           double *u, double *v) {
+    const double candidates[4][2] = {{0.0, nearest_on_segment(a0, b0, b1)},
+                                     {1.0, nearest_on_segment(a1, b0, b1)},
+                                     {nearest_on_segment(b0, a0, a1), 0.0},
+                                     {nearest_on_segment(b1, a0, a1), 1.0}};
+    double best = INFINITY;
+    for (int i = 0; i < 4; i++) {
+        double distance = segment_distance_at(a0, a1, b0, b1, candidates[i][0], candidates[i][1]);
+        if (distance < best) {
+            best = distance;
+            *u = candidates[i][0];
+            *v = candidates[i][1];
+        }
+    }
+    return best;
+}
+
+/* The nearest points are two inner ones or include an end. */
+double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
+                        double *u, double *v) {
+    double size, cross_u = 0.0, cross_v = 0.0, distance = crossing(a0, a1, b0, b1, &cross_u, &cross_v, &size);
+    double best = distance <= touching * size ? INFINITY : closest_ends(a0, a1, b0, b1, u, v);
+    if (distance > best || !(distance < INFINITY)) return best;
+    *u = cross_u;
+    *v = cross_v;
+    return distance;
+}

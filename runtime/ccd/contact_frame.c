@@ -1,0 +1,131 @@
+/* What is told of a touch: a time that is safe to step to, the points, the normal. */
+#include "runtime/ccd/contact_frame.h"
+
+#include "runtime/ccd/closest.h"
+#include "runtime/ccd/cubic.h"
+#include "src/core/vec3.h"
+
+/* Positions at a time, computed and rounded to doubles by whoever steps there, are off by at most 2 units in
+ * the last place of the largest coordinate C, 2^-52 C each: with four points in the gap, two on either side
+ * of it, and the diagonal of the cube, by less than 2 * 2 * sqrt(3) * 2^-52 C < 2^-49 C along the normal.
+ * Twice that is left open. */
+static const double gap_left = 0x1p-48;
+static const double earlier_at_most = 0x1p-32;
+
+/* Vectors between the points at one moment, as in point_vectors: blended differences keep the shape of
+ * features that are small beside their motion, blended positions would not. */
+typedef struct moment_vectors {
+    double a[3], b[3], c[3];
+} moment_vectors;
+
+static double largest_coordinate(const elementary_query *query) {
+    double largest = 0.0;
+    for (int i = 0; i < 4; i++)
+        largest = larger(largest, larger(vector_largest(query->x0[i]), vector_largest(query->x1[i])));
+    return largest;
+}
+
+static double blend(double start, double end, double t) {
+    return (1.0 - t) * start + t * end;
+}
+
+static moment_vectors vectors_at(const point_vectors *v, double t) {
+    moment_vectors m;
+    for (int k = 0; k < 3; k++) {
+        m.a[k] = blend(v->a[0][k], v->a[1][k], t);
+        m.b[k] = blend(v->b[0][k], v->b[1][k], t);
+        m.c[k] = blend(v->c[0][k], v->c[1][k], t);
+    }
+    return m;
+}
+
+/* The power of two that brings the largest component to [1/2, 1), so that squares neither over- nor
+ * underflow; returns the exponent that is taken out. */
+static int scale_to_one(const double v[3], double out[3]) {
+    int exponent = exponent_of(vector_largest(v));
+    double factor = power_of_two(-exponent);
+    for (int k = 0; k < 3; k++) out[k] = factor * v[k];
+    return exponent;
+}
+
+/* a x b times 2^-*exponent. */
+static void scaled_cross(const moment_vectors *m, double out[3], int *exponent) {
+    double a[3], b[3];
+    *exponent = scale_to_one(m->a, a) + scale_to_one(m->b, b);
+    vector_cross(a, b, out);
+}
+
+/* The gap is the volume over the area of the features' parallelogram, and closes at the rate of its slope;
+ * where the slope is lost in rounding the root is not simple, and nothing is gained by being early. */
+static double leave_gap(const point_vectors *vectors, double coordinate, const coplanarity *f, double toi) {
+    double cross[3], slope = fabs(cubic_slope(f, toi));
+    int exponent;
+    if (!(slope > 8.0 * f->error)) return toi;
+    moment_vectors m = vectors_at(vectors, toi);
+    scaled_cross(&m, cross, &exponent);
+    double speed = slope * power_of_two(-exponent) / sqrt(vector_dot(cross, cross));
+    return larger(toi - smaller(gap_left * coordinate / speed, earlier_at_most), 0.0);
+}
+
+/* The nearest points at one moment, scaled, relative to the face's first corner (VF) or to the start of the
+ * shorter edge (EE), so that its shape survives the addition. */
+static void find_parameters(const moment_vectors *m, int first_count, elementary_hit *hit) {
+    static const double origin[3] = {0, 0, 0};
+    double a[3], b[3], c[3], end[3];
+    double largest = larger(vector_largest(m->a), larger(vector_largest(m->b), vector_largest(m->c)));
+    double factor = power_of_two(-exponent_of(largest));
+    for (int k = 0; k < 3; k++) {
+        a[k] = factor * m->a[k];
+        b[k] = factor * m->b[k];
+        c[k] = factor * m->c[k];
+    }
+    if (first_count == 1) {
+        closest_point_triangle(c, origin, a, b, &hit->u, &hit->v);
+    } else if (vector_largest(a) < vector_largest(b)) {
+        vector_add_scaled(c, 1.0, b, end);
+        closest_segments(origin, a, c, end, &hit->u, &hit->v);
+    } else {
+        for (int k = 0; k < 3; k++) c[k] = -c[k];
+        vector_add_scaled(c, 1.0, a, end);
+        closest_segments(c, end, origin, b, &hit->u, &hit->v);
+    }
+}
+
+/* From the point named on b to the one on a. */
+static void connection(const double a[3], const double b[3], const double c[3], int first_count,
+                       const elementary_hit *hit, double out[3]) {
+    double sign = first_count == 1 ? 1.0 : -1.0;
+    for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - hit->u * a[k]) - hit->v * b[k];
+}
+
+/* Unit normal of the touching features, turned against the motion of a relative to b. */
+static void contact_normal(const point_vectors *v, const moment_vectors *m, int first_count,
+                           const elementary_hit *hit, double normal[3]) {
+    double cross[3], start[3], end[3], motion[3];
+    int exponent;
+    scaled_cross(m, cross, &exponent);
+    scale_to_one(cross, normal);
+    double length = sqrt(vector_dot(normal, normal));
+    connection(v->a[0], v->b[0], v->c[0], first_count, hit, start);
+    connection(v->a[1], v->b[1], v->c[1], first_count, hit, end);
+    vector_subtract(end, start, motion);
+    double sign = vector_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
+    for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
+}
+
+void contact_frame_describe(const elementary_query *query, int first_count, const coplanarity *f, double toi,
+                            elementary_hit *hit) {
+    point_vectors vectors;
+    double apart[3];
+    point_vectors_from(query, first_count, &vectors);
+    hit->toi = leave_gap(&vectors, largest_coordinate(query), f, toi);
+    moment_vectors m = vectors_at(&vectors, hit->toi);
+    find_parameters(&m, first_count, hit);
+    connection(m.a, m.b, m.c, first_count, hit, apart);
+    for (int k = 0; k < 3; k++) {
+        double on_a = blend(query->x0[0][k], query->x1[0][k], hit->toi);
+        if (first_count == 2) on_a += hit->u * m.a[k];
+        hit->point[k] = on_a - 0.5 * apart[k];
+    }
+    contact_normal(&vectors, &m, first_count, hit, hit->normal);
+}

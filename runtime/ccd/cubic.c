@@ -1,0 +1,177 @@
+/* Intervals of time that hold the roots of the coplanarity cubic, certified: the roots are guessed, polished,
+ * and then proven by the signs of the Bernstein coefficients between them. A wrong or a missing guess, or a
+ * multiple root, only makes the proof fail. */
+#include "runtime/ccd/cubic.h"
+
+#include "runtime/ccd/cubic_guess.h"
+#include "src/core/vec3.h"
+
+enum { POLISH_STEPS = 10, SUBDIVISIONS = 3 };
+
+/* What rounding of t itself moves a root by, and more. A step of Newton's method this short squares the error
+ * to less than that, mostly; where it does not, the proof fails. */
+static const double root_rounding = 0x1p-50, converged = 0x1p-26;
+
+static const double widest_radius = 0x1p-7;
+
+static double blend(double a, double b, double t) {
+    return (1.0 - t) * a + t * b;
+}
+
+/* The cubic's polar form, by de Casteljau's scheme, at (t, t) and then at the third arguments: values of the
+ * cubic and Bernstein coefficients of its parts. */
+typedef struct polar {
+    double low, high;
+} polar;
+
+static polar polar_at(const double b[4], double t) {
+    double p0 = blend(b[0], b[1], t), p1 = blend(b[1], b[2], t), p2 = blend(b[2], b[3], t);
+    return (polar){blend(p0, p1, t), blend(p1, p2, t)};
+}
+
+double cubic_slope(const coplanarity *f, double t) {
+    polar p = polar_at(f->b, t);
+    return 3.0 * (p.high - p.low);
+}
+
+/* c[0] + c[1] t + c[2] t^2 + c[3] t^3, times a power of two at which no product of two over- or underflows.
+ */
+static void to_monomials(const double coefficients[4], double c[4]) {
+    int exponent = 0;
+    double b[4];
+    frexp(larger(larger(fabs(coefficients[0]), fabs(coefficients[1])),
+                 larger(fabs(coefficients[2]), fabs(coefficients[3]))),
+          &exponent);
+    for (int i = 0; i < 4; i++) b[i] = ldexp(coefficients[i], -exponent);
+    c[0] = b[0];
+    c[1] = 3.0 * (b[1] - b[0]);
+    c[2] = 3.0 * (b[0] - 2.0 * b[1] + b[2]);
+    c[3] = (b[3] - b[0]) + 3.0 * (b[1] - b[2]);
+}
+
+/* The certified sign of the exact cubic on all of [from, to]; 0: none was found. */
+static int sign_between(const coplanarity *f, double from, double to, int subdivisions) {
+    polar start = polar_at(f->b, from), stop = polar_at(f->b, to);
+    double error = f->error;
+    double c0 = blend(start.low, start.high, from), c1 = blend(start.low, start.high, to);
+    double c2 = blend(stop.low, stop.high, from), c3 = blend(stop.low, stop.high, to);
+    if (c0 > error && c1 > error && c2 > error && c3 > error) return 1;
+    if (c0 < -error && c1 < -error && c2 < -error && c3 < -error) return -1;
+    if (subdivisions == 0 || !((c0 > error && c3 > error) || (c0 < -error && c3 < -error))) return 0;
+    double middle = 0.5 * (from + to);
+    int left = sign_between(f, from, middle, subdivisions - 1);
+    return left != 0 && left == sign_between(f, middle, to, subdivisions - 1) ? left : 0;
+}
+
+/* Newton's method, kept within [low, high], where the cubic has the sign `change` before the root and -change
+ * after it; 0: unknown. False when it does not converge. */
+static bool polish(const double b[4], double low, double high, double change, double *t) {
+    for (int i = 0; i < POLISH_STEPS; i++) {
+        polar p = polar_at(b, *t);
+        double value = blend(p.low, p.high, *t), next = *t - value / (3.0 * (p.high - p.low));
+        if (change * value > 0.0) low = *t;
+        if (change * value < 0.0) high = *t;
+        if (!(next >= low && next <= high)) next = 0.5 * (low + high); /* or not a number */
+        double step = fabs(next - *t);
+        *t = next;
+        if (step < converged) return true;
+    }
+    return false;
+}
+
+/* The interval in which rounding leaves the root's place open; false when it is too wide: the root is
+ * multiple, or nearly. */
+static bool interval_about(const coplanarity *f, double root, root_interval *out) {
+    double radius = 1.25 * (f->error / fabs(cubic_slope(f, root))) + root_rounding;
+    *out = (root_interval){larger(root - radius, 0.0), smaller(root + radius, 1.0), true};
+    return radius <= widest_radius;
+}
+
+static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
+    double c[4], guesses[3];
+    int count = 0;
+    to_monomials(f->b, c);
+    int guess_count = cubic_guess_roots(c, guesses);
+    for (int i = 0; i < guess_count; i++) {
+        if (!(guesses[i] > -0x1p-20 && guesses[i] < 1.0 + 0x1p-20)) continue;
+        if (!polish(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
+            return ROOTS_UNCERTAIN;
+        if (!(out[count].begin < out[count].end)) continue; /* polished out of [0,1] */
+        if (count > 0 && !(out[count - 1].end < out[count].begin)) return ROOTS_UNCERTAIN;
+        count++;
+    }
+    return count;
+}
+
+static int isolate_by_guesses(const coplanarity *f, root_interval out[ROOTS_MAX]) {
+    int count = guess_intervals(f, out), sign = 0;
+    double begin = 0.0;
+    if (count < 0) return ROOTS_UNCERTAIN;
+    for (int i = 0; i <= count; i++) {
+        double end = i < count ? out[i].begin : 1.0;
+        int next = begin < end ? sign_between(f, begin, end, SUBDIVISIONS) : 0;
+        if (next == 0 && begin < end) return ROOTS_UNCERTAIN;
+        if (i > 0) out[i - 1].certain = sign * next < 0;
+        sign = next;
+        if (i < count) begin = out[i].end;
+    }
+    return count;
+}
+
+/* The Bernstein coefficients change sign once, whatever their errors, from positive to negative (sign 1) or
+ * back (-1): there is exactly one root in [0,1], and it is simple. 0: not so. */
+static int single_change(const coplanarity *f) {
+    const double *b = f->b;
+    double error = f->error;
+    if (b[0] > error && b[3] < -error) return b[1] > error || b[2] < -error ? 1 : 0;
+    if (b[0] < -error && b[3] > error) return b[1] < -error || b[2] > error ? -1 : 0;
+    return 0;
+}
+
+/* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
+ * between which it has exactly one root. */
+static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
+                            root_interval *out) {
+    if (!polish(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
+    out->begin = larger(out->begin, low);
+    out->end = smaller(out->end, high);
+    polar begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
+    return change * blend(begin.low, begin.high, out->begin) > f->error &&
+           change * blend(end.low, end.high, out->end) < -f->error;
+}
+
+/* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
+ * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
+static double lowest_at(const double b[4]) {
+    double d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
+    double half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
+    double root = sqrt(half * half + square);
+    return half >= 0.0 ? 1.0 / (half + root) : (root - half) / square;
+}
+
+/* The same certain sign at both ends: two roots, or none, if the coefficients of the parts before and after
+ * the place where the cubic is nearest to 0 say so for certain. */
+static int isolate_two(const coplanarity *f, root_interval out[ROOTS_MAX]) {
+    double sign = f->b[0] > 0.0 ? 1.0 : -1.0, error = f->error;
+    coplanarity g = {.error = error};
+    for (int i = 0; i < 4; i++) g.b[i] = sign * f->b[i];
+    const double *b = g.b;
+    double t = lowest_at(b);
+    if (!(b[0] > error && b[3] > error && t > 0.0 && t < 1.0)) return ROOTS_UNCERTAIN;
+    polar p = polar_at(b, t);
+    double first = blend(b[0], b[1], t), last = blend(b[2], b[3], t), value = blend(p.low, p.high, t);
+    if (first > error && p.low > error && value > error && p.high > error && last > error) return 0;
+    if (!(value < -error && (first > error || p.low < -error) && (last > error || p.high < -error)))
+        return ROOTS_UNCERTAIN;
+    double left = t * (b[0] / (b[0] - value)), right = 1.0 - (1.0 - t) * (b[3] / (b[3] - value));
+    bool both =
+        isolate_between(&g, 0.0, t, 1.0, left, &out[0]) && isolate_between(&g, t, 1.0, -1.0, right, &out[1]);
+    return both ? 2 : ROOTS_UNCERTAIN;
+}
+
+int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]) {
+    int change = single_change(f), two;
+    if (change != 0 && isolate_between(f, 0.0, 1.0, change, f->b[0] / (f->b[0] - f->b[3]), out)) return 1;
+    if (change == 0 && (two = isolate_two(f, out)) != ROOTS_UNCERTAIN) return two;
+    return isolate_by_guesses(f, out);
+}

@@ -1,0 +1,74 @@
+/* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? Three levels, each of
+ * which decides only what it is certain of; docs/elementary.md derives every constant. */
+#include "runtime/ccd/elementary.h"
+
+#include "runtime/ccd/contact_frame.h"
+#include "runtime/ccd/coplanarity.h"
+#include "runtime/ccd/cubic.h"
+#include "runtime/ccd/exact/exact_test.h"
+#include "runtime/ccd/inside_test.h"
+#include "runtime/ccd/separating_axis.h"
+
+static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
+
+/* A root interval must be as narrow for its begin to be the TOI. */
+static const double narrow = 0x1p-31;
+
+/* Between the second level and the third: directions that cost more than they save before the second. */
+static elementary_verdict decide_what_is_left(const elementary_query *query, int first_count,
+                                              const coplanarity *f, elementary_hit *hit) {
+    double toi;
+    if (separated_by_diagonals(query, first_count) || separated_in_plane(query, first_count))
+        return apart_by_signs;
+    bool touching = exact_touch(query, first_count, &toi);
+    if (touching) contact_frame_describe(query, first_count, f, toi, hit);
+    return (elementary_verdict){touching, ELEMENTARY_EXACT};
+}
+
+static elementary_verdict decide_at_roots(const elementary_query *query, const point_vectors *vectors,
+                                          int first_count, const coplanarity *f, elementary_hit *hit) {
+    root_interval roots[ROOTS_MAX];
+    int count = cubic_isolate(f, roots);
+    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, first_count, f, hit);
+    for (int i = 0; i < count; i++) {
+        inside_verdict inside = inside_test(vectors, first_count, &roots[i]);
+        if (inside == INSIDE_NO) continue;
+        if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)
+            return decide_what_is_left(query, first_count, f, hit);
+        contact_frame_describe(query, first_count, f, roots[i].begin, hit);
+        return (elementary_verdict){true, ELEMENTARY_ROOTS};
+    }
+    return (elementary_verdict){false, ELEMENTARY_ROOTS};
+}
+
+static elementary_verdict decide(const elementary_query *query, int first_count, elementary_hit *hit) {
+    if (separated_by_axes(query, first_count)) return apart_by_signs;
+    point_vectors vectors;
+    point_vectors_from(query, first_count, &vectors);
+    coplanarity f = coplanarity_cubic(&vectors);
+    if (coplanarity_excluded(&f)) return apart_by_signs;
+    return decide_at_roots(query, &vectors, first_count, &f, hit);
+}
+
+elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit) {
+    return decide(query, 1, hit);
+}
+
+elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit) {
+    return decide(query, 2, hit);
+}
+
+elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
+                                          elementary_hit *hit) {
+    point_vectors vectors;
+    point_vectors_from(query, first_count, &vectors);
+    coplanarity f = coplanarity_cubic(&vectors);
+    return decide_at_roots(query, &vectors, first_count, &f, hit);
+}
+
+void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit) {
+    point_vectors vectors;
+    point_vectors_from(query, first_count, &vectors);
+    coplanarity f = coplanarity_cubic(&vectors);
+    contact_frame_describe(query, first_count, &f, toi, hit);
+}

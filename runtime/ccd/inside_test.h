@@ -1,0 +1,11 @@
+/* The inside test of level two: are two features' points, coplanar at some time in an interval, in touch? */
+#pragma once
+
+#include "runtime/ccd/coplanarity.h"
+#include "runtime/ccd/cubic.h"
+
+typedef enum inside_verdict { INSIDE_NO, INSIDE_YES, INSIDE_UNSURE } inside_verdict;
+
+/* Whether they touch at none (NO) or every one (YES) of the times in the interval at which the four points
+ * are coplanar; certified. first_count: 1 for VF, 2 for EE. */
+inside_verdict inside_test(const point_vectors *vectors, int first_count, const root_interval *interval);

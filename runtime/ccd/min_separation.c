@@ -1,0 +1,207 @@
+/* Minimum separation: do a moving vertex and face, or two moving edges, come within a distance, and when? */
+#include "runtime/ccd/min_separation.h"
+
+#include "runtime/ccd/closest.h"
+#include "runtime/ccd/kdop_directions.h"
+#include "runtime/ccd/separating_plane.h"
+#include "src/core/vec3.h"
+
+/* The features are no farther apart than the computed distance and this. The distance is that of two of their
+ * points; in units of 2^-53, of offset's coordinates: those of the points are off by 3 each, and by 1 each
+ * from the subtraction in localise; differences below 2 round by 2, twice that for two of them, weighed by u
+ * and v up to 1, and so do the products, then two sums by 2: together below 8 + 2 + 4 + 4 + 4 = 22. A sum u +
+ * v above 1 by rounding is worth 2 more. So the vector is off by 24 sqrt 3 < 42, and its length rounds by
+ * less than 12. */
+#define DISTANCE_ERROR 0x1p-47
+
+/* Nearer than this the direction from one point to the other is rounding. */
+static const double too_near = 0x1p-46;
+
+/* The query relative to its first point, scaled by a power of two. */
+typedef struct local_query {
+    elementary_query at;
+    int first_count;        /* points of feature a */
+    double scale, distance; /* distance: the limit's, scaled */
+    bool still;             /* nothing moves */
+} local_query;
+
+/* The features at one moment. */
+typedef struct moment {
+    double t, u, v, distance;
+    moving_features features;
+    shortest_connection shortest;
+    double middle[3]; /* of the shortest connection */
+} moment;
+
+/* ---- the query ------------------------------------------------------------------------------------- */
+
+static double query_extent(const elementary_query *query) {
+    double largest = 0.0;
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) {
+            largest = larger(largest, fabs(query->x0[i][k] - query->x0[0][k]));
+            largest = larger(largest, fabs(query->x1[i][k] - query->x0[0][k]));
+        }
+    }
+    return largest;
+}
+
+/* To an extent in [1/2, 1), so that no later product over- or underflows. The subtraction rounds: coordinates
+ * are off by at most 2^-53. Scaling is exact, that of the distance too: its exponent stays within 1000. */
+static local_query localise(const elementary_query *query, int first_count, double distance) {
+    local_query local = {.first_count = first_count,
+                         .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
+    int exponent = 0;
+    frexp(query_extent(query), &exponent);
+    local.scale = ldexp(1.0, -exponent);
+    local.distance = distance * local.scale;
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) {
+            local.at.x0[i][k] = (query->x0[i][k] - query->x0[0][k]) * local.scale;
+            local.at.x1[i][k] = (query->x1[i][k] - query->x0[0][k]) * local.scale;
+        }
+    }
+    return local;
+}
+
+/* ---- the features at a moment ---------------------------------------------------------------------- */
+
+static void connect_vf(moment *m) {
+    const double(*x)[3] = (const double(*)[3])m->features.x;
+    const double(*velocity)[3] = (const double(*)[3])m->features.velocity;
+    closest_point_triangle(x[0], x[1], x[2], x[3], &m->u, &m->v);
+    double u = m->u, v = m->v;
+    for (int k = 0; k < 3; k++) {
+        m->shortest.offset[k] = (x[0][k] - x[1][k]) - u * (x[2][k] - x[1][k]) - v * (x[3][k] - x[1][k]);
+        m->shortest.change[k] = (velocity[0][k] - velocity[1][k]) - u * (velocity[2][k] - velocity[1][k]) -
+                                v * (velocity[3][k] - velocity[1][k]);
+        m->middle[k] = x[0][k] - 0.5 * m->shortest.offset[k];
+    }
+    bool on_last = u + v >= 1.0;
+    m->shortest.inside[0] = u > 0.0 && u < 1.0 && !(on_last && v > 0.0);
+    m->shortest.inside[1] = v > 0.0 && v < 1.0 && !(on_last && u > 0.0);
+    m->shortest.inside[2] = u > 0.0 && v > 0.0 && on_last;
+}
+
+static void connect_ee(moment *m) {
+    const double(*x)[3] = (const double(*)[3])m->features.x;
+    const double(*velocity)[3] = (const double(*)[3])m->features.velocity;
+    closest_segments(x[0], x[1], x[2], x[3], &m->u, &m->v);
+    double u = m->u, v = m->v;
+    for (int k = 0; k < 3; k++) {
+        m->shortest.offset[k] = (x[0][k] - x[2][k]) + u * (x[1][k] - x[0][k]) - v * (x[3][k] - x[2][k]);
+        m->shortest.change[k] = (velocity[0][k] - velocity[2][k]) + u * (velocity[1][k] - velocity[0][k]) -
+                                v * (velocity[3][k] - velocity[2][k]);
+        m->middle[k] = x[0][k] + u * (x[1][k] - x[0][k]) - 0.5 * m->shortest.offset[k];
+    }
+    m->shortest.inside[0] = u > 0.0 && u < 1.0;
+    m->shortest.inside[1] = v > 0.0 && v < 1.0;
+}
+
+/* Each coordinate is off by at most 3 * 2^-53: two roundings of (1 - t) x0, one of t x1, one of the sum. */
+static void move_to(const local_query *local, double t, moment *m) {
+    m->t = t;
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++)
+            m->features.x[i][k] = (1.0 - t) * local->at.x0[i][k] + t * local->at.x1[i][k];
+    }
+    if (local->first_count == 1)
+        connect_vf(m);
+    else
+        connect_ee(m);
+    m->distance = sqrt(vector_dot(m->shortest.offset, m->shortest.offset));
+}
+
+static moment start(const local_query *local) {
+    moment m = {.features.first_count = local->first_count};
+    for (int i = 0; i < 4; i++) vector_subtract(local->at.x1[i], local->at.x0[i], m.features.velocity[i]);
+    move_to(local, 0.0, &m);
+    return m;
+}
+
+/* ---- conservative advancement ---------------------------------------------------------------------- */
+
+/* For how long from the moment on the features are certainly apart: any plane proves it, and fewer axes may
+ * prove more. */
+static double time_apart(const local_query *local, const moment *m) {
+    double longest = 0.0;
+    for (int axes_max = 2; axes_max >= 0 && longest < 1.0 - m->t; axes_max--) {
+        separating_plane plane = separating_plane_find(&m->features, &m->shortest, axes_max);
+        longest = fmax(longest, separating_plane_holds(&m->features, &plane, local->distance));
+        if (plane.axis_count < axes_max) axes_max = plane.axis_count;
+        if (plane.axis_count < 2 && longest > 0.0) break;
+    }
+    return longest;
+}
+
+/* Where nothing moves the plane across the shortest connection mostly proves all there is to prove. */
+static bool stays_apart(const local_query *local, const moment *m) {
+    separating_plane across = {.axis_count = 0};
+    if (!local->still) return false;
+    for (int k = 0; k < 3; k++) across.normal[k] = m->shortest.offset[k] / m->distance;
+    return separating_plane_holds(&m->features, &across, local->distance) >= 1.0;
+}
+
+/* From moment to moment, each as late as a plane keeps the features apart, until they are no farther apart
+ * than reach. A time t + s is rounded down: times 1 - 2^-53 is the next smaller double. */
+static bool advance(const local_query *local, double reach, moment *m, bool *bounded) {
+    *bounded = false;
+    if (m->distance > reach && stays_apart(local, m)) return false;
+    for (int step = 0; m->distance > reach; step++) {
+        double time = time_apart(local, m);
+        if (time >= 1.0 - m->t) return false;
+        double later = (m->t + time) * (1.0 - 0x1p-53);
+        if (step == SEPARATION_STEPS_MAX || !(later > m->t)) return *bounded = true;
+        move_to(local, later, m);
+    }
+    return true;
+}
+
+/* The features' own normal, against the motion of a relative to b: where they touch there is no other. */
+static void touching_normal(const moment *m, double normal[3]) {
+    const double(*x)[3] = (const double(*)[3])m->features.x;
+    double a[3], b[3];
+    bool vf = m->features.first_count == 1;
+    vector_subtract(x[vf ? 2 : 1], x[vf ? 1 : 0], a);
+    vector_subtract(x[3], x[vf ? 1 : 2], b);
+    vector_cross(a, b, normal);
+    double length = sqrt(vector_dot(normal, normal));
+    double sign = vector_dot(normal, m->shortest.change) > 0.0 ? -1.0 : 1.0;
+    for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
+}
+
+static void describe(const elementary_query *query, const local_query *local, const moment *m,
+                     elementary_hit *hit) {
+    *hit = (elementary_hit){.toi = m->t, .u = m->u, .v = m->v};
+    for (int k = 0; k < 3; k++) {
+        hit->point[k] = query->x0[0][k] + m->middle[k] / local->scale;
+        hit->normal[k] = m->shortest.offset[k] / m->distance;
+    }
+    if (m->distance < too_near) touching_normal(m, hit->normal);
+}
+
+/* The extent being at least 1/2, half of SEPARATION_FINEST is no more of a tolerance than promised; it is 16
+ * times DISTANCE_ERROR and 8 times what a plane proves nothing about: steps end at reach, not before it. */
+static bool comes_within(const elementary_query *query, int first_count, const separation *limit,
+                         elementary_hit *hit, bool *bounded) {
+    local_query local = localise(query, first_count, limit->distance);
+    double tolerance = fmax(limit->tolerance * local.scale, 0.5 * SEPARATION_FINEST);
+    double reach = local.distance + (tolerance - DISTANCE_ERROR);
+    moment m = start(&local);
+    bool ran_out;
+    if (!advance(&local, reach, &m, &ran_out)) return false;
+    if (directions_part(query, first_count, limit->distance)) return false;
+    describe(query, &local, &m, hit);
+    *bounded = ran_out;
+    return true;
+}
+
+bool separation_vf(const elementary_query *query, const separation *limit, elementary_hit *hit,
+                   bool *bounded) {
+    return comes_within(query, 1, limit, hit, bounded);
+}
+
+bool separation_ee(const elementary_query *query, const separation *limit, elementary_hit *hit,
+                   bool *bounded) {
+    return comes_within(query, 2, limit, hit, bounded);
+}

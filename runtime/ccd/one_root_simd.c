@@ -1,0 +1,47 @@
+/* Level two of the elementary tests on many pairs at a time, where the cubic certainly has one root: the
+ * same intervals and verdicts as cubic.c and inside.c have. */
+#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/wide_roots.h"
+
+/* Lanes in which the coefficients certainly change sign once: from positive to negative, and back. */
+static inline void single_changes(const wide_cubics *f, uint32_t *falling, uint32_t *rising) {
+    uint32_t above[4], below[4];
+    for (int i = 0; i < 4; i++) {
+        above[i] = f64w_below(f->error, f->b[i]);
+        below[i] = f64w_below(f->b[i], -f->error);
+    }
+    *falling = above[0] & below[3] & (above[1] | below[2]);
+    *rising = below[0] & above[3] & (below[1] | above[2]);
+}
+
+/* Lanes in which exactly one root is certainly in the interval, and none outside of it. */
+static inline uint32_t isolate(const wide_cubics *f, wide_intervals *out) {
+    uint32_t falling, rising;
+    single_changes(f, &falling, &rising);
+    f64w root = f->b[0] / (f->b[0] - f->b[3]);
+    f64w change = f64w_select(falling, f64w_all(1.0), f64w_all(-1.0));
+    return isolate_between(f->b, f->error, falling | rising, f64w_all(0.0), f64w_all(1.0), change, root, out);
+}
+
+static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
+    wide_vectors vectors;
+    wide_cubics f;
+    wide_intervals interval;
+    vectors_between(points, first_count, &vectors);
+    cubics_of(&vectors, &f);
+    uint32_t isolated = isolate(&f, &interval);
+    sign_lanes touching = inside(&vectors, first_count, &interval);
+    out->misses |= (isolated & touching.wrong) << i;
+    out->hits |= (isolated & touching.right & narrow_enough(&interval)) << i;
+    memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
+}
+
+void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out) {
+    decide_eight(source, a, b, 1, decide, out);
+}
+
+void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                         root_outcomes *out) {
+    decide_eight(source, a, b, 2, decide, out);
+}

@@ -1,0 +1,217 @@
+/* Distances of features at rest, many pairs at a time, each with a proof: a plane across the nearest points.
+ */
+#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/min_separation.h"
+#include "runtime/ccd/wide_pairs.h"
+#include "src/core/vec3.h"
+
+/* Nearest points of lanes: parameters as in cscd_contact, and the way from b's to a's. */
+typedef struct nearest {
+    f64w u, v, offset[3], squared;
+} nearest;
+
+static inline f64w clamp01(f64w x) {
+    return f64w_max(f64w_min(x, f64w_all(1.0)), f64w_all(0.0));
+}
+
+/* Of the origin's way `to` along `side`: 0 where that has no length. */
+static inline f64w share_along(const f64w to[3], const f64w side[3]) {
+    f64w squared = dot(side, side), zero = f64w_all(0.0);
+    return f64w_select(f64w_below(zero, squared), clamp01(dot(to, side) / squared), zero);
+}
+
+/* The way c - u a - v b. */
+static inline nearest named(const f64w c[3], const f64w a[3], const f64w b[3], f64w u, f64w v) {
+    nearest n = {.u = u, .v = v};
+    for (int k = 0; k < 3; k++) n.offset[k] = c[k] - u * a[k] - v * b[k];
+    n.squared = dot(n.offset, n.offset);
+    return n;
+}
+
+static inline void take(uint32_t lanes, const nearest *from, nearest *to) {
+    to->u = f64w_select(lanes, from->u, to->u);
+    to->v = f64w_select(lanes, from->v, to->v);
+    for (int k = 0; k < 3; k++) to->offset[k] = f64w_select(lanes, from->offset[k], to->offset[k]);
+    to->squared = f64w_select(lanes, from->squared, to->squared);
+}
+
+static inline void take_nearer(const nearest *from, nearest *to) {
+    take(f64w_below(from->squared, to->squared), from, to);
+}
+
+/* Adds the parameters of what the way at hand, from the plane of a and b to the point, projects to. */
+static inline nearest project(const f64w c[3], const f64w a[3], const f64w b[3], const f64w normal[3],
+                              f64w area, const nearest *at) {
+    f64w side_u[3], side_v[3];
+    cross(at->offset, b, side_u);
+    cross(a, at->offset, side_v);
+    return named(c, a, b, at->u + dot(side_u, normal) / area, at->v + dot(side_v, normal) / area);
+}
+
+/* A point c and the triangle of the origin, a and b. */
+static inline nearest nearest_in_triangle(const f64w c[3], const f64w a[3], const f64w b[3]) {
+    f64w zero = f64w_all(0.0), one = f64w_all(1.0), third[3], beyond[3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        third[k] = b[k] - a[k];
+        beyond[k] = c[k] - a[k];
+    }
+    f64w along = share_along(beyond, third);
+    nearest best = named(c, a, b, share_along(c, a), zero);
+    nearest other = named(c, a, b, zero, share_along(c, b));
+    take_nearer(&other, &best);
+    other = named(c, a, b, one - along, along);
+    take_nearer(&other, &best);
+    cross(a, b, normal);
+    f64w area = dot(normal, normal);
+    nearest inner = named(c, a, b, zero, zero);
+    inner = project(c, a, b, normal, area, &inner);
+    inner = project(c, a, b, normal, area, &inner); /* twice: thin triangles */
+    uint32_t inside = f64w_below(zero, area) & f64w_at_most(zero, inner.u) & f64w_at_most(zero, inner.v) &
+                      f64w_at_most(inner.u + inner.v, one);
+    take(inside, &inner, &best);
+    return best;
+}
+
+/* Two edges: a from the origin, and b from c on. The way between their points is u a - (c + v b). */
+static inline nearest nearest_of_edges(const f64w c[3], const f64w a[3], const f64w b[3]) {
+    f64w zero = f64w_all(0.0), one = f64w_all(1.0), back[3], from_end[3], to_end[3], normal[3], side[3];
+    f64w minus_c[3], at_v[3];
+    for (int k = 0; k < 3; k++) {
+        minus_c[k] = zero - c[k];
+        back[k] = zero - a[k];
+        from_end[k] = a[k] - c[k];
+        to_end[k] = c[k] + b[k];
+    }
+    nearest best = named(minus_c, back, b, zero, share_along(minus_c, b));
+    nearest other = named(minus_c, back, b, one, share_along(from_end, b));
+    take_nearer(&other, &best);
+    other = named(minus_c, back, b, share_along(c, a), zero);
+    take_nearer(&other, &best);
+    other = named(minus_c, back, b, share_along(to_end, a), one);
+    take_nearer(&other, &best);
+    cross(a, b, normal);
+    cross(c, b, side);
+    f64w area = dot(normal, normal), u = clamp01(dot(side, normal) / area);
+    for (int k = 0; k < 3; k++) side[k] = u * a[k] - c[k];
+    f64w v = share_along(side, b);
+    for (int k = 0; k < 3; k++) at_v[k] = c[k] + v * b[k];
+    other = named(minus_c, back, b, share_along(at_v, a), v);
+    take(f64w_below(zero, area) & f64w_at_most(other.squared, best.squared), &other, &best);
+    return best;
+}
+
+/* A unit vector along the way. */
+static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = n->offset[k] / distance;
+}
+
+/* How far planes across a direction keep all points of the features apart. */
+static inline f64w gap_along(const f64w direction[3], int first_count, const f64w c[3], const f64w a[3],
+                             const f64w b[3]) {
+    f64w zero = f64w_all(0.0);
+    f64w along_a = dot(direction, a), along_b = dot(direction, b), along_c = dot(direction, c);
+    if (first_count == 1) return along_c - f64w_max(zero, f64w_max(along_a, along_b));
+    return f64w_min(zero, along_a) - along_c - f64w_max(zero, along_b);
+}
+
+static inline f64w extent_of(const f64w a[3], const f64w b[3], const f64w c[3]) {
+    f64w largest = f64w_all(0.0);
+    for (int k = 0; k < 3; k++)
+        largest = f64w_max(largest, f64w_max(f64w_abs(a[k]), f64w_max(f64w_abs(b[k]), f64w_abs(c[k]))));
+    return largest;
+}
+
+/* The powers of two that bring what is not 0 to [1/2, 1): exact factors, so that results are those of any
+ * other scale, and products neither over- nor underflow. */
+static inline f64w to_one(f64w extent) {
+    double factors[WIDTH];
+    memcpy(factors, &extent, sizeof extent);
+    for (int lane = 0; lane < WIDTH; lane++) factors[lane] = power_of_two(-exponent_of(factors[lane]));
+    memcpy(&extent, factors, sizeof extent);
+    return extent;
+}
+
+/* What lies between the points at one end: a vertex c and the triangle of a and b, or the edge a, and the
+ * edge b from c on. */
+typedef struct moment_vectors {
+    f64w a[3], b[3], c[3];
+} moment_vectors;
+
+static inline void vectors_at(f64w x[4][3], int first_count, moment_vectors *out) {
+    int vf = first_count == 1;
+    for (int k = 0; k < 3; k++) {
+        out->a[k] = x[vf ? 2 : 1][k] - x[vf ? 1 : 0][k];
+        out->b[k] = x[3][k] - x[vf ? 1 : 2][k];
+        out->c[k] = vf ? x[0][k] - x[1][k] : x[2][k] - x[0][k];
+    }
+}
+
+static inline void multiply(moment_vectors *v, f64w factor) {
+    for (int k = 0; k < 3; k++) {
+        v->a[k] *= factor;
+        v->b[k] *= factor;
+        v->c[k] *= factor;
+    }
+}
+
+static inline void keep(const nearest *n, f64w distance, f64w factor, int i, nearness_outcomes *out) {
+    memcpy(out->u + i, &n->u, sizeof n->u);
+    memcpy(out->v + i, &n->v, sizeof n->v);
+    distance /= factor;
+    memcpy(out->distance + i, &distance, sizeof distance);
+    for (int k = 0; k < 3; k++) {
+        f64w offset = n->offset[k] / factor;
+        memcpy(out->offset[k] + i, &offset, sizeof offset);
+    }
+}
+
+/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the way is off by 1 + 2 + 2 for
+ * them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with the
+ * direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
+ * from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the gap is the
+ * least of differences that are linear in time, so it is least at an end. Pairs that come within the
+ * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
+ * (SEPARATION_FINEST). */
+static inline void decide(wide_points *p, int first_count, int i, const separation *limit,
+                          nearness_outcomes *out) {
+    moment_vectors start, end;
+    f64w error = f64w_all(0x1p-45), direction[3];
+    vectors_at(p->x0, first_count, &start);
+    vectors_at(p->x1, first_count, &end);
+    f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
+    f64w factor = to_one(extent), near = limit->distance * factor;
+    f64w far = near + limit->tolerance * factor + 0x1p-40;
+    multiply(&start, factor);
+    multiply(&end, factor);
+    nearest n = first_count == 1 ? nearest_in_triangle(start.c, start.a, start.b)
+                                 : nearest_of_edges(start.c, start.a, start.b);
+    f64w distance = f64w_sqrt(n.squared);
+    direction_of(&n, distance, direction);
+    f64w gap = gap_along(direction, first_count, start.c, start.a, start.b);
+    f64w gap_at_end = gap_along(direction, first_count, end.c, end.a, end.b);
+    uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
+    uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
+    out->misses |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
+    out->hits |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
+    keep(&n, distance, factor, i, out);
+}
+
+static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                              int first_count, const separation *limit, nearness_outcomes *out) {
+    out->misses = out->hits = 0;
+    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
+        wide_points points;
+        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
+        decide(&points, first_count, i, limit, out);
+    }
+}
+
+void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const separation *limit, nearness_outcomes *out) {
+    decide_all(source, a, b, 1, limit, out);
+}
+
+void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                            const separation *limit, nearness_outcomes *out) {
+    decide_all(source, a, b, 2, limit, out);
+}

@@ -1,0 +1,148 @@
+/* Separating directions of level one: planes that keep two moving features apart during the whole interval.
+ *
+ * All points move linearly, so the gap along a fixed direction between two of them is least at t = 0 or 1: a
+ * direction along which every point of one feature lies beyond every point of the other at both ends
+ * separates them throughout. */
+#include "runtime/ccd/separating_axis.h"
+
+#include "src/core/vec3.h"
+
+enum { DIAGONAL_COUNT = 4 };
+
+/* +1: the first feature lies beyond the second along axis k; -1: before it; 0: neither. Exact. */
+static int side_along_axis(const double x[4][3], int first_count, int k) {
+    bool edges = first_count == 2;
+    double a = x[0][k], b = x[1][k], c = x[2][k], d = x[3][k];
+    double a_low = edges && b < a ? b : a, a_high = edges && b > a ? b : a;
+    double b_low = c < d ? c : d, b_high = c > d ? c : d;
+    if (!edges) {
+        b_low = b < b_low ? b : b_low;
+        b_high = b > b_high ? b : b_high;
+    }
+    return (a_low > b_high) - (a_high < b_low);
+}
+
+/* x+y+z, x+y-z, x-y+z, -x+y+z relative to nothing, and how far they may be off: two additions, each with a
+ * relative error u = 2^-53 of numbers below s = |x|+|y|+|z|, at most (2u + u^2) s; 2^-51 s = 4u s covers the
+ * rounding of s and of the comparison, too. */
+static void diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *error) {
+    sums[0] = p[0] + p[1] + p[2];
+    sums[1] = p[0] + p[1] - p[2];
+    sums[2] = p[0] - p[1] + p[2];
+    sums[3] = p[1] + p[2] - p[0];
+    *error = 0x1p-51 * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]));
+}
+
+static void sides_along_diagonals(const double x[4][3], int first_count, int sides[DIAGONAL_COUNT]) {
+    double sums[4][DIAGONAL_COUNT], error[4];
+    for (int i = 0; i < 4; i++) diagonals(x[i], sums[i], &error[i]);
+    for (int k = 0; k < DIAGONAL_COUNT; k++) {
+        double a_low = INFINITY, a_high = -INFINITY, b_low = INFINITY, b_high = -INFINITY;
+        for (int i = 0; i < 4; i++) {
+            double low = sums[i][k] - error[i], high = sums[i][k] + error[i];
+            if (i < first_count) {
+                a_low = low < a_low ? low : a_low;
+                a_high = high > a_high ? high : a_high;
+            } else {
+                b_low = low < b_low ? low : b_low;
+                b_high = high > b_high ? high : b_high;
+            }
+        }
+        sides[k] = (a_low > b_high) - (a_high < b_low);
+    }
+}
+
+bool separated_by_axes(const elementary_query *query, int first_count) {
+    for (int k = 0; k < 3; k++) {
+        int side = side_along_axis(query->x0, first_count, k);
+        if (side != 0 && side == side_along_axis(query->x1, first_count, k)) return true;
+    }
+    return false;
+}
+
+bool separated_by_diagonals(const elementary_query *query, int first_count) {
+    int start[DIAGONAL_COUNT], end[DIAGONAL_COUNT];
+    sides_along_diagonals(query->x0, first_count, start);
+    sides_along_diagonals(query->x1, first_count, end);
+    for (int k = 0; k < DIAGONAL_COUNT; k++) {
+        if (start[k] != 0 && start[k] == end[k]) return true;
+    }
+    return false;
+}
+
+/* Every point of the first feature beyond every one of the second along n. A gap is three differences, three
+ * products and two sums, 4 roundings of parts that add up to `size`: below 4.1 u size, u = 2^-53; the bound,
+ * 8 u size, leaves room for computing it; underflow loses 3 times 2^-1075 at most. */
+static bool beyond_along(const double x[4][3], int first_count, const double n[3]) {
+    for (int i = 0; i < first_count; i++) {
+        for (int j = first_count; j < 4; j++) {
+            double gap = 0.0, size = 0.0;
+            for (int k = 0; k < 3; k++) {
+                double part = (x[i][k] - x[j][k]) * n[k];
+                gap += part;
+                size += fabs(part);
+            }
+            if (!(gap > 0x1p-50 * size + 0x1p-1060)) return false;
+        }
+    }
+    return true;
+}
+
+static bool separated_along(const elementary_query *query, int first_count, const double n[3]) {
+    return beyond_along(query->x0, first_count, n) && beyond_along(query->x1, first_count, n);
+}
+
+/* times * n, at a size at which nothing over- or underflows. */
+static bool separated_along_scaled(const elementary_query *query, int first_count, double times,
+                                   const double n[3]) {
+    int exponent;
+    double scaled[3], largest = vector_largest(n);
+    if (!(largest > 0.0)) return false;
+    frexp(largest, &exponent);
+    for (int k = 0; k < 3; k++) scaled[k] = ldexp(times * n[k], -exponent);
+    return separated_along(query, first_count, scaled);
+}
+
+/* Twice the vector between two points at t = 1/2. */
+static void between_at_middle(const elementary_query *query, int from, int to, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = (query->x0[to][k] - query->x0[from][k]) + (query->x1[to][k] - query->x1[from][k]);
+}
+
+/* A vertex on the outer side of a side of the face. */
+static bool vertex_outside_face(const elementary_query *query) {
+    double sides[3][3], normal[3];
+    for (int i = 0; i < 3; i++) between_at_middle(query, 1 + i, 1 + (i + 1) % 3, sides[i]);
+    vector_cross(sides[0], sides[1], normal);
+    for (int i = 0; i < 3; i++) {
+        double outwards[3], to_vertex[3];
+        vector_cross(sides[i], normal, outwards);
+        between_at_middle(query, 1 + i, 0, to_vertex);
+        if (vector_dot(outwards, to_vertex) > 0.0 && separated_along_scaled(query, 1, 1.0, outwards))
+            return true;
+    }
+    return false;
+}
+
+/* Both ends of one edge on one side of the other. */
+static bool edges_beside(const elementary_query *query) {
+    double a[3], b[3], normal[3];
+    between_at_middle(query, 0, 1, a);
+    between_at_middle(query, 2, 3, b);
+    vector_cross(a, b, normal);
+    for (int i = 0; i < 2; i++) {
+        double across[3], to_first[3], to_second[3];
+        vector_cross(normal, i == 0 ? b : a, across);
+        between_at_middle(query, i == 0 ? 2 : 0, i == 0 ? 0 : 2, to_first);
+        between_at_middle(query, i == 0 ? 2 : 0, i == 0 ? 1 : 3, to_second);
+        double first = vector_dot(across, to_first), second = vector_dot(across, to_second);
+        if (!(first > 0.0 && second > 0.0) && !(first < 0.0 && second < 0.0)) continue;
+        double turn = (first > 0.0) == (i == 0) ? 1.0 : -1.0;
+        if (separated_along_scaled(query, 2, turn, across)) return true;
+    }
+    return false;
+}
+
+bool separated_in_plane(const elementary_query *query, int first_count) {
+    return first_count == 1 ? vertex_outside_face(query) : edges_beside(query);
+}

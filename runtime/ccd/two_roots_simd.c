@@ -1,0 +1,93 @@
+/* Level two of the elementary tests on many pairs at a time, where the cubic has the same sign at both ends:
+ * no root, or two. The same intervals and verdicts as cubic.c and inside.c have. */
+#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/wide_roots.h"
+
+/* A cubic that is above its error at both ends, cut at t: Bernstein coefficients of its two parts are
+ * b[0], first, low, value and value, high, last, b[3]. */
+typedef struct cut_cubics {
+    f64w b[4], t, first, low, value, high, last;
+} cut_cubics;
+
+/* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
+ * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
+static inline f64w lowest_at(const f64w b[4]) {
+    f64w d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
+    f64w half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
+    f64w root = f64w_sqrt(half * half + square);
+    uint32_t growing = f64w_at_most(f64w_all(0.0), half);
+    return f64w_select(growing, 1.0 / (half + root), (root - half) / square);
+}
+
+/* Returns the lanes that are above their errors at both ends, and cut within. */
+static inline uint32_t cut(const wide_cubics *f, cut_cubics *out) {
+    f64w zero = f64w_all(0.0), one = f64w_all(1.0);
+    f64w sign = f64w_select(f64w_below(zero, f->b[0]), one, -one);
+    for (int i = 0; i < 4; i++) out->b[i] = sign * f->b[i];
+    const f64w *b = out->b;
+    f64w t = out->t = lowest_at(b), middle = blend(b[1], b[2], t);
+    out->first = blend(b[0], b[1], t);
+    out->last = blend(b[2], b[3], t);
+    out->low = blend(out->first, middle, t);
+    out->high = blend(middle, out->last, t);
+    out->value = blend(out->low, out->high, t);
+    return f64w_below(f->error, b[0]) & f64w_below(f->error, b[3]) & f64w_below(zero, t) & f64w_below(t, one);
+}
+
+/* All coefficients of both parts are above the error. */
+static inline uint32_t rootless(const cut_cubics *c, f64w error) {
+    return f64w_below(error, c->first) & f64w_below(error, c->low) & f64w_below(error, c->value) &
+           f64w_below(error, c->high) & f64w_below(error, c->last);
+}
+
+/* In either part the coefficients certainly change sign once. */
+static inline uint32_t with_two_roots(const cut_cubics *c, f64w error) {
+    uint32_t left = f64w_below(error, c->first) | f64w_below(c->low, -error);
+    uint32_t right = f64w_below(error, c->last) | f64w_below(c->high, -error);
+    return left & right & f64w_below(c->value, -error);
+}
+
+/* The two roots, one after the other, in the lanes in which both are isolated. */
+static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t lanes,
+                                    wide_intervals roots[2]) {
+    f64w zero = f64w_all(0.0), one = f64w_all(1.0);
+    f64w left = c->t * (c->b[0] / (c->b[0] - c->value));
+    f64w right = one - (one - c->t) * (c->b[3] / (c->b[3] - c->value));
+    lanes = isolate_between(c->b, error, lanes, zero, c->t, one, left, &roots[0]);
+    return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
+}
+
+static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
+    wide_vectors vectors;
+    wide_cubics f;
+    cut_cubics parts;
+    wide_intervals roots[2];
+    vectors_between(points, first_count, &vectors);
+    cubics_of(&vectors, &f);
+    uint32_t lanes = cut(&f, &parts);
+    out->misses |= (lanes & rootless(&parts, f.error)) << i;
+    lanes &= with_two_roots(&parts, f.error);
+    if (lanes == 0) return;
+    lanes = isolate_both(&parts, f.error, lanes, roots);
+    if (lanes == 0) return;
+    sign_lanes first = inside(&vectors, first_count, &roots[0]);
+    uint32_t hits = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
+    if (later != 0) {
+        sign_lanes second = inside(&vectors, first_count, &roots[1]);
+        out->misses |= (later & second.wrong) << i;
+        later &= second.right & narrow_enough(&roots[1]);
+    }
+    f64w begin = f64w_select(hits, roots[0].begin, roots[1].begin);
+    memcpy(out->begin + i, &begin, sizeof begin);
+    out->hits |= (hits | later) << i;
+}
+
+void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out) {
+    decide_eight(source, a, b, 1, decide, out);
+}
+
+void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             root_outcomes *out) {
+    decide_eight(source, a, b, 2, decide, out);
+}

@@ -1,0 +1,237 @@
+/* The detector of the public API: options, parts, and what they report. */
+#include "runtime/detector/detector.h"
+
+#include "runtime/narrow_phase/representatives.h"
+
+#include <string.h>
+
+cscd_detector_options cscd_detector_defaults(void) {
+    return (cscd_detector_options){.struct_size = sizeof(cscd_detector_options), .step_factor = 0.8};
+}
+
+/* Lengths are 0 or in the range of positions. */
+static bool is_length(double x) {
+    return x == 0.0 || (x >= 0x1p-300 && x <= 0x1p300); /* false for NaN */
+}
+
+static cscd_status check_separation(cscd_context *context, const cscd_detector_options *options) {
+    if (!is_length(options->min_separation))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "min_separation is %g, expected 0 or a length from 2^-300 to 2^300",
+                            options->min_separation);
+    if (!is_length(options->tolerance))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, expected 0 (the default) or a length from 2^-300 to 2^300",
+                            options->tolerance);
+    if (options->tolerance > 0.0 && options->min_separation == 0.0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, but without min_separation there is none; leave it at 0",
+                            options->tolerance);
+    return CSCD_OK;
+}
+
+/* The default tolerance filled in. */
+static separation limit_of(const cscd_detector_options *options) {
+    double distance = options->min_separation;
+    return (separation){distance, options->tolerance > 0.0 ? options->tolerance : 1e-6 * distance};
+}
+
+static cscd_status check_options(cscd_context *context, const cscd_detector_options *options) {
+    if (options->struct_size != sizeof *options)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "detector options were not made by cscd_detector_defaults (struct_size %u, expected %zu)",
+            options->struct_size, sizeof *options);
+    if ((unsigned)options->method > CSCD_METHOD_ICCD_PUBLISHED)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown method %d", (int)options->method);
+    if ((unsigned)options->mode > CSCD_MODE_EARLIEST)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
+    if ((unsigned)options->start > CSCD_START_UNKNOWN)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown start %d", (int)options->start);
+    if ((unsigned)options->volume > CSCD_VOLUME_KDOP14)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown volume %d", (int)options->volume);
+    if (!(options->step_factor > 0.0 && options->step_factor < 1.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "step_factor is %g, expected a number in (0,1)",
+                            options->step_factor);
+    return check_separation(context, options);
+}
+
+/* Without a plan only SINGLE culls; a plan must be the mesh's, and of the method asked for. */
+static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
+                                 cscd_detector_options *options) {
+    cscd_context *context = mesh->context;
+    if (plan != NULL && plan->mesh_hash != cscd_mesh_hash(mesh))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "the plan was made for another mesh (hash %016llx, this one has %016llx)",
+                            (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
+    cscd_method method = options->method;
+    if (method == CSCD_METHOD_AUTO) method = plan != NULL ? plan->method : CSCD_METHOD_NONE;
+    options->method = method;
+    bool of_plan = method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_KMEANS;
+    if (of_plan && (plan == NULL || plan->method != method))
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s wants a plan of that method%s%s",
+                            cscd_method_name(method), plan != NULL ? ", not " : "",
+                            plan != NULL ? cscd_method_name(plan->method) : "");
+    return CSCD_OK;
+}
+
+static bool allocate_per_component(cscd_detector *d) {
+    size_t count = d->mesh->component_count;
+    d->culled = context_allocate(d->context, count, sizeof *d->culled);
+    d->touched = context_allocate(d->context, count, sizeof *d->touched);
+    d->finished = context_allocate(d->context, count, sizeof *d->finished);
+    d->skipped = context_allocate(d->context, count, sizeof *d->skipped);
+    d->guarantees = context_allocate(d->context, count, sizeof *d->guarantees);
+    return d->culled != NULL && d->touched != NULL && d->finished != NULL && d->skipped != NULL &&
+           d->guarantees != NULL;
+}
+
+static bool allocate_per_triangle(cscd_detector *d) {
+    d->suspects = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->suspects);
+    d->crossing = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->crossing);
+    return d->suspects != NULL && d->crossing != NULL;
+}
+
+static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
+    cscd_context *context = d->context;
+    bool own_regions =
+        d->options.method == CSCD_METHOD_SINGLE && plan != NULL && plan->method != d->options.method;
+    cscd_status status = traversal_create(context, &d->traversal);
+    if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
+    if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
+    if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
+    if (status == CSCD_OK) status = call_create(d);
+    if (status != CSCD_OK) return status;
+    d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
+    d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
+    d->contacts_seen = context_allocate(context, d->traversal.lane_count, sizeof *d->contacts_seen);
+    bool allocated = d->contact_lanes != NULL && d->intersection_lanes != NULL && d->contacts_seen != NULL &&
+                     allocate_per_component(d) && allocate_per_triangle(d);
+    return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
+                                 const cscd_detector_options *options, cscd_detector **out) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_create: out is NULL");
+    cscd_detector_options chosen = options != NULL ? *options : cscd_detector_defaults();
+    cscd_status status = check_options(context, &chosen);
+    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
+    if (status != CSCD_OK) return status;
+
+    cscd_detector *d = context_allocate(context, 1, sizeof *d);
+    if (d == NULL) return context_out_of_memory(context);
+    d->context = context;
+    d->mesh = mesh;
+    d->options = chosen;
+    d->published_rules = PUBLISHED_ALL;
+    d->limit = limit_of(&chosen);
+    status = exclusions_create(mesh, &chosen, &d->exclusions);
+    if (status == CSCD_OK && allocate_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
+    if (status != CSCD_OK) {
+        cscd_detector_destroy(d);
+        return status;
+    }
+    *out = d;
+    return CSCD_OK;
+}
+
+static void free_lanes(cscd_detector *d) {
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        if (d->contact_lanes != NULL) {
+            context_free(d->context, d->contact_lanes[i].contacts);
+            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_VF].pairs);
+            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_EE].pairs);
+        }
+        if (d->intersection_lanes != NULL) context_free(d->context, d->intersection_lanes[i].items);
+    }
+    context_free(d->context, d->contact_lanes);
+    context_free(d->context, d->intersection_lanes);
+}
+
+void cscd_detector_destroy(cscd_detector *d) {
+    if (d == NULL) return;
+    cscd_context *context = d->context;
+    free_lanes(d);
+    call_free(d);
+    if (d->traversal.lanes != NULL) traversal_destroy(&d->traversal);
+    if (d->culling.mesh != NULL) culling_destroy(&d->culling);
+    if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
+    forest_free(&d->forest);
+    exclusions_free(context, &d->exclusions);
+    representatives_free(context, &d->representatives);
+    orphan_sets_free(context, &d->orphans);
+    patches_free(context, &d->patches);
+    void *blocks[] = {d->contacts.items,
+                      d->contacts.scratch,
+                      d->intersections.items,
+                      d->intersections.scratch,
+                      d->culled,
+                      d->touched,
+                      d->finished,
+                      d->skipped,
+                      d->suspects,
+                      d->crossing,
+                      d->contacts_seen,
+                      d->guarantees,
+                      d->reached,
+                      d};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector_options changed = detector->options;
+    changed.min_separation = min_separation;
+    changed.tolerance = tolerance;
+    cscd_status status = check_separation(detector->context, &changed);
+    if (status != CSCD_OK) return status;
+    detector->options = changed;
+    detector->limit = limit_of(&changed);
+    return CSCD_OK;
+}
+
+cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count, size_t size) {
+    if (count <= buffer->capacity) return CSCD_OK;
+    size_t capacity = count + count / 2;
+    void *items = context_allocate(context, capacity, size);
+    void *scratch = context_allocate(context, capacity, size);
+    if (items == NULL || scratch == NULL) {
+        context_free(context, items);
+        context_free(context, scratch);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    context_free(context, buffer->items);
+    context_free(context, buffer->scratch);
+    *buffer = (result_buffer){items, scratch, capacity};
+    return CSCD_OK;
+}
+
+cscd_timings cscd_detector_timings(const cscd_detector *detector) {
+    return detector->timings;
+}
+
+cscd_counters cscd_detector_counters(const cscd_detector *detector) {
+    return detector->counters;
+}
+
+cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
+    return detector->guarantees[component];
+}
+
+uint32_t cscd_detector_region_count(const cscd_detector *detector) {
+    return detector_region_count(detector);
+}
+
+void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
+                                double end[3]) {
+    const double(*points)[3] = (const double(*)[3])detector->culling.detector_points[region];
+    memcpy(start, points[0], sizeof(double[3]));
+    memcpy(end, points[1], sizeof(double[3]));
+}
+
+int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle) {
+    uint8_t flag = detector->culling.facing[triangle];
+    return flag == ORIENTATION_PLUS ? 1 : flag == ORIENTATION_MINUS ? -1 : 0;
+}

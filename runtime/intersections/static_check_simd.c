@@ -1,0 +1,148 @@
+/* Which of many pairs of triangles certainly do not meet, and which triangles certainly have an area: sorted
+ * by what they share, as many at a time as the processor takes. */
+#include "runtime/bvh/this_level.h"
+
+#include "runtime/intersections/wide_intersection.h"
+
+enum { CHUNK = 256, LIST_SIZE = CHUNK + LANES };
+
+/* Pairs with a like number of shared vertices. shared: the set of corners of a that are b's, and from bit 3
+ * on that of b's. */
+typedef struct pair_list {
+    triangle_pair pairs[LIST_SIZE];
+    uint8_t shared[LIST_SIZE];
+    uint32_t count;
+} pair_list;
+
+/* By a set of shared corners: how many, and the corners in their turn from the only one that is shared on, or
+ * the only one that is not. */
+static const uint8_t sizes[8] = {0, 1, 1, 2, 1, 2, 2, 3};
+static const uint8_t turned[8][3] = {{0, 1, 2}, {0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                     {2, 0, 1}, {1, 2, 0}, {0, 1, 2}, {0, 1, 2}};
+
+/* Of eight pairs: as in a list. */
+static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pair *pairs,
+                               int32_t shared[LANES]) {
+    int32_t vertices[6][LANES];
+    i32x8 a[3], b[3], sets = {0};
+    for (int lane = 0; lane < LANES; lane++) {
+        for (int i = 0; i < 3; i++) {
+            vertices[i][lane] = (int32_t)triangles[pairs[lane].a][i];
+            vertices[3 + i][lane] = (int32_t)triangles[pairs[lane].b][i];
+        }
+    }
+    memcpy(a, vertices, sizeof a);
+    memcpy(b, vertices + 3, sizeof b);
+    /* What is true is -1. */
+    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i]));
+    for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]));
+    memcpy(shared, &sets, sizeof sets);
+}
+
+/* pairs: at most CHUNK. */
+static inline void sort_out(const uint32_t (*triangles)[3], const triangle_pair *pairs, uint32_t count,
+                            pair_list lists[4]) {
+    for (uint32_t first = 0; first < count; first += LANES) {
+        triangle_pair eight[LANES];
+        int32_t shared[LANES];
+        uint32_t rest = count - first;
+        for (uint32_t lane = 0; lane < LANES; lane++) eight[lane] = pairs[lane < rest ? first + lane : first];
+        find_shared(triangles, eight, shared);
+        for (uint32_t lane = 0; lane < LANES && lane < rest; lane++) {
+            pair_list *list = &lists[sizes[shared[lane] & 7]];
+            list->pairs[list->count] = eight[lane];
+            list->shared[list->count++] = (uint8_t)shared[lane];
+        }
+    }
+}
+
+/* Of the pairs from first on; what fills up the last vector is its first pair. loaded: the corners that are
+ * looked at. */
+static inline void load_corners(const uint32_t (*triangles)[3], const double *positions,
+                                const pair_list *list, uint32_t first, uint32_t loaded,
+                                wide_vector corners[6]) {
+    uint32_t vertices[6][WIDTH];
+    for (uint32_t lane = 0; lane < WIDTH; lane++) {
+        uint32_t from = first + lane < list->count ? first + lane : first, shared = list->shared[from];
+        const uint32_t *a = triangles[list->pairs[from].a], *b = triangles[list->pairs[from].b];
+        for (int i = 0; i < 3; i++) {
+            vertices[i][lane] = a[turned[shared & 7][i]];
+            vertices[3 + i][lane] = b[turned[shared >> 3][i]];
+        }
+    }
+    for (int i = 0; i < 6; i++) {
+        if ((loaded >> i & 1) != 0) f64w_load_points(positions, vertices[i], corners[i]);
+    }
+}
+
+typedef uint32_t test_lanes(const wide_vector corners[6]);
+
+/* Keeps the pairs that a test leaves open. */
+static inline void keep_open(pair_list *list, const uint32_t (*triangles)[3], const double *positions,
+                             uint32_t loaded, test_lanes *test) {
+    uint32_t kept = 0;
+    for (uint32_t first = 0; first < list->count; first += WIDTH) {
+        wide_vector corners[6];
+        load_corners(triangles, positions, list, first, loaded, corners);
+        uint32_t rest = list->count - first, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH;
+        for (uint32_t open = test(corners) & real; open != 0; open &= open - 1) {
+            uint32_t from = first + (uint32_t)__builtin_ctz(open);
+            list->pairs[kept] = list->pairs[from];
+            list->shared[kept++] = list->shared[from];
+        }
+    }
+    list->count = kept;
+}
+
+/* Of each list, which corners are looked at. */
+enum { FREE_CORNERS = 63, FAN_CORNERS = 1 + 2 + 4 + 16 + 32, HINGE_CORNERS = 1 + 2 + 4 + 8 };
+
+uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
+                                 triangle_pair *pairs, uint32_t count) {
+    pair_list lists[4];
+    uint32_t kept = 0;
+    for (uint32_t begin = 0; begin < count; begin += CHUNK) {
+        for (int i = 0; i < 4; i++) lists[i].count = 0;
+        sort_out(triangles, pairs + begin, count - begin < CHUNK ? count - begin : CHUNK, lists);
+        keep_open(&lists[0], triangles, positions, FREE_CORNERS, free_is_open);
+        keep_open(&lists[0], triangles, positions, FREE_CORNERS, piercing_is_open);
+        keep_open(&lists[0], triangles, positions, FREE_CORNERS, flat_free_is_open);
+        keep_open(&lists[1], triangles, positions, FAN_CORNERS, fan_is_open);
+        keep_open(&lists[1], triangles, positions, FAN_CORNERS, wide_fan_is_open);
+        keep_open(&lists[1], triangles, positions, FAN_CORNERS, flat_fan_is_open);
+        keep_open(&lists[2], triangles, positions, HINGE_CORNERS, hinge_is_open);
+        for (int i = 0; i < 3; i++) { /* three shared vertices: nothing is left to meet */
+            memcpy(pairs + kept, lists[i].pairs, lists[i].count * sizeof *pairs);
+            kept += lists[i].count;
+        }
+    }
+    return kept;
+}
+
+/* ---- single triangles -------------------------------------------------------------------------------- */
+
+uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                              uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t first = 0; first < count; first += WIDTH) {
+        uint32_t rest = count - first, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH, clear = 0;
+        uint32_t vertices[3][WIDTH];
+        wide_vector corners[3], u, v;
+        wide_normal normal;
+        for (uint32_t lane = 0; lane < WIDTH; lane++) {
+            const uint32_t *triangle = triangles[list[lane < rest ? first + lane : first]];
+            for (int i = 0; i < 3; i++) vertices[i][lane] = triangle[i];
+        }
+        for (int i = 0; i < 3; i++) f64w_load_points(positions, vertices[i], corners[i]);
+        from_to(corners[0], corners[1], u);
+        from_to(corners[0], corners[2], v);
+        normal_of(u, v, &normal);
+        for (int k = 0; k < 3; k++) {
+            wide_sign sign = turn_of(&normal, k);
+            clear |= sign.plus | sign.minus;
+        }
+        for (uint32_t open = real & ~clear; open != 0; open &= open - 1)
+            list[kept++] = list[first + (uint32_t)__builtin_ctz(open)];
+    }
+    return kept;
+}

@@ -1,0 +1,158 @@
+/* Which triangle pair answers for a pair of features, so that each is tested once. */
+#include "runtime/narrow_phase/answering.h"
+
+/* The kernel's `open` for a batch of pairs. */
+enum { PAIRS_AT_ONCE = 256 };
+
+/* ---- pairs of adjacent triangles are left out -------------------------------------------------------- */
+
+/* The first pair of the stars that is not adjacent answers: that of the representatives, or, where these are
+ * adjacent, one of the next. */
+
+/* Whether no triangle before `of` in the star is a stranger to the face. */
+static bool first_at_vertex(const cscd_mesh *mesh, uint32_t of, uint32_t vertex, const uint32_t face[3]) {
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (s == of) return true;
+        if (!triangles_share_vertex(mesh->triangles[s], face)) return false;
+    }
+    return false;
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_at_edges(const cscd_mesh *mesh, triangle_pair pair, uint32_t a, uint32_t b) {
+    for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
+        for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (s == pair.a && t == pair.b) return true;
+            if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[t])) return false;
+        }
+    }
+    return false;
+}
+
+/* Does the pair answer for a feature whose representatives are adjacent? */
+static bool first_stranger(const cscd_mesh *mesh, triangle_pair pair, int bit) {
+    const uint32_t *a = mesh->triangles[pair.a], *b = mesh->triangles[pair.b];
+    if (bit < FEATURE_VERTEX_B) return first_at_vertex(mesh, pair.a, a[bit], b);
+    if (bit < FEATURE_EDGES) return first_at_vertex(mesh, pair.b, b[bit - FEATURE_VERTEX_B], a);
+    int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+    uint32_t edge_a = mesh->triangle_edges[pair.a][i], edge_b = mesh->triangle_edges[pair.b][j];
+    if (edge_a < edge_b) return first_at_edges(mesh, pair, edge_a, edge_b);
+    return first_at_edges(mesh, (triangle_pair){pair.b, pair.a}, edge_b, edge_a);
+}
+
+static void select_strangers(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                             uint16_t *features) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint16_t open[PAIRS_AT_ONCE];
+    kernels_of(mesh->context)->represent(mesh, interval->representatives, pairs, count, features, open);
+    if (!interval->strangers) return;
+    for (uint32_t p = 0; p < count; p++) {
+        for (uint32_t rest = open[p]; rest != 0; rest &= rest - 1) {
+            int bit = __builtin_ctz(rest);
+            features[p] |= (uint16_t)(first_stranger(mesh, pairs[p], bit) << bit);
+        }
+    }
+}
+
+/* ---- with culling -------------------------------------------------------------------------------------- */
+
+/* The first pair, in the order of the stars, that the flags leave answers (then it is reached, for its
+ * volumes contain the features'); in a closing pass none, if the earlier flags left one: then these features
+ * are tested already. */
+static bool first_kept_vertex(const swept_interval *interval, uint32_t of, int corner, uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t vertex = mesh->triangles[of][corner], first = UINT32_MAX;
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (first == UINT32_MAX && culling_keeps(interval->culling, s, against)) {
+            first = s;
+            if (first != of || !interval->closing) break;
+        }
+        if (interval->closing && culling_kept(interval->culling, s, against)) return false;
+    }
+    return first == of;
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_kept_edges(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin_a = mesh->edge_star_offsets[a], end_a = mesh->edge_star_offsets[a + 1];
+    uint32_t begin_b = mesh->edge_star_offsets[b], end_b = mesh->edge_star_offsets[b + 1];
+    bool found = false;
+    for (uint32_t i = begin_a; i < end_a; i++) {
+        for (uint32_t j = begin_b; j < end_b; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (!found && culling_keeps(interval->culling, s, t)) {
+                if (s != pair.a || t != pair.b) return false;
+                if (!interval->closing) return true;
+                found = true;
+            }
+            if (interval->closing && culling_kept(interval->culling, s, t)) return false;
+        }
+    }
+    return found;
+}
+
+static bool first_kept(const swept_interval *interval, triangle_pair pair, int bit) {
+    if (bit < FEATURE_VERTEX_B) return first_kept_vertex(interval, pair.a, bit, pair.b);
+    if (bit < FEATURE_EDGES) return first_kept_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a);
+    int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
+    if (a < b) return first_kept_edges(interval, pair, a, b);
+    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
+}
+
+static uint32_t select_kept(const swept_interval *interval, triangle_pair pair, uint32_t features) {
+    uint32_t kept = 0;
+    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
+        int bit = __builtin_ctz(rest);
+        kept |= (uint32_t)first_kept(interval, pair, bit) << bit;
+    }
+    return kept;
+}
+
+/* ---- either -------------------------------------------------------------------------------------------- */
+
+/* Pairs that the flags do not answer for, and where their features are to go. */
+typedef struct other_pairs {
+    triangle_pair pairs[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE], *places[PAIRS_AT_ONCE];
+    uint32_t count;
+} other_pairs;
+
+static void select_others(const swept_interval *interval, other_pairs *others) {
+    select_strangers(interval, others->pairs, others->count, others->features);
+    for (uint32_t i = 0; i < others->count; i++) *others->places[i] = others->features[i];
+    others->count = 0;
+}
+
+/* Triangles of one component that is culled. */
+static bool flags_answer(const swept_interval *interval, triangle_pair pair) {
+    const uint32_t *components = interval->mesh->triangle_components;
+    return !interval->strangers ||
+           (components[pair.a] == components[pair.b] && interval->culled[components[pair.a]]);
+}
+
+void answering_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                      uint16_t *features) {
+    if (interval->culling == NULL) {
+        for (uint32_t p = 0; p < count; p += PAIRS_AT_ONCE)
+            select_strangers(interval, pairs + p, count - p < PAIRS_AT_ONCE ? count - p : PAIRS_AT_ONCE,
+                             features + p);
+        return;
+    }
+    other_pairs others = {.count = 0};
+    for (uint32_t p = 0; p < count; p++) {
+        if (flags_answer(interval, pairs[p])) {
+            features[p] = (uint16_t)select_kept(interval, pairs[p], features[p]);
+            continue;
+        }
+        others.pairs[others.count] = pairs[p];
+        others.features[others.count] = features[p];
+        others.places[others.count++] = &features[p];
+        if (others.count == PAIRS_AT_ONCE) select_others(interval, &others);
+    }
+    select_others(interval, &others);
+}

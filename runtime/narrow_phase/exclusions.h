@@ -1,0 +1,27 @@
+/* Pairs that the caller wants to be left out: by callback, by list, and by seams. */
+#pragma once
+
+#include "src/mesh/mesh.h"
+
+typedef struct exclusions {
+    const cscd_mesh *mesh;
+    bool (*ignore)(void *user, uint32_t a, uint32_t b);
+    void *ignore_user;
+    uint64_t *ignored; /* pairs of triangles, the smaller one in the upper half, sorted */
+    size_t ignored_count;
+    uint32_t *names; /* per vertex: the smallest one of its seam; NULL: there are no seams */
+} exclusions;
+
+/* Copies what the options say. INVALID_ARGUMENT names what does not fit. */
+cscd_status exclusions_create(const cscd_mesh *mesh, const cscd_detector_options *options, exclusions *out);
+void exclusions_free(cscd_context *context, exclusions *e);
+
+static inline bool exclusions_any(const exclusions *e) {
+    return e->ignore != NULL || e->ignored_count > 0 || e->names != NULL;
+}
+
+/* Is this contact, or nearness, of two features without a common vertex to be left out? */
+bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
+
+/* Is this intersection of two triangles a < b? Seams: where all that meets has a vertex of one in common. */
+bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);

@@ -1,0 +1,192 @@
+/* Of two triangles' fifteen pairs of features, those that may touch: before any of them is loaded in double.
+ *
+ * Two features of which all points of one lie beyond all points of the other, along one direction and at both
+ * ends of the interval, stay apart throughout, since their points move linearly. The directions are those of
+ * 14-DOPs. A lane is a pair of triangles, so that all fifteen are decided for eight at once.
+ *
+ * With u = 2^-24, and M the sum of both parts' reaches and of what lies between the parts, a coordinate of a
+ * record is off by u M at most, moved into the other part's frame by 3 u M; a gap is a difference of two
+ * such, rounded once more: off by less than 6 u M. A sum of three coordinates carries their errors and two
+ * roundings of numbers below 3 M, 9 u M + 6 u M, and a gap of such sums less than 36 u M. Gaps count from
+ * 8 u M and 48 u M on. */
+#include "runtime/bvh/this_level.h"
+
+#include "src/core/simd.h"
+
+enum { FEATURE_COUNT = 15 };
+
+/* The corners of triangles a, then those of b, along one direction at both ends. */
+typedef f32x8 coordinates[2][6];
+
+/* Of eight pairs of triangles. */
+typedef struct octet {
+    f32x8 points[6][8]; /* of corners of a, then of b: x y z . at the start, x y z . at the end */
+    uint32_t vertices[6][LANES];
+    float gap[LANES], wide[LANES]; /* beyond rounding and distance, along axes and diagonals */
+} octet;
+
+typedef struct range {
+    f32x8 low, high;
+} range;
+
+static inline range join(range a, range b) {
+    return (range){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
+}
+
+/* How far a and b, both given at both ends, are apart at both, on the same side; negative where they are not.
+ */
+static inline f32x8 gap_between(range a0, range b0, range a1, range b1) {
+    f32x8 before = f32x8_min(b0.low - a0.high, b1.low - a1.high);
+    f32x8 behind = f32x8_min(a0.low - b0.high, a1.low - b1.high);
+    return f32x8_max(before, behind);
+}
+
+/* Vertices, edges i to i + 1, faces of a and b. */
+typedef struct ranges {
+    range vertices[2][3], edges[2][3], faces[2];
+} ranges;
+
+static inline void ranges_of(const f32x8 points[6], ranges *out) {
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < 3; i++) out->vertices[t][i] = (range){points[3 * t + i], points[3 * t + i]};
+        for (int i = 0; i < 3; i++)
+            out->edges[t][i] = join(out->vertices[t][i], out->vertices[t][(i + 1) % 3]);
+        out->faces[t] = join(out->edges[t][0], out->vertices[t][2]);
+    }
+}
+
+/* gaps: the widest along the directions so far. */
+static inline void widen(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
+    ranges r[2];
+    for (int e = 0; e < 2; e++) ranges_of(at[e], &r[e]);
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < 3; i++) {
+            f32x8 gap =
+                gap_between(r[0].vertices[t][i], r[0].faces[1 - t], r[1].vertices[t][i], r[1].faces[1 - t]);
+            gaps[3 * t + i] = f32x8_max(gaps[3 * t + i], gap);
+        }
+    }
+    for (int i = 0; i < 9; i++) {
+        f32x8 gap = gap_between(r[0].edges[0][i / 3], r[0].edges[1][i % 3], r[1].edges[0][i / 3],
+                                r[1].edges[1][i % 3]);
+        gaps[FEATURE_EDGES + i] = f32x8_max(gaps[FEATURE_EDGES + i], gap);
+    }
+}
+
+/* Of features, those whose gaps do not exceed `least`. */
+static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x8 features) {
+    for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & i32x8_all(1 << i));
+    return features;
+}
+
+static inline i32x8 near_along_axes(const octet *o, i32x8 features) {
+    f32x8 gaps[FEATURE_COUNT];
+    for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
+    for (int k = 0; k < 3; k++) {
+        coordinates at;
+        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = o->points[i % 6][i / 6 * 4 + k];
+        widen((const f32x8(*)[6])at, gaps);
+    }
+    return keep_near(gaps, f32x8_load(o->gap), features);
+}
+
+/* x+y+z, x+y-z, x-y+z, -x+y+z. */
+static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
+    return k == 0   ? p[0] + p[1] + p[2]
+           : k == 1 ? p[0] + p[1] - p[2]
+           : k == 2 ? p[0] - p[1] + p[2]
+                    : p[1] - p[0] + p[2];
+}
+
+static inline i32x8 near_along_diagonals(const octet *o, i32x8 features) {
+    f32x8 gaps[FEATURE_COUNT];
+    for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
+    for (int k = 0; k < 4; k++) {
+        coordinates at;
+        for (int i = 0; i < 12; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
+        widen((const f32x8(*)[6])at, gaps);
+    }
+    return keep_near(gaps, f32x8_load(o->wide), features);
+}
+
+/* Features of a and b of which a vertex is the same one. */
+static inline i32x8 sharing(const octet *o) {
+    i32x8 corners[6], same[3][3], features = {0};
+    for (int i = 0; i < 6; i++) corners[i] = i32x8_load(o->vertices[i]);
+    for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
+    for (int i = 0; i < 3; i++) {
+        i32x8 of_a = same[i][0] | same[i][1] | same[i][2], of_b = same[0][i] | same[1][i] | same[2][i];
+        features |= (of_a & i32x8_all(1 << i)) | (of_b & i32x8_all(1 << (FEATURE_VERTEX_B + i)));
+        for (int j = 0; j < 3; j++) {
+            int i1 = (i + 1) % 3, j1 = (j + 1) % 3;
+            i32x8 any = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
+            features |= any & i32x8_all(1 << (FEATURE_EDGES + 3 * i + j));
+        }
+    }
+    return features;
+}
+
+/* What is known of two parts, whichever. */
+typedef struct part_pair {
+    uint32_t a, b;
+    f32x8 between;   /* what is to be added to a record of b */
+    float gap, wide; /* as in an octet */
+} part_pair;
+
+static void relate(const forest *f, uint32_t a, uint32_t b, double distance, part_pair *out) {
+    const forest_part *p = &f->parts[a], *q = &f->parts[b];
+    float between[LANES] = {0.0f};
+    double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
+    for (int i = 0; i < 6 && a != b; i++) {
+        double from = p->origin[i / 3][i % 3] * f->scale, to = q->origin[i / 3][i % 3] * f->scale;
+        between[i / 3 * 4 + i % 3] = (float)((q->origin[i / 3][i % 3] - p->origin[i / 3][i % 3]) * f->scale);
+        size += __builtin_fabs(to - from) + 0x1p-28 * (__builtin_fabs(from) + __builtin_fabs(to));
+    }
+    out->a = a;
+    out->b = b;
+    out->between = f32x8_load(between);
+    out->gap = (float)(size * 0x1p-21 + d) * (1.0f + 0x1p-20f);
+    out->wide = (float)(size * 0x1.8p-19 + 1.7320508076 * d) * (1.0f + 0x1p-20f);
+}
+
+/* The places of the last pair are filled up with itself. */
+static inline void load(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
+                        part_pair *parts, octet *out) {
+    f32x8 rows[6][LANES];
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        triangle_pair pair = pairs[lane < count ? lane : count - 1];
+        const forest_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
+        uint32_t part_a = f->leaf_parts[pair.a / LANES], part_b = f->leaf_parts[pair.b / LANES];
+        if (part_a != parts->a || part_b != parts->b) relate(f, part_a, part_b, distance, parts);
+        for (int i = 0; i < 3; i++) {
+            uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
+            rows[i][lane] = f32x8_load(f->records[record_a]);
+            rows[3 + i][lane] = f32x8_load(f->records[record_b]) + parts->between;
+            out->vertices[i][lane] = part_a == part_b ? record_a : f->record_vertices[record_a];
+            out->vertices[3 + i][lane] = part_a == part_b ? record_b : f->record_vertices[record_b];
+        }
+        out->gap[lane] = parts->gap;
+        out->wide[lane] = parts->wide;
+    }
+    for (int i = 0; i < 6; i++) {
+        f32x8_transpose(rows[i]);
+        for (int k = 0; k < 8; k++) out->points[i][k] = rows[i][k];
+    }
+}
+
+static inline bool any(i32x8 features) {
+    return i32x8_negative(-features) != 0;
+}
+
+void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
+                      uint16_t *features) {
+    part_pair parts = {.a = UINT32_MAX};
+    for (uint32_t p = 0; p < count; p += LANES) {
+        uint32_t lanes = count - p < LANES ? count - p : LANES;
+        octet o;
+        load(f, pairs + p, lanes, distance, &parts, &o);
+        i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
+        if (any(kept)) kept = near_along_diagonals(&o, kept);
+        for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
+    }
+}

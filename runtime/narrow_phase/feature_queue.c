@@ -1,0 +1,181 @@
+/* Pairs of features that wait for their elementary test: eight at a time through the kernels, and what these
+ * leave open one by one. */
+#include "runtime/narrow_phase/feature_queue.h"
+
+#include "runtime/narrow_phase/narrow_phase.h"
+
+feature_source feature_queue_source(const swept_interval *interval) {
+    return (feature_source){interval->x0, interval->x1, (const uint32_t(*)[3])interval->mesh->triangles,
+                            (const uint32_t(*)[2])interval->mesh->edges};
+}
+
+static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                        uint32_t i, const elementary_hit *hit, bool bounded, contact_lane *lane) {
+    contact_lane_add(interval->mesh->context, lane, kind, pairs->a[i], pairs->b[i], hit, bounded);
+}
+
+/* What fills up the last eight. */
+static void repeat_last(feature_pairs *pairs) {
+    for (uint32_t i = 0; i < KERNEL_LANES - 1; i++) {
+        pairs->a[pairs->count + i] = pairs->a[pairs->count - 1];
+        pairs->b[pairs->count + i] = pairs->b[pairs->count - 1];
+    }
+}
+
+/* The pairs of the eight from i on that are in a set of lanes move up to place kept. */
+static uint32_t keep_lanes(feature_pairs *pairs, uint32_t i, uint32_t lanes, uint32_t kept) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        uint32_t from = i + (uint32_t)__builtin_ctz(lanes);
+        pairs->a[kept] = pairs->a[from];
+        pairs->b[kept++] = pairs->b[from];
+    }
+    return kept;
+}
+
+static uint32_t lanes_from(const feature_pairs *pairs, uint32_t i) {
+    uint32_t rest = pairs->count - i;
+    return rest < KERNEL_LANES ? (1u << rest) - 1 : (1u << KERNEL_LANES) - 1;
+}
+
+static void describe_hits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                          uint32_t i, const root_outcomes *roots, uint32_t lanes, contact_lane *lane) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        uint32_t at = (uint32_t)__builtin_ctz(lanes);
+        elementary_query query;
+        elementary_hit hit;
+        narrow_phase_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
+        elementary_describe(&query, kind == CSCD_CONTACT_VF ? 1 : 2, roots->begin[at], &hit);
+        add_contact(interval, kind, pairs, i + at, &hit, false, lane);
+    }
+}
+
+/* Eight at a time; keeps the pairs that a kernel leaves open. */
+static void decide_by_roots(const swept_interval *interval, cscd_contact_kind kind, root_kernel *kernel,
+                            feature_pairs *pairs, contact_lane *lane) {
+    feature_source source = feature_queue_source(interval);
+    uint32_t kept = 0;
+    if (pairs->count > 0) repeat_last(pairs);
+    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
+        root_outcomes roots;
+        uint32_t real = lanes_from(pairs, i);
+        kernel(&source, pairs->a + i, pairs->b + i, &roots);
+        describe_hits(interval, kind, pairs, i, &roots, real & roots.hits, lane);
+        kept = keep_lanes(pairs, i, real & ~roots.hits & ~roots.misses, kept);
+    }
+    lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
+    pairs->count = kept;
+}
+
+static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind kind,
+                              const feature_pairs *pairs, contact_lane *lane) {
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        elementary_query query;
+        elementary_hit hit;
+        narrow_phase_load(interval, kind, pairs->a[i], pairs->b[i], &query);
+        elementary_verdict verdict = elementary_after_signs(&query, kind == CSCD_CONTACT_VF ? 1 : 2, &hit);
+        lane->decided[verdict.level]++;
+        if (verdict.touching) add_contact(interval, kind, pairs, i, &hit, false, lane);
+    }
+}
+
+static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                             contact_lane *lane) {
+    const kernels *table = kernels_of(interval->mesh->context);
+    feature_source source = feature_queue_source(interval);
+    uint32_t tests = pairs->count;
+    (kind == CSCD_CONTACT_VF ? table->keep_open_vf : table->keep_open_ee)(&source, pairs);
+    lane->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
+    bool vf = kind == CSCD_CONTACT_VF;
+    decide_by_roots(interval, kind, vf ? table->roots_vf : table->roots_ee, pairs, lane);
+    decide_by_roots(interval, kind, vf ? table->two_roots_vf : table->two_roots_ee, pairs, lane);
+    decide_one_by_one(interval, kind, pairs, lane);
+}
+
+/* The nearest points of lane i at the start. */
+static elementary_hit nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                     const nearness_outcomes *near, uint32_t i) {
+    elementary_hit hit = {.u = near->u[i], .v = near->v[i]};
+    bool vf = kind == CSCD_CONTACT_VF;
+    const double *first = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][0]) * 3;
+    const double *second = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][1]) * 3;
+    for (int k = 0; k < 3; k++) {
+        hit.point[k] = first[k] + (vf ? 0.0 : hit.u * (second[k] - first[k])) - 0.5 * near->offset[k][i];
+        hit.normal[k] = near->offset[k][i] / near->distance[i];
+    }
+    return hit;
+}
+
+/* Eight at a time; keeps the pairs that the kernel leaves open. */
+static void decide_nearness(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                            contact_lane *lane) {
+    const kernels *table = kernels_of(interval->mesh->context);
+    nearness_kernel *kernel = kind == CSCD_CONTACT_VF ? table->nearness_vf : table->nearness_ee;
+    feature_source source = feature_queue_source(interval);
+    uint32_t kept = 0;
+    if (pairs->count > 0) repeat_last(pairs);
+    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
+        nearness_outcomes near;
+        uint32_t real = lanes_from(pairs, i);
+        kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);
+        for (uint32_t lanes = real & near.hits; lanes != 0; lanes &= lanes - 1) {
+            uint32_t at = (uint32_t)__builtin_ctz(lanes);
+            elementary_hit hit = nearest_points(interval, kind, pairs->a[i + at], &near, at);
+            add_contact(interval, kind, pairs, i + at, &hit, false, lane);
+        }
+        kept = keep_lanes(pairs, i, real & ~near.hits & ~near.misses, kept);
+    }
+    pairs->count = kept;
+}
+
+static void test_separations(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                             contact_lane *lane) {
+    lane->separations += pairs->count;
+    decide_nearness(interval, kind, pairs, lane);
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        elementary_query query;
+        elementary_hit hit;
+        bool bounded = false;
+        narrow_phase_load(interval, kind, pairs->a[i], pairs->b[i], &query);
+        if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &hit,
+                                                                      &bounded))
+            add_contact(interval, kind, pairs, i, &hit, bounded, lane);
+    }
+}
+
+static void collect(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                    contact_lane *lane) {
+    candidate_list *list = &lane->candidates[kind];
+    if (list->count + pairs->count > list->capacity) {
+        size_t capacity = 2 * list->capacity + FEATURE_QUEUE_CAPACITY;
+        uint32_t(*grown)[2] =
+            context_grow(interval->mesh->context, list->pairs, list->count, capacity, sizeof *list->pairs);
+        lane->out_of_memory |= grown == NULL;
+        if (grown == NULL) return;
+        list->pairs = grown;
+        list->capacity = capacity;
+    }
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        list->pairs[list->count][0] = pairs->a[i];
+        list->pairs[list->count++][1] = pairs->b[i];
+    }
+}
+
+static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
+                   contact_lane *lane) {
+    feature_pairs pairs = {list->a, list->b, list->count};
+    if (interval->collecting)
+        collect(interval, kind, &pairs, lane);
+    else if (interval->limit.distance > 0.0)
+        test_separations(interval, kind, &pairs, lane);
+    else
+        decide_by_levels(interval, kind, &pairs, lane);
+    list->count = 0;
+}
+
+void feature_queue_decide_vf(const swept_interval *interval, contact_lane *lane) {
+    decide(interval, CSCD_CONTACT_VF, &lane->queue.vf, lane);
+}
+
+void feature_queue_decide_ee(const swept_interval *interval, contact_lane *lane) {
+    decide(interval, CSCD_CONTACT_EE, &lane->queue.ee, lane);
+}

@@ -1,0 +1,108 @@
+/* Pairs of features that only triangles with a common vertex contain. */
+#include "runtime/narrow_phase/orphan_pairs.h"
+
+enum { ORPHANS_PER_TRIANGLE = 8 };
+
+typedef struct pair_list {
+    uint32_t (*items)[2];
+    size_t count, capacity;
+} pair_list;
+
+typedef struct finder {
+    const cscd_mesh *mesh;
+    pair_list vf, ee;
+    size_t most;
+    bool out_of_memory;
+} finder;
+
+/* Has every triangle at vertex v a vertex in common with triangle f? */
+static bool is_orphan_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t f) {
+    for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
+        if (!triangles_share_vertex(mesh->triangles[mesh->vertex_stars[i]], mesh->triangles[f])) return false;
+    }
+    return true;
+}
+
+static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
+    for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
+        for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
+            if (!triangles_share_vertex(mesh->triangles[mesh->edge_stars[i]],
+                                        mesh->triangles[mesh->edge_stars[j]]))
+                return false;
+        }
+    }
+    return true;
+}
+
+static void add(finder *f, pair_list *list, uint32_t a, uint32_t b) {
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity * 2 + 64;
+        uint32_t(*grown)[2] =
+            context_grow(f->mesh->context, list->items, list->count, capacity, sizeof *list->items);
+        f->out_of_memory |= grown == NULL;
+        if (grown == NULL) return;
+        list->items = grown;
+        list->capacity = capacity;
+    }
+    list->items[list->count][0] = a;
+    list->items[list->count++][1] = b;
+}
+
+/* Features that t is the first triangle of, with features of triangle u, for edges also the first: so that
+ * each pair is looked at once. */
+static void find_between(finder *f, uint32_t t, uint32_t u) {
+    const cscd_mesh *mesh = f->mesh;
+    for (int i = 0; i < 3; i++) {
+        uint32_t v = mesh->triangles[t][i];
+        bool first = mesh->vertex_stars[mesh->vertex_star_offsets[v]] == t;
+        if (first && !triangle_contains(mesh->triangles[u], v) && is_orphan_vertex(mesh, v, u))
+            add(f, &f->vf, v, u);
+    }
+    for (int i = 0; t < u && i < 3; i++) {
+        uint32_t a = mesh->triangle_edges[t][i];
+        if (mesh->edge_stars[mesh->edge_star_offsets[a]] != t) continue;
+        for (int j = 0; j < 3; j++) {
+            uint32_t b = mesh->triangle_edges[u][j];
+            if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u) continue;
+            if (!edges_share_vertex(mesh->edges[a], mesh->edges[b]) && are_orphan_edges(mesh, a, b))
+                add(f, &f->ee, a < b ? a : b, a < b ? b : a);
+        }
+    }
+}
+
+/* False: there are too many, or no memory. */
+static bool find(finder *f) {
+    const cscd_mesh *mesh = f->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->triangles[t];
+        if (triangle_of_obstacle(mesh, t)) continue;
+        for (int i = 0; i < 3; i++) {
+            uint32_t begin = mesh->vertex_star_offsets[corners[i]];
+            uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];
+            for (uint32_t s = begin; s < end; s++) {
+                uint32_t u = mesh->vertex_stars[s];
+                const uint32_t *other = mesh->triangles[u];
+                bool seen = (i > 0 && triangle_contains(other, corners[0])) ||
+                            (i > 1 && triangle_contains(other, corners[1]));
+                if (u != t && !seen) find_between(f, t, u);
+            }
+            if (f->out_of_memory || f->vf.count + f->ee.count > f->most) return false;
+        }
+    }
+    return true;
+}
+
+cscd_status orphan_sets_create(const cscd_mesh *mesh, orphan_sets *out, bool *too_many) {
+    finder f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE};
+    bool all = find(&f);
+    *out = (orphan_sets){f.vf.items, f.ee.items, f.vf.count, f.ee.count};
+    *too_many = !all && !f.out_of_memory;
+    if (!all) orphan_sets_free(mesh->context, out);
+    return f.out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
+}
+
+void orphan_sets_free(cscd_context *context, orphan_sets *sets) {
+    context_free(context, sets->vf);
+    context_free(context, sets->ee);
+    *sets = (orphan_sets){.vf_count = 0};
+}

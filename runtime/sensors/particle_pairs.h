@@ -1,0 +1,31 @@
+/* The closest particles of every pair of watched parts: gathered over moments, then sorted, with no table of
+ * parts by parts. */
+#pragma once
+
+#include "runtime/sensors/particles.h"
+#include "runtime/sensors/reach.h"
+
+/* Two particles of watched parts nearer than their mu. Part and cell a are of the smaller part. */
+typedef struct near_particles {
+    uint32_t part_a, part_b, cell_a, cell_b;
+    uint32_t vertex_a, vertex_b;
+    double distance;
+    uint32_t moment; /* 0: the start, 1: the end */
+} near_particles;
+
+typedef struct particle_pairs {
+    near_particles *items, *scratch;
+    size_t count, capacity;
+} particle_pairs;
+
+void particle_pairs_free(cscd_context *context, particle_pairs *pairs);
+
+/* Adds those of the particles as they are at positions x; *closest is the smallest distance of particles that
+ * attract each other within the reach's largest mu, INFINITY when there is none. The particles' grid is built
+ * anew. */
+cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const cscd_partition *partition,
+                                  const sensor_reach *reach, const double *x, uint32_t moment,
+                                  double *closest);
+
+/* Sorts by (part_a, part_b, distance, moment, vertices). */
+void particle_pairs_sort(particle_pairs *pairs);

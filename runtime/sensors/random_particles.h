@@ -1,0 +1,20 @@
+/* The older method: a fixed number of particles on every object, from random vertices (Senin et al. 2003). */
+#pragma once
+
+#include "runtime/sensors/particles.h"
+#include "src/mesh/partition.h"
+
+/* Where they walk: on whole objects, along all edges. */
+typedef struct random_particles {
+    uint32_t *object_offsets, *object_vertices; /* vertices with a triangle */
+    uint32_t *neighbour_offsets, *neighbours;   /* per vertex, ascending */
+    uint32_t object_count;
+} random_particles;
+
+cscd_status random_particles_create(const cscd_partition *partition, random_particles *out);
+/* Of zeros: does nothing. */
+void random_particles_free(cscd_context *context, random_particles *r);
+
+/* Puts as many particles as asked for, or all that there are, on different vertices of every object. */
+cscd_status random_particles_place(const random_particles *r, const cscd_partition *partition,
+                                   uint32_t per_object, uint32_t seed, particles *p);

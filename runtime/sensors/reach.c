@@ -1,0 +1,158 @@
+/* How near particles have to come for a warning, mu, and how far they feel each other, R_eff.
+ *
+ * Two features that touch at time t in a point p have vertices, one of each, that are near each other then:
+ *   edges of lengths la and lb: choose an end X of the one at random, such that its mean is p, and so an end
+ * Y of the other. E |X - Y|^2 = Var X + Var Y <= la^2 / 4 + lb^2 / 4, since s (l - s) <= l^2 / 4. Some pair
+ * of ends is no farther apart than the mean: sqrt(la^2 + lb^2) / 2, which is 0.71 edges where all are equal;
+ *   a vertex and a triangle with sides up to l: the corners, weighted so that their mean is p, have a
+ * variance of sum over i < j of w_i w_j l_ij^2 <= l^2 / 3, so some corner is within l / sqrt(3). Vertices
+ * move on lines, so lengths of edges are convex in t, and are longest at the start or at the end. And the two
+ * vertices' difference changes by at most D over the interval, so at the start or at the end, whichever is
+ * nearer to t, it is longer by at most D / 2. That is mu: it does not say that particles find these vertices.
+ */
+#include "runtime/sensors/reach.h"
+
+#include "src/core/vec3.h"
+
+/* Sums and roots above lose less than this. */
+static const double rounding = 1.0 + 0x1p-40;
+
+cscd_status sensor_reach_create(const cscd_partition *partition, double mu_given, sensor_reach *reach) {
+    reach->mu_given = mu_given;
+    reach->parts = context_allocate(partition->context, partition->part_count, sizeof *reach->parts);
+    return reach->parts != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+void sensor_reach_free(cscd_context *context, sensor_reach *reach) {
+    context_free(context, reach->parts);
+}
+
+static double squared_distance(const double *x, uint32_t a, uint32_t b) {
+    double d[3];
+    vector_subtract(x + (size_t)a * 3, x + (size_t)b * 3, d);
+    return vector_dot(d, d);
+}
+
+/* Longest sides, squared for now. */
+static void measure_edges(sensor_reach *reach, const cscd_partition *partition, const double *x0,
+                          const double *x1) {
+    const cscd_mesh *mesh = partition->mesh;
+    double sum = 0.0;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->triangles[t];
+        double longest = 0.0;
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = corners[k], b = corners[(k + 1) % 3];
+            double at_start = squared_distance(x0, a, b);
+            double side = larger(at_start, squared_distance(x1, a, b));
+            longest = larger(longest, side);
+            if (partition->vertex_cells[a] == partition->vertex_cells[b])
+                reach->longest_inside = larger(reach->longest_inside, side);
+            sum += at_start;
+        }
+        for (int k = 0; k < 3; k++) {
+            double *of_part = &reach->parts[partition->vertex_parts[corners[k]]].longest_edge;
+            *of_part = larger(*of_part, longest);
+        }
+    }
+    reach->typical_edge = sqrt(sum / (3.0 * mesh->triangle_count));
+}
+
+static void measure_motion(part_reach *part, const cscd_partition *partition, uint32_t p, const double *x0,
+                           const double *x1) {
+    uint32_t begin = partition->part_vertex_offsets[p], end = partition->part_vertex_offsets[p + 1];
+    for (uint32_t i = begin; i < end; i++) {
+        size_t v = (size_t)partition->part_vertices[i] * 3;
+        double d[3];
+        vector_subtract(x1 + v, x0 + v, d);
+        for (int k = 0; k < 3; k++) {
+            part->low[k] = i == begin ? d[k] : smaller(part->low[k], d[k]);
+            part->high[k] = i == begin ? d[k] : larger(part->high[k], d[k]);
+        }
+    }
+}
+
+/* What it takes for edges up to a and b, and displacements in two boxes. */
+static double mu_of(const part_reach *a, const part_reach *b) {
+    double squares = a->longest_edge * a->longest_edge + b->longest_edge * b->longest_edge;
+    double longest = larger(a->longest_edge, b->longest_edge), relative = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double most = larger(a->high[k] - b->low[k], b->high[k] - a->low[k]);
+        relative += most * most;
+    }
+    double nearest = larger(sqrt(squares) / 2.0, longest / sqrt(3.0));
+    return (nearest + sqrt(relative) / 2.0) * rounding;
+}
+
+double sensor_reach_mu(const sensor_reach *reach, uint32_t part_a, uint32_t part_b) {
+    if (reach->mu_given > 0.0) return reach->mu_given;
+    return mu_of(&reach->parts[part_a], &reach->parts[part_b]);
+}
+
+/* All parts as one: it moves relative to itself as much as any two do. */
+static double largest_mu(const sensor_reach *reach, const cscd_partition *partition) {
+    if (reach->mu_given > 0.0) return reach->mu_given;
+    part_reach all = {0};
+    bool first = true;
+    for (uint32_t p = 0; p < partition->part_count; p++) {
+        if (partition->part_vertex_offsets[p] == partition->part_vertex_offsets[p + 1]) continue;
+        const part_reach *part = &reach->parts[p];
+        all.longest_edge = larger(all.longest_edge, part->longest_edge);
+        for (int k = 0; k < 3; k++) {
+            all.low[k] = first ? part->low[k] : smaller(all.low[k], part->low[k]);
+            all.high[k] = first ? part->high[k] : larger(all.high[k], part->high[k]);
+        }
+        first = false;
+    }
+    return larger(mu_of(&all, &all), 0x1p-300);
+}
+
+/* ---- R_eff -------------------------------------------------------------------------------------------- */
+
+/* An upper bound for a diameter: twice the distance of the vertex farthest from the box's centre. */
+static double diameter_bound(const uint32_t *vertices, uint32_t count, const double *x) {
+    double low[3] = {0}, high[3] = {0}, centre[3], farthest = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double *at = x + (size_t)vertices[i] * 3;
+        for (int k = 0; k < 3; k++) {
+            low[k] = i == 0 ? at[k] : smaller(low[k], at[k]);
+            high[k] = i == 0 ? at[k] : larger(high[k], at[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) centre[k] = low[k] + (high[k] - low[k]) / 2.0;
+    for (uint32_t i = 0; i < count; i++) {
+        double d[3];
+        vector_subtract(x + (size_t)vertices[i] * 3, centre, d);
+        farthest = larger(farthest, vector_dot(d, d));
+    }
+    return 2.0 * sqrt(farthest);
+}
+
+/* Two particles whose areas touch are no farther apart than the two largest diameters. */
+static double largest_two_diameters(const walk_areas *areas, const double *x0, const double *x1) {
+    double first = 0.0, second = 0.0;
+    for (uint32_t i = 0; i < areas->count; i++) {
+        const uint32_t *vertices = areas->vertices + areas->offsets[i];
+        uint32_t count = areas->offsets[i + 1] - areas->offsets[i];
+        double diameter = larger(diameter_bound(vertices, count, x0), diameter_bound(vertices, count, x1));
+        second = larger(second, smaller(first, diameter));
+        first = larger(first, diameter);
+    }
+    return first + second;
+}
+
+void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, const walk_areas *areas,
+                          const double *x0, const double *x1, double radius_given) {
+    memset(reach->parts, 0, partition->part_count * sizeof *reach->parts);
+    reach->longest_edge = reach->longest_inside = 0.0;
+    measure_edges(reach, partition, x0, x1);
+    reach->longest_inside = sqrt(reach->longest_inside) * rounding;
+    for (uint32_t p = 0; p < partition->part_count; p++) {
+        reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge) * rounding;
+        reach->longest_edge = larger(reach->longest_edge, reach->parts[p].longest_edge);
+        measure_motion(&reach->parts[p], partition, p, x0, x1);
+    }
+    reach->mu_most = largest_mu(reach, partition);
+    double automatic = radius_given > 0.0 ? 0.0 : largest_two_diameters(areas, x0, x1);
+    reach->radius = radius_given > 0.0 ? larger(radius_given, reach->mu_most) : reach->mu_most + automatic;
+}

@@ -1,0 +1,292 @@
+/* The particle sensors of the public API: options, and one interval through its stages. */
+#include "runtime/sensors/sensors.h"
+
+#include "runtime/sensors/cell_particles.h"
+#include "src/core/timer.h"
+#include "src/mesh/positions.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where attractions are added, particles nearer than this share of a typical edge pull no harder. */
+static const double closest_share = 1e-3;
+
+cscd_sensor_options cscd_sensor_defaults(void) {
+    return (cscd_sensor_options){.struct_size = sizeof(cscd_sensor_options),
+                                 .step_limit = 256,
+                                 .exact = true,
+                                 .area_factor = 2.0,
+                                 .particles = 5,
+                                 .seed = 1};
+}
+
+/* ---- options ------------------------------------------------------------------------------------------ */
+
+static bool is_length(double x) {
+    return x == 0.0 || (x >= 0x1p-300 && x <= 0x1p300); /* false for NaN */
+}
+
+static cscd_status check_length(cscd_context *context, const char *name, double x) {
+    if (is_length(x)) return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "%s is %g, expected 0 (the default) or a length from 2^-300 to 2^300", name, x);
+}
+
+static cscd_status check_lengths(cscd_context *context, const cscd_sensor_options *options) {
+    double mu = options->collision_distance, radius = options->effective_radius;
+    cscd_status status = check_length(context, "collision_distance", mu);
+    if (status == CSCD_OK) status = check_length(context, "effective_radius", radius);
+    if (status == CSCD_OK && radius > 0.0 && radius < mu)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "effective_radius is %g, but particles must feel each other within the "
+                            "collision_distance, %g",
+                            radius, mu);
+    return status;
+}
+
+static cscd_status check_options(cscd_context *context, const cscd_sensor_options *options) {
+    if (options->struct_size != sizeof *options)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "sensor options were not made by cscd_sensor_defaults (struct_size %u, expected %zu)",
+            options->struct_size, sizeof *options);
+    if ((unsigned)options->method > CSCD_SENSORS_RANDOM)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown sensor method %d", (int)options->method);
+    if (options->step_limit == 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "step_limit is 0, expected 1 or more");
+    if (!(options->area_factor >= 1.0 && options->area_factor <= 0x1p300))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "area_factor is %g, expected a number from 1 to 2^300", options->area_factor);
+    if (options->particles == 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "particles is 0, expected 1 or more");
+    return check_lengths(context, options);
+}
+
+/* ---- creation ----------------------------------------------------------------------------------------- */
+
+static bool allocate_arrays(cscd_sensors *s) {
+    size_t cells_most = s->mesh->vertex_count;
+    s->renewals = context_allocate(s->context, s->partition->part_count, sizeof *s->renewals);
+    s->cells_a = context_allocate(s->context, cells_most, sizeof *s->cells_a);
+    s->cells_b = context_allocate(s->context, cells_most, sizeof *s->cells_b);
+    s->cell_checks = context_allocate(s->context, cells_most, sizeof *s->cell_checks);
+    return s->renewals != NULL && s->cells_a != NULL && s->cells_b != NULL && s->cell_checks != NULL;
+}
+
+static cscd_status create_random(cscd_sensors *s) {
+    cscd_status status = random_particles_create(s->partition, &s->random);
+    if (status != CSCD_OK) return status;
+    s->particles.rule = PARTICLE_POTENTIAL;
+    s->particles.ways = (vertex_ways){s->random.neighbour_offsets, s->random.neighbours};
+    return random_particles_place(&s->random, s->partition, s->options.particles, s->options.seed,
+                                  &s->particles);
+}
+
+static cscd_status create_parts(cscd_sensors *s) {
+    cscd_status status = allocate_arrays(s) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    s->particles.context = s->context;
+    s->particles.rule = PARTICLE_STRONGEST;
+    s->particles.ways = (vertex_ways){s->partition->neighbour_offsets, s->partition->neighbours};
+    if (status == CSCD_OK)
+        status = sensor_reach_create(s->partition, s->options.collision_distance, &s->reach);
+    if (status == CSCD_OK && s->options.method == CSCD_SENSORS_RANDOM) status = create_random(s);
+    if (status == CSCD_OK) status = sensor_areas_create(s->mesh, &s->areas);
+    if (status == CSCD_OK) status = sensor_upkeep_create(s->partition, &s->upkeep);
+    if (status == CSCD_OK) status = sensor_bounds_create(s->partition, &s->bounds);
+    return status;
+}
+
+cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition,
+                                const cscd_sensor_options *options, cscd_sensors **out) {
+    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = mesh->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
+    if (partition == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: partition is NULL");
+    if (partition->mesh != mesh)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "the partition was made for another mesh");
+    cscd_sensor_options chosen = options != NULL ? *options : cscd_sensor_defaults();
+    cscd_status status = check_options(context, &chosen);
+    if (status != CSCD_OK) return status;
+
+    cscd_sensors *s = context_allocate(context, 1, sizeof *s);
+    if (s == NULL) return context_out_of_memory(context);
+    s->context = context;
+    s->mesh = mesh;
+    s->partition = partition;
+    s->options = chosen;
+    if (create_parts(s) != CSCD_OK) {
+        cscd_sensors_destroy(s);
+        return context_out_of_memory(context);
+    }
+    *out = s;
+    return CSCD_OK;
+}
+
+void cscd_sensors_destroy(cscd_sensors *s) {
+    if (s == NULL) return;
+    cscd_context *context = s->context;
+    particles_free(&s->particles);
+    random_particles_free(context, &s->random);
+    sensor_reach_free(context, &s->reach);
+    particle_pairs_free(context, &s->pairs);
+    sensor_areas_destroy(&s->areas);
+    sensor_upkeep_destroy(&s->upkeep);
+    sensor_bounds_destroy(&s->bounds);
+    void *blocks[] = {s->before, s->renewals, s->cells_a, s->cells_b, s->cell_checks, s->warnings, s};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+/* ---- one interval ------------------------------------------------------------------------------------- */
+
+/* Where particles are is put back by a step that fails, so that a repetition does the same. */
+static cscd_status remember(cscd_sensors *s) {
+    uint32_t count = s->particles.count;
+    if (count > s->before_capacity) {
+        uint32_t *before = context_allocate(s->context, count, sizeof *before);
+        if (before == NULL) return CSCD_OUT_OF_MEMORY;
+        context_free(s->context, s->before);
+        s->before = before;
+        s->before_capacity = count;
+    }
+    memcpy(s->before, s->particles.vertices, count * sizeof *s->before);
+    return CSCD_OK;
+}
+
+static walk_areas areas_of(const cscd_sensors *s) {
+    const cscd_partition *partition = s->partition;
+    if (s->options.method == CSCD_SENSORS_RANDOM)
+        return (walk_areas){s->random.object_offsets, s->random.object_vertices, s->random.object_count};
+    return (walk_areas){partition->cell_offsets, partition->cell_vertices, partition->cell_count};
+}
+
+/* Takes up new cells, and measures the interval. */
+static cscd_status begin(cscd_sensors *s, const double *start, const double *end) {
+    cscd_status status = CSCD_OK;
+    if (s->options.method == CSCD_SENSORS_CELLS)
+        status = cell_particles_place(&s->particles, s->partition, &s->generation, start);
+    if (status == CSCD_OK) status = remember(s);
+    if (status != CSCD_OK) return status;
+    sensor_upkeep_follow(&s->upkeep, s->partition, start);
+    walk_areas areas = areas_of(s);
+    sensor_reach_measure(&s->reach, s->partition, &areas, start, end, s->options.effective_radius);
+    s->particles.radius = s->reach.radius;
+    bool inside = s->options.method == CSCD_SENSORS_CELLS;
+    s->particles.longest_way = inside ? s->reach.longest_inside : s->reach.longest_edge;
+    s->particles.closest = s->reach.typical_edge * closest_share;
+    s->particles.counters = (particle_counters){0};
+    s->pairs.count = 0;
+    return CSCD_OK;
+}
+
+/* Particles walk at one moment, and what is near is gathered: of a cycle of states in all of them. They stay
+ * in the state in which two were nearest. */
+static cscd_status watch(cscd_sensors *s, const double *x, uint32_t moment, cscd_sensor_timings *timings,
+                         cscd_sensor_counters *counters) {
+    particles *p = &s->particles;
+    double since = timer_now_ms(), least = INFINITY, closest;
+    particles_begin(p);
+    uint32_t states = particles_settle(p, x, s->options.step_limit);
+    if (states > 0) counters->cycles++;
+    do {
+        timer_lap(&since, &timings->walk_ms);
+        cscd_status status =
+            particle_pairs_gather(&s->pairs, p, s->partition, &s->reach, x, moment, &closest);
+        if (status != CSCD_OK) return status;
+        if (least == INFINITY || closest < least) particles_keep(p);
+        least = fmin(least, closest);
+        timer_lap(&since, &timings->verdict_ms);
+        if (states <= 1 || p->rounds >= s->options.step_limit) break;
+        particles_round(p, x);
+    } while (--states > 0);
+    particles_return(p);
+    return CSCD_OK;
+}
+
+/* When new cells are due, and what certified answers are taken from. */
+static uint32_t look_after(cscd_sensors *s, const double *start, const double *end) {
+    const uint32_t *at = s->options.method == CSCD_SENSORS_CELLS ? s->particles.vertices : NULL;
+    upkeep_limits limits = {s->options.area_factor, s->options.collision_distance};
+    uint32_t due = sensor_upkeep_check(&s->upkeep, s->partition, end, at, &limits, s->renewals);
+    sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
+    sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
+    return due;
+}
+
+static cscd_status run(cscd_sensors *s, const double *start, const double *end, cscd_sensor_timings *timings,
+                       cscd_sensor_counters *counters, cscd_warnings *found) {
+    double since = timer_now_ms();
+    cscd_status status = begin(s, start, end);
+    timer_lap(&since, &timings->walk_ms);
+    if (status != CSCD_OK) return status;
+    status = watch(s, start, 0, timings, counters);
+    if (status == CSCD_OK) status = watch(s, end, 1, timings, counters);
+    if (status == CSCD_OK) status = sensor_verdict(s, start, end, &found->count, timings, counters);
+    if (status != CSCD_OK) {
+        memcpy(s->particles.vertices, s->before, s->particles.count * sizeof *s->before);
+        return status;
+    }
+    since = timer_now_ms();
+    found->items = s->warnings;
+    found->renewals_due = look_after(s, start, end);
+    timer_lap(&since, &timings->renewal_ms);
+    return CSCD_OK;
+}
+
+cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *start, const double *end,
+                              cscd_warnings *out) {
+    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = sensors->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_step: out is NULL");
+    double since = timer_now_ms();
+    uint32_t vertices = sensors->mesh->vertex_count;
+    cscd_status status = positions_check(context, start, vertices, "start");
+    if (status == CSCD_OK) status = positions_check(context, end, vertices, "end");
+    if (status != CSCD_OK) return status;
+
+    cscd_sensor_timings timings = {0};
+    cscd_sensor_counters counters = {0};
+    cscd_warnings found = {0};
+    status = run(sensors, start, end, &timings, &counters, &found);
+    if (status != CSCD_OK) return context_explain(context, status);
+    const particle_counters *walked = &sensors->particles.counters;
+    counters.rounds = walked->rounds;
+    counters.vertices = walked->vertices;
+    counters.particle_pairs = walked->pairs;
+    timer_lap(&since, &timings.total_ms);
+    sensors->timings = timings;
+    sensors->counters = counters;
+    *out = found;
+    return CSCD_OK;
+}
+
+/* ---- what the last step has left ---------------------------------------------------------------------- */
+
+cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
+    return sensors->renewals[part];
+}
+
+/* After a renewal balls and cells would not fit each other. Boxes are asked first: they know more, and answer
+ * at once. */
+bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
+    const cscd_partition *partition = sensors->partition;
+    if (part_a == part_b || sensors->bounds.generation != partition->generation) return false;
+    return sensor_bounds_boxes_apart(&sensors->bounds, part_a, part_b) ||
+           sensor_bounds_apart(&sensors->bounds, partition, part_a, part_b);
+}
+
+uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors) {
+    return sensors->particles.count;
+}
+
+uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t particle) {
+    return sensors->particles.vertices[particle];
+}
+
+cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors) {
+    return sensors->timings;
+}
+
+cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors) {
+    return sensors->counters;
+}

@@ -1,0 +1,100 @@
+/* Pairs of features that may come near each other on a motion, kept for every shorter one. */
+#include "runtime/solver/candidates.h"
+
+#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/narrow_phase/swept_box.h"
+
+#include <string.h>
+
+static bool take(cscd_detector *d, cscd_contact_kind kind, candidate_list *list) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++)
+        count += d->contact_lanes[i].candidates[kind].count;
+    list->count = 0;
+    if (count > list->capacity) {
+        size_t capacity = count + count / 2;
+        uint32_t(*grown)[2] = context_grow(d->context, list->pairs, 0, capacity, sizeof *grown);
+        if (grown == NULL) return false;
+        list->pairs = grown;
+        list->capacity = capacity;
+    }
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        const candidate_list *found = &d->contact_lanes[i].candidates[kind];
+        if (found->count > 0)
+            memcpy(list->pairs + list->count, found->pairs, found->count * sizeof *found->pairs);
+        list->count += found->count;
+    }
+    return true;
+}
+
+cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double distance,
+                               candidates *out) {
+    interval_search search = interval_search_begin(d, x0, x1, (separation){distance, distance});
+    search.interval.collecting = true;
+    cscd_status status = upkeep_move(d, x0, x1, distance);
+    if (status == CSCD_OK) status = interval_search_everything(&search);
+    if (status != CSCD_OK) return status;
+    bool taken = take(d, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
+                 take(d, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
+    return taken ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+void candidates_free(cscd_context *context, candidates *c) {
+    context_free(context, c->lists[CSCD_CONTACT_VF].pairs);
+    context_free(context, c->lists[CSCD_CONTACT_EE].pairs);
+    *c = (candidates){{{NULL, 0, 0}, {NULL, 0, 0}}};
+}
+
+/* ---- tests --------------------------------------------------------------------------------------------- */
+
+typedef struct testing {
+    const candidates *candidates;
+    interval_search *search;
+} testing;
+
+static void test_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    swept_box vertex = swept_box_of(interval, &pair[0], 1);
+    swept_box face = swept_box_of(interval, interval->mesh->triangles[pair[1]], 3);
+    if (!swept_boxes_within(&vertex, &face, interval->limit.distance)) return;
+    lane->feature_pairs++;
+    narrow_phase_test_vf(interval, pair[0], pair[1], lane);
+}
+
+static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    swept_box a = swept_box_of(interval, interval->mesh->edges[pair[0]], 2);
+    swept_box b = swept_box_of(interval, interval->mesh->edges[pair[1]], 2);
+    if (!swept_boxes_within(&a, &b, interval->limit.distance)) return;
+    lane->feature_pairs++;
+    narrow_phase_test_ee(interval, pair[0], pair[1], lane);
+}
+
+/* The host is asked after so many candidates. */
+enum { CANDIDATES_AT_ONCE = 1024 };
+
+/* A lane's share of either list. */
+static void test_share(void *data, uint32_t index) {
+    const testing *t = data;
+    const swept_interval *interval = &t->search->interval;
+    const cscd_detector *d = t->search->detector;
+    contact_lane *lane = &d->contact_lanes[index];
+    for (int kind = 0; kind < 2; kind++) {
+        const candidate_list *list = &t->candidates->lists[kind];
+        size_t begin = list->count * index / d->traversal.lane_count;
+        size_t end = list->count * (index + 1) / d->traversal.lane_count;
+        for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+            double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
+            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(d->context, share)) return;
+            (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
+        }
+    }
+    narrow_phase_finish(interval, lane);
+}
+
+cscd_status candidates_test(const candidates *c, interval_search *search) {
+    cscd_detector *d = search->detector;
+    testing t = {c, search};
+    progress_stage(d->context, "candidates", 0.0, 1.0);
+    parallel_run(d->context->threads, d->traversal.lane_count, test_share, &t);
+    cscd_status status = interval_search_lanes_status(d);
+    return status == CSCD_OK ? progress_status(d->context) : status;
+}

@@ -1,0 +1,224 @@
+/* A line search: the candidates of one motion serve every shorter step and every moment on it. */
+#include "runtime/detector/contact_list.h"
+#include "runtime/solver/candidates.h"
+#include "runtime/solver/free_step.h"
+#include "runtime/solver/proximity.h"
+#include "src/core/vec3.h"
+#include "src/mesh/positions.h"
+
+struct cscd_line {
+    cscd_detector *detector;
+    double *x0, *x1, *reached; /* positions */
+    double reach, covered;     /* covered: candidates are all pairs that come so near each other */
+    bool begun;
+    double done; /* of the step at hand, by estimate: each try takes half of what is left */
+    candidates candidates;
+    uint8_t *states;            /* of the triangles at x0 */
+    bool states_known, vouched; /* as in start_states */
+};
+
+static motion motion_of(const cscd_line *line) {
+    return (motion){line->detector->mesh->vertex_count, line->x0, line->x1};
+}
+
+/* ---- life ---------------------------------------------------------------------------------------------- */
+
+static bool allocate(cscd_line *line) {
+    const cscd_mesh *mesh = line->detector->mesh;
+    line->x0 = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
+    line->x1 = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
+    line->reached = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
+    line->states = context_allocate(mesh->context, mesh->triangle_count, sizeof *line->states);
+    return line->x0 != NULL && line->x1 != NULL && line->reached != NULL && line->states != NULL;
+}
+
+cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_line_create: out is NULL");
+    cscd_line *line = context_allocate(context, 1, sizeof *line);
+    if (line == NULL) return context_out_of_memory(context);
+    line->detector = detector;
+    if (!allocate(line)) {
+        cscd_line_destroy(line);
+        return context_out_of_memory(context);
+    }
+    *out = line;
+    return CSCD_OK;
+}
+
+void cscd_line_destroy(cscd_line *line) {
+    if (line == NULL) return;
+    cscd_context *context = line->detector->context;
+    candidates_free(context, &line->candidates);
+    void *blocks[] = {line->x0, line->x1, line->reached, line->states, line};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+/* ---- begin --------------------------------------------------------------------------------------------- */
+
+/* Positions on the line are rounded: by 2^-52 for the difference, which may be twice the largest coordinate
+ * C, by as much for the product, by 2^-53 C for the sum, together below 2^-50 C for each coordinate, or, at
+ * 0, 2^-300; so two points are off by less than 2^-48 C from each other's distance. */
+static double rounding_on(const cscd_line *line) {
+    size_t count = (size_t)line->detector->mesh->vertex_count * 3;
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++)
+        largest = larger(largest, larger(fabs(line->x0[i]), fabs(line->x1[i])));
+    return largest * 0x1p-48 + 0x1p-297;
+}
+
+/* What the detector knows of x0 it will know of where a step of the line ends. */
+static void remember_states(cscd_line *line) {
+    start_states *s = &line->detector->starts;
+    line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
+    line->vouched = s->vouched;
+    if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
+}
+
+static cscd_status check_reach(cscd_context *context, double reach) {
+    if (reach == 0.0 || (reach >= 0x1p-300 && reach <= 0x1p300)) return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "cscd_line_begin: reach is %g, expected 0 or a length from 2^-300 to 2^300", reach);
+}
+
+cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1, double reach) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector *d = line->detector;
+    uint32_t vertices = d->mesh->vertex_count;
+    cscd_status status = check_reach(d->context, reach);
+    if (status == CSCD_OK) status = positions_check(d->context, x0, vertices, "x0");
+    if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
+    if (status != CSCD_OK) return status;
+    line->begun = false;
+    line->reach = reach;
+    memcpy(line->x0, x0, vertices * sizeof(double[3]));
+    memcpy(line->x1, x1, vertices * sizeof(double[3]));
+    remember_states(line);
+    line->covered = larger(d->limit.distance, reach);
+    call_begin(d);
+    status = candidates_collect(d, line->x0, line->x1, line->covered + rounding_on(line), &line->candidates);
+    if (status != CSCD_OK) return call_fail(d, status);
+    line->begun = true;
+    return CSCD_OK;
+}
+
+static cscd_status check_begun(const cscd_line *line, const char *function) {
+    if (line->begun) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "%s: the line has no motion; call cscd_line_begin first", function);
+}
+
+size_t cscd_line_candidate_count(const cscd_line *line) {
+    const candidate_list *lists = line->candidates.lists;
+    return line->begun ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
+}
+
+/* ---- moments ------------------------------------------------------------------------------------------- */
+
+static cscd_status check_length(const cscd_line *line, double length, const char *function) {
+    if (length >= 0.0 && length <= 1.0) return check_begun(line, function);
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "%s: length is %g, expected a number in [0,1]", function, length);
+}
+
+cscd_status cscd_line_positions(const cscd_line *line, double length, double *positions) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_status status = check_length(line, length, "cscd_line_positions");
+    if (status != CSCD_OK) return status;
+    if (positions == NULL)
+        return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                            "cscd_line_positions: positions is NULL");
+    motion m = motion_of(line);
+    motion_at(&m, length, positions);
+    return CSCD_OK;
+}
+
+cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd_proximities *out) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector *d = line->detector;
+    cscd_status status = check_length(line, length, "cscd_line_near");
+    if (status == CSCD_OK) status = near_check_distance(d->context, distance);
+    if (status != CSCD_OK) return status;
+    if (out == NULL) return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_near: out is NULL");
+    if (distance > line->reach)
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                            "cscd_line_near: distance is %g, but the line was begun with a reach of %g",
+                            distance, line->reach);
+    call_begin(d);
+    motion m = motion_of(line);
+    motion_at(&m, length, line->reached);
+    interval_search search = near_search(d, line->reached, distance);
+    cscd_proximities found;
+    status = candidates_test(&line->candidates, &search);
+    if (status == CSCD_OK) status = near_collect(d, line->reached, &found);
+    if (status != CSCD_OK) return call_fail(d, status);
+    *out = found;
+    return CSCD_OK;
+}
+
+/* ---- steps --------------------------------------------------------------------------------------------- */
+
+static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
+    cscd_line *line = of;
+    cscd_counters counters = {.vf = 0};
+    progress_part(line->detector->context, line->done, 0.5 + 0.5 * line->done);
+    line->done = 0.5 + 0.5 * line->done;
+    interval_search search = interval_search_begin(line->detector, from, to, line->detector->limit);
+    cscd_status status = candidates_test(&line->candidates, &search);
+    return status == CSCD_OK ? contact_list_collect(line->detector, &counters, out) : status;
+}
+
+static bool lanes_are_empty(const cscd_detector *d) {
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
+        if (d->contact_lanes[i].count > 0) return false;
+    }
+    return true;
+}
+
+/* Without any contact, pairs that are left out among them, triangles are what they were. With a separation
+ * that the detector got since the line began, the lanes are those of the end only. */
+static void take_step(cscd_line *line) {
+    cscd_detector *d = line->detector;
+    if (!line->states_known || !detector_culls(d) || !lanes_are_empty(d)) return;
+    bool *lost = d->culled; /* scratch between steps */
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) lost[c] = false;
+    memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
+    d->starts.vouched |= line->vouched;
+    d->starts.counted = false;
+    start_states_count(&d->starts);
+    start_states_end(&d->starts, line->reached, lost);
+}
+
+/* cscd_detector_set_separation may have been called since. */
+static cscd_status check_covered(const cscd_line *line) {
+    double distance = line->detector->limit.distance;
+    if (distance <= line->covered) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "cscd_line_max_step: min_separation is %g since the line was begun, and its "
+                        "candidates reach to %g only; call cscd_line_begin again",
+                        distance, line->covered);
+}
+
+cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector *d = line->detector;
+    cscd_status status = check_begun(line, "cscd_line_max_step");
+    if (status == CSCD_OK) status = check_covered(line);
+    if (status != CSCD_OK) return status;
+    if (out == NULL)
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_max_step: out is NULL");
+    if (!(longest > 0.0 && longest <= 1.0))
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                            "cscd_line_max_step: longest is %g, expected a number in (0,1]", longest);
+    call_begin(d);
+    line->done = 0.0;
+    motion m = motion_of(line);
+    cscd_free_step step;
+    status = free_step_find(d, &m, longest, test_motion, line, line->reached, &step);
+    if (status != CSCD_OK) return call_fail(d, status);
+    take_step(line);
+    if (end != NULL) memcpy(end, line->reached, m.vertex_count * sizeof(double[3]));
+    *out = step;
+    return CSCD_OK;
+}

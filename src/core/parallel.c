@@ -1,0 +1,265 @@
+/* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
+#include "src/core/parallel.h"
+
+#include "src/core/context.h"
+#include "src/core/timer.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+/* Whoever waits looks this often before it lets others have the processor, and for this long before it
+ * sleeps: the stages of an interval follow each other more closely, and waking up takes about as long. */
+enum { LOOKS_AT_ONCE = 32 };
+static const double patience_ms = 0.05;
+
+/* The gate: above the flags the number of the work on offer, below them how many helpers are inside. Helpers
+ * enter only while it is open: the caller never waits for one that has not come by the time all is done. */
+#define GATE_INSIDE  ((uint64_t)0xffff)
+#define GATE_AWAITED ((uint64_t)1 << 30) /* the caller sleeps until nobody is inside */
+#define GATE_OPEN    ((uint64_t)1 << 31)
+enum { GATE_NUMBER_SHIFT = 32 };
+
+/* Tasks next to end - 1 are meant for one thread, so that it finds in its cache what it wrote there in the
+ * stage before; the others take them when they have done their own. */
+typedef struct task_range {
+    _Alignas(CACHE_LINE_SIZE) atomic_uint next;
+    uint32_t end;
+} task_range;
+
+typedef struct helper {
+    struct parallel *threads;
+    pthread_t thread;
+    uint32_t index; /* the caller is 0 */
+} helper;
+
+struct parallel {
+    uint32_t thread_count;  /* the caller included */
+    cscd_parallel_for host; /* run NULL: the crew's own threads */
+    uint32_t started;       /* helpers that were really started */
+    helper *helpers;
+    double patience_ms; /* 0: there are fewer processors than threads */
+
+    pthread_mutex_t lock;
+    pthread_cond_t work_ready, work_done;
+    uint64_t calls;       /* how often sleepers were woken; under the lock */
+    atomic_uint sleepers; /* helpers that wait for a call; changed under the lock */
+    atomic_bool quit;
+
+    /* What is on offer: written while the gate is closed and nobody is inside. */
+    parallel_task *task;
+    void *data;
+    task_range *ranges; /* per thread */
+
+    _Alignas(CACHE_LINE_SIZE) atomic_uint_fast64_t gate;
+};
+
+static void run_tasks(parallel *threads, uint32_t self) {
+    for (uint32_t i = 0; i < threads->thread_count; i++) {
+        task_range *range = &threads->ranges[(self + i) % threads->thread_count];
+        while (atomic_load(&range->next) < range->end) {
+            uint32_t task = atomic_fetch_add(&range->next, 1);
+            if (task < range->end) threads->task(threads->data, task);
+        }
+    }
+}
+
+static void offer(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
+    threads->task = task;
+    threads->data = data;
+    for (uint32_t i = 0; i < threads->thread_count; i++) {
+        atomic_store(&threads->ranges[i].next, (uint32_t)((uint64_t)task_count * i / threads->thread_count));
+        threads->ranges[i].end = (uint32_t)((uint64_t)task_count * (i + 1) / threads->thread_count);
+    }
+}
+
+static void pause_briefly(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+}
+
+/* ---- helpers ----------------------------------------------------------------------------------------- */
+
+/* Is there work on offer that this helper has not seen? */
+static bool offers_work(uint64_t gate, uint32_t seen) {
+    return (gate & GATE_OPEN) != 0 && (uint32_t)(gate >> GATE_NUMBER_SHIFT) != seen;
+}
+
+static bool enter(parallel *threads, uint32_t *seen) {
+    uint64_t gate = atomic_load(&threads->gate);
+    while (offers_work(gate, *seen)) {
+        if (!atomic_compare_exchange_weak(&threads->gate, &gate, gate + 1)) continue;
+        *seen = (uint32_t)(gate >> GATE_NUMBER_SHIFT);
+        return true;
+    }
+    return false;
+}
+
+static void leave(parallel *threads) {
+    uint64_t gate = atomic_fetch_sub(&threads->gate, 1) - 1;
+    if ((gate & GATE_INSIDE) != 0 || (gate & GATE_AWAITED) == 0) return;
+    pthread_mutex_lock(&threads->lock);
+    pthread_cond_signal(&threads->work_done);
+    pthread_mutex_unlock(&threads->lock);
+}
+
+static bool enter_soon(parallel *threads, uint32_t *seen) {
+    double begin = timer_now_ms();
+    do {
+        for (int i = 0; i < LOOKS_AT_ONCE; i++) {
+            if (enter(threads, seen)) return true;
+            pause_briefly();
+        }
+        sched_yield();
+    } while (timer_now_ms() - begin < threads->patience_ms && !atomic_load(&threads->quit));
+    return false;
+}
+
+/* Either the caller sees a sleeper after it has opened the gate (or told all to quit), or the sleeper sees
+ * what the caller did. */
+static void sleep_until_called(parallel *threads, uint32_t seen) {
+    pthread_mutex_lock(&threads->lock);
+    uint64_t calls = threads->calls;
+    atomic_fetch_add(&threads->sleepers, 1);
+    if (atomic_load(&threads->quit) || offers_work(atomic_load(&threads->gate), seen)) {
+        atomic_fetch_sub(&threads->sleepers, 1);
+    } else {
+        while (threads->calls == calls) pthread_cond_wait(&threads->work_ready, &threads->lock);
+    }
+    pthread_mutex_unlock(&threads->lock);
+}
+
+static void call_sleepers(parallel *threads) {
+    pthread_mutex_lock(&threads->lock);
+    threads->calls++;
+    atomic_store(&threads->sleepers, 0);
+    pthread_cond_broadcast(&threads->work_ready);
+    pthread_mutex_unlock(&threads->lock);
+}
+
+static void *helper_main(void *argument) {
+    const helper *self = argument;
+    parallel *threads = self->threads;
+    uint32_t seen = 0;
+    while (!atomic_load(&threads->quit)) {
+        if (enter_soon(threads, &seen)) {
+            run_tasks(threads, self->index);
+            leave(threads);
+        } else {
+            sleep_until_called(threads, seen);
+        }
+    }
+    return NULL;
+}
+
+/* ---- the crew ---------------------------------------------------------------------------------------- */
+
+static uint32_t processors_for_us(void) {
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return (uint32_t)CPU_COUNT(&set);
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online < 1 ? 1 : (uint32_t)online;
+}
+
+static cscd_status start_helpers(parallel *threads) {
+    for (uint32_t i = 0; i + 1 < threads->thread_count; i++) {
+        helper *h = &threads->helpers[i];
+        h->threads = threads;
+        h->index = i + 1;
+        if (pthread_create(&h->thread, NULL, helper_main, h) != 0) return CSCD_SYSTEM_ERROR;
+        threads->started++;
+    }
+    return CSCD_OK;
+}
+
+cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_parallel_for host,
+                            parallel **out) {
+    if (thread_count == 0) {
+        long processors = sysconf(_SC_NPROCESSORS_ONLN);
+        thread_count = processors < 1 ? 1 : processors > 256 ? 256 : (uint32_t)processors;
+    }
+    parallel *threads = context_allocate(context, 1, sizeof *threads);
+    if (threads == NULL) return CSCD_OUT_OF_MEMORY;
+    threads->thread_count = thread_count;
+    threads->host = host;
+    threads->patience_ms = thread_count <= processors_for_us() ? patience_ms : 0.0;
+    pthread_mutex_init(&threads->lock, NULL);
+    pthread_cond_init(&threads->work_ready, NULL);
+    pthread_cond_init(&threads->work_done, NULL);
+    threads->helpers = context_allocate(context, thread_count, sizeof *threads->helpers);
+    threads->ranges = context_allocate(context, thread_count, sizeof *threads->ranges);
+    bool allocated = threads->helpers != NULL && threads->ranges != NULL;
+    cscd_status status = allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK && host.run == NULL) status = start_helpers(threads);
+    if (status != CSCD_OK) {
+        parallel_destroy(context, threads);
+        return status;
+    }
+    *out = threads;
+    return CSCD_OK;
+}
+
+void parallel_destroy(cscd_context *context, parallel *threads) {
+    if (threads == NULL) return;
+    atomic_store(&threads->quit, true);
+    call_sleepers(threads);
+    for (uint32_t i = 0; i < threads->started; i++) pthread_join(threads->helpers[i].thread, NULL);
+    pthread_cond_destroy(&threads->work_done);
+    pthread_cond_destroy(&threads->work_ready);
+    pthread_mutex_destroy(&threads->lock);
+    context_free(context, threads->helpers);
+    context_free(context, threads->ranges);
+    context_free(context, threads);
+}
+
+uint32_t parallel_thread_count(const parallel *threads) {
+    return threads->thread_count;
+}
+
+/* ---- one run ----------------------------------------------------------------------------------------- */
+
+static bool nobody_inside(parallel *threads) {
+    return (atomic_load(&threads->gate) & GATE_INSIDE) == 0;
+}
+
+static bool all_leave_soon(parallel *threads) {
+    if (nobody_inside(threads)) return true;
+    double begin = timer_now_ms();
+    do {
+        for (int i = 0; i < LOOKS_AT_ONCE; i++) {
+            if (nobody_inside(threads)) return true;
+            pause_briefly();
+        }
+        sched_yield();
+    } while (timer_now_ms() - begin < threads->patience_ms);
+    return false;
+}
+
+static void close_gate(parallel *threads) {
+    atomic_fetch_and(&threads->gate, ~GATE_OPEN);
+    if (all_leave_soon(threads)) return;
+    pthread_mutex_lock(&threads->lock);
+    atomic_fetch_or(&threads->gate, GATE_AWAITED);
+    while (!nobody_inside(threads)) pthread_cond_wait(&threads->work_done, &threads->lock);
+    atomic_fetch_and(&threads->gate, ~GATE_AWAITED);
+    pthread_mutex_unlock(&threads->lock);
+}
+
+void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
+    if (threads->host.run != NULL && task_count > 1) {
+        threads->host.run(threads->host.user, task_count, task, data);
+        return;
+    }
+    if (threads->started == 0 || task_count < 2) {
+        for (uint32_t i = 0; i < task_count; i++) task(data, i);
+        return;
+    }
+    offer(threads, task_count, task, data);
+    uint64_t number = (atomic_load(&threads->gate) >> GATE_NUMBER_SHIFT) + 1;
+    atomic_store(&threads->gate, number << GATE_NUMBER_SHIFT | GATE_OPEN);
+    if (atomic_load(&threads->sleepers) > 0) call_sleepers(threads);
+    run_tasks(threads, 0);
+    close_gate(threads);
+}

@@ -1,0 +1,130 @@
+/* Connected components of a mesh and what is wrong with each: holes, fins, bow-ties, flipped triangles. */
+#include "src/mesh/mesh.h"
+
+/* Union-find with path halving; the smaller root wins, so that a set's root is its first member. */
+static uint32_t find_root(uint32_t *parents, uint32_t x) {
+    while (parents[x] != x) {
+        parents[x] = parents[parents[x]];
+        x = parents[x];
+    }
+    return x;
+}
+
+static void unite(uint32_t *parents, uint32_t x, uint32_t y) {
+    uint32_t a = find_root(parents, x), b = find_root(parents, y);
+    if (a < b)
+        parents[b] = a;
+    else
+        parents[a] = b;
+}
+
+static uint32_t *singletons(cscd_context *context, uint32_t count) {
+    uint32_t *parents = context_allocate(context, count, sizeof *parents);
+    for (uint32_t i = 0; parents != NULL && i < count; i++) parents[i] = i;
+    return parents;
+}
+
+/* Components in the order of their first triangles; a triangle belongs to that of its vertices' set. */
+static cscd_status number_components(cscd_mesh *mesh) {
+    mesh->triangle_components = context_allocate(mesh->context, mesh->triangle_count, sizeof(uint32_t));
+    uint32_t *parents = singletons(mesh->context, mesh->triangle_count);
+    if (mesh->triangle_components == NULL || parents == NULL) {
+        context_free(mesh->context, parents);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        for (uint32_t i = mesh->vertex_star_offsets[v] + 1; i < mesh->vertex_star_offsets[v + 1]; i++)
+            unite(parents, mesh->vertex_stars[i - 1], mesh->vertex_stars[i]);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        uint32_t root = find_root(parents, t);
+        mesh->triangle_components[t] = root == t ? mesh->component_count++ : mesh->triangle_components[root];
+    }
+    context_free(mesh->context, parents);
+    return CSCD_OK;
+}
+
+static void count_one(uint32_t *count, uint32_t *first, uint32_t feature) {
+    if ((*count)++ == 0) *first = feature;
+}
+
+static uint32_t corner_at(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertex) {
+    const uint32_t *v = mesh->triangles[triangle];
+    return triangle * 3 + (v[0] == vertex ? 0u : v[1] == vertex ? 1u : 2u);
+}
+
+/* The triangle runs along the edge from its smaller to its larger vertex. */
+static bool runs_forward(const cscd_mesh *mesh, uint32_t triangle, const uint32_t edge[2]) {
+    const uint32_t *v = mesh->triangles[triangle];
+    return v[(corner_at(mesh, triangle, edge[0]) % 3 + 1) % 3] == edge[1];
+}
+
+static void count_edge(const cscd_mesh *mesh, uint32_t edge) {
+    const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
+    const uint32_t *ends = mesh->edges[edge];
+    uint32_t size = edge_star_size(mesh, edge);
+    cscd_component *component = &mesh->components[mesh->triangle_components[star[0]]];
+    component->edge_count++;
+    if (size == 1) count_one(&component->open_edges, &component->first_open_edge, edge);
+    if (size > 2) count_one(&component->non_manifold_edges, &component->first_non_manifold_edge, edge);
+    if (size == 2 && runs_forward(mesh, star[0], ends) == runs_forward(mesh, star[1], ends))
+        count_one(&component->inconsistent_edges, &component->first_inconsistent_edge, edge);
+}
+
+/* Unites the corners that meet at either end of each edge: a vertex of one fan has one set left. */
+static void unite_fans(const cscd_mesh *mesh, uint32_t *parents) {
+    for (uint32_t edge = 0; edge < mesh->edge_count; edge++) {
+        const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
+        for (uint32_t i = 1; i < edge_star_size(mesh, edge); i++) {
+            for (int end = 0; end < 2; end++) {
+                uint32_t vertex = mesh->edges[edge][end];
+                unite(parents, corner_at(mesh, star[i - 1], vertex), corner_at(mesh, star[i], vertex));
+            }
+        }
+    }
+}
+
+static void count_vertex(const cscd_mesh *mesh, uint32_t vertex, uint32_t *parents) {
+    const uint32_t *star = mesh->vertex_stars + mesh->vertex_star_offsets[vertex];
+    uint32_t size = mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+    if (size == 0) return;
+    cscd_component *component = &mesh->components[mesh->triangle_components[star[0]]];
+    component->vertex_count++;
+    uint32_t fan = find_root(parents, corner_at(mesh, star[0], vertex));
+    for (uint32_t i = 1; i < size; i++) {
+        if (find_root(parents, corner_at(mesh, star[i], vertex)) == fan) continue;
+        count_one(&component->non_manifold_vertices, &component->first_non_manifold_vertex, vertex);
+        return;
+    }
+}
+
+static void finish_component(cscd_component *component) {
+    component->euler_characteristic =
+        (int64_t)component->vertex_count - component->edge_count + component->triangle_count;
+    component->closed_manifold = component->open_edges == 0 && component->non_manifold_edges == 0 &&
+                                 component->non_manifold_vertices == 0 && component->inconsistent_edges == 0;
+}
+
+cscd_status mesh_build_components(cscd_mesh *mesh) {
+    cscd_status status = number_components(mesh);
+    if (status != CSCD_OK) return status;
+    mesh->components = context_allocate(mesh->context, mesh->component_count, sizeof *mesh->components);
+    uint32_t *parents = singletons(mesh->context, mesh->triangle_count * 3);
+    if (mesh->components == NULL || parents == NULL) {
+        context_free(mesh->context, parents);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    for (uint32_t i = 0; i < mesh->component_count; i++) {
+        cscd_component *component = &mesh->components[i];
+        component->first_open_edge = component->first_non_manifold_edge = UINT32_MAX;
+        component->first_non_manifold_vertex = component->first_inconsistent_edge = UINT32_MAX;
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        mesh->components[mesh->triangle_components[t]].triangle_count++;
+    for (uint32_t edge = 0; edge < mesh->edge_count; edge++) count_edge(mesh, edge);
+    unite_fans(mesh, parents);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) count_vertex(mesh, v, parents);
+    for (uint32_t i = 0; i < mesh->component_count; i++) finish_component(&mesh->components[i]);
+    context_free(mesh->context, parents);
+    return CSCD_OK;
+}

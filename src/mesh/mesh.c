@@ -1,0 +1,253 @@
+/* The mesh object of the public API: validation, copy, access. */
+#include "src/mesh/mesh.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Corners are numbered by 32 bits: 3 * triangle_count must fit. */
+enum { TRIANGLE_COUNT_MAX = (int)(UINT32_MAX / 3) };
+
+/* "", or "object 2: " where there are several. */
+typedef struct object_name {
+    char text[32];
+} object_name;
+
+static object_name name_of(uint32_t object, uint32_t object_count) {
+    object_name name = {""};
+    if (object_count > 1) snprintf(name.text, sizeof name.text, "object %u: ", object);
+    return name;
+}
+
+static cscd_status check_triangle(cscd_context *context, const cscd_mesh_desc *desc, uint32_t triangle,
+                                  const char *object) {
+    const uint32_t *v = desc->triangles + (size_t)triangle * 3;
+    for (int i = 0; i < 3; i++) {
+        if (v[i] >= desc->vertex_count)
+            return context_fail(context, CSCD_INVALID_MESH,
+                                "%striangle %u names vertex %u, but there are %u vertices", object, triangle,
+                                v[i], desc->vertex_count);
+    }
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+        return context_fail(context, CSCD_INVALID_MESH,
+                            "%striangle %u (%u %u %u) repeats a vertex; remove it or weld differently",
+                            object, triangle, v[0], v[1], v[2]);
+    return CSCD_OK;
+}
+
+static cscd_status check_desc(cscd_context *context, const cscd_mesh_desc *desc, const char *object) {
+    if (desc->vertex_count == 0 || desc->triangle_count == 0)
+        return context_fail(context, CSCD_INVALID_MESH, "%sthe mesh is empty: %u vertices, %u triangles",
+                            object, desc->vertex_count, desc->triangle_count);
+    if (desc->triangles == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%scscd_mesh_desc.triangles is NULL", object);
+    return CSCD_OK;
+}
+
+static cscd_status check_totals(cscd_context *context, uint64_t vertices, uint64_t triangles) {
+    if (triangles > TRIANGLE_COUNT_MAX)
+        return context_fail(context, CSCD_INVALID_MESH, "%llu triangles are too many: the ceiling is %d",
+                            (unsigned long long)triangles, TRIANGLE_COUNT_MAX);
+    if (vertices >= UINT32_MAX)
+        return context_fail(context, CSCD_INVALID_MESH, "%llu vertices are too many: the ceiling is 2^32 - 2",
+                            (unsigned long long)vertices);
+    return CSCD_OK;
+}
+
+static cscd_status check_objects(cscd_context *context, const cscd_object_desc *objects, uint32_t count) {
+    uint64_t vertices = 0, triangles = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        object_name name = name_of(i, count);
+        cscd_status status = check_desc(context, &objects[i].mesh, name.text);
+        if (status != CSCD_OK) return status;
+        vertices += objects[i].mesh.vertex_count;
+        triangles += objects[i].mesh.triangle_count;
+    }
+    cscd_status status = check_totals(context, vertices, triangles);
+    for (uint32_t i = 0; i < count && status == CSCD_OK; i++) {
+        object_name name = name_of(i, count);
+        for (uint32_t t = 0; t < objects[i].mesh.triangle_count && status == CSCD_OK; t++)
+            status = check_triangle(context, &objects[i].mesh, t, name.text);
+    }
+    return status;
+}
+
+/* ---- objects ----------------------------------------------------------------------------------------- */
+
+static cscd_status join(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
+    mesh->object_count = count;
+    mesh->objects = context_allocate(mesh->context, count, sizeof *mesh->objects);
+    if (mesh->objects == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_mesh_desc *desc = &objects[i].mesh;
+        mesh->objects[i] = (cscd_object){.first_vertex = mesh->vertex_count,
+                                         .vertex_count = desc->vertex_count,
+                                         .first_triangle = mesh->triangle_count,
+                                         .triangle_count = desc->triangle_count,
+                                         .obstacle = objects[i].obstacle};
+        mesh->vertex_count += desc->vertex_count;
+        mesh->triangle_count += desc->triangle_count;
+    }
+    mesh->triangles = context_allocate(mesh->context, mesh->triangle_count, sizeof *mesh->triangles);
+    if (mesh->triangles == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_object *object = &mesh->objects[i];
+        const uint32_t *from = objects[i].mesh.triangles;
+        uint32_t *to = mesh->triangles[object->first_triangle];
+        for (size_t k = 0; k < (size_t)object->triangle_count * 3; k++)
+            to[k] = object->first_vertex + from[k];
+    }
+    return CSCD_OK;
+}
+
+/* Edges are sorted by their smaller vertices, so those of an object follow each other. */
+static void find_edges_of_objects(cscd_mesh *mesh) {
+    uint32_t edge = 0;
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        cscd_object *object = &mesh->objects[i];
+        uint32_t end = object->first_vertex + object->vertex_count;
+        object->first_edge = edge;
+        while (edge < mesh->edge_count && mesh->edges[edge][0] < end) edge++;
+        object->edge_count = edge - object->first_edge;
+    }
+}
+
+/* A component lies in one object. */
+static cscd_status mark_obstacles(cscd_mesh *mesh) {
+    bool any = false;
+    for (uint32_t i = 0; i < mesh->object_count; i++) any |= mesh->objects[i].obstacle;
+    if (!any) return CSCD_OK;
+    mesh->obstacles = context_allocate(mesh->context, mesh->component_count, sizeof *mesh->obstacles);
+    if (mesh->obstacles == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        const cscd_object *object = &mesh->objects[i];
+        for (uint32_t t = 0; t < object->triangle_count; t++)
+            mesh->obstacles[mesh->triangle_components[object->first_triangle + t]] = object->obstacle;
+    }
+    return CSCD_OK;
+}
+
+static cscd_status build(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
+    cscd_status status = join(mesh, objects, count);
+    if (status == CSCD_OK) status = mesh_build_topology(mesh);
+    if (status == CSCD_OK) status = mesh_build_components(mesh);
+    if (status == CSCD_OK) status = mark_obstacles(mesh);
+    if (status == CSCD_OK) find_edges_of_objects(mesh);
+    return status;
+}
+
+static cscd_status create(cscd_context *context, const cscd_object_desc *objects, uint32_t count,
+                          cscd_mesh **out) {
+    cscd_status status = check_objects(context, objects, count);
+    if (status != CSCD_OK) return status;
+    cscd_mesh *mesh = context_allocate(context, 1, sizeof *mesh);
+    if (mesh == NULL) return context_out_of_memory(context);
+    mesh->context = context;
+    if (build(mesh, objects, count) != CSCD_OK) {
+        cscd_mesh_destroy(mesh);
+        return context_out_of_memory(context);
+    }
+    *out = mesh;
+    return CSCD_OK;
+}
+
+cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out) {
+    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    if (desc == NULL || out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: desc or out is NULL");
+    return create(context, &(cscd_object_desc){.mesh = *desc}, 1, out);
+}
+
+cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc *objects,
+                                   uint32_t object_count, cscd_mesh **out) {
+    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    if (objects == NULL || out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create_scene: objects or out is NULL");
+    if (object_count == 0)
+        return context_fail(context, CSCD_INVALID_MESH, "the scene is empty: object_count is 0");
+    return create(context, objects, object_count, out);
+}
+
+void cscd_mesh_destroy(cscd_mesh *mesh) {
+    if (mesh == NULL) return;
+    cscd_context *context = mesh->context;
+    void *blocks[] = {mesh->triangles,      mesh->edges,
+                      mesh->triangle_edges, mesh->vertex_star_offsets,
+                      mesh->vertex_stars,   mesh->edge_star_offsets,
+                      mesh->edge_stars,     mesh->triangle_components,
+                      mesh->components,     mesh->objects,
+                      mesh->obstacles,      mesh};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+}
+
+uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh) {
+    return mesh->vertex_count;
+}
+
+uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh) {
+    return mesh->triangle_count;
+}
+
+void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]) {
+    memcpy(vertices, mesh->triangles[triangle], sizeof mesh->triangles[triangle]);
+}
+
+uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh) {
+    return mesh->edge_count;
+}
+
+void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) {
+    memcpy(vertices, mesh->edges[edge], sizeof mesh->edges[edge]);
+}
+
+void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]) {
+    memcpy(edges, mesh->triangle_edges[triangle], sizeof mesh->triangle_edges[triangle]);
+}
+
+const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count) {
+    *count = mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+    return mesh->vertex_stars + mesh->vertex_star_offsets[vertex];
+}
+
+const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count) {
+    *count = edge_star_size(mesh, edge);
+    return mesh->edge_stars + mesh->edge_star_offsets[edge];
+}
+
+uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
+    return mesh->component_count;
+}
+
+cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
+    return mesh->components[component];
+}
+
+uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
+    return mesh->triangle_components[triangle];
+}
+
+uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
+    return mesh->object_count;
+}
+
+cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {
+    return mesh->objects[object];
+}
+
+uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
+    uint32_t low = 0, high = mesh->object_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        *(mesh->objects[middle].first_vertex <= vertex ? &low : &high) = middle;
+    }
+    return low;
+}
+
+cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                               double u, double v) {
+    if (kind == CSCD_CONTACT_VF) {
+        const uint32_t *corners = mesh->triangles[b];
+        return (cscd_stencil){{a, corners[0], corners[1], corners[2]}, {1.0, u + v - 1.0, -u, -v}};
+    }
+    const uint32_t *ends_a = mesh->edges[a], *ends_b = mesh->edges[b];
+    return (cscd_stencil){{ends_a[0], ends_a[1], ends_b[0], ends_b[1]}, {1.0 - u, u, v - 1.0, -v}};
+}

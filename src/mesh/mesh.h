@@ -1,0 +1,53 @@
+/* The mesh's connectivity: edges, stars and components, built once. */
+#pragma once
+
+#include "src/core/context.h"
+
+struct cscd_mesh {
+    cscd_context *context;
+    uint32_t vertex_count, triangle_count, edge_count, component_count;
+
+    uint32_t (*triangles)[3];
+    uint32_t (*edges)[2];          /* smaller vertex first, sorted */
+    uint32_t (*triangle_edges)[3]; /* edge i joins the corners i and i + 1 */
+
+    /* Star of x: the triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
+    uint32_t *vertex_star_offsets, *vertex_stars;
+    uint32_t *edge_star_offsets, *edge_stars;
+
+    uint32_t *triangle_components;
+    cscd_component *components;
+
+    uint32_t object_count;
+    cscd_object *objects;
+    bool *obstacles; /* per component: pairs of its features, and with those of others, are not looked for;
+                      * NULL: there is none */
+};
+
+/* Fills edges, triangle_edges and both stars from triangles. */
+cscd_status mesh_build_topology(cscd_mesh *mesh);
+
+/* Fills triangle_components and components; wants the topology. */
+cscd_status mesh_build_components(cscd_mesh *mesh);
+
+static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t component) {
+    return mesh->obstacles != NULL && mesh->obstacles[component];
+}
+
+/* Is the triangle's object an obstacle? */
+static inline bool triangle_of_obstacle(const cscd_mesh *mesh, uint32_t triangle) {
+    return component_is_obstacle(mesh, mesh->triangle_components[triangle]);
+}
+
+/* The number of triangles that contain an edge. */
+static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {
+    return mesh->edge_star_offsets[edge + 1] - mesh->edge_star_offsets[edge];
+}
+
+static inline bool triangle_contains(const uint32_t triangle[3], uint32_t vertex) {
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+static inline bool edges_share_vertex(const uint32_t a[2], const uint32_t b[2]) {
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}

@@ -1,0 +1,45 @@
+/* The partition: cells of vertices that particles walk in, handed from preprocessing to the runtime. */
+#pragma once
+
+#include "src/mesh/mesh.h"
+
+enum { PARTITION_NONE = UINT32_MAX };
+
+/* Objects, parts and the mesh never change; cells do when parts are renewed, and generation then grows.
+ * Arrays of cells have room for one per vertex, so that renewing never moves them. */
+struct cscd_partition {
+    cscd_context *context;
+    const cscd_mesh *mesh;
+    cscd_partition_options options;
+
+    uint32_t object_count, part_count, cell_count;
+    bool *object_obstacles; /* per object */
+    cscd_part *parts;       /* without a vertex of its own, a part has no cell */
+    double *distortions;    /* per part */
+
+    uint32_t *triangle_parts;                      /* the plan's regions, or the components */
+    uint32_t *vertex_parts;                        /* PARTITION_NONE without a triangle */
+    uint32_t *part_vertex_offsets, *part_vertices; /* vertices of part p, ascending */
+
+    /* Vertices of cell c: cell_vertices[cell_offsets[c] .. cell_offsets[c + 1]), ascending. */
+    uint32_t *vertex_cells; /* PARTITION_NONE without a triangle */
+    uint32_t *cell_parts, *cell_offsets, *cell_vertices;
+
+    /* Neighbours of x along edges, in its cell: neighbours[offsets[x] .. offsets[x + 1]), ascending. */
+    uint32_t *neighbour_offsets, *neighbours;
+
+    uint64_t generation;        /* 1, and one more with every renewal */
+    uint64_t *part_generations; /* the generation in which a part's cells were made; those of other parts
+                                 * keep their vertices, but not their numbers */
+};
+
+/* A partition of zeros with room for all, its arrays of objects and parts too; NULL when out of memory. */
+cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count);
+
+/* Are two different parts watched for each other? Those of two objects unless both are obstacles; those of
+ * one object where the options say so, but not of an obstacle. */
+static inline bool partition_watches(const cscd_partition *partition, uint32_t part_a, uint32_t part_b) {
+    uint32_t a = partition->parts[part_a].object, b = partition->parts[part_b].object;
+    bool obstacles = partition->object_obstacles[a] && partition->object_obstacles[b];
+    return part_a != part_b && !obstacles && (a != b || partition->options.within);
+}

@@ -1,0 +1,24 @@
+/* The plan: what preprocessing hands to the runtime. */
+#pragma once
+
+#include "src/mesh/mesh.h"
+
+struct cscd_plan {
+    cscd_context *context;
+    uint64_t mesh_hash;
+    uint32_t triangle_count, component_count, region_count;
+    cscd_method method;
+    uint32_t *triangle_regions;
+    cscd_region *regions;
+
+    /* Each triangle's share of its region's area at rest, or an equal share in a region without area; the
+     * detector point moves with the mean of the triangles' centroids, weighted by these. */
+    double *triangle_weights;
+    double (*detector_offsets)[3]; /* from that mean at rest to the detector point */
+
+    double *charges, *capacitances; /* NULL without charge */
+    cscd_preprocess_timings timings;
+};
+
+/* A plan of zeros with room for region_count regions; NULL when out of memory. */
+cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count);

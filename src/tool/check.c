@@ -1,0 +1,219 @@
+/* `cscd check`: where a mesh crosses or touches itself, frame by frame. */
+#include "src/tool/common/command.h"
+#include "src/tool/common/frame_list.h"
+#include "src/tool/common/frame_range.h"
+#include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/output_path.h"
+#include "src/tool/common/provenance.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/replay/replay_options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: cscd check MODEL [FRAMES...] [options]\n"
+    "\n"
+    "Finds the pairs of triangles that cross or touch, features that share a vertex aside, at each frame.\n"
+    "Exact: the answer is that of the given coordinates, without rounding.\n"
+    "\n"
+    "  --json OUT.json      write the pairs of every frame (triangles as in MODEL, from 0)\n"
+    "  --frames A:B[:STEP]  only the frames A to B, both included, or every STEP-th of them\n"
+    "  --weld exact|EPS     join vertices that coincide, or lie within EPS, in the first frame\n"
+    "  --ignore LIST        leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'\n"
+    "  --ignore-rest        leave out the pairs that meet in the first frame\n"
+    "  --threads N          default 1; 0: one per processor\n"
+    "  --fail-on-contact    exit with 3 when any frame has such a pair\n"
+    "  --quiet              no progress, no warnings, nothing on the standard output\n";
+
+typedef struct check_options {
+    recording_options source;
+    frame_range frames;
+    const char *json_path, *ignore_path;
+    bool ignore_rest, fail_on_contact, quiet;
+} check_options;
+
+typedef struct check {
+    const check_options *options;
+    recording recording;
+    ignore_pairs ignored;
+    cscd_detector *detector;
+    double *positions;
+    json out; /* file NULL when not asked for */
+    terminal_progress progress;
+    frame_range frames;
+    uint32_t frames_checked;
+    frame_list crossing;
+} check;
+
+/* As in MODEL, the smaller first: welding keeps the order. */
+static void write_frame(check *c, uint32_t frame, const cscd_intersections *found) {
+    json *out = &c->out;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_integer(out, "frame", frame);
+    json_boolean(out, "crossing", found->count > 0);
+    json_integer(out, "zero_area_triangles", found->zero_area_triangles);
+    json_begin_array(out, "pairs");
+    for (size_t i = 0; i < found->count; i++) {
+        json_begin_array(out, NULL);
+        json_integer(out, NULL, recording_file_triangle(&c->recording, found->items[i].a));
+        json_integer(out, NULL, recording_file_triangle(&c->recording, found->items[i].b));
+        json_end_array(out);
+    }
+    json_end_array(out);
+    json_end_object(out);
+    fflush(out->file);
+}
+
+static bool check_frame(check *c, uint32_t frame, io_error *error) {
+    cscd_intersections found;
+    if (!recording_read(&c->recording, frame, c->positions, error)) return false;
+    if (cscd_detector_check(c->detector, c->positions, &found) != CSCD_OK)
+        return io_fail(error, "frame %u: %s", frame, cscd_context_detail(c->recording.context));
+    c->frames_checked++;
+    if (found.count > 0 && !frame_list_add(&c->crossing, frame)) return io_fail(error, "out of memory");
+    if (found.count > 0 && !c->options->quiet)
+        printf("frame %u: %zu triangle pairs meet, the first %u and %u\n", frame, found.count,
+               recording_file_triangle(&c->recording, found.items[0].a),
+               recording_file_triangle(&c->recording, found.items[0].b));
+    if (c->out.file != NULL) write_frame(c, frame, &found);
+    return true;
+}
+
+static bool prepare(check *c, io_error *error) {
+    const check_options *o = c->options;
+    c->frames = o->frames;
+    if (!frame_range_close(&c->frames, c->recording.frame_count, error)) return false;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignore = o->ignore_path != NULL || o->ignore_rest ? ignore_pairs_contain : NULL;
+    options.ignore_user = &c->ignored;
+    c->ignored.mesh = c->recording.mesh;
+    if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
+        return false;
+    if (o->ignore_rest && !ignore_pairs_add_rest(&c->ignored, &c->recording, error)) return false;
+    if (cscd_detector_create(c->recording.mesh, NULL, &options, &c->detector) != CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(c->recording.context));
+    c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
+    if (c->positions == NULL) return io_fail(error, "out of memory");
+    if (o->json_path == NULL) return true;
+    c->out.file = fopen(o->json_path, "w");
+    if (c->out.file == NULL) return io_fail(error, "%s: cannot write: %s", o->json_path, strerror(errno));
+    json_begin_object(&c->out, NULL);
+    json_begin_array(&c->out, "frames");
+    return true;
+}
+
+static bool check_frames(check *c, io_error *error) {
+    uint32_t count = frame_range_count(&c->frames);
+    for (uint32_t i = 0; i < count && !interrupted(); i++) {
+        terminal_progress_update(&c->progress, i, count, "check");
+        if (!check_frame(c, c->frames.first + i * c->frames.step, error)) return false;
+    }
+    return true;
+}
+
+static bool close_json(check *c, const char *stopped_by, io_error *error) {
+    json *out = &c->out;
+    if (out->file == NULL) return true;
+    json_end_array(out);
+    json_break_line(out);
+    json_boolean(out, "complete", stopped_by == NULL);
+    if (stopped_by != NULL) json_string(out, "stopped_by", stopped_by);
+    json_end_object(out);
+    fputc('\n', out->file);
+    bool written = !ferror(out->file);
+    written = fclose(out->file) == 0 && written;
+    return written || io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
+}
+
+static int run(const check_options *options) {
+    check c = {.options = options};
+    io_error error = {""}, close_error = {""};
+    if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
+    if (!options->quiet) recording_warn(&c.recording);
+    interrupt_catch();
+    terminal_progress_begin(&c.progress, options->quiet);
+    bool ran = prepare(&c, &error) && check_frames(&c, &error);
+    terminal_progress_end(&c.progress);
+    bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
+    if (c.frames_checked > 0 && !options->quiet) {
+        printf("%s: %u of %u frames cross or touch themselves", options->source.model_path,
+               frame_list_frames(&c.crossing), c.frames_checked);
+        frame_list_print(&c.crossing, ": ");
+    }
+    int code = !ran                                               ? fail_input("%s", error.text)
+               : !closed                                          ? fail_input("%s", close_error.text)
+               : interrupted()                                    ? EXIT_INTERRUPTED
+               : options->fail_on_contact && c.crossing.count > 0 ? EXIT_CONTACT
+                                                                  : EXIT_RAN;
+    cscd_detector_destroy(c.detector);
+    ignore_pairs_free(&c.ignored);
+    recording_close(&c.recording);
+    frame_list_free(&c.crossing);
+    free(c.positions);
+    return code;
+}
+
+static bool set_option(int id, const char *value, check_options *o) {
+    switch (id) {
+    case 'j':
+        o->json_path = value;
+        return true;
+    case 'f':
+        return frame_range_parse(value, &o->frames);
+    case 'w':
+        return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
+    case 'i':
+        o->ignore_path = value;
+        return true;
+    case 'r':
+        return o->ignore_rest = true;
+    case 't':
+        return parse_unsigned(value, &o->source.thread_count) && o->source.thread_count <= 256;
+    case 'c':
+        return o->fail_on_contact = true;
+    case 'q':
+        return o->quiet = true;
+    default:
+        return false;
+    }
+}
+
+int command_check(int argument_count, char **arguments) {
+    static const struct option long_options[] = {{"json", required_argument, NULL, 'j'},
+                                                 {"frames", required_argument, NULL, 'f'},
+                                                 {"weld", required_argument, NULL, 'w'},
+                                                 {"ignore", required_argument, NULL, 'i'},
+                                                 {"ignore-rest", no_argument, NULL, 'r'},
+                                                 {"threads", required_argument, NULL, 't'},
+                                                 {"fail-on-contact", no_argument, NULL, 'c'},
+                                                 {"quiet", no_argument, NULL, 'q'},
+                                                 {"help", no_argument, NULL, 'h'},
+                                                 {NULL, 0, NULL, 0}};
+    check_options options = {.source = {.thread_count = 1}, .frames = frame_range_all()};
+    opterr = 0;
+    optind = 1;
+    for (int id, index = 0; (id = getopt_long(argument_count, arguments, ":", long_options, &index)) != -1;) {
+        if (id == 'h') {
+            fputs(help, stdout);
+            return EXIT_RAN;
+        }
+        if (id == ':' || id == '?') return fail_option("check", id, arguments);
+        if (!set_option(id, optarg, &options))
+            return fail_usage("check", "--%s cannot be '%s'", long_options[index].name, optarg);
+    }
+    if (argument_count - optind < 1) return fail_usage("check", "no MODEL given");
+    const char *const *inputs = (const char *const *)(arguments + optind);
+    io_error error;
+    if (!output_path_is_safe(options.json_path, inputs, (size_t)(argument_count - optind), &error) ||
+        !output_path_is_safe(options.json_path, (const char *const *)&options.ignore_path, 1, &error))
+        return fail_usage("check", "--json %s", error.text);
+    options.source.model_path = inputs[0];
+    options.source.frame_paths = inputs + 1;
+    options.source.frame_path_count = (size_t)(argument_count - optind - 1);
+    return run(&options);
+}

@@ -1,0 +1,68 @@
+/* What the tool's commands share: exit codes, error lines, option values. */
+#include "src/tool/common/command.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_line(const char *prefix, const char *format, va_list arguments) {
+    fflush(stdout);
+    fputs(prefix, stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
+
+int fail_input(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: ", format, arguments);
+    va_end(arguments);
+    return EXIT_BAD_INPUT;
+}
+
+int fail_usage(const char *command, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: ", format, arguments);
+    va_end(arguments);
+    fprintf(stderr, "Try 'cscd %s%s--help'.\n", command, command[0] != '\0' ? " " : "");
+    return EXIT_USAGE;
+}
+
+/* optopt is 0 after an unknown long option; a short one may stand in the middle of its argument. */
+int fail_option(const char *command, int id, char **arguments) {
+    const char *last = arguments[optind - 1];
+    if (id == ':') return fail_usage(command, "%s needs a value", last);
+    if (optopt > ' ' && optopt < 127 && strncmp(last, "--", 2) != 0)
+        return fail_usage(command, "unknown option '-%c'", optopt);
+    return fail_usage(command, "unknown option '%s'", last);
+}
+
+void warn(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    print_line("cscd: warning: ", format, arguments);
+    va_end(arguments);
+}
+
+bool parse_unsigned(const char *text, uint32_t *out) {
+    if (text[0] < '0' || text[0] > '9') return false;
+    char *end = NULL;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    if (errno != 0 || *end != '\0' || value >= UINT32_MAX) return false;
+    *out = (uint32_t)value;
+    return true;
+}
+
+bool parse_double(const char *text, double *out) {
+    char *end = NULL;
+    double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !isfinite(value)) return false;
+    *out = value;
+    return true;
+}

@@ -1,0 +1,146 @@
+/* Triangle pairs that the user wants left out: those that meet in the first frame, and those of a list file.
+ */
+#include "src/tool/common/ignore_pairs.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool append(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
+    if (*count == *capacity) {
+        size_t wider = *capacity == 0 ? 64 : *capacity * 2;
+        cscd_intersection *grown = realloc(*items, wider * sizeof *grown);
+        if (grown == NULL) return false;
+        *items = grown;
+        *capacity = wider;
+    }
+    (*items)[(*count)++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
+    return true;
+}
+
+static int compare(const void *left, const void *right) {
+    const cscd_intersection *l = left, *r = right;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+static void sort_triangles(ignore_pairs *pairs) {
+    if (pairs->triangle_count > 0)
+        qsort(pairs->triangles, pairs->triangle_count, sizeof *pairs->triangles, compare);
+}
+
+/* The mesh's number of a triangle of the file; UINT32_MAX when welding dropped it. */
+static uint32_t mesh_triangle(const recording *r, uint32_t file_triangle) {
+    if (!r->welded) return file_triangle;
+    uint32_t low = 0, high = r->weld.triangle_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (r->weld.file_triangle[middle] < file_triangle)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < r->weld.triangle_count && r->weld.file_triangle[low] == file_triangle ? low : UINT32_MAX;
+}
+
+/* Two numbers below limit and nothing else. */
+static bool parse_pair(const char *text, uint32_t limit, uint32_t pair[2]) {
+    char *end = NULL;
+    for (int i = 0; i < 2; i++) {
+        text += strspn(text, " \t,");
+        if (*text < '0' || *text > '9') return false;
+        errno = 0;
+        unsigned long long value = strtoull(text, &end, 10);
+        if (errno != 0 || value >= limit) return false;
+        pair[i] = (uint32_t)value;
+        text = end;
+    }
+    return text[strspn(text, " \t\r\n")] == '\0';
+}
+
+static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const char *path, int number,
+                      io_error *error) {
+    line[strcspn(line, "#")] = '\0';
+    char *text = line + strspn(line, " \t\r\n");
+    if (*text == '\0') return true;
+    bool components = strncmp(text, "components", 10) == 0 && (text[10] == ' ' || text[10] == '\t');
+    uint32_t limit = components ? cscd_mesh_component_count(r->mesh) : r->file.triangle_count, pair[2];
+    if (!parse_pair(components ? text + 10 : text, limit, pair))
+        return io_fail(error, "%s:%d: expected '%sA B' with A and B below %u", path, number,
+                       components ? "components " : "", limit);
+    bool added = true;
+    if (components) {
+        added =
+            append(&pairs->components, &pairs->component_count, &pairs->component_capacity, pair[0], pair[1]);
+    } else {
+        uint32_t a = mesh_triangle(r, pair[0]), b = mesh_triangle(r, pair[1]);
+        if (a != UINT32_MAX && b != UINT32_MAX)
+            added = append(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, a, b);
+    }
+    return added || io_fail(error, "%s:%d: out of memory", path, number);
+}
+
+bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error) {
+    pairs->mesh = r->mesh;
+    FILE *file = fopen(path, "r");
+    if (file == NULL) return io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+    char *line = NULL;
+    size_t size = 0;
+    bool read = true;
+    for (int number = 1; read && getline(&line, &size, file) >= 0; number++)
+        read = read_line(pairs, r, line, path, number, error);
+    if (read && ferror(file)) read = io_fail(error, "%s: cannot read: %s", path, strerror(errno));
+    free(line);
+    fclose(file);
+    sort_triangles(pairs);
+    return read;
+}
+
+static bool add_intersections(ignore_pairs *pairs, cscd_detector *detector, const double *positions) {
+    cscd_intersections found;
+    if (cscd_detector_check(detector, positions, &found) != CSCD_OK) return false;
+    for (size_t i = 0; i < found.count; i++) {
+        if (!append(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, found.items[i].a,
+                    found.items[i].b))
+            return false;
+    }
+    return true;
+}
+
+bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
+    pairs->mesh = r->mesh;
+    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    cscd_detector *detector = NULL;
+    bool added = positions != NULL || io_fail(error, "out of memory");
+    added = added && recording_read(r, 0, positions, error);
+    if (added && (cscd_detector_create(r->mesh, NULL, NULL, &detector) != CSCD_OK ||
+                  !add_intersections(pairs, detector, positions)))
+        added = io_fail(error, "frame 0: %s", cscd_context_detail(r->context));
+    cscd_detector_destroy(detector);
+    free(positions);
+    sort_triangles(pairs);
+    return added;
+}
+
+bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b) {
+    const ignore_pairs *pairs = user;
+    cscd_intersection key = {a, b};
+    if (pairs->triangle_count > 0 &&
+        bsearch(&key, pairs->triangles, pairs->triangle_count, sizeof key, compare) != NULL)
+        return true;
+    if (pairs->component_count == 0) return false;
+    uint32_t c = cscd_mesh_triangle_component(pairs->mesh, a),
+             d = cscd_mesh_triangle_component(pairs->mesh, b);
+    for (size_t i = 0; i < pairs->component_count; i++) {
+        cscd_intersection pair = pairs->components[i];
+        if ((pair.a == c && pair.b == d) || (pair.a == d && pair.b == c)) return true;
+    }
+    return false;
+}
+
+void ignore_pairs_free(ignore_pairs *pairs) {
+    free(pairs->triangles);
+    free(pairs->components);
+    *pairs = (ignore_pairs){0};
+}

@@ -1,0 +1,26 @@
+/* Triangle pairs that the user wants left out: those that meet in the first frame, and those of a list file.
+ */
+#pragma once
+
+#include "src/tool/common/recording.h"
+
+typedef struct ignore_pairs {
+    const cscd_mesh *mesh;
+    cscd_intersection *triangles; /* sorted by (a, b) */
+    size_t triangle_count, triangle_capacity;
+    cscd_intersection *components; /* a <= b; few */
+    size_t component_count, component_capacity;
+} ignore_pairs;
+
+/* Each line of a list file is `A B` (two triangles), `components A B` (all pairs between two components, or
+ * within one), blank, or a comment from # on. Triangles are numbered from 0 in the order of the model file, a
+ * polygon's fan counting as many; components as `cscd info` lists them. */
+bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error);
+
+/* Adds the pairs that touch or cross in frame 0. */
+bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
+
+/* For cscd_detector_options.ignore; user is the ignore_pairs. */
+bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b);
+
+void ignore_pairs_free(ignore_pairs *pairs);

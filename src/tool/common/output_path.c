@@ -1,0 +1,85 @@
+/* Keeps a command from writing over what it reads. */
+#include "src/tool/common/output_path.h"
+
+#include "src/io/path_name.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Two names of a file that does not exist yet: the same name in the same folder. */
+static bool same_place(const char *a, const char *b) {
+    const char *names[2] = {a, b};
+    char *folders[2] = {NULL, NULL};
+    for (int i = 0; i < 2; i++) {
+        const char *slash = strrchr(names[i], '/');
+        char *folder = slash != NULL ? strndup(names[i], (size_t)(slash - names[i]) + 1) : strdup(".");
+        folders[i] = folder != NULL ? realpath(folder, NULL) : NULL;
+        free(folder);
+        names[i] = slash != NULL ? slash + 1 : names[i];
+    }
+    bool same = folders[0] != NULL && folders[1] != NULL && strcmp(folders[0], folders[1]) == 0 &&
+                strcmp(names[0], names[1]) == 0;
+    free(folders[0]);
+    free(folders[1]);
+    return same;
+}
+
+static bool same_file(const char *a, const char *b) {
+    struct stat first, second;
+    if (strcmp(a, b) == 0 || same_place(a, b)) return true;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && S_ISREG(first.st_mode) &&
+           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+static bool named_like_input(const char *path) {
+    static const char *const endings[] = {".obj", ".ply", ".off", ".pc2", ".mdd"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        if (path_has_extension(path, endings[i])) return true;
+    }
+    return false;
+}
+
+/* The file that was opened to see whether it can be; a link that led to nothing stays. */
+static void remove_created(const char *path) {
+    char *target = realpath(path, NULL);
+    if (target != NULL) unlink(target);
+    free(target);
+}
+
+/* A pipe is asked only, for its reader takes the end of the first writer for the end of all. */
+static bool try_open(const char *path) {
+    struct stat status;
+    bool exists = stat(path, &status) == 0;
+    if (exists && S_ISFIFO(status.st_mode)) return access(path, W_OK) == 0;
+    FILE *file = fopen(path, "ab");
+    if (file == NULL) return false;
+    fclose(file);
+    if (!exists) remove_created(path);
+    return true;
+}
+
+bool output_path_opens(const char *path, io_error *error) {
+    return path == NULL || try_open(path) || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+}
+
+bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error) {
+    for (size_t i = 0; path != NULL && i < other_count; i++) {
+        if (others[i] != NULL && same_file(path, others[i]))
+            return io_fail(error, "'%s' would overwrite '%s'", path, others[i]);
+    }
+    return true;
+}
+
+bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error) {
+    if (path == NULL) return true;
+    if (!output_path_differs(path, others, other_count, error)) return false;
+    char *target = realpath(path, NULL);
+    bool like_input = named_like_input(path) || (target != NULL && named_like_input(target));
+    free(target);
+    return !like_input ||
+           io_fail(error, "'%s' is named like a mesh or a point cache; choose another name", path);
+}

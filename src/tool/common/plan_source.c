@@ -1,0 +1,194 @@
+/* Where a plan comes from: a file, or made in memory, or none; and by which method pairs are then culled. */
+#include "src/tool/common/plan_source.h"
+
+#include "src/io/path_name.h"
+#include "src/io/plan_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+char *plan_path_of_model(const char *model_path) {
+    static const char ending[] = ".plan.ply";
+    size_t length = strlen(model_path);
+    if (path_has_extension(model_path, ".obj") || path_has_extension(model_path, ".ply") ||
+        path_has_extension(model_path, ".off"))
+        length -= 4;
+    char *path = malloc(length + sizeof ending);
+    if (path == NULL) return NULL;
+    memcpy(path, model_path, length);
+    memcpy(path + length, ending, sizeof ending);
+    return path;
+}
+
+const char *plan_source_name(plan_source source) {
+    static const char *const names[] = {"none", "file", "memory"};
+    return names[source];
+}
+
+/* By orientation, for which it needs regions. */
+static bool culls(cscd_method method) {
+    return method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE && method != CSCD_METHOD_ICCD &&
+           method != CSCD_METHOD_ICCD_PUBLISHED;
+}
+
+static bool makes_plans(cscd_method method) {
+    return culls(method) && method != CSCD_METHOD_PUBLISHED && method != CSCD_METHOD_AUTO;
+}
+
+/* AUTO and PUBLISHED take a plan of any method. */
+static bool method_fits(const plan_request *request, const cscd_plan *plan) {
+    return !makes_plans(request->method) || cscd_plan_method(plan) == request->method;
+}
+
+/* Takes the path over. */
+static void choose_plan(plan_choice *choice, const plan_request *request, cscd_plan *plan, char *path) {
+    choice->plan = plan;
+    choice->method =
+        request->method == CSCD_METHOD_PUBLISHED ? CSCD_METHOD_PUBLISHED : cscd_plan_method(plan);
+    choice->source = path != NULL ? PLAN_FROM_FILE : PLAN_FROM_MEMORY;
+    choice->path = path;
+}
+
+static bool read_named(const plan_request *request, const recording *r, plan_choice *choice,
+                       io_error *error) {
+    cscd_plan *plan = NULL;
+    if (!plan_file_read(request->plan_path, r->context, r->mesh, &plan, error)) return false;
+    char *path = strdup(request->plan_path);
+    if (path != NULL && method_fits(request, plan)) {
+        choose_plan(choice, request, plan, path);
+        return true;
+    }
+    if (path == NULL)
+        io_fail(error, "out of memory");
+    else
+        io_fail(error, "%s: the plan is of method %s, expected %s as --method says", path,
+                cscd_method_name(cscd_plan_method(plan)), cscd_method_name(request->method));
+    cscd_plan_destroy(plan);
+    free(path);
+    return false;
+}
+
+/* The model's own plan, if it is there and fits; else the remark says why not. */
+static void try_model_plan(const plan_request *request, const recording *r, plan_choice *choice) {
+    char *path = plan_path_of_model(request->model_path);
+    cscd_plan *plan = NULL;
+    io_error error = {""};
+    if (path != NULL && access(path, F_OK) == 0) {
+        if (!plan_file_read(path, r->context, r->mesh, &plan, &error)) {
+            snprintf(choice->remark, sizeof choice->remark, "%.560s: left aside", error.text);
+        } else if (method_fits(request, plan)) {
+            choose_plan(choice, request, plan, path);
+            return;
+        } else {
+            snprintf(choice->remark, sizeof choice->remark, "%.500s: left aside, it is of method %s", path,
+                     cscd_method_name(cscd_plan_method(plan)));
+            cscd_plan_destroy(plan);
+        }
+    }
+    free(path);
+}
+
+static bool make_plan(const plan_request *request, cscd_method method, const recording *r,
+                      plan_choice *choice, io_error *error) {
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = method;
+    if (request->k > 0) options.k = request->k;
+    double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
+    if (positions == NULL) return io_fail(error, "out of memory");
+    cscd_plan *plan = NULL;
+    recording_rest(r, positions);
+    bool made = cscd_plan_create(r->mesh, positions, &options, &plan) == CSCD_OK;
+    if (made) {
+        choose_plan(choice, request, plan, NULL);
+        choice->made_ms = cscd_plan_timings(plan).total_ms;
+    } else {
+        io_fail(error, "%s: %s", request->model_path, cscd_context_detail(r->context));
+    }
+    free(positions);
+    return made;
+}
+
+static bool any_closed(const cscd_mesh *mesh) {
+    for (uint32_t i = 0; i < cscd_mesh_component_count(mesh); i++) {
+        if (cscd_mesh_component(mesh, i).closed_manifold) return true;
+    }
+    return false;
+}
+
+static void remark(plan_choice *choice, const char *text) {
+    if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
+}
+
+/* Nobody asked for a certain plan: where charge finds no answer there is one region per component, and where
+ * that fails too nothing is culled. */
+static bool make_best(const plan_request *request, const recording *r, plan_choice *choice, io_error *error) {
+    bool small = cscd_mesh_triangle_count(r->mesh) <= PLAN_IN_MEMORY_TRIANGLES;
+    if (request->method != CSCD_METHOD_PUBLISHED && !any_closed(r->mesh)) {
+        remark(choice, "no component is a closed surface, so there is nothing to cull");
+        return true;
+    }
+    if (small) {
+        if (make_plan(request, CSCD_METHOD_CHARGE, r, choice, error)) return true;
+        snprintf(choice->remark, sizeof choice->remark, "%.590s", error->text);
+    } else {
+        remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
+    }
+    return make_plan(request, CSCD_METHOD_SINGLE, r, choice, error) ||
+           request->method != CSCD_METHOD_PUBLISHED;
+}
+
+static bool make_requested(const plan_request *request, const recording *r, plan_choice *choice,
+                           io_error *error) {
+    uint32_t triangles = cscd_mesh_triangle_count(r->mesh);
+    if (request->method == CSCD_METHOD_CHARGE && triangles > PLAN_IN_MEMORY_TRIANGLES)
+        return io_fail(error,
+                       "%s: %u triangles are too many for a plan of method charge on the way (at most %d); "
+                       "make one with cscd preprocess, or choose another method",
+                       request->model_path, triangles, PLAN_IN_MEMORY_TRIANGLES);
+    return make_plan(request, request->method, r, choice, error);
+}
+
+bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error) {
+    plan_choice choice = {.method = culls(request->method) ? CSCD_METHOD_NONE : request->method};
+    bool chosen = true;
+    if (!culls(request->method)) {
+        /* as asked for */
+    } else if (request->min_separation > 0.0) {
+        remark(&choice, "with --min-separation nothing is culled");
+    } else if (request->plan_path != NULL) {
+        chosen = read_named(request, r, &choice, error);
+    } else {
+        bool any_plan = !makes_plans(request->method);
+        if (any_plan || request->method == CSCD_METHOD_CHARGE) try_model_plan(request, r, &choice);
+        if (choice.plan == NULL)
+            chosen =
+                any_plan ? make_best(request, r, &choice, error) : make_requested(request, r, &choice, error);
+    }
+    if (chosen) *out = choice;
+    return chosen;
+}
+
+void plan_choice_free(plan_choice *choice) {
+    cscd_plan_destroy(choice->plan);
+    free(choice->path);
+    *choice = (plan_choice){0};
+}
+
+void plan_choice_print(const plan_choice *choice) {
+    printf("plan: ");
+    if (choice->plan == NULL) {
+        printf("none");
+    } else {
+        uint32_t regions = cscd_plan_region_count(choice->plan);
+        printf("%s, %u region%s, ", cscd_method_name(cscd_plan_method(choice->plan)), regions,
+               regions == 1 ? "" : "s");
+        if (choice->source == PLAN_FROM_FILE)
+            printf("from %s", choice->path);
+        else
+            printf("made in memory in %.2f s", choice->made_ms * 1e-3);
+    }
+    if (choice->remark[0] != '\0') printf(" (%s)", choice->remark);
+    putchar('\n');
+}

@@ -1,0 +1,39 @@
+/* Where a plan comes from: a file, or made in memory, or none; and by which method pairs are then culled. */
+#pragma once
+
+#include "src/tool/common/recording.h"
+
+/* Up to so many triangles a plan of method charge is made without being asked for. */
+enum { PLAN_IN_MEMORY_TRIANGLES = 6000 };
+
+/* pawn.obj -> pawn.plan.ply, in the same folder; to be freed, NULL when out of memory. */
+char *plan_path_of_model(const char *model_path);
+
+typedef struct plan_request {
+    const char *model_path;
+    const char *plan_path; /* NULL: the model's own, if there is one that fits */
+    cscd_method method;    /* AUTO: whatever is best */
+    uint32_t k;            /* with KMEANS; 0: the default */
+    double min_separation;
+} plan_request;
+
+typedef enum plan_source { PLAN_FROM_NONE, PLAN_FROM_FILE, PLAN_FROM_MEMORY } plan_source;
+
+/* "none", "file", "memory". */
+const char *plan_source_name(plan_source source);
+
+typedef struct plan_choice {
+    cscd_plan *plan;    /* NULL: none */
+    cscd_method method; /* for the detector */
+    plan_source source;
+    char *path;       /* of the file */
+    double made_ms;   /* in memory */
+    char remark[600]; /* why not something better, for people; "" where there is nothing to say */
+} plan_choice;
+
+/* On false *out holds nothing. */
+bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error);
+void plan_choice_free(plan_choice *choice);
+
+/* "charge, 4 regions, from pawn.plan.ply", and the remark. */
+void plan_choice_print(const plan_choice *choice);

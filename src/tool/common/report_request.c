@@ -1,0 +1,28 @@
+/* What a command is told about the report that it writes. */
+#include "src/tool/common/report_request.h"
+
+#include "src/tool/common/output_path.h"
+
+#include <string.h>
+
+bool report_request_parse_up(const char *text, int *up_axis) {
+    if (strcmp(text, "y") != 0 && strcmp(text, "z") != 0) return false;
+    *up_axis = text[0] == 'y' ? 1 : 2;
+    return true;
+}
+
+bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
+                            io_error *error) {
+    const char *own[] = {r->scenery_path, r->scenery_frames_path};
+    if (r->path == NULL) {
+        if (own[0] == NULL && own[1] == NULL) return true;
+        return io_fail(error, "--scenery is drawn in a report; say where with --report OUT.html");
+    }
+    if (r->scenery_frames_path != NULL && r->scenery_path == NULL)
+        return io_fail(error, "--scenery-frames moves the mesh of --scenery MODEL, which is missing");
+    io_error reason;
+    if (output_path_is_safe(r->path, others, other_count, &reason) &&
+        output_path_differs(r->path, own, 2, &reason))
+        return true;
+    return io_fail(error, "--report %s", reason.text);
+}

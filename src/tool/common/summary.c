@@ -1,0 +1,271 @@
+/* The JSON summary of a replay, written interval by interval. */
+#include "src/tool/common/summary.h"
+
+#include "src/tool/common/provenance.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct summary_writer {
+    FILE *file; /* NULL: nothing is written */
+    char *path;
+    FILE *memory; /* what is written comes here first: text, size bytes of it */
+    char *text;
+    size_t size;
+    bool keeps_text;  /* all of it, for summary_close */
+    size_t forwarded; /* bytes of it that the file has */
+    const cscd_mesh *mesh;
+    json out;
+    uint32_t first_frame, frame_count, frame_capacity;
+    unsigned char *frames; /* frame_state, one byte each: the list comes after the intervals */
+};
+
+const char *interval_state_name(interval_state state) {
+    static const char *const names[] = {"clean", "contact", "penetrating", "unknown"};
+    return names[state];
+}
+
+static bool write_failed(const summary_writer *w, io_error *error) {
+    return io_fail(error, "%s: cannot write: %s", w->path, strerror(errno));
+}
+
+static void free_summary(summary_writer *w) {
+    if (w->memory != NULL) fclose(w->memory);
+    free(w->text);
+    free(w->path);
+    free(w->frames);
+    free(w);
+}
+
+static bool open_file(summary_writer *w, const char *path, io_error *error) {
+    w->path = strdup(path);
+    w->file = w->path != NULL ? fopen(path, "w") : NULL;
+    return w->file != NULL || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+}
+
+bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+                  io_error *error) {
+    summary_writer *w = calloc(1, sizeof *w);
+    if (w != NULL) w->memory = open_memstream(&w->text, &w->size);
+    if (w == NULL || w->memory == NULL) {
+        free(w);
+        return io_fail(error, "out of memory");
+    }
+    if (path != NULL && !open_file(w, path, error)) {
+        free_summary(w);
+        return false;
+    }
+    w->mesh = mesh;
+    w->keeps_text = keep_text;
+    w->out.file = w->memory;
+    json_begin_object(&w->out, NULL);
+    json_begin_array(&w->out, "intervals");
+    *out = w;
+    return true;
+}
+
+/* Hands the file what is new in memory. A stream in memory fails only for want of it. */
+static bool forward(summary_writer *w, io_error *error) {
+    if (fflush(w->memory) != 0 || ferror(w->memory)) return io_fail(error, "out of memory for the summary");
+    size_t begin = w->keeps_text ? w->forwarded : 0, count = w->size - begin;
+    w->forwarded = w->size;
+    bool written =
+        w->file == NULL || (fwrite(w->text + begin, 1, count, w->file) == count && fflush(w->file) == 0);
+    if (!w->keeps_text) rewind(w->memory);
+    return written || write_failed(w, error);
+}
+
+static void write_guarantees(summary_writer *w, const cscd_detector *detector) {
+    json_begin_array(&w->out, "guarantee");
+    for (uint32_t i = 0; i < cscd_mesh_component_count(w->mesh); i++) {
+        cscd_guarantee guarantee = cscd_detector_guarantee(detector, i);
+        json_begin_object(&w->out, NULL);
+        json_integer(&w->out, "component", i);
+        json_string(&w->out, "mode", cscd_mode_name(guarantee.complete ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST));
+        json_string(&w->out, "reason", cscd_reason_text(guarantee.reason));
+        json_end_object(&w->out);
+    }
+    json_end_array(&w->out);
+}
+
+static void write_times(json *out, const cscd_timings *t) {
+    json_begin_object(out, "ms");
+    json_number(out, "update", t->update_ms);
+    json_number(out, "orientation", t->orientation_ms);
+    json_number(out, "contour", t->contour_ms);
+    json_number(out, "traversal", t->traversal_ms);
+    json_number(out, "contact", t->contact_ms);
+    json_number(out, "proof", t->proof_ms);
+    json_number(out, "check", t->check_ms);
+    json_number(out, "total", t->total_ms);
+    json_end_object(out);
+}
+
+bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error) {
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_integer(out, "frame", result->frame);
+    json_integer(out, "vf", result->counters.vf);
+    json_integer(out, "ee", result->counters.ee);
+    json_integer(out, "bounded", result->counters.bounded);
+    if (result->contact_count > 0)
+        json_number(out, "earliest_toi", result->earliest_toi);
+    else
+        json_null(out, "earliest_toi");
+    json_integer(out, "pcp", result->counters.pcp);
+    json_integer(out, "adjacent", result->counters.adjacent);
+    json_integer(out, "tests", result->counters.tests);
+    json_integer(out, "plus", result->counters.plus);
+    json_integer(out, "minus", result->counters.minus);
+    json_integer(out, "static_checks", result->counters.static_checks);
+    json_integer(out, "clean_triangles", result->counters.clean);
+    json_integer(out, "passes", result->counters.passes);
+    json_string(out, "state", interval_state_name(result->state));
+    write_guarantees(w, result->detector);
+    write_times(out, &result->timings);
+    json_end_object(out);
+    return forward(w, error);
+}
+
+bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error) {
+    if (w->frame_count == w->frame_capacity) {
+        uint32_t capacity = w->frame_capacity == 0 ? 1024 : w->frame_capacity * 2;
+        unsigned char *grown = realloc(w->frames, capacity);
+        if (grown == NULL) return io_fail(error, "out of memory");
+        w->frames = grown;
+        w->frame_capacity = capacity;
+    }
+    if (w->frame_count == 0) w->first_frame = frame;
+    w->frames[w->frame_count++] = (unsigned char)state;
+    return true;
+}
+
+static void write_frames(summary_writer *w) {
+    json_begin_array(&w->out, "frames");
+    for (uint32_t i = 0; i < w->frame_count; i++) {
+        json_break_line(&w->out);
+        json_begin_object(&w->out, NULL);
+        json_integer(&w->out, "frame", w->first_frame + i);
+        if (w->frames[i] == FRAME_UNCHECKED)
+            json_null(&w->out, "crossing");
+        else
+            json_boolean(&w->out, "crossing", w->frames[i] == FRAME_CROSSING);
+        json_end_object(&w->out);
+    }
+    json_end_array(&w->out);
+}
+
+static void write_column(json *out, const char *key, const column *c, uint32_t count) {
+    json_begin_object(out, key);
+    json_number(out, "mean", count > 0 ? c->sum / count : 0.0);
+    json_number(out, "max", c->max);
+    json_end_object(out);
+}
+
+static void write_plan(json *out, const plan_choice *plan) {
+    json_begin_object(out, "plan");
+    json_string(out, "source", plan_source_name(plan->source));
+    json_string(out, "method",
+                cscd_method_name(plan->plan != NULL ? cscd_plan_method(plan->plan) : CSCD_METHOD_NONE));
+    json_integer(out, "regions", plan->plan != NULL ? cscd_plan_region_count(plan->plan) : 0);
+    if (plan->path != NULL)
+        json_string(out, "path", plan->path);
+    else
+        json_null(out, "path");
+    json_number(out, "made_ms", plan->made_ms);
+    json_end_object(out);
+}
+
+static void write_summary(summary_writer *w, const summary_ending *e) {
+    const totals *t = e->totals;
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, "summary");
+    json_boolean(out, "complete", e->stopped_by == NULL);
+    if (e->stopped_by != NULL) json_string(out, "stopped_by", e->stopped_by);
+    json_string(out, "method", cscd_method_name(e->plan->method));
+    json_string(out, "mode", e->mode);
+    json_string(out, "volume", cscd_volume_name(e->volume));
+    json_string(out, "simd", cscd_simd_name(cscd_context_simd(e->recording->context)));
+    json_number(out, "min_separation", e->min_separation);
+    write_plan(out, e->plan);
+    json_integer(out, "vertices", cscd_mesh_vertex_count(w->mesh));
+    json_integer(out, "triangles", cscd_mesh_triangle_count(w->mesh));
+    json_integer(out, "components", cscd_mesh_component_count(w->mesh));
+    json_integer(out, "intervals", t->intervals);
+    json_integer(out, "intervals_complete", t->intervals_complete);
+    json_integer(out, "intervals_with_contact", t->intervals_with_contact);
+    for (int i = 0; i < 4; i++) json_integer(out, interval_state_name((interval_state)i), t->states[i]);
+    json_integer(out, "frames_checked", t->frames_checked);
+    json_integer(out, "frames_crossing", t->frames_crossing);
+    if (t->intervals_with_contact > 0)
+        json_integer(out, "first_contact_frame", t->first_contact_frame);
+    else
+        json_null(out, "first_contact_frame");
+    json_integer(out, "contradictions", t->contradictions);
+    json_integer(out, "vf", t->vf);
+    json_integer(out, "ee", t->ee);
+    json_integer(out, "bounded", t->bounded);
+    json_integer(out, "static_checks", t->static_checks);
+    write_column(out, "update_ms", &t->update, t->intervals);
+    write_column(out, "orientation_ms", &t->orientation, t->intervals);
+    write_column(out, "contour_ms", &t->contour, t->intervals);
+    write_column(out, "traversal_ms", &t->traversal, t->intervals);
+    write_column(out, "contact_ms", &t->contact, t->intervals);
+    write_column(out, "proof_ms", &t->proof, t->intervals);
+    write_column(out, "check_ms", &t->check, t->intervals);
+    write_column(out, "total_ms", &t->total, t->intervals);
+    write_column(out, "pcp", &t->pcp, t->intervals);
+    write_column(out, "tests", &t->tests, t->intervals);
+    write_column(out, "plus", &t->plus, t->intervals);
+    write_column(out, "minus", &t->minus, t->intervals);
+    write_column(out, "clean_triangles", &t->clean, t->intervals);
+    write_column(out, "passes", &t->passes, t->intervals);
+    json_end_object(out);
+}
+
+static void write_provenance(summary_writer *w, const summary_ending *e) {
+    json *out = &w->out;
+    json_break_line(out);
+    json_begin_object(out, "provenance");
+    provenance_write(out, e->argument_count, e->arguments, cscd_context_thread_count(e->recording->context));
+    json_begin_array(out, "inputs");
+    provenance_write_input(out, e->model_path, e->recording->model_hash);
+    provenance_write_input(out, e->frame_paths[0], e->recording->frames_hash);
+    json_end_array(out);
+    json_begin_array(out, "frame_paths");
+    for (size_t i = 0; i < e->frame_path_count; i++) json_string(out, NULL, e->frame_paths[i]);
+    json_end_array(out);
+    json_end_object(out);
+}
+
+/* The file, if there is one, is closed in any case. */
+static bool close_file(summary_writer *w, io_error *error) {
+    if (w->file == NULL) return true;
+    bool written = !ferror(w->file);
+    written = fclose(w->file) == 0 && written;
+    return written || write_failed(w, error);
+}
+
+bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error) {
+    json_end_array(&w->out);
+    json_break_line(&w->out);
+    write_frames(w);
+    write_summary(w, ending);
+    write_provenance(w, ending);
+    json_end_object(&w->out);
+    fputc('\n', w->memory);
+    bool forwarded = forward(w, error);
+    bool closed = close_file(w, forwarded ? error : NULL);
+    bool whole = w->keeps_text && !ferror(w->memory);
+    whole = fclose(w->memory) == 0 && whole;
+    w->memory = NULL;
+    if (text != NULL) {
+        *text = whole ? w->text : NULL;
+        if (whole) w->text = NULL;
+    }
+    free_summary(w);
+    return forwarded && closed;
+}

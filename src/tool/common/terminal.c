@@ -1,0 +1,59 @@
+/* A line on the terminal that says how far a long command is; silent elsewhere. */
+#include "src/tool/common/terminal.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { REDRAW_MS = 100, BAR_WIDTH = 30 };
+
+static double now_ms(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+void terminal_progress_begin(terminal_progress *p, bool quiet) {
+    *p = (terminal_progress){.shown = !quiet && isatty(STDERR_FILENO) != 0};
+}
+
+void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what) {
+    if (!p->shown || (done < total && now_ms() - p->last_ms < REDRAW_MS)) return;
+    p->last_ms = now_ms();
+    char bar[BAR_WIDTH + 1];
+    uint32_t filled = total > 0 ? (uint32_t)((uint64_t)done * BAR_WIDTH / total) : 0;
+    for (uint32_t i = 0; i < BAR_WIDTH; i++) bar[i] = i < filled ? '#' : '.';
+    bar[BAR_WIDTH] = '\0';
+    fprintf(stderr, "\r%s %s %u/%u\033[K", what, bar, done, total);
+    fflush(stderr);
+}
+
+void terminal_progress_say(terminal_progress *p, const char *text) {
+    if (!p->shown) return;
+    fprintf(stderr, "\r%s ...\033[K", text);
+    fflush(stderr);
+}
+
+void terminal_progress_end(terminal_progress *p) {
+    if (p->shown) fputs("\r\033[K", stderr);
+    p->shown = false;
+}
+
+static volatile sig_atomic_t interrupt_flag;
+
+static void note_interrupt(int signal_number) {
+    (void)signal_number;
+    interrupt_flag = 1;
+}
+
+void interrupt_catch(void) {
+    struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)(SA_RESETHAND | SA_RESTART)};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+bool interrupted(void) {
+    return interrupt_flag != 0;
+}

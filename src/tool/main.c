@@ -1,0 +1,59 @@
+/* The tool `cscd`: finds the command and runs it. */
+#include "cscd/cscd.h"
+#include "src/tool/common/command.h"
+#include "src/tool/common/provenance.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct command {
+    const char *name, *summary;
+    int (*run)(int argument_count, char **arguments);
+} command;
+
+static const command commands[] = {
+    {"preprocess", "cut a mesh into regions by charge, once, so that replays are faster", command_preprocess},
+    {"replay", "find every self-collision of a recorded animation", command_replay},
+    {"report", "put summaries of replays side by side on one page for a browser", command_report},
+    {"sense", "warn with particles where objects come near each other", command_sense},
+    {"check", "find where a mesh crosses or touches itself, frame by frame", command_check},
+    {"info", "counts, components, holes, bounds of a mesh", command_info},
+    {"render", "draw frames to a PNG", command_render},
+};
+
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void print_help(void) {
+    printf("cscd - continuous self-collision detection for deforming triangle meshes\n\n"
+           "usage: cscd COMMAND ...\n\n");
+    for (int i = 0; i < COMMAND_COUNT; i++) printf("  %-11s %s\n", commands[i].name, commands[i].summary);
+    printf("\ncscd COMMAND --help says more; cscd --version.\n"
+           "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
+}
+
+static int run(int argument_count, char **arguments) {
+    if (argument_count < 2) return fail_usage("", "no command given");
+    const char *name = arguments[1];
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        print_help();
+        return EXIT_RAN;
+    }
+    if (strcmp(name, "--version") == 0) {
+        printf("cscd %s (%s)\n", cscd_version_string(), provenance_commit());
+        return EXIT_RAN;
+    }
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(name, commands[i].name) == 0) return commands[i].run(argument_count - 1, arguments + 1);
+    }
+    return fail_usage("", "unknown command '%s'", name);
+}
+
+int main(int argument_count, char **arguments) {
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a write error like any other: files still get finished */
+    int code = run(argument_count, arguments);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT)
+        code = fail_input("standard output: %s", strerror(errno));
+    return code;
+}

@@ -1,0 +1,263 @@
+/* `cscd preprocess`: makes the plan of a mesh, tells what it found and saves it. */
+#include "src/io/path_name.h"
+#include "src/io/plan_file.h"
+#include "src/tool/common/command.h"
+#include "src/tool/common/output_path.h"
+#include "src/tool/common/plan_picture.h"
+#include "src/tool/common/plan_source.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/plan_report.h"
+#include "src/tool/replay/replay_options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char help[] =
+    "usage: cscd preprocess MODEL [-o PLAN.ply] [options]\n"
+    "\n"
+    "Cuts the mesh MODEL (OBJ, PLY, OFF), at rest as in the file, into regions, each with a point that sees\n"
+    "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs\n"
+    "of triangles that cannot touch. Contacts are the same with any plan and with none.\n"
+    "\n"
+    "  -o PLAN.ply            default: MODEL with .plan.ply for its ending, where replay looks for it\n"
+    "  --report OUT.html      also write a page that shows charge, regions and detector points in any "
+    "browser\n"
+    "  --up y|z               of the report: which axis points up (default z)\n"
+    "  --method charge        cut where little charge gathers on the mesh as a conductor (default): takes\n"
+    "                         4 bytes for each pair of triangles of a component, and time with the cube\n"
+    "  --method kmeans:K      K regions by distance\n"
+    "  --method single        one region per component\n"
+    "  --seed N               of kmeans (default 1)\n"
+    "  --threshold X          charge: the share of the triangles that cuts start from (default 0.1)\n"
+    "  --published            charge: equalize with 256 bins, as published, instead of exact ranks\n"
+    "  --weld exact|EPS       join vertices that coincide, or lie within EPS; replay needs the same\n"
+    "  --threads N            default 0: one per processor\n"
+    "  --quiet                no progress, no warnings, nothing on the standard output\n";
+
+enum { LINES_MAX = 50 };
+
+typedef struct preprocess_options {
+    recording_options source;
+    cscd_plan_options plan;
+    const char *output_path;
+    report_request report;
+    int argument_count; /* the command line, for the provenance */
+    char **arguments;
+    bool quiet;
+} preprocess_options;
+
+static double total_area(const cscd_plan *plan) {
+    double area = 0.0;
+    for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) area += cscd_plan_region(plan, i).area;
+    return area;
+}
+
+static double percent(double part, double whole) {
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+}
+
+static void print_components(const cscd_mesh *mesh, const cscd_plan *plan) {
+    uint32_t count = cscd_mesh_component_count(mesh);
+    for (uint32_t i = 0; i < count && i < LINES_MAX; i++)
+        printf("component %u: %u triangles, capacitance %.6g\n", i,
+               cscd_mesh_component(mesh, i).triangle_count, cscd_plan_capacitance(plan, i));
+    if (count > LINES_MAX) printf("and %u more components\n", count - LINES_MAX);
+}
+
+static void print_regions(const cscd_plan *plan) {
+    uint32_t count = cscd_plan_region_count(plan);
+    double whole = total_area(plan), seen = 0.0;
+    printf("%u region%s by method %s\n", count, count == 1 ? "" : "s",
+           cscd_method_name(cscd_plan_method(plan)));
+    printf("%6s %9s %9s %13s %16s   detector point\n", "region", "component", "triangles", "share of area",
+           "its point sees");
+    for (uint32_t i = 0; i < count; i++) {
+        cscd_region r = cscd_plan_region(plan, i);
+        const double *p = r.detector_point;
+        seen += r.visible_share * r.area;
+        if (i < LINES_MAX)
+            printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
+                   percent(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
+    }
+    if (count > LINES_MAX) printf("and %u more regions\n", count - LINES_MAX);
+    printf("seen in all: %.1f %% of the area\n", percent(seen, whole));
+}
+
+static void print_plan(const preprocess_options *o, const recording *r, const cscd_plan *plan) {
+    cscd_preprocess_timings t = cscd_plan_timings(plan);
+    uint32_t components = cscd_mesh_component_count(r->mesh);
+    printf("%s: %u vertices, %u triangles, %u component%s\n", o->source.model_path,
+           cscd_mesh_vertex_count(r->mesh), cscd_mesh_triangle_count(r->mesh), components,
+           components == 1 ? "" : "s");
+    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE) print_components(r->mesh, plan);
+    print_regions(plan);
+    printf("seconds: assembly %.3f, solve %.3f, regions %.3f, total %.3f\n", t.assembly_ms * 1e-3,
+           t.solve_ms * 1e-3, t.regions_ms * 1e-3, t.total_ms * 1e-3);
+}
+
+static bool save(const preprocess_options *o, const recording *r, const double *positions,
+                 const cscd_plan *plan, io_error *error) {
+    uint32_t count = cscd_mesh_triangle_count(r->mesh);
+    uint8_t *colours = malloc((size_t)count * 3);
+    if (colours == NULL) return io_fail(error, "out of memory");
+    plan_colour_regions(plan, count, colours);
+    bool saved = plan_file_write(o->output_path, r->mesh, positions, plan, colours, error);
+    free(colours);
+    return saved;
+}
+
+static bool save_report(const preprocess_options *o, const recording *r, const double *positions,
+                        const cscd_plan *plan, io_error *error) {
+    if (o->report.path == NULL) return true;
+    plan_report shown = {&o->report, o->source.model_path, r,           positions,
+                         plan,       o->argument_count,    o->arguments};
+    if (!plan_report_write(&shown, error)) return false;
+    if (!o->quiet) printf("written: %s\n", o->report.path);
+    return true;
+}
+
+enum { PERCENT = 100 };
+
+static bool show_progress(void *user, const char *stage, double fraction) {
+    terminal_progress_update(user, (uint32_t)(fraction * PERCENT), PERCENT, stage);
+    return !interrupted();
+}
+
+static bool make(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
+    cscd_plan *plan = NULL;
+    cscd_status status = cscd_plan_create(r->mesh, positions, &o->plan, &plan);
+    terminal_progress_end(o->source.progress.user);
+    if (status == CSCD_CANCELLED)
+        return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
+    if (status != CSCD_OK)
+        return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
+    bool saved = save(o, r, positions, plan, error);
+    if (saved && !o->quiet) {
+        print_plan(o, r, plan);
+        printf("written: %s\n", o->output_path);
+    }
+    saved = saved && save_report(o, r, positions, plan, error);
+    cscd_plan_destroy(plan);
+    return saved;
+}
+
+static int run(preprocess_options *o) {
+    recording r;
+    io_error error = {""};
+    terminal_progress shown;
+    interrupt_catch();
+    terminal_progress_begin(&shown, o->quiet);
+    o->source.progress = (cscd_progress){show_progress, &shown};
+    if (!recording_open(&o->source, &r, &error)) return fail_input("%s", error.text);
+    if (!o->quiet) recording_warn(&r);
+    double *positions = malloc((size_t)cscd_mesh_vertex_count(r.mesh) * 3 * sizeof *positions);
+    bool made = positions != NULL || io_fail(&error, "out of memory");
+    made = made && output_path_opens(o->output_path, &error) && output_path_opens(o->report.path, &error) &&
+           recording_read(&r, 0, positions, &error) && make(o, &r, positions, &error);
+    free(positions);
+    recording_close(&r);
+    if (made) return EXIT_RAN;
+    fail_input("%s", error.text);
+    return interrupted() ? EXIT_INTERRUPTED : EXIT_BAD_INPUT;
+}
+
+static bool parse_share(const char *text, double *out) {
+    return parse_double(text, out) && *out > 0.0 && *out < 1.0;
+}
+
+static bool set_option(int id, const char *value, preprocess_options *o) {
+    switch (id) {
+    case 'o':
+        o->output_path = value;
+        return true;
+    case 'm':
+        return parse_method(value, &o->plan.method, &o->plan.k) &&
+               (o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_KMEANS ||
+                o->plan.method == CSCD_METHOD_SINGLE);
+    case 's':
+        return parse_unsigned(value, &o->plan.seed);
+    case 'x':
+        return parse_share(value, &o->plan.threshold);
+    case 'p':
+        return o->plan.published = true;
+    case 'r':
+        o->report.path = value;
+        return true;
+    case 'u':
+        return report_request_parse_up(value, &o->report.up_axis);
+    case 'w':
+        return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
+    case 't':
+        return parse_unsigned(value, &o->source.thread_count) && o->source.thread_count <= 256;
+    case 'q':
+        return o->quiet = true;
+    default:
+        return false;
+    }
+}
+
+/* EXIT_RAN to go on; *help_wanted: it has been printed. */
+static int read_options(int argument_count, char **arguments, preprocess_options *o, bool *help_wanted) {
+    static const struct option long_options[] = {
+        {"output", required_argument, NULL, 'o'},  {"method", required_argument, NULL, 'm'},
+        {"seed", required_argument, NULL, 's'},    {"threshold", required_argument, NULL, 'x'},
+        {"published", no_argument, NULL, 'p'},     {"weld", required_argument, NULL, 'w'},
+        {"threads", required_argument, NULL, 't'}, {"quiet", no_argument, NULL, 'q'},
+        {"report", required_argument, NULL, 'r'},  {"up", required_argument, NULL, 'u'},
+        {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0}};
+    opterr = 0;
+    optind = 1;
+    for (int id, index = 0;
+         (id = getopt_long(argument_count, arguments, ":o:", long_options, &index)) != -1;) {
+        if (id == 'h') {
+            fputs(help, stdout);
+            *help_wanted = true;
+            return EXIT_RAN;
+        }
+        if (id == ':' || id == '?') return fail_option("preprocess", id, arguments);
+        if (!set_option(id, optarg, o))
+            return fail_usage("preprocess", "--%s cannot be '%s'", long_options[index].name, optarg);
+    }
+    if (argument_count - optind != 1) return fail_usage("preprocess", "expected one MODEL");
+    o->source.model_path = arguments[optind];
+    return EXIT_RAN;
+}
+
+/* A plan may replace a plan, but no other file. */
+static int check_output(const preprocess_options *o) {
+    const char *path = o->output_path;
+    struct stat status;
+    io_error error;
+    if (!path_has_extension(path, ".ply"))
+        return fail_usage("preprocess", "-o '%s': expected a name that ends in .ply", path);
+    if (!output_path_differs(path, &o->source.model_path, 1, &error))
+        return fail_usage("preprocess", "-o %s", error.text);
+    if (stat(path, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 && !plan_file_is_plan(path))
+        return fail_usage("preprocess", "-o '%s' exists and is no plan; choose another name", path);
+    const char *others[] = {o->source.model_path, path};
+    if (!report_request_is_safe(&o->report, others, 2, &error))
+        return fail_usage("preprocess", "%s", error.text);
+    return EXIT_RAN;
+}
+
+int command_preprocess(int argument_count, char **arguments) {
+    preprocess_options options = {.plan = cscd_plan_defaults(),
+                                  .report.up_axis = 2,
+                                  .argument_count = argument_count,
+                                  .arguments = arguments};
+    bool help_wanted = false;
+    int code = read_options(argument_count, arguments, &options, &help_wanted);
+    if (code != EXIT_RAN || help_wanted) return code;
+    char *model_plan = NULL;
+    if (options.output_path == NULL) options.output_path = model_plan = plan_path_of_model(arguments[optind]);
+    if (options.output_path == NULL)
+        code = fail_input("out of memory");
+    else
+        code = check_output(&options);
+    if (code == EXIT_RAN) code = run(&options);
+    free(model_plan);
+    return code;
+}

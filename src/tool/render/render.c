@@ -1,0 +1,86 @@
+/* `cscd render`: draws frames to a PNG: plain, with the contacts of their intervals, or with a plan. */
+#include "src/tool/common/command.h"
+#include "src/tool/common/plan_picture.h"
+#include "src/tool/common/plan_source.h"
+#include "src/tool/common/scenery.h"
+#include "src/tool/render/contact_picture.h"
+#include "src/tool/render/render_options.h"
+#include "src/tool/render/strip.h"
+
+#include <math.h>
+
+/* Charge wants a plan that has some; without FRAMES the mesh is at rest, where the detector points belong. */
+static bool paint_plan(const render_options *o, const recording *r, contact_picture *picture,
+                       plan_legend *legend, io_error *error) {
+    bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = o->source.frame_path_count == 0;
+    if (!by_charge && o->colouring != COLOUR_REGION) return true;
+    plan_request request = {.model_path = o->source.model_path,
+                            .plan_path = o->plan_path,
+                            .method = by_charge ? CSCD_METHOD_CHARGE : CSCD_METHOD_PUBLISHED};
+    plan_choice choice;
+    if (!plan_choose(&request, r, &choice, error)) return false;
+    bool painted = plan_picture_paint(picture, legend, r, choice.plan, by_charge, error) &&
+                   (by_charge || !at_rest || plan_picture_mark(picture, legend, choice.plan, error));
+    plan_choice_free(&choice);
+    return painted;
+}
+
+static bool draw_frame(const render_options *o, recording *r, contact_picture *picture, scenery *beside,
+                       io_error *error) {
+    bool contacts = o->colouring == COLOUR_CONTACTS;
+    uint32_t needed = contacts ? o->frame + 1 : o->frame;
+    if (needed >= r->frame_count)
+        return io_fail(error, "--frame %u%s: there are the frames 0 to %u", o->frame,
+                       contacts ? " with its contacts needs the next one" : "", r->frame_count - 1);
+    plan_legend legend;
+    if (!contact_picture_show(picture, r, o->frame, contacts, error) ||
+        (beside != NULL && !scenery_read(beside, o->frame, error)) ||
+        !paint_plan(o, r, picture, &legend, error))
+        return false;
+    picture_options options = o->picture;
+    if (o->zoom) contact_picture_focus(picture, &options);
+    return picture_render(&picture->scene, &options, o->output_path, error);
+}
+
+static bool draw_strip(const render_options *o, recording *r, contact_picture *picture, scenery *beside,
+                       io_error *error) {
+    plan_legend legend;
+    return paint_plan(o, r, picture, &legend, error) && strip_draw(o, r, picture, beside, error);
+}
+
+/* A round length, about a quarter of the model at rest, so that it is the same for all its frames. */
+static double square_side(const recording *r) {
+    double extent = 0.0;
+    for (size_t i = 0; i < (size_t)r->file.vertex_count * 3; i++)
+        extent = fmax(extent, fabs(r->file.positions[i] - r->file.positions[i % 3]));
+    if (!(extent > 0.0)) return 0.0;
+    double power = pow(10.0, floor(log10(0.25 * extent))), share = 0.25 * extent / power;
+    return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
+}
+
+static bool draw(render_options *o, recording *r, io_error *error) {
+    contact_picture picture = {0};
+    scenery other = {0};
+    scenery *beside = o->scenery_path != NULL ? &other : NULL;
+    o->picture.square = square_side(r);
+    bool drawn = (beside == NULL ||
+                  scenery_open(o->scenery_path, o->scenery_frames_path, r->frame_count, beside, error)) &&
+                 contact_picture_load(&picture, r, error);
+    if (beside != NULL) picture.scene.scenery = &beside->mesh;
+    drawn = drawn && (o->strip ? draw_strip : draw_frame)(o, r, &picture, beside, error);
+    contact_picture_free(&picture);
+    scenery_close(&other);
+    return drawn;
+}
+
+int command_render(int argument_count, char **arguments) {
+    render_options options;
+    recording r;
+    io_error error = {""};
+    int code;
+    if (!render_options_parse(argument_count, arguments, &options, &code)) return code;
+    if (!recording_open(&options.source, &r, &error)) return fail_input("%s", error.text);
+    bool drawn = draw(&options, &r, &error);
+    recording_close(&r);
+    return drawn ? EXIT_RAN : fail_input("%s", error.text);
+}

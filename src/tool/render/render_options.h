@@ -1,0 +1,30 @@
+/* The options of `cscd render`. */
+#pragma once
+
+#include "src/tool/common/frame_range.h"
+#include "src/tool/common/recording.h"
+#include "src/tool/picture/scene.h"
+
+typedef enum colouring { COLOUR_PLAIN, COLOUR_CONTACTS, COLOUR_CHARGE, COLOUR_REGION } colouring;
+
+typedef struct render_options {
+    recording_options source;
+    const char *output_path, *plan_path;            /* NULL: not given */
+    const char *scenery_path, *scenery_frames_path; /* NULL: not given */
+    uint32_t frame;                                 /* of a single picture */
+    bool strip;                                     /* several frames in one picture: */
+    frame_range frames;
+    uint32_t columns; /* 0: not given */
+    bool follow;
+    colouring colouring;
+    bool zoom;
+    picture_options picture;
+} render_options;
+
+/* False: *code is the exit code to end with (0 after --help). */
+bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code);
+
+/* --size WxH, --view AZ,EL and --up y|z, for the commands that draw. */
+bool parse_picture_size(const char *text, picture_options *picture);
+bool parse_picture_view(const char *text, picture_options *picture);
+bool parse_picture_up(const char *text, picture_options *picture);

@@ -1,0 +1,330 @@
+/* `cscd replay`: every self-collision of a recorded animation, interval by interval. */
+#include "src/tool/common/command.h"
+#include "src/tool/common/frame_list.h"
+#include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/output_path.h"
+#include "src/tool/common/plan_source.h"
+#include "src/tool/common/summary.h"
+#include "src/tool/common/terminal.h"
+#include "src/tool/replay/replay_options.h"
+#include "src/tool/replay/replay_report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A replay under way. */
+typedef struct replay {
+    const replay_options *options;
+    recording recording;
+    ignore_pairs ignored;
+    plan_choice plan;
+    cscd_detector *detector;
+    double *x0, *x1;
+    uint32_t first, last; /* frames */
+    frame_state start_state, end_state;
+    contact_file *contacts; /* NULL when not asked for */
+    summary_writer *summary;
+    replay_report report;
+    totals totals;
+    frame_list contact_frames, crossing_frames;
+    terminal_progress progress;
+} replay;
+
+static bool api_failed(const replay *r, uint32_t frame, io_error *error) {
+    return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->recording.context));
+}
+
+static bool choose_frames(replay *r, io_error *error) {
+    frame_range frames = r->options->frames;
+    if (!frame_range_close(&frames, r->recording.frame_count, error)) return false;
+    r->first = frames.first;
+    r->last = frames.last;
+    if (r->first >= r->last)
+        return io_fail(error, "an interval needs two frames, and %u to %u leave one; the recording has %u",
+                       r->first, r->last, r->recording.frame_count);
+    return true;
+}
+
+static bool prepare_ignored(replay *r, io_error *error) {
+    r->ignored.mesh = r->recording.mesh;
+    if (r->options->ignore_path != NULL &&
+        !ignore_pairs_read(&r->ignored, &r->recording, r->options->ignore_path, error))
+        return false;
+    if (!r->options->ignore_rest) return true;
+    size_t listed = r->ignored.triangle_count;
+    if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
+    if (!r->options->quiet)
+        printf("%zu triangle pairs that meet in frame 0 are left out\n", r->ignored.triangle_count - listed);
+    return true;
+}
+
+static bool prepare_plan(replay *r, io_error *error) {
+    const replay_options *o = r->options;
+    plan_request request = {o->model_path, o->plan_path, o->method, o->k, o->min_separation};
+    terminal_progress_begin(&r->progress, o->quiet);
+    terminal_progress_say(&r->progress, "preprocessing");
+    bool chosen = plan_choose(&request, &r->recording, &r->plan, error);
+    terminal_progress_end(&r->progress);
+    return chosen;
+}
+
+static bool prepare_detector(replay *r, io_error *error) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = r->plan.method;
+    options.mode = r->options->mode;
+    options.start = r->options->start;
+    options.volume = r->options->volume;
+    options.min_separation = r->options->min_separation;
+    if (r->options->ignore_path != NULL || r->options->ignore_rest) {
+        options.ignore = ignore_pairs_contain;
+        options.ignore_user = &r->ignored;
+    }
+    if (cscd_detector_create(r->recording.mesh, r->plan.plan, &options, &r->detector) != CSCD_OK)
+        return io_fail(error, "%s", cscd_context_detail(r->recording.context));
+    size_t size = (size_t)cscd_mesh_vertex_count(r->recording.mesh) * 3 * sizeof *r->x0;
+    r->x0 = malloc(size);
+    r->x1 = malloc(size);
+    return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
+}
+
+/* Asked before anything takes time, or is truncated. */
+static bool outputs_open(const replay_options *o, io_error *error) {
+    return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error) &&
+           output_path_opens(o->report.path, error);
+}
+
+static bool open_outputs(replay *r, io_error *error) {
+    const replay_options *o = r->options;
+    if (o->contacts_path != NULL &&
+        !contact_file_open(o->contacts_path, o->min_separation > 0.0, &r->contacts, error))
+        return false;
+    return replay_report_open(&r->report, &o->report, o->model_path, &r->recording, r->plan.plan, r->detector,
+                              r->first, r->last, error) &&
+           summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
+}
+
+/* Opens everything that can fail before the work begins. */
+static bool begin(replay *r, io_error *error) {
+    const replay_options *o = r->options;
+    recording_options source = {.model_path = o->model_path,
+                                .frame_paths = o->frame_paths,
+                                .frame_path_count = o->frame_path_count,
+                                .weld = o->weld,
+                                .weld_epsilon = o->weld_epsilon,
+                                .thread_count = o->thread_count,
+                                .simd = o->simd};
+    return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
+           prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
+           prepare_detector(r, error) && open_outputs(r, error);
+}
+
+static bool read_frame(replay *r, uint32_t frame, double *positions, io_error *error) {
+    if (!recording_read(&r->recording, frame, positions, error)) return false;
+    recording_hash_frame(&r->recording);
+    return true;
+}
+
+/* The static check of a frame, unless told not to. */
+static bool check_frame(replay *r, uint32_t frame, const double *positions, frame_state *state,
+                        io_error *error) {
+    *state = FRAME_UNCHECKED;
+    if (!r->options->no_check) {
+        cscd_intersections found;
+        if (cscd_detector_check(r->detector, positions, &found) != CSCD_OK)
+            return api_failed(r, frame, error);
+        *state = found.count > 0 ? FRAME_CROSSING : FRAME_EMBEDDED;
+        r->totals.frames_checked++;
+        r->totals.frames_crossing += found.count > 0;
+        if (found.count > 0 && !frame_list_add(&r->crossing_frames, frame))
+            return io_fail(error, "out of memory");
+        if (frame == r->first && found.zero_area_triangles > 0 && !r->options->quiet)
+            warn("frame %u has %u triangles of zero area (the first is %u)", frame, found.zero_area_triangles,
+                 recording_file_triangle(&r->recording, found.first_zero_area));
+    }
+    return summary_add_frame(r->summary, frame, *state, error);
+}
+
+static interval_state state_of(const replay *r, size_t contact_count) {
+    if (r->start_state == FRAME_CROSSING) return INTERVAL_PENETRATING;
+    if (contact_count > 0) return INTERVAL_CONTACT;
+    return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
+}
+
+/* Loses contacts, for comparison only. */
+static bool is_published(cscd_method method) {
+    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
+}
+
+/* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
+ */
+static void alarm_contradiction(replay *r, const interval_result *result) {
+    bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
+    if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
+    r->totals.contradictions++;
+    if (is_published(r->plan.method)) return; /* as is known of them */
+    warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
+         "lost, "
+         "please report this recording",
+         result->frame);
+}
+
+static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *contacts, io_error *error) {
+    if (r->contacts == NULL) return true;
+    for (size_t i = 0; i < contacts->count; i++) {
+        contact_record record = recording_contact(&r->recording, frame, &contacts->items[i]);
+        if (!contact_file_write(r->contacts, &record, error)) return false;
+    }
+    return contact_file_flush(r->contacts, error);
+}
+
+/* The interval from frame k, whose positions are in x0, to frame k + 1. The frame at its end is checked after
+ * the step, so that the detector knows it when the next interval starts there. */
+static bool run_interval(replay *r, uint32_t k, io_error *error) {
+    cscd_contacts contacts;
+    if (!read_frame(r, k + 1, r->x1, error)) return false;
+    if (cscd_detector_step(r->detector, r->x0, r->x1, &contacts) != CSCD_OK) return api_failed(r, k, error);
+    interval_result result = {.frame = k,
+                              .contact_count = contacts.count,
+                              .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,
+                              .detector = r->detector,
+                              .counters = cscd_detector_counters(r->detector)};
+    replay_report_add(&r->report, r->detector, &contacts, r->x1);
+    if (!write_contacts(r, k, &contacts, error) || !check_frame(r, k + 1, r->x1, &r->end_state, error))
+        return false;
+    result.timings = cscd_detector_timings(r->detector);
+    result.state = state_of(r, result.contact_count);
+    totals_add(&r->totals, &result, r->recording.mesh);
+    alarm_contradiction(r, &result);
+    if (result.contact_count > 0 && !frame_list_add(&r->contact_frames, k))
+        return io_fail(error, "out of memory");
+    return summary_add_interval(r->summary, &result, error);
+}
+
+static bool run_intervals(replay *r, io_error *error) {
+    if (!read_frame(r, r->first, r->x0, error) || !check_frame(r, r->first, r->x0, &r->start_state, error))
+        return false;
+    replay_report_begin(&r->report, r->x0);
+    for (uint32_t k = r->first; k < r->last && !interrupted(); k++) {
+        terminal_progress_update(&r->progress, k - r->first, r->last - r->first, "replay");
+        if (!run_interval(r, k, error)) return false;
+        double *swap = r->x0;
+        r->x0 = r->x1;
+        r->x1 = swap;
+        r->start_state = r->end_state;
+    }
+    return true;
+}
+
+static void print_results(const replay *r) {
+    const totals *t = &r->totals;
+    printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->model_path,
+           cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
+           cscd_mesh_component_count(r->recording.mesh),
+           cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", r->first, r->first + t->intervals);
+    printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->vf,
+           (unsigned long long)t->ee, t->intervals_with_contact, t->intervals);
+    frame_list_print(&r->contact_frames, "; from frame ");
+    if (r->options->min_separation > 0.0)
+        printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
+               r->options->min_separation, (unsigned long long)t->bounded);
+    if (t->frames_checked > 0) {
+        printf("crossing: %u of %u frames", t->frames_crossing, t->frames_checked);
+        frame_list_print(&r->crossing_frames, "; ");
+    }
+    printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
+           t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
+    if (t->intervals_complete < t->intervals)
+        printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
+               is_published(r->plan.method) ? "method" : "mode",
+               is_published(r->plan.method) ? cscd_method_name(r->plan.method) : "earliest",
+               t->intervals - t->intervals_complete, t->intervals,
+               is_published(r->plan.method) ? "" : "later ");
+    if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
+    plan_choice_print(&r->plan);
+    totals_print_table(t, r->plan.method);
+}
+
+/* Of what there is: not even a first frame makes no report. */
+static bool write_report(replay *r, const char *summary, io_error *error) {
+    if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
+    terminal_progress_begin(&r->progress, r->options->quiet);
+    terminal_progress_say(&r->progress, "writing the report");
+    bool written = replay_report_write(&r->report, summary, error);
+    terminal_progress_end(&r->progress);
+    return written;
+}
+
+static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
+    bool written = contact_file_close(r->contacts, error);
+    r->contacts = NULL;
+    if (r->summary == NULL) return written;
+    const replay_options *o = r->options;
+    summary_ending ending = {.totals = &r->totals,
+                             .recording = &r->recording,
+                             .plan = &r->plan,
+                             .mode = cscd_mode_name(o->mode),
+                             .volume = o->volume,
+                             .min_separation = o->min_separation,
+                             .model_path = o->model_path,
+                             .frame_paths = o->frame_paths,
+                             .frame_path_count = o->frame_path_count,
+                             .argument_count = o->argument_count,
+                             .arguments = o->arguments,
+                             .stopped_by = stopped_by};
+    char *text = NULL;
+    written = summary_close(r->summary, &ending, &text, error) && written;
+    r->summary = NULL;
+    written = write_report(r, text, written ? error : NULL) && written;
+    free(text);
+    return written;
+}
+
+static void end(replay *r) {
+    replay_report_close(&r->report);
+    cscd_detector_destroy(r->detector);
+    plan_choice_free(&r->plan);
+    ignore_pairs_free(&r->ignored);
+    if (r->recording.mesh != NULL) recording_close(&r->recording);
+    frame_list_free(&r->contact_frames);
+    frame_list_free(&r->crossing_frames);
+    free(r->x0);
+    free(r->x1);
+}
+
+/* A page that is not of this replay may lie where its report would. */
+static int fail_replay(const replay *r, bool begun, const char *reason) {
+    bool unreported = begun && r->options->report.path != NULL && r->totals.intervals == 0;
+    return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
+}
+
+static int run(const replay_options *options) {
+    replay r = {.options = options};
+    io_error error = {""}, close_error = {""};
+    int code = EXIT_RAN;
+    bool begun = begin(&r, &error), ran = false;
+    if (begun) {
+        if (!options->quiet) recording_warn(&r.recording);
+        interrupt_catch();
+        terminal_progress_begin(&r.progress, options->quiet);
+        ran = run_intervals(&r, &error);
+        terminal_progress_end(&r.progress);
+    }
+    const char *stopped_by = ran ? (interrupted() ? "interrupted" : NULL) : error.text;
+    bool closed = close_outputs(&r, stopped_by, &close_error);
+    if (!options->quiet && r.totals.intervals > 0) print_results(&r);
+    if (!ran) code = fail_replay(&r, begun, error.text);
+    if (!closed) code = fail_input("%s", close_error.text);
+    if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
+    if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)
+        code = EXIT_CONTACT;
+    end(&r);
+    return code;
+}
+
+int command_replay(int argument_count, char **arguments) {
+    replay_options options;
+    int code;
+    if (!replay_options_parse(argument_count, arguments, &options, &code)) return code;
+    return run(&options);
+}

@@ -1,0 +1,24 @@
+/* How triangles faced their regions' detector points, and where these points were, as arrays of a report. */
+#pragma once
+
+#include "src/tool/report/packed_array.h"
+#include "src/tool/report/report.h"
+
+typedef struct orientation_arrays {
+    packed_array *orientations, *points; /* NULL: left out */
+    uint32_t triangle_count, interval_count;
+    uint8_t *last, *row; /* the orientations added last, four triangles a byte, and the next */
+} orientation_arrays;
+
+/* Room is left for the orientations of kept_count intervals and the points of interval_count. What would take
+ * more than REPORT_MARKS_MAX is left out. On false *out holds nothing to free. */
+bool orientation_arrays_create(uint32_t triangle_count, uint32_t kept_count, uint32_t interval_count,
+                               orientation_arrays *out);
+void orientation_arrays_free(orientation_arrays *arrays); /* a zeroed struct is fine */
+
+/* Of the detector's last step: 0 S0, 1 S+, 2 S- in bits 2(t mod 4) of byte t / 4, XORed with the bytes added
+ * before. False: out of memory. */
+bool orientation_arrays_add(orientation_arrays *arrays, const cscd_detector *detector);
+
+/* Of the detector's last step: each region's point at the start and at the end, times scale. */
+bool orientation_arrays_add_points(orientation_arrays *arrays, const cscd_detector *detector, double scale);

@@ -1,0 +1,25 @@
+/* The arrays of a page, by name: those collected, and those that follow from the mesh and the plan. */
+#pragma once
+
+#include "src/tool/report/packed_array.h"
+#include "src/tool/report/report.h"
+
+enum { PAGE_ARRAYS_MAX = 20 };
+
+typedef struct page_array {
+    const char *name, *type; /* u8, u32, f32 or f64 */
+    packed_array *values;
+    bool owned; /* by the list, not by the report */
+} page_array;
+
+typedef struct page_arrays {
+    page_array items[PAGE_ARRAYS_MAX];
+    size_t count;
+} page_arrays;
+
+/* All of them, finished. False: out of memory, and *out is to be freed all the same. */
+bool page_arrays_list(report *r, page_arrays *out);
+void page_arrays_free(page_arrays *arrays);
+
+/* Values of its type. */
+size_t page_array_count(const page_array *array);

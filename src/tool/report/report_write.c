@@ -1,0 +1,221 @@
+/* Writes a report: the template, what the page is told as JSON, and its arrays. */
+#include "src/io/json.h"
+#include "src/tool/report/collected.h"
+#include "src/tool/report/page_arrays.h"
+#include "src/tool/report/replacing_file.h"
+#include "src/tool/report/template.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what the page is told --------------------------------------------------------------------------- */
+
+static void write_frames(json *out, const report *r, bool all) {
+    json_begin_array(out, "frames");
+    for (uint32_t i = 0; i < (all ? report_frame_count(r) : 1); i++)
+        json_integer(out, NULL, report_frame(r, i));
+    json_end_array(out);
+}
+
+static void write_scenery(json *out, const report *r) {
+    const report_scenery *scenery = &r->options.scenery;
+    if (scenery->triangles == NULL) {
+        json_null(out, "scenery");
+        return;
+    }
+    json_begin_object(out, "scenery");
+    json_integer(out, "vertices", scenery->vertex_count);
+    json_integer(out, "triangles", scenery->triangle_count);
+    write_frames(out, r, scenery->moves);
+    json_end_object(out);
+}
+
+static void write_region(json *out, const cscd_region *region, double unit) {
+    json_begin_object(out, NULL);
+    json_integer(out, "component", region->component);
+    json_integer(out, "triangles", region->triangle_count);
+    json_number(out, "area", region->area);
+    json_number(out, "visible_share", region->visible_share);
+    json_begin_array(out, "detector_point");
+    for (int k = 0; k < 3; k++) json_number(out, NULL, region->detector_point[k] / unit);
+    json_end_array(out);
+    json_end_object(out);
+}
+
+static void write_plan(json *out, const report *r) {
+    const cscd_plan *plan = r->options.plan;
+    if (plan == NULL) {
+        json_null(out, "plan");
+        return;
+    }
+    json_begin_object(out, "plan");
+    json_string(out, "method", cscd_method_name(cscd_plan_method(plan)));
+    json_begin_array(out, "regions");
+    for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) {
+        cscd_region region = cscd_plan_region(plan, i);
+        write_region(out, &region, r->unit);
+    }
+    json_end_array(out);
+    json_begin_array(out, "capacitances");
+    if (cscd_plan_method(plan) == CSCD_METHOD_CHARGE)
+        for (uint32_t c = 0; c < cscd_mesh_component_count(r->options.mesh); c++)
+            json_number(out, NULL, cscd_plan_capacitance(plan, c));
+    json_end_array(out);
+    json_end_object(out);
+}
+
+static void write_contacts(json *out, const report *r) {
+    if (r->contacts.heat == NULL) {
+        json_null(out, "contacts");
+        return;
+    }
+    json_begin_object(out, "contacts");
+    json_integer(out, "found", r->contacts.found);
+    json_integer(out, "kept", r->contacts.kept);
+    json_integer(out, "interval_limit", REPORT_INTERVAL_CONTACTS_MAX);
+    json_integer(out, "limit", REPORT_CONTACTS_MAX);
+    json_end_object(out);
+}
+
+static void write_arrays(json *out, const page_arrays *arrays) {
+    json_begin_array(out, "arrays");
+    for (size_t i = 0; i < arrays->count; i++) {
+        json_begin_object(out, NULL);
+        json_string(out, "name", arrays->items[i].name);
+        json_string(out, "type", arrays->items[i].type);
+        json_integer(out, "count", page_array_count(&arrays->items[i]));
+        json_end_object(out);
+    }
+    json_end_array(out);
+}
+
+static void write_scene(json *out, const report *r, const page_arrays *arrays) {
+    const cscd_mesh *mesh = r->options.mesh;
+    if (mesh == NULL) {
+        json_null(out, "scene");
+        return;
+    }
+    json_begin_object(out, "scene");
+    json_integer(out, "vertices", cscd_mesh_vertex_count(mesh));
+    json_integer(out, "triangles", cscd_mesh_triangle_count(mesh));
+    json_integer(out, "components", cscd_mesh_component_count(mesh));
+    json_number(out, "unit", r->unit);
+    json_string(out, "up", r->options.up_axis == 1 ? "y" : "z");
+    json_integer(out, "first", r->options.first);
+    json_integer(out, "last", r->last);
+    write_frames(out, r, true);
+    json_number(out, "max_error", r->frames.max_error);
+    json_number(out, "relative_error", r->frames.relative_error);
+    write_scenery(out, r);
+    write_plan(out, r);
+    write_contacts(out, r);
+    write_arrays(out, arrays);
+    json_end_object(out);
+}
+
+/* What comes with the arrays: summaries and a preprocess are JSON already. */
+typedef struct attached {
+    const report_summary *summaries;
+    size_t summary_count;
+    const char *preprocess;
+} attached;
+
+static void write_summaries(json *out, const attached *with) {
+    json_begin_array(out, "summaries");
+    for (size_t i = 0; i < with->summary_count; i++) {
+        json_begin_object(out, NULL);
+        json_string(out, "name", with->summaries[i].name);
+        json_verbatim(out, "summary", with->summaries[i].text);
+        json_end_object(out);
+    }
+    json_end_array(out);
+}
+
+static void write_json(FILE *file, const report *r, const page_arrays *arrays, const attached *with) {
+    static const char *const kinds[] = {"replay", "preprocess", "compare"};
+    json out = {.file = file};
+    json_begin_object(&out, NULL);
+    json_integer(&out, "format", 1);
+    json_string(&out, "kind", kinds[r->options.kind]);
+    json_string(&out, "title", r->options.title);
+    json_string(&out, "generator", r->options.generator);
+    write_scene(&out, r, arrays);
+    write_summaries(&out, with);
+    if (with->preprocess != NULL)
+        json_verbatim(&out, "preprocess", with->preprocess);
+    else
+        json_null(&out, "preprocess");
+    json_end_object(&out);
+}
+
+/* The text, to be freed; NULL: out of memory. */
+static char *make_json(const report *r, const page_arrays *arrays, const attached *with) {
+    char *text = NULL;
+    size_t size;
+    FILE *memory = open_memstream(&text, &size);
+    if (memory == NULL) return NULL;
+    write_json(memory, r, arrays, with);
+    bool whole = !ferror(memory);
+    whole = fclose(memory) == 0 && whole;
+    if (whole) return text;
+    free(text);
+    return NULL;
+}
+
+/* ---- the file ---------------------------------------------------------------------------------------- */
+
+static bool put(FILE *file, const char *text, size_t size) {
+    return fwrite(text, 1, size, file) == size;
+}
+
+/* `<` could end the element around the JSON, in which it occurs in strings only. */
+static bool put_json(FILE *file, const char *text) {
+    while (*text != '\0') {
+        size_t size = strcspn(text, "<");
+        if (!put(file, text, size) || (text[size] == '<' && fputs("\\u003c", file) == EOF)) return false;
+        text += size + (text[size] == '<');
+    }
+    return true;
+}
+
+static bool put_array(FILE *file, const page_array *array) {
+    return fprintf(file, "<script type=\"application/octet-stream\" id=\"cscd-array-%s\">", array->name) >
+               0 &&
+           packed_array_write(array->values, file) && fputs("</script>\n", file) != EOF;
+}
+
+static bool put_page(FILE *file, const report_template *page, const char *text, const page_arrays *arrays) {
+    bool written = put(file, page->head, page->head_size) &&
+                   fputs("<script type=\"application/json\" id=\"cscd-report\">", file) != EOF &&
+                   put_json(file, text) && fputs("</script>\n", file) != EOF;
+    for (size_t i = 0; i < arrays->count && written; i++) written = put_array(file, &arrays->items[i]);
+    return written && put(file, page->tail, page->tail_size) && fflush(file) == 0;
+}
+
+static bool write_file(const char *path, const report_template *page, const char *text,
+                       const page_arrays *arrays, io_error *error) {
+    replacing_file out;
+    bool written = replacing_file_open(path, &out);
+    if (written) {
+        written = put_page(out.file, page, text, arrays);
+        written = replacing_file_close(&out, written) && written;
+    }
+    return written || io_fail(error, "%s: cannot write: %s", path, strerror(errno));
+}
+
+bool report_write(report *r, const char *path, const report_summary *summaries, size_t summary_count,
+                  const char *preprocess, io_error *error) {
+    report_template page;
+    if (!report_template_load(&page, error)) return false;
+    page_arrays arrays = {.count = 0};
+    const attached with = {summaries, summary_count, preprocess};
+    char *text = NULL;
+    bool made = (r->options.mesh == NULL || report_keep_last(r)) && page_arrays_list(r, &arrays) &&
+                (text = make_json(r, &arrays, &with)) != NULL;
+    bool written = made ? write_file(path, &page, text, &arrays, error)
+                        : io_fail(error, "%s: out of memory for the report", path);
+    free(text);
+    page_arrays_free(&arrays);
+    return written;
+}

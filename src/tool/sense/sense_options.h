@@ -1,0 +1,24 @@
+/* The options of `cscd sense`. */
+#pragma once
+
+#include "src/tool/common/frame_range.h"
+#include "src/tool/common/recording.h"
+#include "src/tool/picture/scene.h"
+
+typedef struct sense_options {
+    recording_options source;
+    frame_range frames;
+    cscd_partition_options partition;
+    cscd_sensor_options sensors;
+    const char *plan_path; /* NULL: as for replay */
+    bool no_plan;
+    bool compare, quiet;
+    const char *json_path, *csv_path, *picture_path; /* NULL: not given */
+    uint32_t frame;                                  /* of the picture; UINT32_MAX: the last */
+    picture_options picture;
+    int argument_count; /* the command line, for the provenance */
+    char **arguments;
+} sense_options;
+
+/* False: *code is the exit code to end with (0 after --help). */
+bool sense_options_parse(int argument_count, char **arguments, sense_options *out, int *code);

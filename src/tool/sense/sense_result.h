@@ -1,0 +1,71 @@
+/* What `cscd sense` found, interval by interval and in all; as a table and as files. */
+#pragma once
+
+#include "src/io/json.h"
+#include "src/tool/common/plan_source.h"
+#include "src/tool/sense/sense_options.h"
+
+#include <stdio.h>
+
+/* Pairs of objects: with warnings, with confirmed ones, in contact by the detector, and what they share. */
+typedef struct pair_counts {
+    uint32_t warned, confirmed, touching, found, confirmed_found;
+} pair_counts;
+
+typedef struct sense_interval {
+    uint32_t frame;
+    const cscd_warnings *warnings;
+    uint32_t confirmed; /* warnings whose exact check has found a contact */
+    uint32_t renewed;   /* parts whose cells were made anew after it */
+    pair_counts pairs;
+    cscd_sensor_timings timings;
+    cscd_sensor_counters counters;
+    double trees_ms; /* of the detector; 0 without --compare */
+} sense_interval;
+
+typedef struct sense_totals {
+    uint32_t intervals, intervals_warned, intervals_touching, renewals;
+    uint64_t warnings, confirmed;
+    uint64_t warned_pairs, confirmed_pairs, touching_pairs, found_pairs, confirmed_found_pairs;
+    uint64_t rounds, cycles, vertices, particle_pairs, tests;
+    double sense_ms, sense_max_ms, trees_ms, trees_max_ms;
+    double walk_ms, verdict_ms, exact_ms, renewal_ms;
+} sense_totals;
+
+void sense_totals_add(sense_totals *t, const sense_interval *interval);
+
+/* Found of those in contact, and found of those warned of; 1 where there is none. */
+double sense_recall(const sense_totals *t);
+double sense_precision(const sense_totals *t);
+/* The share of the pairs in contact that have a confirmed warning. */
+double sense_confirmed_recall(const sense_totals *t);
+
+void sense_print_head(bool compare);
+void sense_print_row(const sense_interval *interval, bool compare);
+
+/* What the run was of, for people and for files. */
+typedef struct sense_subject {
+    const sense_options *options;
+    const recording *recording;
+    const plan_choice *plan;
+    const cscd_partition *partition;
+    const cscd_sensors *sensors;
+} sense_subject;
+
+void sense_print_totals(const sense_subject *subject, const sense_totals *t);
+
+/* The warnings as CSV and the intervals as JSON, whatever of both is wanted. */
+typedef struct sense_files {
+    FILE *csv;
+    json out; /* file NULL: not wanted */
+} sense_files;
+
+bool sense_files_open(const sense_options *options, sense_files *out, io_error *error);
+bool sense_files_add(sense_files *files, const sense_subject *subject, const sense_interval *interval,
+                     io_error *error);
+/* stopped_by: why not every interval is there; NULL when all are. */
+bool sense_files_close(sense_files *files, const sense_subject *subject, const sense_totals *t,
+                       const char *stopped_by, io_error *error);
+
+const char *sense_method_name(cscd_sensor_method method);
+const char *sense_renewal_name(cscd_renewal renewal);

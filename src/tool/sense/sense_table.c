@@ -1,0 +1,110 @@
+/* Sums over the intervals of `cscd sense`, and the table of them. */
+#include "src/tool/sense/sense_result.h"
+
+#include <math.h>
+#include <stdio.h>
+
+void sense_totals_add(sense_totals *t, const sense_interval *i) {
+    t->intervals++;
+    t->intervals_warned += i->warnings->count > 0;
+    t->intervals_touching += i->pairs.touching > 0;
+    t->renewals += i->renewed;
+    t->warnings += i->warnings->count;
+    t->confirmed += i->confirmed;
+    t->warned_pairs += i->pairs.warned;
+    t->confirmed_pairs += i->pairs.confirmed;
+    t->touching_pairs += i->pairs.touching;
+    t->found_pairs += i->pairs.found;
+    t->confirmed_found_pairs += i->pairs.confirmed_found;
+    t->rounds += i->counters.rounds;
+    t->cycles += i->counters.cycles;
+    t->vertices += i->counters.vertices;
+    t->particle_pairs += i->counters.particle_pairs;
+    t->tests += i->counters.tests;
+    t->walk_ms += i->timings.walk_ms;
+    t->verdict_ms += i->timings.verdict_ms;
+    t->exact_ms += i->timings.exact_ms;
+    t->renewal_ms += i->timings.renewal_ms;
+    t->sense_ms += i->timings.total_ms;
+    t->trees_ms += i->trees_ms;
+    t->sense_max_ms = fmax(t->sense_max_ms, i->timings.total_ms);
+    t->trees_max_ms = fmax(t->trees_max_ms, i->trees_ms);
+}
+
+static double share(uint64_t part, uint64_t whole) {
+    return whole > 0 ? (double)part / (double)whole : 1.0;
+}
+
+double sense_recall(const sense_totals *t) {
+    return share(t->found_pairs, t->touching_pairs);
+}
+
+double sense_precision(const sense_totals *t) {
+    return share(t->found_pairs, t->warned_pairs);
+}
+
+double sense_confirmed_recall(const sense_totals *t) {
+    return share(t->confirmed_found_pairs, t->touching_pairs);
+}
+
+const char *sense_method_name(cscd_sensor_method method) {
+    return method == CSCD_SENSORS_RANDOM ? "random" : "cells";
+}
+
+const char *sense_renewal_name(cscd_renewal renewal) {
+    static const char *const names[] = {"none", "area", "edge", "concave"};
+    return names[renewal];
+}
+
+void sense_print_head(bool compare) {
+    printf("%7s %9s %9s %7s %7s %9s %8s %8s %10s", "frame", "warnings", "confirmed", "renewed", "rounds",
+           "vertices", "tests", "pairs", "sense ms");
+    if (compare) printf(" %8s %6s %7s %6s %10s", "touching", "found", "missed", "false", "trees ms");
+    putchar('\n');
+}
+
+void sense_print_row(const sense_interval *i, bool compare) {
+    const pair_counts *p = &i->pairs;
+    printf("%7u %9zu %9u %7u %7llu %9llu %8llu %8u %10.3f", i->frame, i->warnings->count, i->confirmed,
+           i->renewed, (unsigned long long)i->counters.rounds, (unsigned long long)i->counters.vertices,
+           (unsigned long long)i->counters.tests, p->warned, i->timings.total_ms);
+    if (compare)
+        printf(" %8u %6u %7u %6u %10.3f", p->touching, p->found, p->touching - p->found, p->warned - p->found,
+               i->trees_ms);
+    putchar('\n');
+}
+
+static void print_comparison(const sense_totals *t) {
+    printf("pairs of objects in contact: %llu in %u intervals; found %llu, missed %llu, false %llu\n",
+           (unsigned long long)t->touching_pairs, t->intervals_touching, (unsigned long long)t->found_pairs,
+           (unsigned long long)(t->touching_pairs - t->found_pairs),
+           (unsigned long long)(t->warned_pairs - t->found_pairs));
+    printf("recall %.4f, precision %.4f; confirmed: recall %.4f\n", sense_recall(t), sense_precision(t),
+           sense_confirmed_recall(t));
+    printf("trees: %.3f ms mean, %.3f ms most; sensors take %.2f of that\n",
+           t->intervals > 0 ? t->trees_ms / t->intervals : 0.0, t->trees_max_ms,
+           t->trees_ms > 0.0 ? t->sense_ms / t->trees_ms : 0.0);
+}
+
+void sense_print_totals(const sense_subject *subject, const sense_totals *t) {
+    const cscd_mesh *mesh = subject->recording->mesh;
+    double count = t->intervals > 0 ? t->intervals : 1.0;
+    printf("\n%s: %u triangles, %u objects, %u parts, %u cells; method %s, %u particles\n",
+           subject->options->source.model_path, cscd_mesh_triangle_count(mesh),
+           cscd_partition_object_count(subject->partition), cscd_partition_part_count(subject->partition),
+           cscd_partition_cell_count(subject->partition), sense_method_name(subject->options->sensors.method),
+           cscd_sensors_particle_count(subject->sensors));
+    plan_choice_print(subject->plan);
+    printf("warnings: %llu in %u of %u intervals", (unsigned long long)t->warnings, t->intervals_warned,
+           t->intervals);
+    if (subject->options->sensors.exact)
+        printf("; confirmed %llu; tests %llu", (unsigned long long)t->confirmed,
+               (unsigned long long)t->tests);
+    printf("\nwalks: %llu rounds, %llu cycles, %llu vertices, %llu pairs within R_eff; cells renewed: %u\n",
+           (unsigned long long)t->rounds, (unsigned long long)t->cycles, (unsigned long long)t->vertices,
+           (unsigned long long)t->particle_pairs, t->renewals);
+    printf("sensors: %.3f ms mean, %.3f ms most (walk %.3f, verdict %.3f, exact %.3f, renewal %.3f)\n",
+           t->sense_ms / count, t->sense_max_ms, t->walk_ms / count, t->verdict_ms / count,
+           t->exact_ms / count, t->renewal_ms / count);
+    if (subject->options->compare) print_comparison(t);
+}

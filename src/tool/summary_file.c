@@ -1,0 +1,267 @@
+/* Reads back what `cscd replay --json` wrote. */
+#include "src/tool/summary_file.h"
+
+#include "src/tool/common/summary.h"
+
+#include <errno.h>
+#include <json-c/json.h>
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A member that must be there, and what it must be: n: number, i: whole number, N: number or null, s: string,
+ * a: array, o: object, b: true or false. */
+typedef struct member {
+    const char *name;
+    char kind;
+} member;
+
+static const member of_interval[] = {{"frame", 'i'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
+                                     {"pcp", 'n'},   {"tests", 'n'},     {"plus", 'n'}, {"minus", 'n'},
+                                     {"state", 's'}, {"guarantee", 'a'}, {"ms", 'o'},   {NULL, 0}};
+static const member of_times[] = {{"update", 'n'},    {"orientation", 'n'}, {"contour", 'n'},
+                                  {"traversal", 'n'}, {"contact", 'n'},     {"proof", 'n'},
+                                  {"check", 'n'},     {"total", 'n'},       {NULL, 0}};
+static const member of_guarantee[] = {{"component", 'n'}, {"mode", 's'}, {"reason", 's'}, {NULL, 0}};
+static const member of_frame[] = {{"frame", 'n'}, {NULL, 0}};
+static const member of_summary[] = {{"complete", 'b'},
+                                    {"method", 's'},
+                                    {"mode", 's'},
+                                    {"volume", 's'},
+                                    {"simd", 's'},
+                                    {"min_separation", 'n'},
+                                    {"plan", 'o'},
+                                    {"vertices", 'n'},
+                                    {"triangles", 'n'},
+                                    {"components", 'n'},
+                                    {"intervals", 'n'},
+                                    {"intervals_complete", 'n'},
+                                    {"intervals_with_contact", 'n'},
+                                    {"frames_checked", 'n'},
+                                    {"frames_crossing", 'n'},
+                                    {"contradictions", 'n'},
+                                    {"vf", 'n'},
+                                    {"ee", 'n'},
+                                    {NULL, 0}};
+static const member of_plan[] = {
+    {"source", 's'}, {"method", 's'}, {"regions", 'n'}, {"made_ms", 'n'}, {NULL, 0}};
+static const member of_incomplete[] = {{"stopped_by", 's'}, {NULL, 0}};
+static const member of_column[] = {{"mean", 'n'}, {"max", 'n'}, {NULL, 0}};
+static const member of_provenance[] = {
+    {"version", 's'}, {"commit", 's'},  {"compiler", 's'},  {"flags", 's'},  {"date", 's'},
+    {"machine", 'o'}, {"threads", 'n'}, {"arguments", 'a'}, {"inputs", 'a'}, {NULL, 0}};
+static const member of_machine[] = {{"system", 's'},    {"release", 's'},    {"architecture", 's'},
+                                    {"processor", 's'}, {"processors", 'n'}, {NULL, 0}};
+static const member of_input[] = {{"name", 's'}, {"fnv1a64", 's'}, {NULL, 0}};
+static const char *const columns[] = {"update_ms",  "orientation_ms", "contour_ms", "traversal_ms",
+                                      "contact_ms", "proof_ms",       "check_ms",   "total_ms",
+                                      "pcp",        "tests"};
+
+static bool is_of_kind(json_object *value, char kind) {
+    enum json_type type = json_object_get_type(value);
+    switch (kind) {
+    case 'n':
+        return type == json_type_int || type == json_type_double;
+    case 'i':
+        return type == json_type_int;
+    case 's':
+        return type == json_type_string;
+    case 'a':
+        return type == json_type_array;
+    case 'o':
+        return type == json_type_object;
+    case 'b':
+        return type == json_type_boolean;
+    default:
+        return type == json_type_int || type == json_type_double || type == json_type_null;
+    }
+}
+
+/* NULL: not there, or null. */
+static json_object *get(json_object *object, const char *name) {
+    return json_object_is_type(object, json_type_object) ? json_object_object_get(object, name) : NULL;
+}
+
+/* where: the object, in words. */
+static bool has_members(json_object *object, const member *members, const char *where, io_error *error) {
+    for (const member *m = members; m->name != NULL; m++) {
+        json_object *value = NULL;
+        if (!json_object_is_type(object, json_type_object) ||
+            !json_object_object_get_ex(object, m->name, &value))
+            return io_fail(error, "%s has no member '%s'", where, m->name);
+        if (!is_of_kind(value, m->kind))
+            return io_fail(error, "%s: '%s' is not what cscd writes there", where, m->name);
+    }
+    return true;
+}
+
+static bool elements_have(json_object *array, const member *members, const char *where, io_error *error) {
+    for (size_t i = 0; i < json_object_array_length(array); i++)
+        if (!has_members(json_object_array_get_idx(array, i), members, where, error)) return false;
+    return true;
+}
+
+static bool is_state(const char *name) {
+    for (interval_state state = INTERVAL_CLEAN; state <= INTERVAL_UNKNOWN; state++)
+        if (strcmp(name, interval_state_name(state)) == 0) return true;
+    return false;
+}
+
+static bool check_interval(json_object *interval, size_t index, io_error *error) {
+    char where[48];
+    snprintf(where, sizeof where, "interval %zu of the file", index);
+    if (!has_members(interval, of_interval, where, error)) return false;
+    if (!is_state(json_object_get_string(get(interval, "state"))))
+        return io_fail(error, "%s: 'state' is not what cscd writes there", where);
+    return has_members(get(interval, "ms"), of_times, where, error) &&
+           elements_have(get(interval, "guarantee"), of_guarantee, where, error);
+}
+
+/* One after the other: the page has a place for each frame between the first and the last. */
+static bool check_intervals(json_object *intervals, io_error *error) {
+    int64_t first = 0;
+    for (size_t i = 0; i < json_object_array_length(intervals); i++) {
+        json_object *interval = json_object_array_get_idx(intervals, i);
+        if (!check_interval(interval, i, error)) return false;
+        int64_t frame = json_object_get_int64(get(interval, "frame"));
+        if (i == 0) first = frame;
+        if (frame < 0 || frame >= UINT32_MAX || frame - first != (int64_t)i)
+            return io_fail(error, "interval %zu of the file: 'frame' is not what cscd writes there", i);
+    }
+    return true;
+}
+
+static bool check_columns(json_object *summary, io_error *error) {
+    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
+        char where[48];
+        snprintf(where, sizeof where, "'%s' of the summary", columns[i]);
+        if (!has_members(get(summary, columns[i]), of_column, where, error)) return false;
+    }
+    return true;
+}
+
+static bool strings_only(json_object *array, const char *where, io_error *error) {
+    for (size_t i = 0; i < json_object_array_length(array); i++)
+        if (!json_object_is_type(json_object_array_get_idx(array, i), json_type_string))
+            return io_fail(error, "%s are not what cscd writes there", where);
+    return true;
+}
+
+static bool check_summary(json_object *root, io_error *error) {
+    static const member parts[] = {
+        {"intervals", 'a'}, {"frames", 'a'}, {"summary", 'o'}, {"provenance", 'o'}, {NULL, 0}};
+    if (!has_members(root, parts, "the file", error)) return false;
+    json_object *summary = get(root, "summary"), *provenance = get(root, "provenance");
+    return check_intervals(get(root, "intervals"), error) &&
+           elements_have(get(root, "frames"), of_frame, "a frame", error) &&
+           has_members(summary, of_summary, "the summary", error) && check_columns(summary, error) &&
+           has_members(get(summary, "plan"), of_plan, "the plan", error) &&
+           (json_object_get_boolean(get(summary, "complete")) ||
+            has_members(summary, of_incomplete, "the summary", error)) &&
+           has_members(provenance, of_provenance, "the provenance", error) &&
+           has_members(get(provenance, "machine"), of_machine, "the machine", error) &&
+           elements_have(get(provenance, "inputs"), of_input, "an input", error) &&
+           strings_only(get(provenance, "arguments"), "the arguments", error);
+}
+
+/* The whole file and a 0, *size without it; NULL with the reason. */
+static char *read_text(const char *path, size_t *size, io_error *error) {
+    FILE *file = fopen(path, "rb");
+    char *text = NULL, buffer[65536];
+    size_t length = 0;
+    FILE *memory = open_memstream(&text, &length);
+    bool whole = file != NULL && memory != NULL;
+    if (file == NULL)
+        io_fail(error, "%s: cannot open: %s", path, strerror(errno));
+    else if (memory == NULL)
+        io_fail(error, "%s: out of memory", path);
+    for (size_t count; whole && (count = fread(buffer, 1, sizeof buffer, file)) > 0;)
+        whole = fwrite(buffer, 1, count, memory) == count || io_fail(error, "%s: out of memory", path);
+    if (whole && ferror(file)) whole = io_fail(error, "%s: cannot read: %s", path, strerror(errno));
+    if (file != NULL) fclose(file);
+    if (memory != NULL && fclose(memory) != 0 && whole) whole = io_fail(error, "%s: out of memory", path);
+    *size = length;
+    if (whole) return text;
+    free(text);
+    return NULL;
+}
+
+static int line_of(const char *text, size_t place) {
+    int line = 1;
+    for (size_t i = 0; i < place; i++) line += text[i] == '\n';
+    return line;
+}
+
+/* NULL with the reason. */
+static json_object *parse(const char *path, const char *text, size_t size, io_error *error) {
+    static const char expected[] = "expected what cscd replay --json wrote, to its end";
+    struct json_tokener *tokener = size <= INT_MAX ? json_tokener_new() : NULL;
+    if (tokener == NULL) {
+        io_fail(error, "%s: %s", path, size <= INT_MAX ? "out of memory" : "more than 2 GB");
+        return NULL;
+    }
+    json_tokener_set_flags(tokener, JSON_TOKENER_STRICT | JSON_TOKENER_VALIDATE_UTF8);
+    json_object *root = json_tokener_parse_ex(tokener, text, (int)size);
+    size_t end = json_tokener_get_parse_end(tokener);
+    if (root == NULL) {
+        enum json_tokener_error reason = json_tokener_get_error(tokener);
+        io_fail(error, "%s:%d: %s; %s", path, line_of(text, end < size ? end : size),
+                reason == json_tokener_continue ? "the file ends too early" : json_tokener_error_desc(reason),
+                expected);
+    }
+    json_tokener_free(tokener);
+    return root;
+}
+
+/* Numbers as JSON has them: json-c also reads "1." and NaN, and would write them so. */
+static bool numbers_are_plain(json_object *value) {
+    switch (json_object_get_type(value)) {
+    case json_type_double:
+        json_object_set_serializer(value, NULL, NULL, NULL);
+        return isfinite(json_object_get_double(value));
+    case json_type_array:
+        for (size_t i = 0; i < json_object_array_length(value); i++)
+            if (!numbers_are_plain(json_object_array_get_idx(value, i))) return false;
+        return true;
+    case json_type_object: {
+        json_object_object_foreach(value, name, inner) {
+            (void)name;
+            if (!numbers_are_plain(inner)) return false;
+        }
+        return true;
+    }
+    default:
+        return true;
+    }
+}
+
+/* The text anew, as strict as a browser wants it; NULL with the reason. */
+static char *checked_text(const char *path, json_object *root, io_error *error) {
+    static const char expected[] = "expected what cscd replay --json wrote";
+    io_error reason;
+    char *copy = NULL;
+    if (!check_summary(root, &reason)) {
+        io_fail(error, "%s: %s; %s", path, reason.text, expected);
+    } else if (!numbers_are_plain(root)) {
+        io_fail(error, "%s: a number is not finite; %s", path, expected);
+    } else {
+        const char *plain =
+            json_object_to_json_string_ext(root, JSON_C_TO_STRING_PLAIN | JSON_C_TO_STRING_NOSLASHESCAPE);
+        copy = plain != NULL ? strdup(plain) : NULL;
+        if (copy == NULL) io_fail(error, "%s: out of memory", path);
+    }
+    return copy;
+}
+
+char *summary_file_read(const char *path, io_error *error) {
+    size_t size = 0;
+    char *text = read_text(path, &size, error), *checked = NULL;
+    json_object *root = text != NULL ? parse(path, text, size, error) : NULL;
+    if (root != NULL) checked = checked_text(path, root, error);
+    json_object_put(root);
+    free(text);
+    return checked;
+}

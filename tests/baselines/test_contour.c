@@ -1,0 +1,280 @@
+/* The contour test: simple is simple at every sampled moment, by a reference in long double, and plain
+ * motions of plain polygons pass at any place and scale. */
+#include "runtime/baselines/iccd/contour.h"
+#include "tests/support/random_stream.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { POLYGONS = 2000 };
+#else
+enum { POLYGONS = 12000 };
+#endif
+
+enum { CORNERS_MAX = 40, MOMENTS = 128 };
+
+#define PI 3.14159265358979323846
+
+typedef struct polygon {
+    uint32_t count;
+    double x0[CORNERS_MAX * 3], x1[CORNERS_MAX * 3];
+    double frame[3][3]; /* right, up, and the axis of projection */
+    float axis[3];
+} polygon;
+
+/* Any direction; the axis itself is of single precision. */
+static void choose_axis(polygon *p, random_stream *random) {
+    double length = 0.0, a[3];
+    for (int k = 0; k < 3; k++) {
+        a[k] = stream_between(random, -1.0, 1.0);
+        length += a[k] * a[k];
+    }
+    for (int k = 0; k < 3; k++) p->frame[2][k] = p->axis[k] = (float)(a[k] / sqrt(length));
+    double *r = p->frame[0], *u = p->frame[1], *n = p->frame[2];
+    r[0] = fabs(n[0]) > 0.5 ? -n[1] : 0.0;
+    r[1] = fabs(n[0]) > 0.5 ? n[0] : -n[2];
+    r[2] = fabs(n[0]) > 0.5 ? 0.0 : n[1];
+    length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+    for (int k = 0; k < 3; k++) r[k] /= length;
+    for (int k = 0; k < 3; k++) u[k] = n[(k + 1) % 3] * r[(k + 2) % 3] - n[(k + 2) % 3] * r[(k + 1) % 3];
+}
+
+/* One corner at one end, from plane coordinates and a height along the axis. */
+static void place(const polygon *p, double *x, uint32_t corner, double right, double up, double height) {
+    for (int k = 0; k < 3; k++)
+        x[corner * 3 + (uint32_t)k] = right * p->frame[0][k] + up * p->frame[1][k] + height * p->frame[2][k];
+}
+
+static bool stays_simple(const polygon *p, uint32_t skipped, bool published) {
+    uint32_t edges[CORNERS_MAX][2], numbers[CORNERS_MAX];
+    static contour_edge scratch[CORNERS_MAX];
+    for (uint32_t i = 0; i < p->count; i++) {
+        uint32_t next = (i + 1) % p->count;
+        edges[i][0] = i < next ? i : next;
+        edges[i][1] = i < next ? next : i;
+        numbers[i] = i;
+    }
+    const cscd_mesh mesh = {.vertex_count = p->count, .edge_count = p->count, .edges = edges};
+    const contour_query query = {&mesh, numbers, p->count, p->x0, p->x1, p->axis, skipped, published};
+    return contour_stays_simple(&query, scratch);
+}
+
+/* ---- the reference --------------------------------------------------------------------------------- */
+
+typedef struct point {
+    long double right, up;
+} point;
+
+static void points_at(const polygon *p, long double t, point out[CORNERS_MAX]) {
+    for (uint32_t i = 0; i < p->count; i++) {
+        out[i] = (point){0.0L, 0.0L};
+        for (uint32_t k = 0; k < 3; k++) {
+            long double x = (1.0L - t) * (long double)p->x0[i * 3 + k] + t * (long double)p->x1[i * 3 + k];
+            out[i].right += (x - (long double)p->x0[k]) * (long double)p->frame[0][k];
+            out[i].up += (x - (long double)p->x0[k]) * (long double)p->frame[1][k];
+        }
+    }
+}
+
+static long double side(point a, point b, point c) {
+    return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
+}
+
+static long double along(point a, point b, point c) {
+    return (b.right - a.right) * (c.right - a.right) + (b.up - a.up) * (c.up - a.up);
+}
+
+static bool lies_on(point c, point a, point b) {
+    return side(a, b, c) == 0.0L && along(c, a, b) <= 0.0L;
+}
+
+static bool segments_meet(point a, point b, point c, point d) {
+    if (lies_on(a, c, d) || lies_on(b, c, d) || lies_on(c, a, b) || lies_on(d, a, b)) return true;
+    return side(a, b, c) * side(a, b, d) < 0.0L && side(c, d, a) * side(c, d, b) < 0.0L;
+}
+
+static bool is_simple(const point *p, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
+        point a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
+        if (side(b, a, c) == 0.0L && along(b, a, c) >= 0.0L) return false;
+        for (uint32_t j = i + 2; j < n; j++) {
+            if ((j + 1) % n != i && segments_meet(a, b, p[j], p[(j + 1) % n])) return false;
+        }
+    }
+    return true;
+}
+
+static bool sampled_simple(const polygon *p) {
+    point points[CORNERS_MAX];
+    for (int i = 0; i <= MOMENTS; i++) {
+        points_at(p, (long double)i / MOMENTS, points);
+        if (!is_simple(points, p->count)) return false;
+    }
+    return true;
+}
+
+/* ---- random motions -------------------------------------------------------------------------------- */
+
+typedef enum motion { MOTION_SMALL, MOTION_TURN, MOTION_MORPH, MOTION_ANY, MOTION_GRID, MOTION_COUNT } motion;
+
+static double reach(random_stream *random) {
+    return 1.0 + stream_between(random, -0.6, 0.6);
+}
+
+static double height(random_stream *random) {
+    return stream_between(random, -2.0, 2.0);
+}
+
+static polygon random_polygon(random_stream *random, motion kind) {
+    polygon p = {.count = 4 + stream_below(random, 13)};
+    choose_axis(&p, random);
+    double turn = kind == MOTION_TURN ? stream_between(random, -PI, PI) : 0.0;
+    double change = stream_between(random, 0.0, 0.5);
+    for (uint32_t i = 0; i < p.count; i++) {
+        double angle = 2.0 * PI * i / p.count, r = reach(random);
+        double x = r * cos(angle), y = r * sin(angle), x1 = cos(turn) * x - sin(turn) * y,
+               y1 = sin(turn) * x + cos(turn) * y;
+        if (kind == MOTION_SMALL) {
+            x1 += change * stream_between(random, -1.0, 1.0);
+            y1 += change * stream_between(random, -1.0, 1.0);
+        } else if (kind == MOTION_MORPH) {
+            r = reach(random);
+            angle += 2.0 * change * stream_between(random, -1.0, 1.0);
+            x1 = r * cos(angle);
+            y1 = r * sin(angle);
+        } else if (kind == MOTION_ANY) {
+            x = stream_between(random, -1.0, 1.0);
+            y = stream_between(random, -1.0, 1.0);
+            x1 = x + change * stream_between(random, -1.0, 1.0);
+            y1 = y + change * stream_between(random, -1.0, 1.0);
+        }
+        place(&p, p.x0, i, x, y, height(random));
+        place(&p, p.x1, i, x1, y1, height(random));
+    }
+    return p;
+}
+
+/* Small integers, along z: corners on edges, folds and equal corners are common, and exact. */
+static polygon grid_polygon(random_stream *random) {
+    polygon p = {.count = 4 + stream_below(random, 4),
+                 .frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
+                 .axis = {0.0f, 0.0f, 1.0f}};
+    for (uint32_t i = 0; i < p.count; i++) {
+        uint32_t x = stream_below(random, 5), y = stream_below(random, 5);
+        bool moves = stream_below(random, 3) == 0;
+        place(&p, p.x0, i, x, y, 0.0);
+        place(&p, p.x1, i, moves ? stream_below(random, 5) : x, moves ? stream_below(random, 5) : y, 0.0);
+    }
+    return p;
+}
+
+static void simple_is_simple_throughout(void **state) {
+    static const char *const names[MOTION_COUNT] = {"small", "turn", "morph", "any", "grid"};
+    (void)state;
+    for (int kind = 0; kind < MOTION_COUNT; kind++) {
+        uint32_t simple = 0, said = 0;
+        random_stream random = stream_start((uint64_t)kind);
+        for (int i = 0; i < POLYGONS / MOTION_COUNT; i++) {
+            polygon p = kind == MOTION_GRID ? grid_polygon(&random) : random_polygon(&random, (motion)kind);
+            bool says = stays_simple(&p, 0, false), is = sampled_simple(&p);
+            if (says && !is) fail_msg("%s %d: said to stay simple, and is not", names[kind], i);
+            simple += is;
+            said += says;
+        }
+        print_message("  %-6s %4u of %d stay simple at the sampled moments, %4u are said to\n", names[kind],
+                      simple, POLYGONS / MOTION_COUNT, said);
+        assert_true(said > 0 && (kind == MOTION_TURN || simple < POLYGONS / MOTION_COUNT));
+        if (kind != MOTION_GRID) assert_true(100 * said >= 90 * simple);
+    }
+}
+
+/* ---- not needlessly pessimistic -------------------------------------------------------------------- */
+
+/* Convex or with long rays, turned by a little and moved far; scaled and moved together. */
+static void plain_motions_pass(void **state) {
+    static const double scales[] = {1.0, 0x1p-240, 0x1p240, 1e-6, 1e6};
+    random_stream random = stream_start(77);
+    (void)state;
+    for (int i = 0; i < 1000; i++) {
+        polygon p = {.count = 4 + stream_below(&random, CORNERS_MAX - 4)};
+        choose_axis(&p, &random);
+        bool star = i % 2 == 0;
+        double turn = stream_between(&random, -0.5, 0.5), scale = scales[i % 5];
+        double far = i % 3 == 0 ? 1e6 : 0.0, move[3], start[3];
+        for (int k = 0; k < 3; k++) move[k] = stream_between(&random, -100.0, 100.0);
+        for (int k = 0; k < 3; k++) start[k] = far * stream_between(&random, -1.0, 1.0);
+        for (uint32_t j = 0; j < p.count; j++) {
+            double angle = 2.0 * PI * j / p.count, r = star && j % 2 == 0 ? 2.0 : 1.0, z = height(&random);
+            place(&p, p.x0, j, r * cos(angle), r * sin(angle), z);
+            place(&p, p.x1, j, r * cos(angle + turn), r * sin(angle + turn), z);
+            for (uint32_t k = 0; k < 3; k++) {
+                p.x0[j * 3 + k] = scale * (p.x0[j * 3 + k] + start[k]);
+                p.x1[j * 3 + k] = scale * (p.x1[j * 3 + k] + start[k] + move[k]);
+            }
+        }
+        if (!stays_simple(&p, 0, false))
+            fail_msg("%d: %u corners, scale %g, turned by %g", i, p.count, scale, turn);
+    }
+}
+
+/* ---- what each condition is for -------------------------------------------------------------------- */
+
+static polygon still(const double (*corners)[2], uint32_t count) {
+    polygon p = {.count = count,
+                 .frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
+                 .axis = {0.0f, 0.0f, 1.0f}};
+    for (uint32_t i = 0; i < count; i++) place(&p, p.x0, i, corners[i][0], corners[i][1], 0.0);
+    memcpy(p.x1, p.x0, sizeof p.x1);
+    return p;
+}
+
+static void degenerate_contours_fail(void **state) {
+    static const double crossed[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
+    static const double square[4][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    static const double folded[4][2] = {{0, 0}, {2, 0}, {1, 0}, {0, 2}};
+    static const double equal[4][2] = {{0, 0}, {2, 0}, {2, 0}, {0, 2}};
+    static const double touching[5][2] = {{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}};
+    static const double one_point[4][2] = {{1, 1}, {1, 1}, {1, 1}, {1, 1}};
+    (void)state;
+    polygon p = still(square, 4);
+    assert_true(stays_simple(&p, 0, false));
+    p = still(crossed, 4); /* from the start, and as published it is taken not to be */
+    assert_false(stays_simple(&p, 0, false));
+    assert_true(stays_simple(&p, 0, true));
+    p = still(folded, 4);
+    assert_false(stays_simple(&p, 0, false));
+    p = still(equal, 4);
+    assert_false(stays_simple(&p, 0, false));
+    p = still(touching, 5);
+    assert_false(stays_simple(&p, 0, false));
+    assert_false(stays_simple(&p, 0, true));
+    assert_true(stays_simple(&p, 5, true)); /* all of it inherited, as published */
+    p = still(one_point, 4);
+    assert_false(stays_simple(&p, 0, false));
+    p = still(square, 4); /* at the very end, and a little less */
+    place(&p, p.x1, 2, 1.0, 0.0, 0.0);
+    assert_false(stays_simple(&p, 0, false));
+    place(&p, p.x1, 2, 0.0, 0.0, 0.0);
+    assert_false(stays_simple(&p, 0, false));
+    place(&p, p.x1, 2, 1.0, 1e-9, 0.0);
+    assert_true(stays_simple(&p, 0, false));
+    p = still(square, 4); /* in between, all at once */
+    for (uint32_t i = 0; i < 4; i++) place(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
+    assert_false(stays_simple(&p, 0, false));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(simple_is_simple_throughout),
+        cmocka_unit_test(plain_motions_pass),
+        cmocka_unit_test(degenerate_contours_fail),
+    };
+    return cmocka_run_group_tests_name("contour", tests, NULL, NULL);
+}

@@ -1,0 +1,233 @@
+/* Normal cones hold every normal of moving triangles, by a reference in long double; as published they do
+ * not. */
+#include "runtime/baselines/iccd/normal_cone.h"
+#include "tests/support/random_stream.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { TRIANGLES = 40000, MOMENTS = 17 };
+
+static const uint32_t corners[3] = {0, 1, 2};
+
+typedef struct moving_triangle {
+    double x0[9], x1[9];
+} moving_triangle;
+
+static normal_cone cone_of(const moving_triangle *m) {
+    return normal_cone_of(corners, m->x0, m->x1);
+}
+
+/* Up to a factor. */
+static void normal_at(const moving_triangle *m, long double t, long double out[3]) {
+    long double e[2][3];
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 3; k++)
+            e[i][k] = (1.0L - t) * ((long double)m->x0[3 * i + 3 + k] - (long double)m->x0[k]) +
+                      t * ((long double)m->x1[3 * i + 3 + k] - (long double)m->x1[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
+}
+
+static long double angle_between(const float axis[3], const long double n[3]) {
+    long double cross[3], across = 0.0L, along = 0.0L;
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        cross[k] = (long double)axis[i] * n[j] - (long double)axis[j] * n[i];
+        across += cross[k] * cross[k];
+        along += (long double)axis[k] * n[k];
+    }
+    return atan2l(sqrtl(across), along);
+}
+
+/* By how much the normal that is farthest from the axis at some sampled moment leaves the cone; below 0: none
+ * does. */
+static long double excess(const normal_cone *cone, const moving_triangle *m) {
+    long double most = -10.0L;
+    for (int i = 0; i < MOMENTS; i++) {
+        long double n[3];
+        normal_at(m, (long double)i / (MOMENTS - 1), n);
+        long double beyond = angle_between(cone->axis, n) - (long double)cone->angle;
+        if (!(beyond <= most)) most = beyond; /* also where it is not a number */
+    }
+    return most;
+}
+
+/* At times a sliver, at times far from the origin; change: of a coordinate, of about 1. */
+static moving_triangle random_triangle(random_stream *random, double change) {
+    moving_triangle m;
+    double at = stream_below(random, 4) == 0 ? stream_between(random, -1e5, 1e5) : 0.0;
+    for (int i = 0; i < 9; i++) m.x0[i] = stream_between(random, -1.0, 1.0);
+    if (stream_below(random, 4) == 0) {
+        double thin = exp(stream_between(random, log(1e-13), 0.0));
+        change *= thin;
+        for (int k = 0; k < 3; k++) m.x0[6 + k] = 0.7 * m.x0[k] + 0.3 * m.x0[3 + k] + thin * m.x0[6 + k];
+    }
+    for (int i = 0; i < 9; i++) {
+        m.x0[i] += at;
+        m.x1[i] = m.x0[i] + change * stream_between(random, -1.0, 1.0);
+    }
+    return m;
+}
+
+static double random_change(random_stream *random) {
+    return exp(stream_between(random, log(1e-6), log(2.0)));
+}
+
+static void cones_hold_all_normals(void **state) {
+    uint32_t exist = 0, wide = 0;
+    long double most = -10.0L;
+    random_stream random = stream_start(1);
+    (void)state;
+    for (int i = 0; i < TRIANGLES; i++) {
+        moving_triangle m = random_triangle(&random, random_change(&random));
+        normal_cone cone = cone_of(&m);
+        assert_true(normal_cone_exists(&cone) == (cone.angle < INFINITY));
+        if (!normal_cone_exists(&cone)) continue;
+        exist++;
+        wide += cone.angle > 1.0f;
+        most = fmaxl(most, excess(&cone, &m));
+    }
+    print_message("  %u cones of %d, %u wide; the nearest normal is %.1Le inside\n", exist, TRIANGLES, wide,
+                  -most);
+    assert_true(2 * exist > TRIANGLES && wide > 200);
+    assert_true(most < 0.0L);
+}
+
+static void published_cones_lose_normals(void **state) {
+    uint32_t lost = 0, exist = 0;
+    random_stream random = stream_start(2);
+    (void)state;
+    for (int i = 0; i < TRIANGLES; i++) {
+        moving_triangle m = random_triangle(&random, random_change(&random));
+        normal_cone cone = normal_cone_of_ends(corners, m.x0, m.x1);
+        if (!(cone.angle < INFINITY)) continue;
+        exist++;
+        lost += excess(&cone, &m) > 1e-3L;
+    }
+    print_message("  as published: %u of %u cones do not hold all normals\n", lost, exist);
+    assert_true(lost > 200);
+}
+
+/* Of eight triangles in a tree, as the nodes of the hierarchy make them. */
+static void unions_hold_all_normals(void **state) {
+    uint32_t exist = 0;
+    long double most = -10.0L;
+    random_stream random = stream_start(3);
+    (void)state;
+    for (int i = 0; i < TRIANGLES / 8; i++) {
+        moving_triangle first = random_triangle(&random, 0.2), all[8];
+        normal_cone cones[8];
+        double change = exp(stream_between(&random, log(1e-4), log(0.5)));
+        for (int j = 0; j < 8; j++) {
+            all[j] = first;
+            for (int k = 0; k < 9; k++) {
+                all[j].x0[k] += change * stream_between(&random, -1.0, 1.0);
+                all[j].x1[k] += change * stream_between(&random, -1.0, 1.0);
+            }
+            cones[j] = cone_of(&all[j]);
+        }
+        for (int step = 1; step < 8; step *= 2) {
+            for (int j = 0; j < 8; j += 2 * step)
+                cones[j] = normal_cone_union(&cones[j], &cones[j + step], normal_cone_limit);
+        }
+        if (!normal_cone_exists(&cones[0])) continue;
+        exist++;
+        for (int j = 0; j < 8; j++) most = fmaxl(most, excess(&cones[0], &all[j]));
+    }
+    print_message("  %u unions of %d; the nearest normal is %.1Le inside\n", exist, TRIANGLES / 8, -most);
+    assert_true(4 * exist > TRIANGLES / 8 && most < 0.0L);
+}
+
+/* A triangle at rest whose normal is at an angle to z, in a direction. */
+static moving_triangle tilted(double angle, double direction) {
+    double c = cos(direction), d = sin(direction), e = cos(angle), f = sin(angle);
+    moving_triangle m = {{0, 0, 0, c * e, d * e, -f, -d, c, 0}, {0}};
+    memcpy(m.x1, m.x0, sizeof m.x1);
+    return m;
+}
+
+/* Half the angle between two normals, up to a right angle and beyond: the bound on an angle from its chord.
+ */
+static void opposite_normals_have_no_cone(void **state) {
+    const double right = 1.57079632679489662;
+    random_stream random = stream_start(4);
+    uint32_t exist = 0;
+    (void)state;
+    for (int i = 0; i < TRIANGLES; i++) {
+        double angle = right + stream_between(&random, i % 2 == 0 ? -1e-3 : -0.5, 5e-4);
+        double direction = stream_between(&random, 0.0, 6.3);
+        moving_triangle m[2] = {tilted(angle, direction), tilted(-angle, direction)};
+        normal_cone a = cone_of(&m[0]), b = cone_of(&m[1]);
+        normal_cone both = normal_cone_union(&a, &b, normal_cone_limit);
+        assert_true(angle > 1.569 || normal_cone_exists(&both));
+        if (!normal_cone_exists(&both)) continue;
+        exist++;
+        assert_true(angle < (double)normal_cone_limit);
+        for (int j = 0; j < 2; j++) assert_true(excess(&both, &m[j]) < 0.0L);
+    }
+    assert_true(2 * exist > TRIANGLES);
+}
+
+static void scales_change_no_cone(void **state) {
+    random_stream random = stream_start(5);
+    uint32_t same = 0;
+    (void)state;
+    for (int i = 0; i < 50; i++) {
+        moving_triangle m = random_triangle(&random, 0.1);
+        normal_cone cone = cone_of(&m);
+        if (!normal_cone_exists(&cone)) continue;
+        for (int power = -330; power <= 300; power++) {
+            moving_triangle scaled;
+            for (int k = 0; k < 9; k++) {
+                scaled.x0[k] = ldexp(m.x0[k], power);
+                scaled.x1[k] = ldexp(m.x1[k], power);
+            }
+            normal_cone other = cone_of(&scaled);
+            bool exists = normal_cone_exists(&other);
+            assert_true(exists || power < -200 || power > 200);
+            assert_true(!exists || (power > -260 && power < 260));
+            if (!exists) continue;
+            assert_memory_equal(&other, &cone, sizeof cone);
+            same++;
+        }
+    }
+    assert_true(same > 400);
+}
+
+static void without_area_there_is_no_cone(void **state) {
+    (void)state;
+    const double flat[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line[9] = {0, 0, 0, 1, 1, 1, 3, 3, 3};
+    const double point[9] = {5, 5, 5, 5, 5, 5, 5, 5, 5}, turned[9] = {0, 0, 0, -1, 0, 0, 0, -1, 0};
+    const double over[9] = {0, 0, 0, 0, 1, 0, 1, 0, 0}, steep[9] = {0, 0, 0, 0, 0, 1, 0, 1, 0};
+    const double *ends[][2] = {{line, line},  {flat, line},   {line, flat}, {flat, point},
+                               {point, flat}, {flat, turned}, {flat, over}};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+        normal_cone cone = normal_cone_of(corners, ends[i][0], ends[i][1]);
+        assert_false(normal_cone_exists(&cone));
+        normal_cone up = normal_cone_of(corners, flat, flat);
+        assert_true(normal_cone_exists(&up) && up.angle < 1e-5f);
+        cone = normal_cone_union(&cone, &up, normal_cone_limit);
+        assert_false(normal_cone_exists(&cone));
+        cone = normal_cone_union(&up, &cone, normal_cone_limit);
+        assert_false(normal_cone_exists(&cone));
+    }
+    normal_cone quarter = normal_cone_of(corners, flat, steep);
+    assert_true(normal_cone_exists(&quarter) && quarter.angle > 0.785398f && quarter.angle < 0.792f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cones_hold_all_normals),  cmocka_unit_test(published_cones_lose_normals),
+        cmocka_unit_test(unions_hold_all_normals), cmocka_unit_test(opposite_normals_have_no_cone),
+        cmocka_unit_test(scales_change_no_cone),   cmocka_unit_test(without_area_there_is_no_cone),
+    };
+    return cmocka_run_group_tests_name("normal_cone", tests, NULL, NULL);
+}

@@ -1,0 +1,328 @@
+/* Patches of all nodes of trees: contours, what the parent has of them, and which are disks, by a reference
+ * that counts and walks. */
+#include "runtime/baselines/iccd/patch.h"
+#include "tests/support/mesh_shapes.h"
+#include "tests/support/models/body_of.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { SCENES_PER_FAMILY = 3, BODY_TRIANGLES = 600 };
+#else
+enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };
+#endif
+
+static scene s; /* large; one test at a time */
+
+/* A mesh, its tree of one region, and the patches of this. */
+typedef struct subject {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    uint32_t *regions;
+    double *weights;
+    forest forest;
+    patches patches;
+} subject;
+
+static subject subject_create(cscd_mesh_desc desc, const double *positions) {
+    subject f = {0};
+    assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
+    f.regions = calloc(desc.triangle_count, sizeof *f.regions);
+    f.weights = calloc(desc.triangle_count, sizeof *f.weights);
+    assert_true(f.regions != NULL && f.weights != NULL);
+    forest_regions regions = {f.regions, f.weights, 1};
+    assert_int_equal(forest_build(f.mesh, regions, positions, BOX_AXES, &f.forest), CSCD_OK);
+    assert_int_equal(patches_create(f.mesh, &f.forest, &f.patches), CSCD_OK);
+    return f;
+}
+
+static void subject_destroy(subject *f) {
+    patches_free(f->context, &f->patches);
+    forest_free(&f->forest);
+    free(f->weights);
+    free(f->regions);
+    cscd_mesh_destroy(f->mesh);
+    cscd_context_destroy(f->context);
+}
+
+/* ---- the reference --------------------------------------------------------------------------------- */
+
+/* A patch by itself: its triangles, how many of these hold each edge, a union-find over its vertices. */
+typedef struct reference {
+    const cscd_mesh *mesh;
+    uint32_t *triangles, triangle_count;
+    uint32_t *edge_counts, *roots, *vertex_seen;
+} reference;
+
+static uint32_t root_of(uint32_t *roots, uint32_t v) {
+    while (roots[v] != v) v = roots[v] = roots[roots[v]];
+    return v;
+}
+
+static void collect(const patch_tree *tree, uint32_t node, reference *r) {
+    const patch_node *n = &tree->nodes[node];
+    if (patch_is_leaf(n)) {
+        r->triangles[r->triangle_count++] = n->triangle;
+        return;
+    }
+    collect(tree, node + 1, r);
+    collect(tree, n->right, r);
+}
+
+/* Vertices, edges and faces, V - E + F. */
+static int64_t characteristic(reference *r) {
+    int64_t sum = r->triangle_count;
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            uint32_t v = r->mesh->triangles[r->triangles[i]][k];
+            sum += r->vertex_seen[v]++ == 0;
+            sum -= r->edge_counts[r->mesh->triangle_edges[r->triangles[i]][k]]++ == 0;
+        }
+    }
+    return sum;
+}
+
+static bool is_connected(reference *r) {
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        const uint32_t *t = r->mesh->triangles[r->triangles[i]];
+        for (int k = 0; k < 3; k++) r->roots[t[k]] = t[k];
+    }
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        const uint32_t *t = r->mesh->triangles[r->triangles[i]];
+        for (int k = 0; k < 2; k++) r->roots[root_of(r->roots, t[k + 1])] = root_of(r->roots, t[k]);
+    }
+    uint32_t first = root_of(r->roots, r->mesh->triangles[r->triangles[0]][0]);
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        if (root_of(r->roots, r->mesh->triangles[r->triangles[i]][0]) != first) return false;
+    }
+    return true;
+}
+
+/* Walks along edges of one triangle, each at most once; true when one closed walk that meets no vertex twice
+ * uses them all. */
+static bool is_one_loop(const cscd_mesh *mesh, const uint32_t *edges, uint32_t count) {
+    bool *used = calloc(count + 1, sizeof *used);
+    assert_non_null(used);
+    uint32_t walked = 1, at = mesh->edges[edges[0]][1], start = mesh->edges[edges[0]][0];
+    used[0] = true;
+    while (at != start) {
+        uint32_t next = UINT32_MAX, ways = 0;
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t *v = mesh->edges[edges[i]];
+            if (used[i] || (v[0] != at && v[1] != at)) continue;
+            ways++;
+            next = i;
+        }
+        if (ways != 1) break;
+        used[next] = true;
+        walked++;
+        at = mesh->edges[edges[next]][0] + mesh->edges[edges[next]][1] - at;
+    }
+    free(used);
+    return at == start && walked == count;
+}
+
+static bool is_clean(const cscd_mesh *mesh, uint32_t triangle) {
+    cscd_component c = cscd_mesh_component(mesh, cscd_mesh_triangle_component(mesh, triangle));
+    return c.non_manifold_edges == 0 && c.non_manifold_vertices == 0 && c.inconsistent_edges == 0;
+}
+
+/* ---- comparisons ----------------------------------------------------------------------------------- */
+
+static bool contains(const uint32_t *list, size_t count, uint32_t value) {
+    for (size_t i = 0; i < count; i++) {
+        if (list[i] == value) return true;
+    }
+    return false;
+}
+
+/* The edges of an odd number of triangles, what the parent has too in front. */
+static void check_contour(const patches *p, const reference *r, uint32_t node, uint32_t parent) {
+    const uint32_t *own = p->contour_edges + p->contour_offsets[node], *above = NULL;
+    size_t size = p->contour_offsets[node + 1] - p->contour_offsets[node], above_size = 0;
+    if (parent != UINT32_MAX) {
+        above = p->contour_edges + p->contour_offsets[parent];
+        above_size = p->contour_offsets[parent + 1] - p->contour_offsets[parent];
+    }
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            uint32_t edge = r->mesh->triangle_edges[r->triangles[i]][k];
+            assert_true(contains(own, size, edge) == (r->edge_counts[edge] % 2 == 1));
+        }
+    }
+    for (size_t i = 0; i < size; i++) {
+        assert_true(r->edge_counts[own[i]] > 0 && !contains(own, i, own[i]));
+        assert_true(contains(above, above_size, own[i]) == (i < p->inherited[node]));
+    }
+}
+
+typedef struct tally {
+    uint32_t nodes, disks;
+} tally;
+
+static void check_node(const subject *f, reference *r, uint32_t node, uint32_t parent, tally *sum) {
+    const patches *p = &f->patches;
+    size_t begin = p->contour_offsets[node], size = p->contour_offsets[node + 1] - begin;
+    r->triangle_count = 0;
+    collect(&f->patches.tree, node, r);
+    int64_t euler = characteristic(r);
+    check_contour(p, r, node, parent);
+    bool disk = euler == 1 && size > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
+                is_one_loop(f->mesh, p->contour_edges + begin, (uint32_t)size);
+    assert_true(p->disks[node] == disk);
+    for (uint32_t i = 0; i < r->triangle_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            r->vertex_seen[f->mesh->triangles[r->triangles[i]][k]] = 0;
+            r->edge_counts[f->mesh->triangle_edges[r->triangles[i]][k]] = 0;
+        }
+    }
+    sum->nodes++;
+    sum->disks += disk;
+}
+
+static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
+    tally sum = {0};
+    subject f = subject_create(desc, positions);
+    reference r = {.mesh = f.mesh};
+    uint32_t *parents = calloc(f.patches.tree.node_count, sizeof *parents);
+    r.triangles = calloc(desc.triangle_count, sizeof *r.triangles);
+    r.edge_counts = calloc(f.mesh->edge_count, sizeof *r.edge_counts);
+    r.roots = calloc(desc.vertex_count, sizeof *r.roots);
+    r.vertex_seen = calloc(desc.vertex_count, sizeof *r.vertex_seen);
+    assert_true(parents != NULL && r.triangles != NULL && r.edge_counts != NULL && r.roots != NULL &&
+                r.vertex_seen != NULL);
+    parents[0] = UINT32_MAX;
+    for (uint32_t i = 0; i < f.patches.tree.node_count; i++) {
+        if (!patch_is_leaf(&f.patches.tree.nodes[i]))
+            parents[i + 1] = parents[f.patches.tree.nodes[i].right] = i;
+        check_node(&f, &r, i, parents[i], &sum);
+    }
+    free(parents);
+    free(r.triangles);
+    free(r.edge_counts);
+    free(r.roots);
+    free(r.vertex_seen);
+    subject_destroy(&f);
+    return sum;
+}
+
+static void disks_of_scenes(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        tally sum = {0};
+        for (uint32_t seed = 0; seed < SCENES_PER_FAMILY; seed++) {
+            scene_make((scene_family)family, seed + 800, &s);
+            tally own = check_mesh((cscd_mesh_desc){s.vertex_count, s.triangle_count, s.triangles}, s.x0);
+            sum.nodes += own.nodes;
+            sum.disks += own.disks;
+        }
+        print_message("  %-14s %6u nodes, %6u disks\n", scene_family_name((scene_family)family), sum.nodes,
+                      sum.disks);
+        if (family < SCENE_BOW_TIE) assert_true(sum.disks > sum.nodes / 2);
+    }
+}
+
+static void disks_of_bodies(void **state) {
+    static const body_kind kinds[] = {BODY_PAWN, BODY_TORUS, BODY_GENUS2, BODY_COIL, BODY_CHAIN, BODY_CUBE};
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        body b = body_of(kinds[i], body_nearest_count(kinds[i], BODY_TRIANGLES));
+        tally sum = check_mesh((cscd_mesh_desc){b.vertex_count, b.triangle_count, b.triangles}, b.positions);
+        print_message("  %-14s %6u nodes, %6u disks\n", body_kind_name(kinds[i]), sum.nodes, sum.disks);
+        assert_true(sum.disks > sum.nodes / 2 && sum.disks < sum.nodes);
+        body_free(&b);
+    }
+}
+
+/* Random positions: each tree cuts the mesh in patches of any shape, holes, corners that meet, loose parts.
+ */
+static void check_shape(const shape *given, uint32_t seed) {
+    double positions[3 * 400];
+    assert_true(given->vertex_count <= 400);
+    for (uint32_t i = 0; i < given->vertex_count * 3; i++)
+        positions[i] = (double)((i + 1 + seed * 977) * 2654435761u >> 8) * 0x1p-24;
+    check_mesh((cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
+}
+
+static void patches_of_any_shape(void **state) {
+    (void)state;
+    for (uint32_t seed = 0; seed < 10; seed++) {
+        for (int kind = 0; kind < 4; kind++) {
+            shape grid = {0};
+            shape_add_grid(&grid, 5, 6, kind % 2 == 1, kind / 2 == 1);
+            check_shape(&grid, seed);
+        }
+        shape strip = {0}, pair = {0};
+        shape_add_moebius_strip(&strip, 9);
+        check_shape(&strip, seed);
+        shape_add_tetrahedron(&pair, 0, 1, 2, 3);
+        shape_add_tetrahedron(&pair, 3, 4, 5, 6);
+        shape_add_quad(&pair, 7, 8, 9, 10);
+        check_shape(&pair, seed);
+        shape fans = {0}; /* three triangles at an edge */
+        for (uint32_t i = 2; i < 5; i++) shape_add_triangle(&fans, 0, 1, i);
+        check_shape(&fans, seed);
+    }
+}
+
+/* ---- whole meshes: the root -------------------------------------------------------------------------- */
+
+static bool root_is_disk(const shape *given) {
+    double positions[3 * 400] = {0};
+    subject f = subject_create(
+        (cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
+    bool disk = f.patches.disks[0];
+    subject_destroy(&f);
+    return disk;
+}
+
+static void roots_that_are_disks_and_not(void **state) {
+    (void)state;
+    shape sheet = {0}, ring = {0}, torus = {0}, strip = {0}, bow_tie = {0}, cube = {0}, beside = {0};
+    shape_add_grid(&sheet, 4, 5, false, false);
+    assert_true(root_is_disk(&sheet));
+    shape_add_grid(&ring, 4, 5, false, true);
+    assert_false(root_is_disk(&ring));
+    shape_add_grid(&torus, 4, 5, true, true);
+    assert_false(root_is_disk(&torus));
+    torus.triangle_count--; /* one loop, but V - E + F = -1 */
+    assert_false(root_is_disk(&torus));
+    shape_add_moebius_strip(&strip, 8);
+    assert_false(root_is_disk(&strip));
+    shape_add_quad(&bow_tie, 0, 1, 2, 3);
+    shape_add_quad(&bow_tie, 0, 4, 5, 6);
+    assert_false(root_is_disk(&bow_tie));
+    shape_add_cube(&cube);
+    assert_false(root_is_disk(&cube));
+    cube.triangle_count--;
+    assert_true(root_is_disk(&cube));
+    /* One loop and V - E + F = 1, of a torus without a triangle and a closed cube beside it. */
+    shape_add_grid(&beside, 4, 5, true, true);
+    beside.triangle_count--;
+    uint32_t first = beside.triangle_count;
+    shape_add_cube(&beside);
+    for (uint32_t t = first; t < beside.triangle_count; t++) {
+        for (int k = 0; k < 3; k++) beside.triangles[t][k] += 20;
+    }
+    beside.vertex_count = 28;
+    assert_false(root_is_disk(&beside));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(disks_of_scenes),
+        cmocka_unit_test(disks_of_bodies),
+        cmocka_unit_test(patches_of_any_shape),
+        cmocka_unit_test(roots_that_are_disks_and_not),
+    };
+    return cmocka_run_group_tests_name("patches", tests, NULL, NULL);
+}

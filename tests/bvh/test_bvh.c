@@ -1,0 +1,316 @@
+/* The forest: where triangles and corners lie in it, and that bounds hold what is below them. */
+#include "runtime/bvh/bvh.h"
+#include "tests/support/bvh/bvh_rig.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene shape, moved; /* large; one test at a time */
+
+static const uint32_t region_counts[] = {1, 0, 7, 100};
+static const int axis_counts[] = {BOX_AXES, KDOP_AXES};
+enum { REGION_CHOICES = sizeof region_counts / sizeof *region_counts };
+
+/* Of each child of a level: its block, and its lane there. */
+typedef struct child_place {
+    uint32_t block, lane;
+} child_place;
+
+static child_place places[FOREST_LEVEL_MAX][SCENE_TRIANGLES_MAX];
+
+static uint32_t child_count(const forest *f, int level) {
+    if (level == 0) return f->leaf_count;
+    return level == f->part_level ? f->part_count : f->levels[level - 1].block_count;
+}
+
+/* Each child has one place. */
+static void find_places(const forest *f) {
+    for (int level = 0; level < f->level_count; level++) {
+        const forest_level *l = &f->levels[level];
+        memset(places[level], 0xff, sizeof places[level]);
+        for (uint32_t b = 0; b < l->block_count; b++) {
+            for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+                uint32_t child = l->first_children[b] + lane;
+                if ((l->flags[b].used >> lane & 1) == 0) continue;
+                assert_true(child < child_count(f, level));
+                assert_int_equal(places[level][child].block, UINT32_MAX);
+                places[level][child] = (child_place){b, lane};
+            }
+        }
+        for (uint32_t c = 0; c < child_count(f, level); c++)
+            assert_int_not_equal(places[level][c].block, UINT32_MAX);
+    }
+    assert_int_equal(f->levels[f->level_count - 1].block_count, 1);
+    assert_int_equal(f->levels[f->part_level - 1].block_count, f->part_count);
+}
+
+/* ---- what lies where ----------------------------------------------------------------------------------- */
+
+static void check_leaf(const forest_rig *r, uint32_t index, const forest_part *p, uint32_t *seen) {
+    const forest *f = &r->forest;
+    const forest_leaf *l = &f->leaves[index];
+    assert_ptr_equal(&f->parts[f->leaf_parts[index]], p);
+    for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+        uint32_t t = l->triangles[lane], from = t != UINT32_MAX ? t : l->triangles[0];
+        assert_int_equal(f->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
+        for (int i = 0; i < 3; i++) {
+            uint32_t record = l->corners[i][lane];
+            assert_true(record - p->first_record < p->record_count);
+            assert_int_equal(f->record_vertices[record], r->mesh->triangles[from][i]);
+        }
+        if (t == UINT32_MAX) continue;
+        assert_int_equal(r->regions[t], p->region);
+        assert_int_equal(f->slots[t], index * FOREST_LANES + lane);
+        assert_int_equal(forest_triangle(f, f->slots[t]), t);
+        seen[t]++;
+    }
+}
+
+static void check_layout(const forest_rig *r) {
+    static uint32_t seen[SCENE_TRIANGLES_MAX];
+    const forest *f = &r->forest;
+    uint32_t leaf = 0, record = 0;
+    memset(seen, 0, sizeof seen);
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        assert_int_equal(p->first_leaf, leaf);
+        assert_int_equal(p->first_record, record);
+        assert_int_equal(p->record_count % FOREST_LANES, 0);
+        for (; leaf < p->first_leaf + p->leaf_count; leaf++) {
+            check_leaf(r, leaf, p, seen);
+            assert_int_equal(f->block_parts[places[0][leaf].block], i);
+        }
+        record += p->record_count;
+    }
+    assert_int_equal(leaf, f->leaf_count);
+    assert_int_equal(record, f->record_count);
+    for (uint32_t t = 0; t < r->mesh->triangle_count; t++) assert_int_equal(seen[t], 1);
+}
+
+static void every_triangle_has_one_slot(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 11, &shape);
+        for (int i = 0; i < REGION_CHOICES; i++) {
+            forest_rig r;
+            assert_true(
+                forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, region_counts[i]}, &r));
+            find_places(&r.forest);
+            check_layout(&r);
+            forest_rig_destroy(&r);
+        }
+    }
+}
+
+/* ---- bounds -------------------------------------------------------------------------------------------- */
+
+static const float *bounds_of(const forest *f, int level, child_place at, int axis) {
+    size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
+    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * FOREST_LANES + at.lane;
+}
+
+/* Part level and above have no bounds where there is nothing to tell apart. */
+static int bounded_levels(const forest *f) {
+    return f->part_count > 1 ? f->level_count : f->part_level;
+}
+
+/* All bounds above a triangle hold one of its corners, and what lies within half the distance of it. */
+static void check_held(const forest *f, uint32_t leaf, motion m, uint32_t vertex, double distance) {
+    const forest_part *p = &f->parts[f->leaf_parts[leaf]];
+    for (int moment = 0; moment < 3; moment++) {
+        long double own[3], common[3];
+        in_frame(f, p, m, vertex, moment, own);
+        in_frame(f, NULL, m, vertex, moment, common);
+        uint32_t child = leaf;
+        for (int level = 0; level < bounded_levels(f); level++) {
+            child_place at = places[level][child];
+            for (int axis = 0; axis < f->axis_count; axis++) {
+                long double wide = (axis < BOX_AXES ? 0.5L : 0.5L * sqrtl(3.0L)) * distance * f->scale;
+                long double value = along_direction(level < f->part_level ? own : common, axis);
+                const float *low = bounds_of(f, level, at, axis);
+                assert_true((long double)low[0] <= value - wide);
+                assert_true((long double)low[FOREST_LANES] >= value + wide);
+            }
+            child = at.block;
+        }
+    }
+}
+
+/* Bounds of a leaf are no wider than documented. */
+static void check_leaf_tight(const forest *f, uint32_t leaf, motion m) {
+    const forest_part *p = &f->parts[f->leaf_parts[leaf]];
+    for (int axis = 0; axis < f->axis_count; axis++) {
+        long double least = INFINITY, greatest = -INFINITY;
+        for (int i = 0; i < 6 * FOREST_LANES; i++) {
+            long double own[3];
+            uint32_t record = f->leaves[leaf].corners[i % 3][i / 6];
+            in_frame(f, p, m, f->record_vertices[record], i % 6 < 3 ? 0 : 2, own);
+            least = fminl(least, along_direction(own, axis));
+            greatest = fmaxl(greatest, along_direction(own, axis));
+        }
+        const float *low = bounds_of(f, 0, places[0][leaf], axis);
+        long double slack = 2.0L * p->slack[axis < BOX_AXES ? 0 : 1];
+        assert_true((long double)low[0] >= least - slack);
+        assert_true((long double)low[FOREST_LANES] <= greatest + slack);
+    }
+}
+
+/* Above leaves, bounds are the union of those below. */
+static void check_union(const forest *f, int level, uint32_t child) {
+    const lane_flags flags = f->levels[level - 1].flags[child];
+    for (int axis = 0; axis < f->axis_count; axis++) {
+        float least = INFINITY, greatest = -INFINITY;
+        for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+            const float *low = bounds_of(f, level - 1, (child_place){child, lane}, axis);
+            bool used = (flags.used >> lane & 1) != 0;
+            if (!used) assert_true(low[0] > low[FOREST_LANES]);
+            least = used ? fminf(least, low[0]) : least;
+            greatest = used ? fmaxf(greatest, low[FOREST_LANES]) : greatest;
+        }
+        if (level == f->part_level) continue;
+        const float *low = bounds_of(f, level, places[level][child], axis);
+        assert_true(low[0] == least && low[FOREST_LANES] == greatest);
+    }
+}
+
+static void check_bounds(const forest *f, motion m, double distance) {
+    for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
+        for (int i = 0; i < 3 * FOREST_LANES; i++) {
+            uint32_t record = f->leaves[leaf].corners[i % 3][i / 3];
+            check_held(f, leaf, m, f->record_vertices[record], distance);
+        }
+        check_leaf_tight(f, leaf, m);
+    }
+    for (int level = 1; level < bounded_levels(f); level++) {
+        for (uint32_t child = 0; child < child_count(f, level); child++) check_union(f, level, child);
+    }
+}
+
+static void scale_scene(const scene *from, int exponent, scene *out) {
+    *out = *from;
+    for (uint32_t i = 0; i < from->vertex_count * 3; i++) {
+        out->x0[i] = ldexp(from->x0[i], exponent);
+        out->x1[i] = ldexp(from->x1[i], exponent);
+    }
+}
+
+static void check_scene(const scene *s, int axis_count, uint32_t region_count, double distance) {
+    forest_rig r;
+    assert_true(forest_rig_create(s, (forest_setup){CSCD_SIMD_AUTO, 1, axis_count, region_count}, &r));
+    find_places(&r.forest);
+    forest_move(&r.forest, s->x0, s->x1, distance);
+    check_bounds(&r.forest, (motion){s->x0, s->x1}, distance);
+    forest_move(&r.forest, s->x1, s->x1, 0.0);
+    check_bounds(&r.forest, (motion){s->x1, s->x1}, 0.0);
+    forest_rig_destroy(&r);
+}
+
+static void bounds_hold_what_is_below(void **state) {
+    static const int exponents[] = {-290, -90, 0, 120, 290};
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 12, &shape);
+        int exponent = exponents[family % 5];
+        scale_scene(&shape, exponent, &moved);
+        for (int i = 0; i < 2 * REGION_CHOICES; i++)
+            check_scene(&moved, axis_counts[i % 2], region_counts[i / 2], 0.0);
+        check_scene(&moved, KDOP_AXES, 0, ldexp(0.125, exponent));
+        check_scene(&moved, BOX_AXES, 3, ldexp(2.0, exponent));
+    }
+}
+
+/* Parts fly on together, and one stays behind. */
+static void bounds_of_bodies_that_fly(void **state) {
+    const double far[3] = {1e3, -3e5, 77.0};
+    (void)state;
+    for (int i = 0; i < 2 * REGION_CHOICES; i++) {
+        scene_make(SCENE_LINKED_TORI, 13, &shape);
+        translate(shape.x1, shape.vertex_count, far);
+        check_scene(&shape, axis_counts[i % 2], region_counts[i / 2], 0.0);
+        memcpy(shape.x1, shape.x0, (size_t)shape.vertex_count / 2 * sizeof(double[3]));
+        check_scene(&shape, axis_counts[i % 2], region_counts[i / 2], 0.0);
+    }
+}
+
+/* The scale follows positions that leave it by far, in either direction and within one interval. */
+static void bounds_at_changing_scales(void **state) {
+    static const int from[] = {0, 290, -290, 290, 10, -40, -40, 0},
+                     to[] = {290, -290, 290, 290, 30, -40, 3, 0};
+    static scene start, end;
+    forest_rig r;
+    (void)state;
+    scene_make(SCENE_TWO_SPHERES, 14, &shape);
+    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, KDOP_AXES, 5}, &r));
+    find_places(&r.forest);
+    for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
+        scale_scene(&shape, from[i], &start);
+        scale_scene(&shape, to[i], &end);
+        forest_move(&r.forest, start.x0, end.x1, 0.0);
+        check_bounds(&r.forest, (motion){start.x0, end.x1}, 0.0);
+    }
+    forest_rig_destroy(&r);
+}
+
+/* All corners in one place, and a mesh that starts so. */
+static void bounds_of_points(void **state) {
+    (void)state;
+    scene_make(SCENE_GRID, 15, &shape);
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) shape.x0[i] = 0.1 * (i % 3);
+    check_scene(&shape, KDOP_AXES, 1, 0.0);
+    memcpy(shape.x1, shape.x0, sizeof shape.x1);
+    check_scene(&shape, KDOP_AXES, 2, 0.0);
+}
+
+/* ---- the same whatever computes it ----------------------------------------------------------------------
+ */
+
+static void assert_same_forest(const forest *a, const forest *b) {
+    assert_memory_equal(a->records, b->records, a->record_count * sizeof *a->records);
+    assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);
+    for (int level = 0; level < bounded_levels(a); level++) {
+        size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * FOREST_LANES;
+        assert_memory_equal(a->levels[level].bounds, b->levels[level].bounds, floats * sizeof(float));
+    }
+    for (uint32_t i = 0; i < a->part_count; i++) {
+        assert_memory_equal(a->parts[i].weighted, b->parts[i].weighted, sizeof a->parts[i].weighted);
+        assert_memory_equal(a->parts[i].slack, b->parts[i].slack, sizeof a->parts[i].slack);
+    }
+}
+
+static void same_on_all_levels_and_threads(void **state) {
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        forest_rig one, other;
+        scene_make((scene_family)(i * 3), 16, &shape);
+        forest_setup setup = {CSCD_SIMD_SCALAR, 1, axis_counts[i % 2], region_counts[i]};
+        assert_true(forest_rig_create(&shape, setup, &one));
+        forest_move(&one.forest, shape.x0, shape.x1, 0.0);
+        for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+            setup.simd = (cscd_simd)simd;
+            setup.thread_count = (uint32_t)simd;
+            if (!forest_rig_create(&shape, setup, &other)) continue;
+            forest_move(&other.forest, shape.x0, shape.x1, 0.0);
+            assert_same_forest(&one.forest, &other.forest);
+            forest_rig_destroy(&other);
+        }
+        forest_rig_destroy(&one);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_triangle_has_one_slot),
+        cmocka_unit_test(bounds_hold_what_is_below),
+        cmocka_unit_test(bounds_of_bodies_that_fly),
+        cmocka_unit_test(bounds_at_changing_scales),
+        cmocka_unit_test(bounds_of_points),
+        cmocka_unit_test(same_on_all_levels_and_threads),
+    };
+    return cmocka_run_group_tests_name("forest", tests, NULL, NULL);
+}

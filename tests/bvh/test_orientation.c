@@ -1,0 +1,299 @@
+/* Orientation signs against exact arithmetic: one wrong S+ or S- fails. And where detector points are. */
+#include "runtime/bvh/orientation.h"
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/random.h"
+
+#include <gmp.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { BATCH_COUNT = 12500, BATCH_SIZE = FOREST_LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
+enum { UNIT_EXPONENT = -200 };
+
+static scene shape; /* large; one test at a time */
+
+static int seed(void **state) {
+    (void)state;
+    random_seed(41);
+    return 0;
+}
+
+/* ---- the exact value ---- */
+
+typedef struct exact_vector {
+    mpz_t x[3];
+} exact_vector;
+
+/* p0 - d, p1 - p0 and p2 - p0 at both ends, in units of 2^UNIT_EXPONENT. */
+typedef struct exact_triangle {
+    exact_vector c[2], a[2], b[2];
+} exact_triangle;
+
+/* out = p - q - r */
+static void exact_difference(const double p[3], const double q[3], const double r[3], exact_vector *out) {
+    mpz_t other;
+    mpz_init(other);
+    for (int k = 0; k < 3; k++) {
+        mpz_set_d(out->x[k], ldexp(p[k], -UNIT_EXPONENT));
+        mpz_set_d(other, ldexp(q[k], -UNIT_EXPONENT));
+        mpz_sub(out->x[k], out->x[k], other);
+        mpz_set_d(other, ldexp(r[k], -UNIT_EXPONENT));
+        mpz_sub(out->x[k], out->x[k], other);
+    }
+    mpz_clear(other);
+}
+
+/* sum += (a x b) . c */
+static void add_determinant(const exact_vector *a, const exact_vector *b, const exact_vector *c, mpz_t sum) {
+    mpz_t minor;
+    mpz_init(minor);
+    for (int k = 0; k < 3; k++) {
+        int y = (k + 1) % 3, z = (k + 2) % 3;
+        mpz_mul(minor, a->x[y], b->x[z]);
+        mpz_submul(minor, a->x[z], b->x[y]);
+        mpz_addmul(sum, minor, c->x[k]);
+    }
+    mpz_clear(minor);
+}
+
+/* The signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the part's detector point.
+ */
+static void exact_signs(const double x0[9], const double x1[9], const forest *f, int signs[4]) {
+    static const double zero[3] = {0.0, 0.0, 0.0};
+    const forest_part *p = &f->parts[0];
+    static exact_triangle t;
+    static bool ready;
+    exact_vector *vectors[6] = {&t.c[0], &t.c[1], &t.a[0], &t.a[1], &t.b[0], &t.b[1]};
+    for (int i = 0; i < 18 && !ready; i++) mpz_init(vectors[i / 3]->x[i % 3]);
+    ready = true;
+    for (int end = 0; end < 2; end++) {
+        const double *x = end == 0 ? x0 : x1;
+        double d[3];
+        for (int k = 0; k < 3; k++) d[k] = (double)p->detector[end][k] / f->scale;
+        exact_difference(x, p->origin[end], d, &t.c[end]);
+        exact_difference(x + 3, x, zero, &t.a[end]);
+        exact_difference(x + 6, x, zero, &t.b[end]);
+    }
+    mpz_t sum;
+    mpz_init(sum);
+    for (int ends = 0; ends < 4; ends++) { /* how many of the three vectors are taken at t = 1 */
+        mpz_set_ui(sum, 0);
+        for (int choice = 0; choice < 8; choice++) {
+            int a = choice & 1, b = choice >> 1 & 1, c = choice >> 2;
+            if (a + b + c == ends) add_determinant(&t.a[a], &t.b[b], &t.c[c], sum);
+        }
+        signs[ends] = mpz_sgn(sum);
+    }
+    mpz_clear(sum);
+}
+
+/* ---- triangles ---- */
+
+static float nudged(float x) {
+    for (int i = random_integer(0, 3); i > 0; i--)
+        x = nextafterf(x, random_integer(0, 1) ? INFINITY : -INFINITY);
+    return x;
+}
+
+static void make_triangles(uint32_t count) {
+    scene_clear(&shape);
+    shape.vertex_count = count * 3;
+    shape.triangle_count = count;
+    for (uint32_t i = 0; i < count * 3; i++) shape.triangles[i] = i;
+}
+
+static void move_triangles(double offset, double speed) {
+    for (uint32_t t = 0; t < shape.triangle_count; t++) {
+        int bits = random_integer(0, 3) == 0 ? 3 : 40;
+        for (uint32_t i = 9 * t; i < 9 * t + 9; i++) {
+            shape.x0[i] = offset + ldexp(rint(ldexp(random_unit(), bits)), -bits);
+            shape.x1[i] = shape.x0[i] + speed * random_unit();
+        }
+    }
+}
+
+/* Nearly in the plane of triangle t, at one end. */
+static void put_into_plane(forest *f, uint32_t t, int end) {
+    const double *x = (end == 0 ? shape.x0 : shape.x1) + (size_t)t * 9;
+    double u = 3.0 * random_unit(), v = 3.0 * random_unit();
+    forest_part *p = &f->parts[0];
+    for (int k = 0; k < 3; k++) {
+        double at = x[k] + u * (x[3 + k] - x[k]) + v * (x[6 + k] - x[k]);
+        p->detector[end][k] = nudged((float)((at - p->origin[end][k]) * f->scale));
+    }
+}
+
+static void place_detector(forest *f, double speed, bool near_zero) {
+    forest_part *p = &f->parts[0];
+    for (int k = 0; k < 3; k++) {
+        p->detector[0][k] = (float)(2.0 * random_unit() * f->scale);
+        p->detector[1][k] = p->detector[0][k] + (float)(speed * random_unit() * f->scale);
+    }
+    if (!near_zero) return;
+    uint32_t t = (uint32_t)random_integer(0, BATCH_SIZE - 1);
+    int where = random_integer(0, 2); /* at the start, at the end, at both */
+    if (where != 1) put_into_plane(f, t, 0);
+    if (where != 0) put_into_plane(f, t, 1);
+}
+
+/* Levels of vector instructions that the processor has not are left out. */
+static uint32_t open_levels(forest_rig levels[CSCD_SIMD_AVX512]) {
+    uint32_t count = 0;
+    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++)
+        count += forest_rig_create(&shape, (forest_setup){(cscd_simd)simd, 1, BOX_AXES, 1}, &levels[count]);
+    return count;
+}
+
+static void orient_all(forest *f, uint8_t *flags) {
+    f->kernels->orient(f, &f->parts[0], 0, f->leaf_count, NULL, flags);
+}
+
+static void check_batch(const forest *f, const uint8_t *flags, int count[4], int *lost) {
+    for (uint32_t t = 0; t < BATCH_SIZE; t++) {
+        int signs[4];
+        exact_signs(shape.x0 + (size_t)t * 9, shape.x1 + (size_t)t * 9, f, signs);
+        int sum = signs[0] + signs[1] + signs[2] + signs[3];
+        if (flags[t] == ORIENTATION_PLUS) assert_int_equal(sum, 4);
+        if (flags[t] == ORIENTATION_MINUS) assert_int_equal(sum, -4);
+        count[flags[t]]++;
+        *lost += flags[t] == ORIENTATION_ZERO && (sum == 4 || sum == -4);
+    }
+}
+
+static void signs_are_exact(void **state) {
+    int count[4] = {0}, lost = 0;
+    forest_rig levels[CSCD_SIMD_AVX512];
+    (void)state;
+    make_triangles(BATCH_SIZE);
+    uint32_t level_count = open_levels(levels);
+    for (int i = 0; i < BATCH_COUNT; i++) {
+        double speed = ldexp(1.0, -random_integer(0, 12));
+        uint8_t flags[CSCD_SIMD_AVX512][BATCH_SIZE];
+        move_triangles(random_integer(0, 1) ? 0.0 : ldexp(random_unit(), random_integer(0, 20)), speed);
+        for (uint32_t l = 0; l < level_count; l++) {
+            forest *f = &levels[l].forest;
+            forest_move(f, shape.x0, shape.x1, 0.0);
+            if (l == 0) place_detector(f, speed, i % 3 == 0);
+            memcpy(f->parts[0].detector, levels[0].forest.parts[0].detector, sizeof f->parts[0].detector);
+            orient_all(f, flags[l]);
+            assert_memory_equal(flags[l], flags[0], sizeof flags[l]);
+        }
+        check_batch(&levels[0].forest, flags[0], count, &lost);
+    }
+    for (uint32_t l = 0; l < level_count; l++) forest_rig_destroy(&levels[l]);
+    printf("S+ %d, S- %d, S0 %d, of which exact signs would decide %d\n", count[ORIENTATION_PLUS],
+           count[ORIENTATION_MINUS], count[ORIENTATION_ZERO], lost);
+    assert_true(count[ORIENTATION_PLUS] > 10000 && count[ORIENTATION_MINUS] > 10000);
+    assert_true(lost < TRIANGLE_COUNT / 10);
+}
+
+static uint8_t orientation_from(forest *f, double end_height, const double start[3], const double end[3]) {
+    uint8_t flag;
+    for (int i = 0; i < 3; i++) shape.x1[3 * i + 2] = end_height;
+    forest_move(f, shape.x0, shape.x1, 0.0);
+    forest_part *p = &f->parts[0];
+    for (int k = 0; k < 3; k++) {
+        p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * f->scale);
+        p->detector[1][k] = (float)((end[k] - p->origin[1][k]) * f->scale);
+    }
+    orient_all(f, &flag);
+    return flag;
+}
+
+static void sides_of_a_plane(void **state) {
+    static const double x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const double below[2][3] = {{0, 0, -1}, {5, 5, -1}}, above[2][3] = {{0, 0, 1}, {5, 5, 1}};
+    static const double within[2][3] = {{7, 7, 0}, {8, 8, 0}};
+    forest_rig r;
+    (void)state;
+    make_triangles(1);
+    memcpy(shape.x0, x, sizeof x);
+    memcpy(shape.x1, x, sizeof x);
+    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 1}, &r));
+    assert_int_equal(orientation_from(&r.forest, 0, below[0], below[1]), ORIENTATION_PLUS);
+    assert_int_equal(orientation_from(&r.forest, 0, above[0], above[1]), ORIENTATION_MINUS);
+    assert_int_equal(orientation_from(&r.forest, 0, below[0], above[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.forest, 0, within[0], within[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.forest, 3, above[0], above[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.forest, 3, below[0], below[1]), ORIENTATION_PLUS);
+    forest_rig_destroy(&r);
+}
+
+/* ---- detector points ---- */
+
+/* Weights are the same for all triangles of a region (tests/support/bvh/bvh_rig.h). */
+static void expected_point(const forest_rig *r, uint32_t region, const double *x, long double out[3]) {
+    long double size = 0.0L;
+    for (int k = 0; k < 3; k++) out[k] = 0.0L;
+    for (uint32_t t = 0; t < r->mesh->triangle_count; t++) {
+        if (r->regions[t] != region) continue;
+        size += 1.0L;
+        for (size_t i = 0; i < 9; i++)
+            out[i % 3] += x[(size_t)r->mesh->triangles[t][i / 3] * 3 + i % 3] / 3.0L;
+    }
+    for (int k = 0; k < 3; k++) out[k] /= size;
+}
+
+static void check_points(const forest_rig *r, const double (*offsets)[3], bool still) {
+    const forest *f = &r->forest;
+    double extent = motion_extent((motion){shape.x0, shape.x1}, shape.vertex_count);
+    for (uint32_t i = 0; i < f->part_count; i++) {
+        const forest_part *p = &f->parts[i];
+        for (int end = 0; end < 2; end++) {
+            long double expected[3];
+            expected_point(r, p->region, end == 0 || still ? shape.x0 : shape.x1, expected);
+            for (int k = 0; k < 3; k++) {
+                long double found = p->origin[end][k] + (long double)p->detector[end][k] / f->scale;
+                long double wanted = expected[k] + offsets[p->region][k];
+                assert_true(fabsl(found - wanted) <= 0x1p-20L * extent);
+            }
+        }
+    }
+}
+
+static void detector_points_follow_their_regions(void **state) {
+    static uint8_t flags[SCENE_TRIANGLES_MAX];
+    (void)state;
+    scene_make(SCENE_LINKED_TORI, 42, &shape);
+    for (uint32_t region_count = 0; region_count < 4; region_count++) {
+        forest_rig r;
+        double offsets[4][3];
+        bool culled[4] = {true, true, true, true};
+        for (int i = 0; i < 12; i++) offsets[i / 3][i % 3] = random_unit();
+        assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
+        forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+        for (int still = 0; still < 2; still++) {
+            forest_view view = {culled, NULL, (const double(*)[3])offsets, still != 0};
+            forest_orient(&r.forest, &view, flags);
+            check_points(&r, (const double(*)[3])offsets, still != 0);
+        }
+        forest_rig_destroy(&r);
+    }
+}
+
+static void flags_of_sets(void **state) {
+    (void)state;
+    assert_false(orientations_may_touch(ORIENTATION_PLUS, ORIENTATION_PLUS));
+    assert_false(orientations_may_touch(ORIENTATION_MINUS, ORIENTATION_MINUS));
+    assert_true(orientations_may_touch(ORIENTATION_PLUS, ORIENTATION_MINUS));
+    assert_true(orientations_may_touch(ORIENTATION_ZERO, ORIENTATION_PLUS));
+    assert_true(orientations_may_touch(ORIENTATION_MINUS, ORIENTATION_ZERO));
+    assert_true(orientations_may_touch(ORIENTATION_ZERO, ORIENTATION_ZERO));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(signs_are_exact, seed),
+        cmocka_unit_test(sides_of_a_plane),
+        cmocka_unit_test_setup(detector_points_follow_their_regions, seed),
+        cmocka_unit_test(flags_of_sets),
+    };
+    return cmocka_run_group_tests_name("orientation", tests, NULL, NULL);
+}

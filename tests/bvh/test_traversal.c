@@ -1,0 +1,289 @@
+/* The traversal against all pairs: what it must find, what it may find, and that nothing else matters. */
+#include "runtime/bvh/traversal.h"
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/bvh/touching.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { TRIANGLES_MAX = 1600 };
+
+/* Of pairs a < b. */
+typedef struct pair_table {
+    uint8_t found[TRIANGLES_MAX][TRIANGLES_MAX];
+    size_t count;
+    uint64_t boxes_tested;
+} pair_table;
+
+static scene shape; /* large; one test at a time */
+static pair_table all, kept, others;
+
+/* Only pairs of two different triangles, none twice. */
+static void add_pair(const forest *f, triangle_pair pair, pair_table *out) {
+    uint32_t a = forest_triangle(f, pair.a), b = forest_triangle(f, pair.b);
+    assert_true(a < f->mesh->triangle_count && b < f->mesh->triangle_count && a != b);
+    uint8_t *place = &out->found[a < b ? a : b][a < b ? b : a];
+    assert_int_equal(*place, 0);
+    *place = 1;
+    out->count++;
+}
+
+static void traverse_but(const forest_rig *r, traversal_pass pass, bool skip_adjacent, pair_table *out) {
+    static bool everywhere[SCENE_TRIANGLES_MAX];
+    forest same = r->forest;
+    traversal t;
+    memset(out, 0, sizeof *out);
+    memset(everywhere, true, sizeof everywhere);
+    forest_skip_adjacent(&same, skip_adjacent ? everywhere : NULL);
+    assert_int_equal(traversal_create(r->context, &t), CSCD_OK);
+    traversal_begin(&t, &r->forest, pass);
+    for (bool more = true; more;) {
+        assert_int_equal(traversal_round(&t, &more), CSCD_OK);
+        for (uint32_t i = 0; i < t.lane_count; i++) {
+            assert_true(t.lanes[i].pair_count <= TRAVERSAL_BATCH_SIZE);
+            for (uint32_t k = 0; k < t.lanes[i].pair_count; k++)
+                add_pair(&r->forest, t.lanes[i].pairs[k], out);
+        }
+    }
+    out->boxes_tested = traversal_boxes_tested(&t);
+    traversal_destroy(&t);
+}
+
+static void traverse(const forest_rig *r, traversal_pass pass, pair_table *out) {
+    traverse_but(r, pass, false, out);
+}
+
+/* ---- against all pairs ----------------------------------------------------------------------------------
+ */
+
+/* Pairs that no direction separates are found, and none that one separates by more than rounding. */
+static void check_against_gaps(const pair_table *table, double distance) {
+    motion m = {shape.x0, shape.x1};
+    long double rounding = 0x1p-16L * motion_extent(m, shape.vertex_count);
+    for (uint32_t a = 0; a < shape.triangle_count; a++) {
+        for (uint32_t b = a + 1; b < shape.triangle_count; b++) {
+            point_set first = {shape.triangles + (size_t)a * 3, 3};
+            point_set second = {shape.triangles + (size_t)b * 3, 3};
+            long double gap = direction_gap(m, first, second, distance + rounding);
+            if (gap <= distance) assert_true(table->found[a][b]);
+            if (gap > distance + rounding) assert_false(table->found[a][b]);
+        }
+    }
+}
+
+static void check_scene(forest_setup setup, double distance) {
+    forest_rig r;
+    assert_true(shape.triangle_count <= TRIANGLES_MAX);
+    assert_true(forest_rig_create(&shape, setup, &r));
+    forest_move(&r.forest, shape.x0, shape.x1, distance);
+    traverse(&r, TRAVERSAL_KEPT, &all);
+    check_against_gaps(&all, distance);
+    forest_rig_destroy(&r);
+}
+
+static void finds_what_may_touch(void **state) {
+    static const uint32_t region_counts[] = {1, 0, 5, 100};
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (int i = 0; i < 4; i++) {
+            scene_make((scene_family)family, (uint64_t)(20 + i), &shape);
+            forest_setup setup = {CSCD_SIMD_AUTO, 1, i % 2 == 0 ? BOX_AXES : KDOP_AXES,
+                                  region_counts[(i + family) % 4]};
+            check_scene(setup, i == 3 ? 0.05 : 0.0);
+        }
+    }
+}
+
+/* Bodies that fly with one another, and past one another. */
+static void finds_what_may_touch_in_flight(void **state) {
+    const double far[3] = {700.0, -3e4, 77.0};
+    (void)state;
+    for (uint32_t i = 0; i < 3; i++) {
+        scene_make(SCENE_LINKED_TORI, 25, &shape);
+        translate(shape.x1, shape.vertex_count, far);
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
+        memcpy(shape.x1, shape.x0, (size_t)shape.vertex_count / 2 * sizeof(double[3]));
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
+    }
+}
+
+/* What overlaps by nothing but rounding. */
+static void finds_what_just_touches(void **state) {
+    random_stream random = stream_start(26);
+    (void)state;
+    for (uint32_t i = 0; i < 16; i++) {
+        make_touching_pairs(&random, 90, i % 2 == 0 ? 3.0 : 300.0, &shape);
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 1, i % 4 < 2 ? BOX_AXES : KDOP_AXES, i / 4}, 0.0);
+    }
+}
+
+/* More leaves than the cache of their volumes has places, all over one another. */
+static void finds_what_may_touch_in_a_crowd(void **state) {
+    random_stream random = stream_start(27);
+    (void)state;
+    scene_clear(&shape);
+    shape.vertex_count = 300;
+    shape.triangle_count = TRIANGLES_MAX;
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) {
+        shape.x0[i] = stream_between(&random, 0.0, 1.0);
+        shape.x1[i] = shape.x0[i] + stream_between(&random, -0.1, 0.1);
+    }
+    for (uint32_t t = 0; t < TRIANGLES_MAX; t++) {
+        uint32_t first = stream_below(&random, shape.vertex_count - 2);
+        for (uint32_t i = 0; i < 3; i++) shape.triangles[t * 3 + i] = first + i;
+    }
+    for (uint32_t region_count = 1; region_count < 5; region_count += 2)
+        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, 0.0);
+}
+
+/* ---- threads, levels, rounds -----------------------------------------------------------------------------
+ */
+
+static void check_same(forest_setup setup) {
+    forest_rig r;
+    if (!forest_rig_create(&shape, setup, &r)) return;
+    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+    traverse(&r, TRAVERSAL_KEPT, &others);
+    assert_memory_equal(&others, &all, sizeof all);
+    forest_rig_destroy(&r);
+}
+
+static void check_all_ways(uint32_t region_count) {
+    forest_setup setup = {CSCD_SIMD_SCALAR, 1, BOX_AXES, region_count};
+    forest_rig r;
+    assert_true(forest_rig_create(&shape, setup, &r));
+    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+    traverse(&r, TRAVERSAL_KEPT, &all);
+    forest_rig_destroy(&r);
+    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+        for (uint32_t threads = 1; threads <= 3; threads++)
+            check_same((forest_setup){(cscd_simd)simd, threads, BOX_AXES, region_count});
+    }
+}
+
+static void same_pairs_on_all_levels_and_threads(void **state) {
+    static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_LINKED_TORI, SCENE_SOUP,
+                                            SCENE_FAR_AWAY};
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        scene_make(families[i], 30, &shape);
+        for (uint32_t region_count = 0; region_count < 3; region_count++) check_all_ways(10 * region_count);
+    }
+}
+
+/* Everything near everything, many times over: more than all batches hold at once. */
+static void many_rounds(void **state) {
+    enum { COPIES = 4 };
+    (void)state;
+    scene_make(SCENE_NOISY_SPHERE, 31, &shape);
+    uint32_t corner_count = shape.triangle_count * 3;
+    for (uint32_t i = corner_count; i < COPIES * corner_count; i++)
+        shape.triangles[i] = shape.triangles[i - corner_count];
+    shape.triangle_count *= COPIES;
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) shape.x1[i] = -3.0 * shape.x0[i] + 0.1 * (i % 7);
+    check_all_ways(0);
+    assert_true(all.count > 6 * TRAVERSAL_BATCH_SIZE);
+    check_against_gaps(&all, 0.0);
+}
+
+/* ---- passes ----------------------------------------------------------------------------------------------
+ */
+
+static uint8_t before[TRIANGLES_MAX], now[TRIANGLES_MAX];
+static bool suspects[TRIANGLES_MAX];
+
+static bool hidden(const forest_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
+    return r->regions[a] == r->regions[b] && !orientations_may_touch(orientations[a], orientations[b]);
+}
+
+static bool stays(const forest_rig *r, uint32_t a, uint32_t b) {
+    return !hidden(r, now, a, b);
+}
+
+static bool has_come(const forest_rig *r, uint32_t a, uint32_t b) {
+    return hidden(r, before, a, b) && !hidden(r, now, a, b);
+}
+
+static bool both_suspect(const forest_rig *r, uint32_t a, uint32_t b) {
+    (void)r;
+    return suspects[a] && suspects[b];
+}
+
+static bool adjacent(uint32_t a, uint32_t b) {
+    const uint32_t *corners = shape.triangles + (size_t)b * 3;
+    for (uint32_t i = 0; i < 3; i++) {
+        if (triangle_contains(corners, shape.triangles[a * 3 + i])) return true;
+    }
+    return false;
+}
+
+/* A pass finds those of all pairs of which this is true. */
+static void check_pass(const forest_rig *r, traversal_pass pass,
+                       bool (*of_pass)(const forest_rig *, uint32_t, uint32_t)) {
+    for (int skip_adjacent = 0; skip_adjacent < 2; skip_adjacent++) {
+        traverse_but(r, pass, skip_adjacent != 0, &kept);
+        for (uint32_t a = 0; a < shape.triangle_count; a++) {
+            for (uint32_t b = a + 1; b < shape.triangle_count; b++) {
+                bool skipped = skip_adjacent != 0 && adjacent(a, b);
+                assert_int_equal(kept.found[a][b], all.found[a][b] && !skipped && of_pass(r, a, b));
+            }
+        }
+        assert_true(kept.boxes_tested <= all.boxes_tested);
+    }
+}
+
+/* Flags come in runs, so that whole blocks have one; some are lost. */
+static void choose_flags(random_stream *random, uint32_t run) {
+    uint8_t flag = ORIENTATION_ZERO;
+    for (uint32_t t = 0; t < shape.triangle_count; t++) {
+        if (stream_below(random, run) == 0) flag = (uint8_t)(1 + stream_below(random, 3));
+        before[t] = flag;
+        now[t] = stream_below(random, 2 * run) == 0 ? ORIENTATION_ZERO : flag;
+        suspects[t] = stream_below(random, 1 + run / 4) == 0;
+    }
+}
+
+static void check_passes(random_stream *random, uint32_t region_count) {
+    forest_rig r;
+    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
+    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+    traverse(&r, TRAVERSAL_KEPT, &all);
+    for (uint32_t run = 1; run < 1000; run *= 6) {
+        choose_flags(random, run);
+        forest_mark_fresh(&r.forest, before, now);
+        check_pass(&r, TRAVERSAL_KEPT, stays);
+        check_pass(&r, TRAVERSAL_FRESH, has_come);
+        forest_mark_suspects(&r.forest, suspects);
+        check_pass(&r, TRAVERSAL_SUSPECTS, both_suspect);
+    }
+    forest_rig_destroy(&r);
+}
+
+static void passes_are_what_flags_say(void **state) {
+    random_stream random = stream_start(40);
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 41, &shape);
+        for (uint32_t region_count = 0; region_count < 3; region_count++)
+            check_passes(&random, region_count * region_count * 5);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_what_may_touch),
+        cmocka_unit_test(finds_what_may_touch_in_flight),
+        cmocka_unit_test(finds_what_just_touches),
+        cmocka_unit_test(finds_what_may_touch_in_a_crowd),
+        cmocka_unit_test(same_pairs_on_all_levels_and_threads),
+        cmocka_unit_test(many_rounds),
+        cmocka_unit_test(passes_are_what_flags_say),
+    };
+    return cmocka_run_group_tests_name("traversal", tests, NULL, NULL);
+}

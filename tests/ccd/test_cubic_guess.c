@@ -1,0 +1,48 @@
+/* GSL's error handler belongs to the process: the library leaves it as it finds it, and never causes a call.
+ */
+#include "runtime/ccd/elementary.h"
+#include "tests/support/random.h"
+
+#include <gsl/gsl_errno.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+enum { QUERY_COUNT = 100000 };
+
+static int calls;
+
+static void count_call(const char *reason, const char *file, int line, int error) {
+    (void)reason;
+    (void)file;
+    (void)line;
+    (void)error;
+    calls++;
+}
+
+static void handler_left_alone(void **state) {
+    (void)state;
+    random_seed(31);
+    gsl_error_handler_t *before = gsl_set_error_handler(count_call);
+    for (int i = 0; i < QUERY_COUNT; i++) {
+        elementary_query query;
+        elementary_hit hit;
+        int range = random_integer(1, 3);
+        for (int j = 0; j < 12; j++) {
+            query.x0[j / 3][j % 3] = random_integer(-range, range);
+            query.x1[j / 3][j % 3] = random_integer(-range, range);
+        }
+        elementary_vf(&query, &hit);
+        elementary_ee(&query, &hit);
+    }
+    assert_true(gsl_set_error_handler(before) == count_call);
+    assert_int_equal(calls, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(handler_left_alone)};
+    return cmocka_run_group_tests_name("gsl", tests, NULL, NULL);
+}

@@ -1,0 +1,227 @@
+/* The elementary tests against the algebraic oracle and against themselves, on queries of every degeneracy.
+ */
+#include "tests/support/ccd/elementary_generator.h"
+#include "tests/support/ccd/feature_distance.h"
+#include "tests/support/ccd/oracle_comparison.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { QUERIES_A_FAMILY = 1100 };
+#else
+enum { QUERIES_A_FAMILY = 5500 };
+#endif
+
+enum { SHOWN = 3 };
+
+/* Differences are shown up to SHOWN and counted all. */
+typedef struct failures {
+    int count;
+} failures;
+
+static void note(failures *f, const char *what, pair_kind kind, const elementary_query *query) {
+    if (f->count++ >= SHOWN) return;
+    compared result = compare_with_oracle(kind, query);
+    printf("%s:\n", what);
+    print_compared(kind, query, &result);
+}
+
+typedef void query_check(failures *f, pair_kind kind, const elementary_query *query);
+
+static void on_each_family(uint64_t seed, int count, query_check *check) {
+    failures f = {0};
+    random_stream random = stream_start(seed);
+    for (int i = 0; i < 2 * count * FAMILY_COUNT; i++) {
+        pair_kind kind = (pair_kind)(i % 2);
+        elementary_query query = generate_query(&random, kind, (query_family)(i / 2 % FAMILY_COUNT));
+        check(&f, kind, &query);
+    }
+    if (f.count > 0) fail_msg("%d differences", f.count);
+}
+
+/* ---- the oracle ---- */
+
+typedef struct tally {
+    int hits, misses, levels[ELEMENTARY_LEVEL_COUNT], results[COMPARISON_COUNT];
+} tally;
+
+static void print_tally(query_family family, const tally *t) {
+    printf("%-15s %6d %6d |", query_family_name(family), t->hits, t->misses);
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) printf(" %6d", t->levels[i]);
+    printf(" |");
+    for (int i = 1; i < COMPARISON_COUNT; i++) printf(" %6d", t->results[i]);
+    printf("\n");
+}
+
+static tally compare_family(random_stream *random, failures *f, pair_kind kind, query_family family) {
+    tally t = {0};
+    for (int i = 0; i < QUERIES_A_FAMILY; i++) {
+        elementary_query query = generate_query(random, kind, family);
+        compared result = compare_with_oracle(kind, &query);
+        t.hits += result.oracle.touching;
+        t.misses += !result.oracle.touching;
+        t.levels[result.verdict.level]++;
+        t.results[result.result]++;
+        if (result.result != COMPARISON_AGREES) note(f, query_family_name(family), kind, &query);
+    }
+    return t;
+}
+
+static void compare_kind(pair_kind kind) {
+    random_stream random = stream_start(31 + kind);
+    failures f = {0};
+    printf("                  hits misses |  signs  roots  exact | missed  false   late  early\n");
+    for (int i = 0; i < FAMILY_COUNT; i++) {
+        query_family family = (query_family)i;
+        tally t = compare_family(&random, &f, kind, family);
+        print_tally(family, &t);
+        assert_true(t.hits >= QUERIES_A_FAMILY / 20);
+        assert_true(family == FAMILY_CORNER_CONTACT ? t.misses == 0 : t.misses >= QUERIES_A_FAMILY / 20);
+    }
+    if (f.count > 0) fail_msg("%d differences", f.count);
+}
+
+static void vf_agrees_with_oracle(void **state) {
+    (void)state;
+    compare_kind(PAIR_VF);
+}
+
+static void ee_agrees_with_oracle(void **state) {
+    (void)state;
+    compare_kind(PAIR_EE);
+}
+
+/* ---- symmetries ---- */
+
+static bool same_verdict(pair_kind kind, const elementary_query *query, bool touching, double toi) {
+    elementary_hit hit = {.toi = toi};
+    return pair_test(kind, query, &hit).touching == touching && fabs(hit.toi - toi) <= 1e-9;
+}
+
+static void check_renumbered(failures *f, pair_kind kind, const elementary_query *query, bool touching,
+                             double toi) {
+    static const int vf_orders[5][4] = {{0, 2, 3, 1}, {0, 3, 1, 2}, {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 3, 2, 1}};
+    static const int ee_orders[5][4] = {{1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
+    for (int i = 0; i < 5; i++) {
+        elementary_query other = query_permuted(query, kind == PAIR_VF ? vf_orders[i] : ee_orders[i]);
+        if (!same_verdict(kind, &other, touching, toi)) note(f, "renumbered", kind, query);
+    }
+}
+
+/* Mirrored if odd. */
+static elementary_query axes_exchanged(const elementary_query *query, int turn, bool odd) {
+    elementary_query out;
+    for (int i = 0; i < 12; i++) {
+        int from = odd ? (5 - turn - i % 3) % 3 : (i % 3 + turn) % 3;
+        out.x0[i / 3][i % 3] = query->x0[i / 3][from];
+        out.x1[i / 3][i % 3] = query->x1[i / 3][from];
+    }
+    return out;
+}
+
+static void check_symmetries(failures *f, pair_kind kind, const elementary_query *query) {
+    elementary_hit hit = {.toi = 2.0}, unused;
+    bool touching = pair_test(kind, query, &hit).touching;
+    elementary_query reversed = query_reversed(query), large = query_scaled(query, 17);
+    elementary_query small = query_scaled(query, -9);
+    check_renumbered(f, kind, query, touching, hit.toi);
+    if (pair_test(kind, &reversed, &unused).touching != touching) note(f, "reversed", kind, query);
+    if (!same_verdict(kind, &large, touching, hit.toi)) note(f, "times 2^17", kind, query);
+    if (!same_verdict(kind, &small, touching, hit.toi)) note(f, "times 2^-9", kind, query);
+    for (int turn = 0; turn < 3; turn++) {
+        elementary_query even = axes_exchanged(query, turn, false), odd = axes_exchanged(query, turn, true);
+        if (!same_verdict(kind, &even, touching, hit.toi)) note(f, "turned axes", kind, query);
+        if (!same_verdict(kind, &odd, touching, hit.toi)) note(f, "exchanged axes", kind, query);
+    }
+}
+
+static void has_the_symmetries(void **state) {
+    (void)state;
+    on_each_family(33, 500, check_symmetries);
+}
+
+/* ---- the named points ---- */
+
+static long double ulp_of_largest(const elementary_query *query) {
+    double largest = (double)largest_coordinate(query);
+    return (long double)nextafter(largest, INFINITY) - largest;
+}
+
+static void check_named_points(failures *f, pair_kind kind, const elementary_query *query) {
+    elementary_hit hit;
+    if (!pair_test(kind, query, &hit).touching) return;
+    bool inside = hit.toi >= 0.0 && hit.toi <= 1.0 && hit.u >= 0.0 && hit.u <= 1.0 && hit.v >= 0.0 &&
+                  hit.v <= 1.0 && (kind == PAIR_EE || hit.u + hit.v <= 1.0 + 0x1p-50);
+    long double allowed = 1e-8L * largest_displacement(query) + 64 * ulp_of_largest(query);
+    if (!inside) note(f, "outside the features", kind, query);
+    if (!(named_distance(kind, query, hit.toi, hit.u, hit.v) <= allowed)) {
+        note(f, "named points apart", kind, query);
+        if (f->count <= SHOWN) printf("u %a, v %a\n", hit.u, hit.v);
+    }
+}
+
+static void names_points_that_meet(void **state) {
+    (void)state;
+    on_each_family(34, 1000, check_named_points);
+}
+
+/* ---- stepping ---- */
+
+static elementary_query step_to(const elementary_query *query, double toi) {
+    elementary_query out = *query;
+    for (int i = 0; i < 12; i++)
+        out.x1[i / 3][i % 3] =
+            query->x0[i / 3][i % 3] + toi * (query->x1[i / 3][i % 3] - query->x0[i / 3][i % 3]);
+    return out;
+}
+
+static int stepped;
+
+/* Simple roots of pairs well apart at the start that move visibly, and are still apart a millionth of the way
+ * before the impact and at all times earlier: by more than the rounding of the step can move them. */
+static bool step_is_certain(pair_kind kind, const elementary_query *query, elementary_hit *hit) {
+    long double ulp = ulp_of_largest(query);
+    return pair_test(kind, query, hit).touching && algebraic_oracle(kind, query).simple &&
+           feature_distance(kind, query, 0) >= 64 * ulp &&
+           largest_displacement(query) >= 1e-5L * largest_coordinate(query) &&
+           proved_apart(kind, query, 0, hit->toi * (1 - 1e-6L), 16 * ulp);
+}
+
+static void check_step(failures *f, pair_kind kind, const elementary_query *query) {
+    elementary_hit hit = {.toi = 2.0}, again = {.toi = 2.0};
+    if (!step_is_certain(kind, query, &hit)) return;
+    elementary_query shorter = step_to(query, hit.toi);
+    stepped++;
+    if (pair_test(kind, &shorter, &again).touching && again.toi < 1.0 - 1e-6) note(f, "again", kind, query);
+    if (compare_with_oracle(kind, &shorter).result != COMPARISON_AGREES) note(f, "step", kind, &shorter);
+}
+
+static void steps_to_the_impact(void **state) {
+    (void)state;
+    stepped = 0;
+    on_each_family(35, 1000, check_step);
+    printf("%d steps\n", stepped);
+    assert_true(stepped >= QUERIES_A_FAMILY * 5 / 11);
+}
+
+static int finish(void **state) {
+    (void)state;
+    algebraic_oracle_finish();
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(vf_agrees_with_oracle), cmocka_unit_test(ee_agrees_with_oracle),
+        cmocka_unit_test(has_the_symmetries),    cmocka_unit_test(names_points_that_meet),
+        cmocka_unit_test(steps_to_the_impact),
+    };
+    return cmocka_run_group_tests_name("elementary_oracle", tests, NULL, finish);
+}

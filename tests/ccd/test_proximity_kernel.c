@@ -1,0 +1,156 @@
+/* The kernel that decides by the start of a motion which features are near and which stay apart: never
+ * against the test of one pair, whose verdicts it anticipates; the same bits on every level. */
+#include "runtime/bvh/kernels.h"
+#include "runtime/ccd/min_separation.h"
+#include "tests/support/levels.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { BATCHES = 4000, POINTS = 4 * KERNEL_LANES };
+
+/* Eight pairs of features of their own. */
+typedef struct batch {
+    double x0[POINTS][3], x1[POINTS][3];
+    uint32_t triangles[KERNEL_LANES][3], edges[2 * KERNEL_LANES][2];
+    uint32_t vf_a[KERNEL_LANES], faces[KERNEL_LANES], ee_a[KERNEL_LANES], ee_b[KERNEL_LANES];
+} batch;
+
+/* Small integers, at times the same ones again; or any numbers, at times far away, or moved far. */
+static void make_batch(batch *b, bool integers) {
+    double far = random_integer(0, 3) == 0 ? 1e6 : 0.0, speed = pow(10.0, random_integer(-9, 2));
+    for (uint32_t i = 0; i < POINTS; i++) {
+        for (int k = 0; k < 3; k++) {
+            b->x0[i][k] = integers ? random_integer(-2, 2) : far + random_unit();
+            b->x1[i][k] = integers ? random_integer(-2, 2) : b->x0[i][k] + speed * random_unit();
+        }
+        if (random_integer(0, 3) == 0) memcpy(b->x1[i], b->x0[i], sizeof b->x1[i]);
+    }
+    for (uint32_t i = 0; i < KERNEL_LANES; i++) {
+        for (uint32_t k = 0; k < 3; k++) b->triangles[i][k] = 4 * i + 1 + k;
+        for (uint32_t k = 0; k < 4; k++) b->edges[2 * i + k / 2][k % 2] = 4 * i + k;
+        b->vf_a[i] = 4 * i;
+        b->faces[i] = i;
+        b->ee_a[i] = 2 * i;
+        b->ee_b[i] = 2 * i + 1;
+    }
+}
+
+/* With points 0 to 3 of the lane in order, either kind of pair is a query. */
+static elementary_query query_of(const batch *b, uint32_t lane) {
+    elementary_query query;
+    memcpy(query.x0, b->x0[4 * lane], sizeof query.x0);
+    memcpy(query.x1, b->x1[4 * lane], sizeof query.x1);
+    return query;
+}
+
+typedef struct tally {
+    size_t hits, misses, open;
+} tally;
+
+static void compare(const batch *b, const separation *limit, bool vf, const nearness_outcomes *found,
+                    tally *sum) {
+    for (uint32_t i = 0; i < KERNEL_LANES; i++) {
+        elementary_query query = query_of(b, i);
+        elementary_hit hit;
+        bool bounded, hits = (found->hits >> i & 1) != 0, misses = (found->misses >> i & 1) != 0;
+        assert_false(hits && misses);
+        sum->hits += hits;
+        sum->misses += misses;
+        sum->open += !hits && !misses;
+        if (!hits && !misses) continue;
+        bool near = (vf ? separation_vf : separation_ee)(&query, limit, &hit, &bounded);
+        assert_true(near == hits);
+        if (!hits) continue;
+        assert_true(hit.toi == 0.0 && found->distance[i] <= limit->distance);
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(found->offset[k][i] / found->distance[i] - hit.normal[k]) < 1e-5);
+    }
+}
+
+/* Limits about the pairs' own distances, from which verdicts change. */
+static void never_against_the_test_of_one_pair(void **state) {
+    (void)state;
+    static batch b;
+    tally sum = {0};
+    random_seed(7);
+    for (int n = 0; n < BATCHES; n++) {
+        bool vf = n % 2 == 0;
+        make_batch(&b, n % 4 < 2);
+        feature_source source = {b.x0[0], b.x1[0], b.triangles, b.edges};
+        separation limit = {pow(10.0, random_between(-4.0, 0.3)), 0.0};
+        for (int round = 0; round < 4; round++) {
+            limit.tolerance = (round % 2 == 0 ? 1e-6 : 0.5) * limit.distance;
+            for (int level = 0; level < LEVEL_COUNT; level++) {
+                if (contexts[level] == NULL) continue;
+                const kernels *table = kernels_of(contexts[level]);
+                nearness_outcomes found;
+                (vf ? table->nearness_vf : table->nearness_ee)(&source, vf ? b.vf_a : b.ee_a,
+                                                               vf ? b.faces : b.ee_b, &limit, &found);
+                compare(&b, &limit, vf, &found, &sum);
+                double own = found.distance[random_integer(0, KERNEL_LANES - 1)];
+                if (level == 0 && own > 1e-9 && own < 1e9)
+                    limit.distance = own * (1.0 + random_integer(-2, 2) * 0x1p-46);
+                limit.tolerance = (round % 2 == 0 ? 1e-6 : 0.5) * limit.distance;
+            }
+        }
+    }
+    print_message("  %zu near, %zu apart, %zu left open\n", sum.hits, sum.misses, sum.open);
+    assert_true(sum.hits > 10000 && sum.misses > 10000 && sum.open < sum.hits + sum.misses);
+}
+
+/* ---- levels -------------------------------------------------------------------------------------------- */
+
+static scene interval; /* large; one test at a time */
+
+static void same_bits_on_every_level(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = 0.05;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        static cscd_contact expected[1 << 17];
+        static cscd_proximity expected_near[1 << 17];
+        size_t count = SIZE_MAX, near_count = 0;
+        scene_make((scene_family)family, 3, &interval);
+        for (int level = 0; level < LEVEL_COUNT; level++) {
+            if (contexts[level] == NULL) continue;
+            const cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+            cscd_mesh *mesh;
+            cscd_detector *detector;
+            cscd_contacts found;
+            cscd_proximities near;
+            assert_int_equal(cscd_mesh_create(contexts[level], &desc, &mesh), CSCD_OK);
+            assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_OK);
+            assert_int_equal(cscd_detector_step(detector, interval.x0, interval.x1, &found), CSCD_OK);
+            assert_true(found.count <= 1 << 17);
+            if (count == SIZE_MAX && found.count > 0)
+                memcpy(expected, found.items, found.count * sizeof *expected);
+            if (count == SIZE_MAX) count = found.count;
+            assert_int_equal(found.count, count);
+            if (count > 0) assert_memory_equal(found.items, expected, count * sizeof *expected);
+            assert_int_equal(cscd_detector_near(detector, interval.x1, 0.05, &near), CSCD_OK);
+            if (near_count == 0 && near.count > 0)
+                memcpy(expected_near, near.items, near.count * sizeof *expected_near);
+            if (near_count == 0) near_count = near.count;
+            assert_int_equal(near.count, near_count);
+            if (near_count > 0)
+                assert_memory_equal(near.items, expected_near, near_count * sizeof *expected_near);
+            cscd_detector_destroy(detector);
+            cscd_mesh_destroy(mesh);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(never_against_the_test_of_one_pair),
+                                       cmocka_unit_test(same_bits_on_every_level)};
+    return cmocka_run_group_tests_name("nearness_kernel", tests, open_levels, close_levels);
+}

@@ -1,0 +1,294 @@
+/* Progress and cancellation: wherever a call is cancelled, its repetition gives what it would have given. */
+#include "cscd/cscd.h"
+#include "src/core/context.h"
+#include "src/core/timer.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/workload.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static sequence q; /* large; one test at a time */
+
+/* ---- a host that watches and cancels ------------------------------------------------------------------- */
+
+typedef struct watcher {
+    pthread_t thread;
+    uint32_t reports, cancel_at; /* of the call at hand, from 1; 0: none */
+    uint32_t every;              /* of the first reports, or so; later ones are skipped by and by */
+    bool cancelled;
+    double fraction, last_ms, closest_ms;
+    bool fell, elsewhere, nameless;
+    uint32_t cancellations, unexplained;
+    size_t bytes; /* held after the last cancelled call */
+} watcher;
+
+static bool watch(void *user, const char *stage, double fraction) {
+    watcher *w = user;
+    double now = timer_now_ms();
+    if (w->reports > 0) w->closest_ms = fmin(w->closest_ms, now - w->last_ms);
+    w->fell |= fraction < w->fraction || fraction < 0.0 || fraction > 1.0;
+    w->elsewhere |= !pthread_equal(w->thread, pthread_self());
+    w->nameless |= stage == NULL || stage[0] == '\0';
+    w->fraction = fraction;
+    w->last_ms = now;
+    w->cancelled = ++w->reports == w->cancel_at;
+    return !w->cancelled;
+}
+
+static void next_call(watcher *w, uint32_t cancel_at) {
+    w->reports = 0;
+    w->cancel_at = cancel_at;
+    w->cancelled = false;
+    w->fraction = 0.0;
+}
+
+/* Cancelled at its first report, its second, and so on (in large calls not at all of them), until a call has
+ * no more reports than that. */
+static bool cancel_later(void *user, cscd_context *context, cscd_status status) {
+    watcher *w = user;
+    if (!w->cancelled) {
+        if (status == CSCD_CANCELLED) w->unexplained++;
+        next_call(w, 1);
+        return false;
+    }
+    if (status != CSCD_CANCELLED || strstr(cscd_context_detail(context), "cancelled") == NULL) {
+        w->unexplained++;
+        next_call(w, 1);
+        return false;
+    }
+    w->bytes = cscd_context_bytes(context);
+    w->cancellations++;
+    next_call(w, w->cancel_at + 1 + w->cancel_at / w->every);
+    return true;
+}
+
+static cscd_context *make_context(uint32_t thread_count, watcher *w, counting_allocator *counter) {
+    cscd_context *context = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    *counter = counting_allocator_start();
+    options.thread_count = thread_count;
+    options.allocator = counting_allocator_interface(counter);
+    if (w != NULL) {
+        *w = (watcher){.thread = pthread_self(), .cancel_at = 1, .every = UINT32_MAX, .closest_ms = INFINITY};
+        options.progress = (cscd_progress){watch, w};
+    }
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    return context;
+}
+
+static void expect_good(const watcher *w) {
+    assert_false(w->fell);
+    assert_false(w->elsewhere);
+    assert_false(w->nameless);
+    assert_int_equal(w->unexplained, 0);
+}
+
+/* ---- every call, cancelled everywhere ------------------------------------------------------------------ */
+
+static void expect_equal(const workload_result *found, const workload_result *expected) {
+    assert_false(found->failed);
+    assert_false(expected->failed);
+    assert_int_equal(found->call_count, expected->call_count);
+    for (uint32_t i = 0; i < found->call_count; i++) {
+        if (found->digests[i] != expected->digests[i]) fail_msg("call %u gave something else", i);
+    }
+}
+
+/* Against a context whose calls nobody interrupts, or watches. */
+static workload_result interrupt(uint32_t thread_count, uint32_t every, workload w) {
+    static workload_result found, expected;
+    counting_allocator counter;
+    watcher host;
+    cscd_context *context = make_context(1, NULL, &counter);
+    w.sequence = &q;
+    expected = workload_run(context, &w);
+    cscd_context_destroy(context);
+
+    context = make_context(thread_count, &host, &counter);
+    context->progress.interval_ms = 0.0;
+    host.every = every;
+    w.again = cancel_later;
+    w.user = &host;
+    size_t bytes = cscd_context_bytes(context);
+    found = workload_run(context, &w);
+    assert_int_equal(cscd_context_bytes(context), bytes);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.live, 0);
+    expect_equal(&found, &expected);
+    expect_good(&host);
+    print_message("%u calls, cancelled %u times\n", found.call_count, host.cancellations);
+    assert_true(host.cancellations > found.call_count);
+    return expected;
+}
+
+static cscd_detector_options of_method(cscd_method method, cscd_mode mode, cscd_start start) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
+    options.mode = mode;
+    options.start = start;
+    return options;
+}
+
+static void culling_goes_on(void **state) {
+    static const cscd_start starts[] = {CSCD_START_PROVE, CSCD_START_VOUCHED, CSCD_START_UNKNOWN};
+    uint64_t contacts = 0, culled = 0;
+    (void)state;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        sequence_make(seed % 3 == 2 ? SEQUENCE_GRID : SEQUENCE_SCENE, seed + 20, 14, &q);
+        cscd_mode mode = seed % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
+        workload_result found =
+            interrupt(seed % 2 == 0 ? 1 : 3, UINT32_MAX,
+                      (workload){.options = of_method(CSCD_METHOD_SINGLE, mode, starts[seed / 2 % 3])});
+        contacts += found.contacts;
+        culled += found.culled;
+    }
+    assert_true(contacts > 0);
+    assert_true(culled > 0);
+}
+
+static void other_methods_go_on(void **state) {
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD,
+                                          CSCD_METHOD_ICCD_PUBLISHED};
+    (void)state;
+    for (uint64_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        sequence_make(SEQUENCE_SCENE, i + 40, 8, &q);
+        interrupt(i % 2 == 0 ? 1 : 3, UINT32_MAX,
+                  (workload){.options = of_method(methods[i], CSCD_MODE_ALL, CSCD_START_PROVE)});
+    }
+}
+
+static void separation_goes_on(void **state) {
+    cscd_detector_options options = cscd_detector_defaults();
+    (void)state;
+    options.min_separation = 0.02;
+    sequence_make(SEQUENCE_SCENE, 3, 6, &q);
+    interrupt(1, UINT32_MAX, (workload){.options = options});
+}
+
+static void brute_force_goes_on(void **state) {
+    (void)state;
+    sequence_make(SEQUENCE_GRID, 5, 4, &q);
+    interrupt(1, UINT32_MAX,
+              (workload){.options = of_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, CSCD_START_PROVE)});
+}
+
+/* A pleated sheet that is pulled flat, so that its trees are built anew in a call that is cancelled. */
+static void rebuilding_goes_on(void **state) {
+    enum { COLUMNS = 140, PLEAT = 6 };
+    (void)state;
+    scene_clear(&q.shape);
+    scene_add_sheet(&q.shape, COLUMNS, 6.0, COLUMNS, 6);
+    q.frame_count = 16;
+    for (uint32_t f = 0; f < q.frame_count; f++) {
+        double angle = 0.5 * acos(-1.0) * 0.98 * fmax(0.0, 1.0 - f / 12.0);
+        for (uint32_t v = 0; v < q.shape.vertex_count; v++) {
+            const double *rest = q.shape.x0 + (size_t)v * 3;
+            double along = rest[0] - q.shape.x0[0], fold = fmod(fabs(along), 2.0 * PLEAT);
+            double *x = q.frames[f] + (size_t)v * 3;
+            x[0] = along * cos(angle);
+            x[1] = rest[1];
+            x[2] = (fold < PLEAT ? fold : 2.0 * PLEAT - fold) * sin(angle);
+        }
+    }
+    workload_result found = interrupt(
+        1, UINT32_MAX, (workload){.options = of_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, CSCD_START_PROVE)});
+    assert_true(found.rebuilds > 0);
+}
+
+/* Large enough that lanes share its trees; it bends until it meets itself. */
+static void large_meshes_go_on(void **state) {
+    (void)state;
+    for (uint32_t threads = 1; threads < 4; threads += 2) {
+        workload_tube(&q, 36, 18, 5);
+        workload_result found =
+            interrupt(threads, 4,
+                      (workload){.options = of_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, CSCD_START_PROVE)});
+        assert_true(found.contacts > 0);
+    }
+}
+
+/* ---- plans --------------------------------------------------------------------------------------------- */
+
+static void plans_go_on(void **state) {
+    static const cscd_method methods[] = {CSCD_METHOD_CHARGE, CSCD_METHOD_KMEANS};
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        scene_clear(&q.shape);
+        scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
+        q.frame_count = 1;
+        interrupt(1 + i / 2, UINT32_MAX,
+                  (workload){.plan = methods[i % 2],
+                             .options = of_method(methods[i % 2], CSCD_MODE_ALL, CSCD_START_PROVE)});
+    }
+}
+
+/* By the bytes of the context, after each cancelled call. */
+static void plans_leave_nothing_behind(void **state) {
+    counting_allocator counter;
+    watcher host;
+    cscd_mesh *mesh = NULL;
+    cscd_plan *plan = NULL;
+    (void)state;
+    scene_clear(&q.shape);
+    scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
+    cscd_mesh_desc desc = {q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles};
+    cscd_context *context = make_context(2, &host, &counter);
+    context->progress.interval_ms = 0.0;
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    size_t bytes = cscd_context_bytes(context);
+    while (cancel_later(&host, context, cscd_plan_create(mesh, q.shape.x0, NULL, &plan))) {
+        assert_null(plan);
+        assert_int_equal(host.bytes, bytes);
+    }
+    assert_non_null(plan);
+    assert_true(host.cancellations > 10);
+    expect_good(&host);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.live, 0);
+}
+
+/* With the interval of the library's own; the fraction comes near 1. */
+static void reports_come_now_and_then(void **state) {
+    counting_allocator counter;
+    watcher host;
+    cscd_mesh *mesh = NULL;
+    cscd_plan *plan = NULL;
+    (void)state;
+    scene_clear(&q.shape);
+    scene_add_capsule(&q.shape, 5.0, 0.5, 44, 22);
+    cscd_mesh_desc desc = {q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles};
+    cscd_context *context = make_context(1, &host, &counter);
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    next_call(&host, 0);
+    assert_int_equal(cscd_plan_create(mesh, q.shape.x0, NULL, &plan), CSCD_OK);
+    expect_good(&host);
+    assert_true(host.reports > 1);
+    assert_true(host.closest_ms >= context->progress.interval_ms);
+    assert_true(host.fraction > 0.5);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(culling_goes_on),
+                                       cmocka_unit_test(other_methods_go_on),
+                                       cmocka_unit_test(separation_goes_on),
+                                       cmocka_unit_test(brute_force_goes_on),
+                                       cmocka_unit_test(rebuilding_goes_on),
+                                       cmocka_unit_test(large_meshes_go_on),
+                                       cmocka_unit_test(plans_go_on),
+                                       cmocka_unit_test(plans_leave_nothing_behind),
+                                       cmocka_unit_test(reports_come_now_and_then)};
+    return cmocka_run_group_tests_name("progress", tests, NULL, NULL);
+}

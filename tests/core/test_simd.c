@@ -1,0 +1,235 @@
+/* The operations of src/core/simd.h on every level that this machine has, against plain C: ends of the ranges,
+ * signs of zero, what is not a number. */
+#include "src/core/processor.h"
+#include "tests/core/simd_operations.h"
+#include "tests/support/random_stream.h"
+
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { LANES = OPERATION_LANES, ROUNDS = 5000 };
+
+typedef struct numbers {
+    double x[LANES];
+} numbers;
+
+typedef struct floats {
+    float x[LANES];
+} floats;
+
+static double random_number(random_stream *random) {
+    static const double edges[] = {0.0,        -0.0,          1.0,       -1.0,         DBL_MAX,
+                                   -DBL_MAX,   DBL_MIN,       0x1p-1074, -0x1p-1074,   INFINITY,
+                                   -INFINITY,  NAN,           FLT_MAX,   -FLT_MAX,     FLT_MIN,
+                                   0x1p-149,   -0x1p-149,     0x1p-150,  0x1.000001p0, 0x1.000001000001p0,
+                                   16777217.0, 0x1.ffffffp127};
+    uint32_t count = sizeof edges / sizeof *edges, choice = stream_below(random, 2 * count);
+    return choice < count ? edges[choice] : stream_between(random, -2.0, 2.0);
+}
+
+static numbers random_numbers(random_stream *random) {
+    numbers out;
+    for (int i = 0; i < LANES; i++) out.x[i] = random_number(random);
+    return out;
+}
+
+/* As many lanes equal as not. */
+static numbers like(random_stream *random, numbers a) {
+    for (int i = 0; i < LANES; i++) a.x[i] = stream_below(random, 2) == 0 ? a.x[i] : random_number(random);
+    return a;
+}
+
+static floats to_floats(numbers a) {
+    floats out;
+    for (int i = 0; i < LANES; i++) out.x[i] = (float)a.x[i];
+    return out;
+}
+
+/* Bit for bit, but that what is not a number has many forms. */
+static void assert_number(double found, double expected) {
+    assert_true(isnan(expected) ? isnan(found) : found == expected && signbit(found) == signbit(expected));
+}
+
+static bool lane_of(uint32_t lanes, int i) {
+    return (lanes >> i & 1) != 0;
+}
+
+/* Calls check on every level. */
+static void on_all_levels(void (*check)(const simd_operations *, random_stream *)) {
+    const simd_operations *levels[] = {
+        &simd_operations_scalar,
+#ifdef CSCD_WITH_AVX
+        &simd_operations_avx2,
+        &simd_operations_avx512,
+#endif
+    };
+    int count = (int)(processor_best_simd() - CSCD_SIMD_SCALAR) + 1;
+    for (int i = 0; i < count; i++) {
+        random_stream random = stream_start(7);
+        assert_int_equal(levels[i]->level, i);
+        for (int round = 0; round < ROUNDS; round++) check(levels[i], &random);
+    }
+}
+
+static void check_floats(const simd_operations *o, random_stream *random) {
+    numbers wide = random_numbers(random);
+    floats a = to_floats(wide), b = to_floats(like(random, wide)), least, greatest, size;
+    o->f32_min(a.x, b.x, least.x);
+    o->f32_max(a.x, b.x, greatest.x);
+    o->f32_abs(a.x, size.x);
+    uint32_t below = o->f32_below(a.x, b.x);
+    for (int i = 0; i < LANES; i++) {
+        assert_number(least.x[i], a.x[i] < b.x[i] ? a.x[i] : b.x[i]);
+        assert_number(greatest.x[i], a.x[i] > b.x[i] ? a.x[i] : b.x[i]);
+        assert_number(size.x[i], fabsf(a.x[i]));
+        assert_int_equal(lane_of(below, i), a.x[i] < b.x[i]);
+    }
+    assert_int_equal(below >> LANES, 0);
+}
+
+static void floats_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_floats);
+}
+
+/* Of numbers, of which zeros are equal. */
+static void check_across(const simd_operations *o, random_stream *random) {
+    floats a = to_floats(random_numbers(random));
+    float least = INFINITY, greatest = -INFINITY, rows[8][8], columns[8][8];
+    for (int i = 0; i < LANES; i++) {
+        if (isnan(a.x[i])) a.x[i] = (float)i;
+        least = fminf(least, a.x[i]);
+        greatest = fmaxf(greatest, a.x[i]);
+    }
+    assert_true(o->f32_least(a.x) == least && o->f32_greatest(a.x) == greatest);
+    for (int i = 0; i < 64; i++) rows[i / 8][i % 8] = (float)random_number(random);
+    o->f32_transpose((const float(*)[8])rows, columns);
+    for (int i = 0; i < 64; i++) assert_number(columns[i % 8][i / 8], rows[i / 8][i % 8]);
+}
+
+static void across_lanes_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_across);
+}
+
+static void check_negative(const simd_operations *o, random_stream *random) {
+    uint32_t a[LANES];
+    for (int i = 0; i < LANES; i++) {
+        static const uint32_t edges[] = {0, 1, UINT32_MAX, INT32_MAX, 0x80000000u};
+        a[i] = stream_below(random, 2) == 0 ? edges[stream_below(random, 5)] : (uint32_t)stream_bits(random);
+    }
+    uint32_t negative = o->i32_negative(a);
+    for (int i = 0; i < LANES; i++) assert_int_equal(lane_of(negative, i), a[i] > INT32_MAX);
+    assert_int_equal(negative >> LANES, 0);
+}
+
+static void integers_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_negative);
+}
+
+typedef void binary(const double *a, const double *b, double *out);
+typedef uint32_t comparison(const double *a, const double *b);
+
+static void check_min_max(binary *min, binary *max, comparison *below, numbers a, numbers b) {
+    numbers least, greatest;
+    min(a.x, b.x, least.x);
+    max(a.x, b.x, greatest.x);
+    uint32_t lanes = below(a.x, b.x);
+    for (int i = 0; i < LANES; i++) {
+        assert_number(least.x[i], a.x[i] < b.x[i] ? a.x[i] : b.x[i]);
+        assert_number(greatest.x[i], a.x[i] > b.x[i] ? a.x[i] : b.x[i]);
+        assert_int_equal(lane_of(lanes, i), a.x[i] < b.x[i]);
+    }
+    assert_int_equal(lanes >> LANES, 0);
+}
+
+static void check_doubles(const simd_operations *o, random_stream *random) {
+    numbers a = random_numbers(random), b = like(random, a), size, wide_size, root, chosen, same;
+    uint32_t lanes = (uint32_t)stream_bits(random) & 255, at_most = o->f64w_at_most(a.x, b.x);
+    check_min_max(o->f64_min, o->f64_max, o->f64_below, a, b);
+    check_min_max(o->f64w_min, o->f64w_max, o->f64w_below, a, b);
+    o->f64_abs(a.x, size.x);
+    o->f64w_abs(a.x, wide_size.x);
+    o->f64w_sqrt(a.x, root.x);
+    o->f64w_select(lanes, a.x, b.x, chosen.x);
+    o->f64w_all(a.x[0], same.x);
+    for (int i = 0; i < LANES; i++) {
+        assert_number(size.x[i], fabs(a.x[i]));
+        assert_number(wide_size.x[i], fabs(a.x[i]));
+        assert_number(root.x[i], sqrt(a.x[i]));
+        assert_number(chosen.x[i], lane_of(lanes, i) ? a.x[i] : b.x[i]);
+        assert_number(same.x[i], a.x[0]);
+        assert_int_equal(lane_of(at_most, i), a.x[i] <= b.x[i]);
+    }
+    assert_int_equal(at_most >> LANES, 0);
+}
+
+static void doubles_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_doubles);
+}
+
+static void check_conversions(const simd_operations *o, random_stream *random) {
+    numbers a = random_numbers(random), back;
+    floats rounded;
+    o->to_f32(a.x, rounded.x);
+    o->to_f64(rounded.x, back.x);
+    for (int i = 0; i < LANES; i++) {
+        assert_number(rounded.x[i], (float)a.x[i]);
+        assert_number(back.x[i], (double)(float)a.x[i]);
+    }
+}
+
+static void conversions_as_in_c(void **state) {
+    (void)state;
+    on_all_levels(check_conversions);
+}
+
+enum { POINTS = 20 };
+static double *positions; /* after the last of them no memory can be read */
+
+static void check_points(const simd_operations *o, random_stream *random) {
+    uint32_t indices[LANES];
+    double points[3][LANES], wide_points[3][LANES];
+    for (int i = 0; i < 3 * POINTS; i++) positions[i] = random_number(random);
+    for (int i = 0; i < LANES; i++)
+        indices[i] = stream_below(random, 2) == 0 ? POINTS - 1 : stream_below(random, POINTS);
+    o->f64_load_points(positions, indices, points);
+    o->f64w_load_points(positions, indices, wide_points);
+    for (int i = 0; i < 3 * LANES; i++) {
+        double expected = positions[(size_t)indices[i / 3] * 3 + (size_t)i % 3];
+        assert_number(points[i % 3][i / 3], expected);
+        assert_number(wide_points[i % 3][i / 3], expected);
+    }
+}
+
+static void points_and_no_more_are_read(void **state) {
+    size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    char *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    (void)state;
+    assert_true(pages != MAP_FAILED);
+    assert_int_equal(mprotect(pages + page, page, PROT_NONE), 0);
+    positions = (double *)(void *)(pages + page) - (ptrdiff_t)(3 * POINTS);
+    on_all_levels(check_points);
+    munmap(pages, 2 * page);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(floats_as_in_c),      cmocka_unit_test(across_lanes_as_in_c),
+        cmocka_unit_test(integers_as_in_c),    cmocka_unit_test(doubles_as_in_c),
+        cmocka_unit_test(conversions_as_in_c), cmocka_unit_test(points_and_no_more_are_read),
+    };
+    return cmocka_run_group_tests_name("simd", tests, NULL, NULL);
+}

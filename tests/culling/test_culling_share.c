@@ -1,0 +1,110 @@
+/* That culling is really on: on a human-like body that moves without contact, charge and single leave at most
+ * a quarter of the triangle pairs, and one static check serves the whole recording. */
+#include "cscd/cscd.h"
+#include "tests/support/models/body_of.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { FRAME_COUNT = 16, TRIANGLE_COUNT = 2000 };
+
+typedef struct recording {
+    body shape;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    double *frames[FRAME_COUNT];
+} recording;
+
+/* The body sways, turns at the hips, and walks on: a few edge lengths a frame. */
+static void pose(const body *shape, double t, double *out) {
+    for (uint32_t v = 0; v < shape->vertex_count; v++) {
+        const double *p = shape->positions + (size_t)v * 3;
+        double angle = 0.5 * sin(2.0 * t) * p[2], lean = 0.15 * sin(3.0 * t) * p[2] * p[2];
+        out[v * 3] = cos(angle) * p[0] - sin(angle) * p[1] + lean + 2.0 * t;
+        out[v * 3 + 1] = sin(angle) * p[0] + cos(angle) * p[1];
+        out[v * 3 + 2] = p[2];
+    }
+}
+
+static int record(void **state) {
+    static recording r;
+    r.shape = body_of(BODY_FIGURE, TRIANGLE_COUNT);
+    cscd_mesh_desc desc = {r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles};
+    if (cscd_context_create(NULL, &r.context) != CSCD_OK) return -1;
+    if (cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK) return -1;
+    for (int i = 0; i < FRAME_COUNT; i++) {
+        r.frames[i] = malloc(r.shape.vertex_count * sizeof(double[3]));
+        if (r.frames[i] == NULL) return -1;
+        pose(&r.shape, (double)i / FRAME_COUNT, r.frames[i]);
+    }
+    *state = &r;
+    return 0;
+}
+
+static int release(void **state) {
+    recording *r = *state;
+    for (int i = 0; i < FRAME_COUNT; i++) free(r->frames[i]);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+    body_free(&r->shape);
+    return 0;
+}
+
+typedef struct totals {
+    uint64_t pairs, checks;
+    size_t contacts;
+    bool all_clean;
+} totals;
+
+static totals replay(const recording *r, cscd_method method, cscd_mode mode) {
+    totals sum = {.all_clean = true};
+    cscd_plan *plan = NULL;
+    cscd_detector *detector = NULL;
+    cscd_plan_options plan_options = cscd_plan_defaults();
+    cscd_detector_options options = cscd_detector_defaults();
+    plan_options.method = options.method = method;
+    options.mode = mode;
+    if (method != CSCD_METHOD_NONE)
+        assert_int_equal(cscd_plan_create(r->mesh, r->shape.positions, &plan_options, &plan), CSCD_OK);
+    assert_int_equal(cscd_detector_create(r->mesh, plan, &options, &detector), CSCD_OK);
+    for (int i = 0; i + 1 < FRAME_COUNT; i++) {
+        cscd_contacts found;
+        assert_int_equal(cscd_detector_step(detector, r->frames[i], r->frames[i + 1], &found), CSCD_OK);
+        sum.contacts += found.count;
+        sum.pairs += cscd_detector_counters(detector).pcp;
+        sum.checks += cscd_detector_counters(detector).static_checks;
+        sum.all_clean &= cscd_detector_guarantee(detector, 0).reason == CSCD_REASON_CLEAN;
+    }
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+    return sum;
+}
+
+static void a_quarter_of_the_pairs(void **state) {
+    const recording *r = *state;
+    totals none = replay(r, CSCD_METHOD_NONE, CSCD_MODE_ALL);
+    assert_int_equal(none.contacts, 0);
+    static const cscd_method methods[2] = {CSCD_METHOD_SINGLE, CSCD_METHOD_CHARGE};
+    for (int i = 0; i < 4; i++) {
+        cscd_mode mode = i < 2 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
+        totals culled = replay(r, methods[i % 2], mode);
+        print_message("  %s, %s: %.1f %% of %llu pairs\n", cscd_method_name(methods[i % 2]),
+                      cscd_mode_name(mode), 100.0 * (double)culled.pairs / (double)none.pairs,
+                      (unsigned long long)none.pairs);
+        assert_true(4 * culled.pairs <= none.pairs);
+        assert_int_equal(culled.contacts, 0);
+        assert_int_equal(culled.checks, 1);
+        assert_true(culled.all_clean);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_quarter_of_the_pairs)};
+    return cmocka_run_group_tests_name("culling_share", tests, record, release);
+}

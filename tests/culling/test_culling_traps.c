@@ -1,0 +1,375 @@
+/* Culling by orientation where it is easily wrong: surfaces without an inside, degenerate first touches,
+ * starts that are not embedded, minimum separation. */
+#include "cscd/cscd.h"
+#include "runtime/detector/detector.h"
+#include "tests/support/rig.h"
+#include "tests/support/scenes.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define PI 3.14159265358979323846
+
+static scene s; /* large; one test at a time */
+
+static uint32_t add_vertex(double x, double y, double z) {
+    double *p = s.x0 + (size_t)s.vertex_count * 3;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+    return s.vertex_count++;
+}
+
+static void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
+    uint32_t *t = s.triangles + (size_t)s.triangle_count++ * 3;
+    t[0] = a;
+    t[1] = b;
+    t[2] = c;
+}
+
+static void keep_still(void) {
+    memcpy(s.x1, s.x0, s.vertex_count * sizeof(double[3]));
+}
+
+static void move_to(uint32_t vertex, double x, double y, double z) {
+    double *p = s.x1 + (size_t)vertex * 3;
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+}
+
+typedef struct result {
+    size_t count;
+    double earliest;
+    cscd_guarantee guarantee; /* of component 0 */
+    cscd_counters counters;
+} result;
+
+static result run(cscd_detector_options options, uint32_t k) {
+    result out = {.earliest = INFINITY};
+    rig r = rig_create(&s, 1, NULL);
+    cscd_plan *plan = NULL;
+    cscd_detector *detector = NULL;
+    cscd_contacts found;
+    cscd_plan_options plan_options = cscd_plan_defaults();
+    plan_options.method = k > 0 ? CSCD_METHOD_KMEANS : CSCD_METHOD_SINGLE;
+    plan_options.k = k;
+    assert_int_equal(cscd_plan_create(r.mesh, s.x0, &plan_options, &plan), CSCD_OK);
+    assert_int_equal(cscd_detector_create(r.mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_step(detector, s.x0, s.x1, &found), CSCD_OK);
+    out.count = found.count;
+    if (found.count > 0) out.earliest = found.items[0].toi;
+    out.guarantee = cscd_detector_guarantee(detector, 0);
+    out.counters = cscd_detector_counters(detector);
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+    rig_destroy(&r);
+    return out;
+}
+
+static cscd_detector_options with_mode(cscd_method method, cscd_mode mode) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
+    options.mode = mode;
+    return options;
+}
+
+/* Mode all equals no culling; mode earliest has the same first contact; one region and several. */
+static void check_first_contact(cscd_reason expected) {
+    result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    for (uint32_t k = 0; k <= 4; k++) {
+        result all = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_ALL), k);
+        result earliest = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k);
+        assert_int_equal(all.count, truth.count);
+        assert_true(isinf(truth.earliest) == isinf(earliest.earliest));
+        if (truth.count > 0) assert_true(fabs(earliest.earliest - truth.earliest) <= 1e-9);
+        assert_int_equal(earliest.guarantee.reason, expected);
+        assert_true(all.guarantee.complete);
+    }
+}
+
+/* ---- no inside ------------------------------------------------------------------------------------- */
+
+/* Every triangle faces the centre, and yet the surface crosses itself: it winds around twice. */
+static void pentagrammic_bipyramid(void **state) {
+    (void)state;
+    scene_clear(&s);
+    for (int i = 0; i < 5; i++) add_vertex(cos(4.0 * PI * i / 5.0), sin(4.0 * PI * i / 5.0), 0.0);
+    uint32_t top = add_vertex(0, 0, 1), bottom = add_vertex(0, 0, -1);
+    for (uint32_t i = 0; i < 5; i++) {
+        add_triangle(top, i, (i + 1) % 5);
+        add_triangle(bottom, (i + 1) % 5, i);
+    }
+    keep_still();
+    for (uint32_t i = 0; i < s.vertex_count * 3; i++) s.x1[i] *= 1.1;
+    cscd_detector_options vouched = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
+    vouched.start = CSCD_START_VOUCHED;
+    result trusting = run(vouched, 0);
+    assert_int_equal(trusting.counters.plus, s.triangle_count); /* or this test tests nothing */
+    check_first_contact(CSCD_REASON_CROSSING);
+    assert_true(run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > trusting.count);
+}
+
+/* An open sheet, rolled up about its axis: all S+, and its layers touch. */
+static void rolled_sheet(void **state) {
+    (void)state;
+    scene_clear(&s);
+    scene_add_sheet(&s, 12.0, 2.0, 60, 6);
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        double *p = s.x0 + (size_t)v * 3, *q = s.x1 + (size_t)v * 3;
+        double angle = p[0] * 1.0, wide = 1.0 + 0.05 * angle, narrow = 1.0 - 0.03 * angle, y = p[1];
+        p[0] = wide * cos(angle);
+        p[1] = wide * sin(angle);
+        p[2] = y;
+        q[0] = narrow * cos(angle);
+        q[1] = narrow * sin(angle);
+        q[2] = y;
+    }
+    assert_true(run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > 0);
+    check_first_contact(CSCD_REASON_SURFACE);
+}
+
+/* ---- degenerate first touches ---------------------------------------------------------------------- */
+
+/* A horseshoe: the polygon extruded along z. Returns the number of its corners; corner i is vertex 2 i at z =
+ * 0, 2 i + 1 at z = 4. */
+static void add_horseshoe(void) {
+    static const double corners[8][2] = {{0, 0}, {10, 0}, {10, 8}, {7, 8}, {7, 3}, {3, 3}, {3, 8}, {0, 8}};
+    static const uint32_t cap[6][3] = {{0, 1, 5}, {1, 4, 5}, {1, 2, 4}, {2, 3, 4}, {0, 5, 7}, {5, 6, 7}};
+    scene_clear(&s);
+    for (int i = 0; i < 8; i++) {
+        add_vertex(corners[i][0], corners[i][1], 0);
+        add_vertex(corners[i][0], corners[i][1], 4);
+    }
+    for (uint32_t i = 0; i < 8; i++) {
+        uint32_t j = (i + 1) % 8;
+        add_triangle(2 * i, 2 * j, 2 * j + 1);
+        add_triangle(2 * i, 2 * j + 1, 2 * i + 1);
+    }
+    for (int i = 0; i < 6; i++) {
+        add_triangle(2 * cap[i][0], 2 * cap[i][2], 2 * cap[i][1]);
+        add_triangle(2 * cap[i][0] + 1, 2 * cap[i][1] + 1, 2 * cap[i][2] + 1);
+    }
+    keep_still();
+}
+
+/* The tip of one arm meets the edge of the other at which its sides turn away from the detector point. */
+static void vertex_meets_silhouette_edge(void **state) {
+    (void)state;
+    add_horseshoe();
+    move_to(2 * 3, -1, 8, 2);
+    check_first_contact(CSCD_REASON_EARLIEST);
+    assert_true(fabs(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest - 0.5) <= 1e-9);
+}
+
+/* The same, past the edge: no contact, and a proof of it. */
+static void vertex_misses_silhouette_edge(void **state) {
+    (void)state;
+    add_horseshoe();
+    move_to(2 * 3, 3.0 + 0x1p-40, 8, 2);
+    check_first_contact(CSCD_REASON_CLEAN);
+    assert_int_equal(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).count, 0);
+}
+
+/* An arm comes to lie on the other, side on side: all contacts at one time, all degenerate. */
+static void side_comes_to_lie_on_side(void **state) {
+    (void)state;
+    add_horseshoe();
+    move_to(2 * 3, 3, 8, 0);
+    move_to(2 * 3 + 1, 3, 8, 4);
+    check_first_contact(CSCD_REASON_EARLIEST);
+    add_horseshoe();
+    move_to(2 * 3, 3, 8, 0);
+    move_to(2 * 3 + 1, 3, 8, 4);
+    move_to(2 * 4, 3.5, 3, 0);
+    move_to(2 * 4 + 1, 3.5, 3, 4);
+    check_first_contact(CSCD_REASON_EARLIEST);
+}
+
+static uint32_t nearest_vertex(double x, double y, double z) {
+    uint32_t nearest = 0;
+    double least = INFINITY;
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        const double *p = s.x0 + (size_t)v * 3;
+        double d = hypot(hypot(p[0] - x, p[1] - y), p[2] - z);
+        if (d < least) {
+            least = d;
+            nearest = v;
+        }
+    }
+    return nearest;
+}
+
+/* Three points of a sphere are pulled inwards and arrive at one point at the end. */
+static void three_sheets_at_one_point(void **state) {
+    static const double origin[3] = {0, 0, 0};
+    (void)state;
+    scene_clear(&s);
+    scene_add_sphere(&s, origin, 1.0, 9, 12);
+    keep_still();
+    for (int i = 0; i < 3; i++)
+        move_to(nearest_vertex(cos(2.0 * PI * i / 3.0), sin(2.0 * PI * i / 3.0), 0.0), 0, 0, 0);
+    check_first_contact(CSCD_REASON_EARLIEST);
+    assert_true(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest > 1.0 - 1e-9);
+}
+
+/* ---- components ------------------------------------------------------------------------------------ */
+
+/* The inner sphere grows through the outer one: contacts between components are never culled. */
+static void inner_grows_through_outer(void **state) {
+    static const double origin[3] = {0, 0, 0};
+    (void)state;
+    scene_clear(&s);
+    scene_add_sphere(&s, origin, 1.0, 7, 9);
+    uint32_t outer = s.vertex_count;
+    scene_add_sphere(&s, origin, 0.5, 6, 8);
+    keep_still();
+    for (uint32_t i = outer * 3; i < s.vertex_count * 3; i++) s.x1[i] = 3.0 * s.x0[i];
+    result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    assert_true(truth.count > 0);
+    for (uint32_t k = 0; k <= 4; k++)
+        assert_int_equal(run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k).count, truth.count);
+    check_first_contact(CSCD_REASON_CLEAN);
+}
+
+/* ---- minimum separation ---------------------------------------------------------------------------- */
+
+/* The walls of a groove face the detector point and come near to each other: orientation says nothing. */
+static void groove_with_minimum_separation(void **state) {
+    (void)state;
+    add_horseshoe();
+    move_to(2 * 3, 3.5, 8, 0);
+    move_to(2 * 3 + 1, 3.5, 8, 4);
+    cscd_detector_options options = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
+    options.min_separation = 1.0;
+    result found = run(options, 0);
+    options.method = CSCD_METHOD_BRUTE;
+    result truth = run(options, 0);
+    assert_true(found.count > 0 && found.count == truth.count && found.earliest == truth.earliest);
+    assert_int_equal(found.guarantee.reason, CSCD_REASON_METHOD);
+    assert_true(found.guarantee.complete && found.counters.plus == 0);
+}
+
+/* ---- starts ---------------------------------------------------------------------------------------- */
+
+typedef struct chain {
+    rig r;
+    cscd_detector *detector;
+    uint64_t checks;
+} chain;
+
+static void step(chain *c, const double *start, const double *end, cscd_reason expected) {
+    cscd_contacts found;
+    assert_int_equal(cscd_detector_step(c->detector, start, end, &found), CSCD_OK);
+    c->checks += cscd_detector_counters(c->detector).static_checks;
+    assert_int_equal(cscd_detector_guarantee(c->detector, 0).reason, expected);
+}
+
+static chain start_chain(cscd_start start) {
+    chain c = {.r = rig_create(&s, 1, NULL)};
+    cscd_detector_options options = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_ALL);
+    options.start = start;
+    assert_int_equal(cscd_detector_create(c.r.mesh, NULL, &options, &c.detector), CSCD_OK);
+    return c;
+}
+
+static void end_chain(chain *c) {
+    cscd_detector_destroy(c->detector);
+    rig_destroy(&c->r);
+}
+
+/* From clean interval to clean interval the proof is handed on: one static check in all. */
+static void one_check_while_clean(void **state) {
+    static double frames[20][SCENE_VERTICES_MAX * 3];
+    (void)state;
+    add_horseshoe();
+    for (int i = 0; i < 20; i++) {
+        for (uint32_t j = 0; j < s.vertex_count * 3; j++) frames[i][j] = s.x0[j] * (1.0 + 0.01 * i);
+    }
+    chain c = start_chain(CSCD_START_PROVE);
+    for (int i = 0; i < 19; i++) step(&c, frames[i], frames[i + 1], CSCD_REASON_CLEAN);
+    assert_int_equal(c.checks, 1);
+    end_chain(&c);
+}
+
+/* Contact, crossing, apart again: what the detector knows follows. */
+static void contact_and_recovery(void **state) {
+    static double open[SCENE_VERTICES_MAX * 3], crossing[SCENE_VERTICES_MAX * 3];
+    (void)state;
+    add_horseshoe();
+    move_to(2 * 3, 1, 8, 2);
+    memcpy(open, s.x0, sizeof open);
+    memcpy(crossing, s.x1, sizeof crossing);
+    chain c = start_chain(CSCD_START_PROVE);
+    c.detector->starts.share_worth_it = 0.5;
+    step(&c, open, crossing, CSCD_REASON_FINISHED);
+    step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* most triangles stay clean, so the others are */
+    assert_true(cscd_detector_counters(c.detector).plus > 0);
+    step(&c, crossing, open, CSCD_REASON_CROSSING); /* checked at each start */
+    step(&c, open, open, CSCD_REASON_CLEAN);
+    assert_int_equal(c.checks, 4);
+    end_chain(&c);
+
+    c = start_chain(CSCD_START_PROVE);
+    step(&c, open, crossing, CSCD_REASON_FINISHED);
+    step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* too few are clean for culling to pay, */
+    assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
+    step(&c, crossing, open, CSCD_REASON_UNPROVEN); /* so the next check waits */
+    step(&c, open, open, CSCD_REASON_CLEAN);
+    assert_int_equal(c.checks, 3);
+    end_chain(&c);
+}
+
+static void without_a_proof_nothing_is_culled(void **state) {
+    cscd_intersections found;
+    (void)state;
+    add_horseshoe();
+    chain c = start_chain(CSCD_START_UNKNOWN);
+    step(&c, s.x0, s.x1, CSCD_REASON_UNPROVEN);
+    assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
+    assert_int_equal(cscd_detector_check(c.detector, s.x0, &found), CSCD_OK);
+    step(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
+    assert_true(cscd_detector_counters(c.detector).plus > 0);
+    assert_int_equal(c.checks, 0);
+    end_chain(&c);
+    c = start_chain(CSCD_START_VOUCHED);
+    step(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
+    assert_int_equal(c.checks, 0);
+    end_chain(&c);
+}
+
+/* A start that touches itself exactly is not embedded. */
+static void touching_start(void **state) {
+    (void)state;
+    add_horseshoe();
+    double *tip = s.x0 + (size_t)2 * 3 * 3;
+    tip[0] = 3;
+    tip[2] = 2;
+    keep_still();
+    move_to(2 * 3, 7, 8, 0);
+    check_first_contact(CSCD_REASON_CROSSING);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pentagrammic_bipyramid),
+        cmocka_unit_test(rolled_sheet),
+        cmocka_unit_test(vertex_meets_silhouette_edge),
+        cmocka_unit_test(vertex_misses_silhouette_edge),
+        cmocka_unit_test(side_comes_to_lie_on_side),
+        cmocka_unit_test(three_sheets_at_one_point),
+        cmocka_unit_test(inner_grows_through_outer),
+        cmocka_unit_test(groove_with_minimum_separation),
+        cmocka_unit_test(one_check_while_clean),
+        cmocka_unit_test(contact_and_recovery),
+        cmocka_unit_test(without_a_proof_nothing_is_culled),
+        cmocka_unit_test(touching_start),
+    };
+    return cmocka_run_group_tests_name("culling_traps", tests, NULL, NULL);
+}

@@ -1,0 +1,349 @@
+/* Minimum separation through the detector: every method equals brute force, any thread count gives the same
+ * bits, and a larger distance only adds pairs. */
+#include "cscd/cscd.h"
+#include "tests/support/oracle.h"
+#include "tests/support/rig.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solver/free_step_check.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { INTERVALS_PER_FAMILY = 8 };
+
+static scene interval; /* large; one test at a time */
+
+/* The scenes are a few units large, their edges some tenths. */
+static const double distances[] = {1e-8, 1e-3, 0.03, 0.2};
+enum { DISTANCE_COUNT = sizeof distances / sizeof *distances };
+
+static cscd_detector_options within(double distance, cscd_method method) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = distance;
+    options.method = method;
+    return options;
+}
+
+/* ---- against brute force ---------------------------------------------------------------------------- */
+
+static void compare(const oracle_list *truth, const cscd_detector_options *options) {
+    rig r = rig_create(&interval, 1, options);
+    cscd_contacts found = rig_step(&r, &interval);
+    cscd_counters counters = cscd_detector_counters(r.detector);
+    uint64_t bounded = 0;
+    assert_int_equal(found.count, truth->count);
+    for (size_t i = 0; i < found.count; i++) {
+        const cscd_contact *c = &found.items[i];
+        const oracle_contact *t = &truth->items[i];
+        assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
+        bounded += c->bounded;
+    }
+    assert_int_equal(counters.vf + counters.ee, found.count);
+    assert_int_equal(counters.bounded, bounded);
+    assert_true(counters.tests >= found.count);
+    assert_int_equal(counters.by_signs + counters.by_roots + counters.by_exact, 0);
+    rig_destroy(&r);
+}
+
+static void every_method_equals_brute_force(void **state) {
+    (void)state;
+    oracle_list truth = {0};
+    size_t contacts = 0, with_contact = 0, intervals = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
+            double distance = distances[(family + (int)seed) % DISTANCE_COUNT];
+            bool roomy =
+                seed % 2 == 1; /* what stays within the tolerance only may be reported, by all or none */
+            separation limit = {distance, (roomy ? 0.5 : 1e-6) * distance};
+            scene_make((scene_family)family, seed, &interval);
+            for (uint32_t i = 0; seed % 4 == 3 && i < interval.vertex_count; i++)
+                interval.x1[i * 3 + 2] += 37.5;
+            oracle_find_within(&interval, &limit, &truth);
+            for (int method = 0; method < 2; method++) {
+                cscd_detector_options options = within(distance, (cscd_method)method);
+                if (!roomy) compare(&truth, &options);
+                options.tolerance = limit.tolerance; /* what 0 stands for, if it is not roomy */
+                if (roomy || method == CSCD_METHOD_NONE) compare(&truth, &options);
+            }
+            contacts += truth.count;
+            with_contact += truth.count > 0;
+            intervals++;
+        }
+    }
+    print_message("  %zu contacts in %zu of %zu intervals\n", contacts, with_contact, intervals);
+    assert_true(with_contact > intervals / 2 && with_contact < intervals);
+    oracle_free(&truth);
+}
+
+/* Scaled far down and up the volumes are rounded differently; the pairs stay. */
+static void same_pairs_when_scaled(void **state) {
+    (void)state;
+    static const int exponents[] = {-250, -140, 100, 270};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 11, &interval);
+        cscd_detector_options options = within(0.03, CSCD_METHOD_NONE);
+        rig r = rig_create(&interval, 1, &options);
+        cscd_contacts expected = rig_step(&r, &interval);
+        for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
+            scene_make((scene_family)family, 11, &interval);
+            for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
+                interval.x0[i] = ldexp(interval.x0[i], exponents[e]);
+                interval.x1[i] = ldexp(interval.x1[i], exponents[e]);
+            }
+            options.min_separation = ldexp(0.03, exponents[e]);
+            rig scaled = rig_create(&interval, 1, &options);
+            cscd_contacts found = rig_step(&scaled, &interval);
+            assert_int_equal(found.count, expected.count);
+            for (size_t i = 0; i < found.count; i++) {
+                const cscd_contact *c = &found.items[i], *t = &expected.items[i];
+                assert_true(c->kind == t->kind && c->a == t->a && c->b == t->b && c->toi == t->toi);
+            }
+            rig_destroy(&scaled);
+        }
+        rig_destroy(&r);
+    }
+}
+
+static void same_bits_for_any_thread_count(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 4, &interval);
+        cscd_detector_options options = within(0.05, CSCD_METHOD_NONE);
+        rig one = rig_create(&interval, 1, &options);
+        cscd_contacts expected = rig_step(&one, &interval);
+        cscd_counters counters = cscd_detector_counters(one.detector);
+        for (uint32_t threads = 2; threads <= 16; threads += 7) {
+            rig many = rig_create(&interval, threads, &options);
+            cscd_contacts found = rig_step(&many, &interval);
+            cscd_counters own = cscd_detector_counters(many.detector);
+            assert_int_equal(found.count, expected.count);
+            if (found.count > 0)
+                assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+            assert_memory_equal(&own, &counters, sizeof own);
+            rig_destroy(&many);
+        }
+        rig_destroy(&one);
+    }
+}
+
+/* ---- more distance, more pairs ---------------------------------------------------------------------- */
+
+static int compare_pairs(const void *left, const void *right) {
+    const cscd_contact *l = left, *r = right;
+    if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+/* The contacts sorted by their pairs, to be freed. */
+static cscd_contact *pairs_within(double distance, size_t *count) {
+    cscd_detector_options options = within(distance, CSCD_METHOD_NONE);
+    rig r = rig_create(&interval, 1, &options);
+    cscd_contacts found = rig_step(&r, &interval);
+    cscd_contact *pairs = malloc((found.count + 1) * sizeof *pairs);
+    assert_non_null(pairs);
+    if (found.count > 0) memcpy(pairs, found.items, found.count * sizeof *pairs);
+    qsort(pairs, found.count, sizeof *pairs, compare_pairs);
+    *count = found.count;
+    rig_destroy(&r);
+    return pairs;
+}
+
+static void a_larger_distance_only_adds_pairs(void **state) {
+    (void)state;
+    size_t touching = 0, added = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 30; seed < 34; seed++) {
+            scene_make((scene_family)family, seed, &interval);
+            size_t fewer_count, count;
+            cscd_contact *fewer = pairs_within(0.0, &fewer_count);
+            touching += fewer_count;
+            for (int i = 0; i < DISTANCE_COUNT; i++) {
+                cscd_contact *pairs = pairs_within(distances[i], &count);
+                for (size_t j = 0; j < fewer_count; j++) {
+                    const cscd_contact *same = bsearch(&fewer[j], pairs, count, sizeof *pairs, compare_pairs);
+                    assert_non_null(same);
+                    assert_true(same->toi <= fewer[j].toi + 1e-9);
+                }
+                added += count - fewer_count;
+                free(fewer);
+                fewer = pairs;
+                fewer_count = count;
+            }
+            free(fewer);
+        }
+    }
+    assert_true(touching > 0 && added > touching);
+}
+
+/* ---- arguments -------------------------------------------------------------------------------------- */
+
+static void expect_refused(const rig *r, double min_separation, double tolerance, const char *word) {
+    cscd_detector *detector = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = min_separation;
+    options.tolerance = tolerance;
+    assert_int_equal(cscd_detector_create(r->mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_null(detector);
+    if (strstr(cscd_context_detail(r->context), word) == NULL)
+        fail_msg("%s", cscd_context_detail(r->context));
+}
+
+static void unfit_lengths_are_refused(void **state) {
+    (void)state;
+    static const double bad[] = {NAN, INFINITY, -INFINITY, -1.0, -1e-300, 5e-324, 0x1p-301, 0x1p301};
+    scene_make(SCENE_SPIKE, 1, &interval);
+    rig r = rig_create(&interval, 1, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        expect_refused(&r, bad[i], 0.0, "min_separation is ");
+        expect_refused(&r, 0.1, bad[i], "tolerance is ");
+    }
+    expect_refused(&r, 0.0, 1e-6, "without min_separation");
+    cscd_detector_options defaults = cscd_detector_defaults();
+    assert_true(defaults.min_separation == 0.0 && defaults.tolerance == 0.0);
+    static const double good[] = {0x1p-300, 1e-30, 1.0, 0x1p300};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        cscd_detector_options options = within(good[i], CSCD_METHOD_NONE);
+        rig fine = rig_create(&interval, 1, &options);
+        rig_step(&fine, &interval);
+        rig_destroy(&fine);
+    }
+    rig_destroy(&r);
+}
+
+/* The check of one moment asks whether the mesh crosses itself, with any options. */
+static void the_static_check_is_not_concerned(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        scene_make(SCENE_FOLDED_SHEET, seed, &interval);
+        cscd_detector_options options = within(0.2, CSCD_METHOD_NONE);
+        rig plain = rig_create(&interval, 1, NULL), wide = rig_create(&interval, 1, &options);
+        cscd_intersections expected, found;
+        assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &expected), CSCD_OK);
+        rig_step(&wide, &interval);
+        assert_int_equal(cscd_detector_check(wide.detector, interval.x1, &found), CSCD_OK);
+        assert_int_equal(found.count, expected.count);
+        if (found.count > 0)
+            assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+        rig_destroy(&wide);
+        rig_destroy(&plain);
+    }
+}
+
+/* One detector whose separation changes, to 0 and back, finds what new ones find; a bad one changes nothing.
+ */
+static void separation_can_change(void **state) {
+    (void)state;
+    static const double changes[] = {0.0, 0.03, 0.0, 0.2, 1e-3, 0.0};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 5, &interval);
+        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        rig changing = rig_create(&interval, 1, &options);
+        for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+            assert_int_equal(cscd_detector_set_separation(changing.detector, changes[i], 0.0), CSCD_OK);
+            assert_int_equal(cscd_detector_set_separation(changing.detector, -1.0, 0.0),
+                             CSCD_INVALID_ARGUMENT);
+            cscd_contacts found = rig_step(&changing, &interval);
+            options = within(changes[i], CSCD_METHOD_SINGLE);
+            rig fresh = rig_create(&interval, 1, &options);
+            cscd_contacts expected = rig_step(&fresh, &interval);
+            assert_int_equal(found.count, expected.count);
+            if (found.count > 0)
+                assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+            rig_destroy(&fresh);
+        }
+        rig_destroy(&changing);
+    }
+    assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_INVALID_ARGUMENT);
+}
+
+/* A line's candidates serve separations up to the one that it was begun with, or its reach; a larger one is
+ * refused. */
+static void lines_follow_what_they_can(void **state) {
+    (void)state;
+    static const double changes[] = {0.0, 1e-3, 0.03, 0.2};
+    static free_step_call call;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 6, &interval);
+        cscd_detector_options options = within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
+        rig r = rig_create(&interval, 1, &options);
+        cscd_line *line = NULL;
+        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03),
+                         CSCD_OK);
+        for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+            options.min_separation = changes[i];
+            assert_int_equal(cscd_detector_set_separation(r.detector, changes[i], 0.0), CSCD_OK);
+            free_step_prepare(interval.x0, interval.x1, 1.0, options.step_factor, &call);
+            call.status = cscd_line_max_step(line, 1.0, call.end, &call.step);
+            assert_true((call.status == CSCD_INVALID_ARGUMENT) == (changes[i] > 0.03));
+            if (call.status == CSCD_INVALID_ARGUMENT) {
+                assert_non_null(strstr(cscd_context_detail(r.context), "cscd_line_begin again"));
+                continue;
+            }
+            rig reference = free_step_reference(&interval, &options);
+            free_step_check(&reference, r.context, &call);
+            rig_destroy(&reference);
+        }
+        cscd_line_destroy(line);
+        rig_destroy(&r);
+    }
+}
+
+static bool ignore_all(void *user, uint32_t a, uint32_t b) {
+    (void)user;
+    return a < b;
+}
+
+/* A line that was begun without separation, and goes through what is left out with one: what the detector
+ * knew of its start is not known of its end. */
+static void a_start_behind_a_wall_is_not_clean(void **state) {
+    (void)state;
+    cscd_intersections crossing;
+    cscd_contacts found;
+    cscd_free_step step;
+    size_t through = 0;
+    for (uint64_t seed = 1; seed < 12; seed++) {
+        scene_make(SCENE_SPIKE, seed, &interval);
+        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        options.ignore = ignore_all;
+        rig r = rig_create(&interval, 1, &options), plain = rig_create(&interval, 1, NULL);
+        cscd_line *line = NULL;
+        assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &crossing), CSCD_OK);
+        through += crossing.count > 0;
+        bool embedded = crossing.count == 0;
+        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK);
+        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, 1e-6), CSCD_OK);
+        assert_int_equal(cscd_detector_set_separation(r.detector, 1e-6, 0.0), CSCD_OK);
+        assert_int_equal(cscd_line_max_step(line, 1.0, NULL, &step), CSCD_OK);
+        assert_false(step.limited);
+        assert_int_equal(cscd_detector_set_separation(r.detector, 0.0, 0.0), CSCD_OK);
+        assert_int_equal(cscd_detector_step(r.detector, interval.x1, interval.x1, &found), CSCD_OK);
+        assert_true(embedded || !cscd_detector_guarantee(r.detector, 0).start_embedded);
+        cscd_line_destroy(line);
+        rig_destroy(&plain);
+        rig_destroy(&r);
+    }
+    assert_true(through > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_equals_brute_force),
+                                       cmocka_unit_test(same_pairs_when_scaled),
+                                       cmocka_unit_test(same_bits_for_any_thread_count),
+                                       cmocka_unit_test(a_larger_distance_only_adds_pairs),
+                                       cmocka_unit_test(unfit_lengths_are_refused),
+                                       cmocka_unit_test(the_static_check_is_not_concerned),
+                                       cmocka_unit_test(separation_can_change),
+                                       cmocka_unit_test(lines_follow_what_they_can),
+                                       cmocka_unit_test(a_start_behind_a_wall_is_not_clean)};
+    return cmocka_run_group_tests_name("separation_detector", tests, NULL, NULL);
+}

@@ -1,0 +1,270 @@
+/* make install, and programs of users of what it installs: pkg-config, CMake, moved trees; make uninstall. */
+#include "cscd/cscd.h"
+#include "tests/support/install/api_names.h"
+#include "tests/support/shell.h"
+#include "tests/support/temp_file.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* The build that is installed, as the arguments of make that lead to it. */
+static struct {
+    char root[4096], config[64];
+    bool gsl;
+} build;
+static temp_folder folder;
+static char prefix[512]; /* where the files are: DESTDIR and PREFIX */
+
+/* Reads the build from the place of the tool: ROOT/CONFIG[-without-gsl]/cscd. */
+static void find_build(void) {
+    static const char without[] = "-without-gsl";
+    const char *tool = getenv("CSCD_TOOL");
+    if (tool == NULL) fail_msg("CSCD_TOOL must name the built tool; run the tests through tests/run.sh");
+    snprintf(build.root, sizeof build.root, "%s", tool);
+    *strrchr(build.root, '/') = '\0';
+    char *name = strrchr(build.root, '/');
+    assert_non_null(name);
+    *name++ = '\0';
+    char *suffix = strstr(name, without);
+    build.gsl = suffix == NULL;
+    if (suffix != NULL) *suffix = '\0';
+    snprintf(build.config, sizeof build.config, "%s", name);
+}
+
+/* Runs the target for the tree below `place`, apart from the make that may run this test. */
+static void make(const char *target, const char *place, const char *variables) {
+    shell("env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES make -s %s BUILD_ROOT='%s' CONFIG=%s GSL=%d "
+          "DESTDIR='%s' %s",
+          target, build.root, build.config, build.gsl, place, variables);
+}
+
+static void expect(const char *what, char *found, const char *expected) {
+    if (strcmp(found, expected) != 0) fail_msg("%s: found\n%s\nexpected\n%s", what, found, expected);
+    free(found);
+}
+
+static int install(void **state) {
+    (void)state;
+    find_build();
+    if (strcmp(build.config, "release") != 0) {
+        print_message("skipped: only the release is installed, and this is %s\n", build.config);
+        return 0;
+    }
+    folder = temp_folder_make();
+    snprintf(prefix, sizeof prefix, "%s/stage/opt/cscd", folder.path);
+    char place[512];
+    snprintf(place, sizeof place, "%s/stage", folder.path);
+    make("install", place, "PREFIX=/opt/cscd");
+    return 0;
+}
+
+static int remove_all(void **state) {
+    (void)state;
+    if (folder.path[0] != '\0') shell("rm -rf '%s'", folder.path);
+    return 0;
+}
+
+#define ONLY_RELEASE()                                                                                       \
+    if (strcmp(build.config, "release") != 0) skip()
+
+/* What both clients print, with any library. */
+static const char *clients_output(void) {
+    static char text[256];
+    snprintf(text, sizeof text, "cscd %s\nvf 4 0 at t = 0.667\n", cscd_version_string());
+    return text;
+}
+
+static void files_are_where_they_belong(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char expected[2048];
+    const char *version = cscd_version_string();
+    snprintf(expected, sizeof expected,
+             "bin/cscd\ninclude/cscd/context.h\ninclude/cscd/cscd.h\ninclude/cscd/detector.h\n"
+             "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/sensors.h\n"
+             "include/cscd/solver.h\n"
+             "lib/cmake/cscd/cscdConfig.cmake\nlib/cmake/cscd/cscdConfigVersion.cmake\n"
+             "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"
+             "lib/pkgconfig/cscd.pc\nshare/man/man1/cscd.1\nshare/man/man3/cscd.3\n",
+             CSCD_VERSION_MAJOR, version);
+    expect("installed files",
+           shell_output(0, "cd '%s' && find . ! -type d -printf '%%P\\n' | LC_ALL=C sort", prefix), expected);
+    shell("cmp '%s/bin/cscd' '%s/%s%s/cscd'", prefix, build.root, build.config,
+          build.gsl ? "" : "-without-gsl");
+    expect("places that no value was filled in",
+           shell_output(1, "grep -rn '@[A-Z_]*@' '%s/lib/pkgconfig' '%s/lib/cmake' '%s/share'", prefix,
+                        prefix, prefix),
+           "");
+}
+
+static void shared_library_exports_the_api(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char soname[32];
+    snprintf(soname, sizeof soname, "libcscd.so.%d\n", CSCD_VERSION_MAJOR);
+    expect(
+        "soname",
+        shell_output(0, "readelf -d '%s/lib/libcscd.so' | sed -n 's/.*SONAME.*\\[\\(.*\\)\\]/\\1/p'", prefix),
+        soname);
+    char *declared = api_names("*.h");
+    expect(
+        "declared (<) and exported (>)",
+        shell_output(0,
+                     "nm -D --defined-only '%s/lib/libcscd.so' | sed -n 's/.* T \\(.*\\)@@CSCD_%d$/\\1/p' | "
+                     "LC_ALL=C sort >'%s/exported' && echo '%s' | grep . | diff - '%s/exported' | "
+                     "grep '^[<>]' || true",
+                     prefix, CSCD_VERSION_MAJOR, folder.path, declared, folder.path),
+        "");
+    free(declared);
+    expect("anything else exported",
+           shell_output(0, "nm -D --defined-only '%s/lib/libcscd.so' | grep -vE ' T cscd_| A CSCD_' || true",
+                        prefix),
+           "");
+}
+
+/* Compiles tests/install/client.c with what pkg-config says, changed by a filter; returns what it prints. */
+static char *c_client(const char *pkg_config_options, const char *filter) {
+    shell("set -e; export PKG_CONFIG_PATH='%s/lib/pkgconfig'; "
+          "flags=$(pkg-config --cflags --libs %s cscd | %s); "
+          "${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Werror tests/install/client.c $flags -o '%s/client'",
+          prefix, pkg_config_options, filter, folder.path);
+    return shell_output(0, "LD_LIBRARY_PATH='%s/lib' '%s/client'", prefix, folder.path);
+}
+
+static void c_program_by_pkg_config(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char version[32];
+    snprintf(version, sizeof version, "%s\n", cscd_version_string());
+    expect("version of cscd.pc",
+           shell_output(0, "PKG_CONFIG_PATH='%s/lib/pkgconfig' pkg-config --modversion cscd", prefix),
+           version);
+    expect("shared", c_client("", "cat"), clients_output());
+    shell("readelf -d '%s/client' | grep -q 'NEEDED.*libcscd.so.%d\\]'", folder.path, CSCD_VERSION_MAJOR);
+    expect("static", c_client("--static", "sed 's/-lcscd/-l:libcscd.a/'"), clients_output());
+    expect("libraries of the static client",
+           shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libcscd' || true", folder.path), "0\n");
+    expect("GSL beside the static client",
+           shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libgsl\\.' || true", folder.path),
+           build.gsl ? "1\n" : "0\n");
+}
+
+/* The page cscd(3) ends with a program, between .nf and .fi; it is compiled as C99. */
+static void example_of_the_manual(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    shell("set -e; export PKG_CONFIG_PATH='%s/lib/pkgconfig'; "
+          "sed -n '/^\\.SH EXAMPLES/,/^\\.fi/p' '%s/share/man/man3/cscd.3' | sed -n '/^#include/,/^}/p' | "
+          "sed -e 's/\\\\e/\\\\/g' -e 's/\\\\-/-/g' -e \"s/\\\\\\\\(aq/'/g\" > '%s/example.c'; "
+          "${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Werror '%s/example.c' "
+          "$(pkg-config --cflags --libs cscd) -o '%s/example'",
+          prefix, prefix, folder.path, folder.path, folder.path);
+    char *printed = shell_output(0, "LD_LIBRARY_PATH='%s/lib' '%s/example'", prefix, folder.path);
+    assert_non_null(strstr(printed, "vf 4 0 at t = 0.66"));
+    free(printed);
+}
+
+/* Configures and builds tests/install with the package in the tree `place`, and runs its two programs. */
+static void cmake_project(const char *place) {
+    shell("cmake -S tests/install -B '%s/project' -Dcscd_DIR='%s/lib/cmake/cscd' && "
+          "cmake --build '%s/project' --clean-first",
+          folder.path, place, folder.path);
+    expect("CMake, shared", shell_output(0, "'%s/project/with-cscd'", folder.path), clients_output());
+    expect("CMake, static", shell_output(0, "'%s/project/with-cscd-static'", folder.path), clients_output());
+    expect("libraries of the programs",
+           shell_output(0,
+                        "cd '%s/project' && for program in with-cscd with-cscd-static; do "
+                        "readelf -d $program | grep -c 'NEEDED.*libcscd' || true; done",
+                        folder.path),
+           "1\n0\n");
+}
+
+/* The tree may be moved: then nothing of its old place is left to be found. */
+static void cpp_program_by_cmake(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    cmake_project(prefix);
+    char moved[512];
+    snprintf(moved, sizeof moved, "%s/moved", folder.path);
+    shell("mv '%s' '%s'", prefix, moved);
+    cmake_project(moved);
+    char *flags =
+        shell_output(0, "PKG_CONFIG_PATH='%s/lib/pkgconfig' pkg-config --cflags --libs cscd", moved);
+    assert_non_null(strstr(flags, moved));
+    assert_null(strstr(flags, prefix));
+    free(flags);
+    shell("mv '%s' '%s'", moved, prefix);
+}
+
+/* Whether find_package takes the installed version where `version` is asked for: "" or "TRUE", then "TRUE"
+ * where it is the very same. */
+static void expect_version(const char *version, const char *answer) {
+    shell("printf 'set(PACKAGE_FIND_VERSION %%s)\\nset(PACKAGE_FIND_VERSION_MAJOR %%s)\\ninclude(\"%%s\")\\n"
+          "message(\"${PACKAGE_VERSION_COMPATIBLE} ${PACKAGE_VERSION_EXACT}\")\\n' "
+          "%s %d '%s/lib/cmake/cscd/cscdConfigVersion.cmake' >'%s/version.cmake'",
+          version, atoi(version), prefix, folder.path);
+    expect(version, shell_output(0, "cmake -P '%s/version.cmake'", folder.path), answer);
+}
+
+static void cmake_takes_the_same_major_version(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char version[32];
+    snprintf(version, sizeof version, "%d.9", CSCD_VERSION_MAJOR - 1);
+    expect_version(version, " \n");
+    snprintf(version, sizeof version, "%d", CSCD_VERSION_MAJOR);
+    expect_version(version, "TRUE \n");
+    expect_version(cscd_version_string(), "TRUE TRUE\n");
+    snprintf(version, sizeof version, "%d.%d", CSCD_VERSION_MAJOR, CSCD_VERSION_MINOR + 1);
+    expect_version(version, " \n");
+    snprintf(version, sizeof version, "%d", CSCD_VERSION_MAJOR + 1);
+    expect_version(version, " \n");
+}
+
+static void uninstall_leaves_nothing(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char place[512];
+    snprintf(place, sizeof place, "%s/stage", folder.path);
+    make("uninstall", place, "PREFIX=/opt/cscd");
+    expect("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
+}
+
+/* Folders of any names; what was there before, files and empty folders, stays. */
+static void uninstall_leaves_what_others_made(void **state) {
+    (void)state;
+    ONLY_RELEASE();
+    char place[512];
+    static const char variables[] = "PREFIX=/usr LIBDIR=/usr/lib/a-machine INCLUDEDIR=/elsewhere/include "
+                                    "BINDIR=/usr/games MANDIR=/usr/man";
+    snprintf(place, sizeof place, "%s/with space", folder.path);
+    shell("mkdir -p '%s/usr/lib/a-machine/pkgconfig' '%s/usr/man/man1' && touch '%s/usr/man/man1/other.1'",
+          place, place, place);
+    make("install", place, variables);
+    shell("test -e \"$(PKG_CONFIG_PATH='%s/usr/lib/a-machine/pkgconfig' pkg-config --variable=includedir "
+          "cscd | tr -d '\\\\')/cscd/cscd.h\"",
+          place);
+    make("uninstall", place, variables);
+    expect("what is left",
+           shell_output(0, "cd '%s' && find . -mindepth 1 -printf '%%P\\n' | LC_ALL=C sort", place),
+           "usr\nusr/lib\nusr/lib/a-machine\nusr/lib/a-machine/pkgconfig\nusr/man\nusr/man/man1\n"
+           "usr/man/man1/other.1\n");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_are_where_they_belong), cmocka_unit_test(shared_library_exports_the_api),
+        cmocka_unit_test(c_program_by_pkg_config),     cmocka_unit_test(example_of_the_manual),
+        cmocka_unit_test(cpp_program_by_cmake),        cmocka_unit_test(cmake_takes_the_same_major_version),
+        cmocka_unit_test(uninstall_leaves_nothing),    cmocka_unit_test(uninstall_leaves_what_others_made),
+    };
+    return cmocka_run_group_tests(tests, install, remove_all);
+}

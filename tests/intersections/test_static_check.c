@@ -1,0 +1,98 @@
+/* The static check equals all pairs of triangles, each decided exactly; and the states it tells apart. */
+#include "cscd/cscd.h"
+#include "src/mesh/predicates.h"
+#include "src/mesh/triangle_intersection.h"
+#include "tests/support/rig.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static scene s; /* large; one test at a time */
+
+static uint32_t count_zero_area(const scene *shape) {
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < shape->triangle_count; t++) {
+        const uint32_t *v = shape->triangles + (size_t)t * 3;
+        count += collinear(shape->x0 + (size_t)v[0] * 3, shape->x0 + (size_t)v[1] * 3,
+                           shape->x0 + (size_t)v[2] * 3);
+    }
+    return count;
+}
+
+/* Compares with all pairs; returns how many meet. */
+static size_t compare_with_all_pairs(uint32_t thread_count) {
+    rig r = rig_create(&s, thread_count, NULL);
+    cscd_intersections found;
+    assert_int_equal(cscd_detector_check(r.detector, s.x0, &found), CSCD_OK);
+    size_t next = 0;
+    for (uint32_t a = 0; a < s.triangle_count; a++) {
+        for (uint32_t b = a + 1; b < s.triangle_count; b++) {
+            if (!triangles_intersect(s.triangles + (size_t)a * 3, s.triangles + (size_t)b * 3, s.x0))
+                continue;
+            assert_true(next < found.count);
+            assert_int_equal(found.items[next].a, a);
+            assert_int_equal(found.items[next].b, b);
+            next++;
+        }
+    }
+    assert_int_equal(next, found.count);
+    assert_int_equal(found.zero_area_triangles, count_zero_area(&s));
+    assert_int_equal(found.first_zero_area == UINT32_MAX, found.zero_area_triangles == 0);
+    rig_destroy(&r);
+    return next;
+}
+
+static void equals_all_pairs(void **state) {
+    (void)state;
+    uint32_t embedded = 0, crossing = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        uint64_t seeds = family == SCENE_GRID ? 500 : family == SCENE_SOUP ? 60 : 12;
+        for (uint64_t seed = 0; seed < seeds; seed++) {
+            scene_make((scene_family)family, 1000 + seed, &s);
+            size_t pairs = compare_with_all_pairs(1 + (uint32_t)(seed % 3));
+            embedded += pairs == 0;
+            crossing += pairs > 0;
+        }
+    }
+    print_message("  %u embedded, %u crossing\n", embedded, crossing);
+    assert_true(embedded >= 50 && crossing >= 50);
+}
+
+static size_t pairs_at(double x, double y, double z) {
+    scene_clear(&s);
+    scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 5, 8);
+    scene_add_sphere(&s, (double[3]){x, y, z}, 1.0, 5, 8);
+    return compare_with_all_pairs(1);
+}
+
+/* The spheres' poles are at z = centre -+ 1, exactly. */
+static void touching_counts(void **state) {
+    (void)state;
+    assert_true(pairs_at(0, 0, 2.0) > 0);
+    assert_int_equal(pairs_at(0, 0, 2.0 + 0x1p-50), 0);
+    assert_true(pairs_at(0, 0, 2.0 - 0x1p-50) > 0);
+    assert_int_equal(pairs_at(0, 0, 8.0), 0);
+}
+
+/* A sheet folded flat onto itself about its middle: neighbours across the fold overlap in the plane. */
+static void flat_folds_count(void **state) {
+    (void)state;
+    scene_clear(&s);
+    scene_add_sheet(&s, 2.0, 1.0, 2, 1);
+    assert_int_equal(compare_with_all_pairs(1), 0);
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        if (s.x0[v * 3] > 0) s.x0[v * 3] = -s.x0[v * 3];
+    }
+    assert_true(compare_with_all_pairs(1) > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_all_pairs), cmocka_unit_test(touching_counts),
+                                       cmocka_unit_test(flat_folds_count)};
+    return cmocka_run_group_tests_name("static_check", tests, NULL, NULL);
+}

@@ -1,0 +1,214 @@
+/* The kernels of the static check: what they leave out never meets, or has an area, by the exact predicates;
+ * they leave the same on every level that this machine has, and little of what does not meet. */
+#include "runtime/bvh/kernels.h"
+#include "runtime/bvh/traversal.h"
+#include "src/mesh/predicates.h"
+#include "src/mesh/triangle_intersection.h"
+#include "tests/support/levels.h"
+#include "tests/support/random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { BATCH_MAX = 700, BATCHES = 600 };
+
+static int seed(void **state) {
+    (void)state;
+    random_seed(20260405);
+    return 0;
+}
+
+/* ---- pairs ------------------------------------------------------------------------------------------- */
+
+/* Pair i is triangles 2 i and 2 i + 1, of six vertices of its own, some of which may be unused. */
+static struct {
+    uint32_t count, triangles[2 * BATCH_MAX][3];
+    double positions[BATCH_MAX * 18];
+} work;
+
+/* NEAR: at random, about one triangle's size apart. GRID: integers from -3 to 3, so that points coincide and
+ * share lines and planes. FLAT: GRID's or NEAR's points in one plane, rounded, which may be all that keeps
+ * triangles apart. WIDE: each point scaled on its
+ * own. */
+typedef enum family { NEAR, GRID, FLAT, WIDE, FAMILY_COUNT } family;
+
+static const char *const family_names[FAMILY_COUNT] = {"near", "grid", "flat", "wide"};
+
+static void make_point(family f, const double plane[2][3], double scale, double out[3]) {
+    double p[3], own = f == WIDE ? ldexp(1.0, random_integer(-299, 298)) : 1.0;
+    bool grid = f == GRID || (f == FLAT && plane[0][0] < 0.0);
+    for (int k = 0; k < 3; k++) p[k] = grid ? random_integer(-3, 3) : 1.5 * random_unit();
+    for (int k = 0; k < 3 && f == FLAT; k++) out[k] = plane[0][k] * p[0] + plane[1][k] * p[1];
+    for (int k = 0; k < 3 && f != FLAT; k++) out[k] = p[k] * own;
+    for (int k = 0; k < 3; k++) {
+        out[k] *= scale;
+        if (fabs(out[k]) < 0x1p-300) out[k] = 0.0;
+    }
+}
+
+/* The second triangle begins with vertices of the first, then takes its own; both turned at random. */
+static void make_pair(family f, int shared, int scale, uint32_t i) {
+    double plane[2][3];
+    for (int k = 0; k < 6; k++) plane[k / 3][k % 3] = random_unit();
+    for (uint32_t v = 0; v < 6; v++)
+        make_point(f, (const double(*)[3])plane, ldexp(1.0, scale), work.positions + (i * 6 + v) * 3);
+    uint32_t turn_a = (uint32_t)random_integer(0, 2), turn_b = (uint32_t)random_integer(0, 2);
+    bool flip = random_integer(0, 1) == 1;
+    for (uint32_t v = 0; v < 3; v++) {
+        uint32_t own = (int)v < shared ? (v + 1) % 3 : 3 + v, place = (v + turn_b) % 3;
+        work.triangles[2 * i][(v + turn_a) % 3] = 6 * i + v;
+        work.triangles[2 * i + 1][flip ? 2 - place : place] = 6 * i + own;
+    }
+}
+
+static void make_batch(family f, int shared) {
+    int scale = f == WIDE || random_integer(0, 1) == 0 ? 0 : random_integer(-296, 296);
+    work.count = (uint32_t)random_integer(0, random_integer(0, 1) == 0 ? 20 : BATCH_MAX);
+    for (uint32_t i = 0; i < work.count; i++)
+        make_pair(f, shared >= 0 ? shared : random_integer(0, 3), scale, i);
+}
+
+static const uint32_t (*triangles_of_work(void))[3] {
+    return (const uint32_t(*)[3])work.triangles;
+}
+
+static bool meets(uint32_t i) {
+    return triangles_intersect(work.triangles[2 * i], work.triangles[2 * i + 1], work.positions);
+}
+
+/* By the kernel of a level, in pairs; how many. */
+static uint32_t keep_meeting(int level, triangle_pair *pairs) {
+    for (uint32_t i = 0; i < work.count; i++) pairs[i] = (triangle_pair){2 * i, 2 * i + 1};
+    return kernels_of(contexts[level])->keep_meeting(triangles_of_work(), work.positions, pairs, work.count);
+}
+
+/* Adds to how many pairs are apart, and to how many of these are left open. */
+static void check_batch(uint64_t *apart, uint64_t *open) {
+    triangle_pair first[BATCH_MAX], other[BATCH_MAX];
+    bool kept[BATCH_MAX] = {false};
+    uint32_t count = keep_meeting(0, first);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(first[i].a + 1, first[i].b);
+        assert_false(kept[first[i].a / 2]);
+        kept[first[i].a / 2] = true;
+    }
+    for (uint32_t i = 0; i < work.count; i++) {
+        bool meeting = meets(i);
+        assert_true(kept[i] || !meeting);
+        *apart += !meeting;
+        *open += kept[i] && !meeting;
+    }
+    for (int level = 1; level < LEVEL_COUNT; level++) {
+        if (contexts[level] == NULL) continue;
+        assert_int_equal(keep_meeting(level, other), count);
+        assert_memory_equal(first, other, count * sizeof *first);
+    }
+}
+
+/* Of pairs that do not meet, what may be left open, in percent. */
+static void check_family(family f, int shared, double most) {
+    uint64_t apart = 0, open = 0;
+    for (int i = 0; i < BATCHES; i++) {
+        make_batch(f, shared);
+        check_batch(&apart, &open);
+    }
+    double share = 100.0 * (double)open / (double)apart;
+    printf("%s, %d shared: %llu apart, %.3f %% of them left open\n", family_names[f], shared,
+           (unsigned long long)apart, share);
+    assert_true(apart > 10000 && share <= most);
+}
+
+static void near_pairs(void **state) {
+    (void)state;
+    for (int shared = 0; shared < 4; shared++) check_family(NEAR, shared, 0.1);
+    check_family(NEAR, -1, 0.1);
+}
+
+static void degenerate_pairs(void **state) {
+    (void)state;
+    for (int shared = -1; shared < 4; shared++) {
+        check_family(GRID, shared, 1.0);
+        check_family(FLAT, shared, 75.0);
+        check_family(WIDE, shared, 60.0);
+    }
+}
+
+/* Pairs that meet, scaled until products or differences overflow: no infinity says that they do not. */
+static void overflow_certifies_nothing(void **state) {
+    (void)state;
+    for (int i = 0; i < BATCHES; i++) {
+        triangle_pair pairs[BATCH_MAX];
+        uint32_t meeting = 0;
+        double scale = ldexp(1.0, random_integer(300, 1022));
+        work.count = BATCH_MAX;
+        for (uint32_t j = 0; j < BATCH_MAX; j++) make_pair(i % 2 == 0 ? NEAR : GRID, (int)(j % 3), 0, j);
+        for (uint32_t j = 0; j < BATCH_MAX; j++) {
+            if (!meets(j)) continue;
+            memmove(work.triangles[2 * meeting], work.triangles[2 * j], 2 * sizeof *work.triangles);
+            meeting++;
+        }
+        work.count = meeting;
+        assert_true(meeting > 10);
+        for (size_t k = 0; k < BATCH_MAX * 18; k++) work.positions[k] *= scale;
+        for (int level = 0; level < LEVEL_COUNT; level++) {
+            if (contexts[level] != NULL) assert_int_equal(keep_meeting(level, pairs), meeting);
+        }
+    }
+}
+
+/* ---- single triangles -------------------------------------------------------------------------------- */
+
+static uint32_t keep_thin(int level, uint32_t *list) {
+    for (uint32_t i = 0; i < 2 * work.count; i++) list[i] = i;
+    return kernels_of(contexts[level])->keep_thin(triangles_of_work(), work.positions, list, 2 * work.count);
+}
+
+static bool has_no_area(uint32_t triangle) {
+    const double *p[3];
+    for (int i = 0; i < 3; i++) p[i] = work.positions + (size_t)work.triangles[triangle][i] * 3;
+    return collinear(p[0], p[1], p[2]);
+}
+
+static void thin_triangles(void **state) {
+    (void)state;
+    uint64_t all = 0, thin = 0, open = 0;
+    for (int i = 0; i < BATCHES; i++) {
+        uint32_t first[2 * BATCH_MAX], other[2 * BATCH_MAX], next = 0;
+        make_batch((family)(i % FAMILY_COUNT), -1);
+        uint32_t count = keep_thin(0, first);
+        for (uint32_t t = 0; t < 2 * work.count; t++) {
+            bool kept = next < count && first[next] == t, flat = has_no_area(t);
+            assert_true(kept || !flat);
+            next += kept;
+            thin += flat;
+            open += kept && !flat;
+        }
+        assert_int_equal(next, count);
+        all += 2 * work.count;
+        for (int level = 1; level < LEVEL_COUNT; level++) {
+            if (contexts[level] == NULL) continue;
+            assert_int_equal(keep_thin(level, other), count);
+            assert_memory_equal(first, other, count * sizeof *first);
+        }
+    }
+    printf("%llu triangles, %llu without area, %llu others left open\n", (unsigned long long)all,
+           (unsigned long long)thin, (unsigned long long)open);
+    assert_true(thin > 1000 && open * 10 < all);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(near_pairs, seed),
+        cmocka_unit_test_setup(degenerate_pairs, seed),
+        cmocka_unit_test_setup(overflow_certifies_nothing, seed),
+        cmocka_unit_test_setup(thin_triangles, seed),
+    };
+    return cmocka_run_group_tests_name("static_kernel", tests, open_levels, close_levels);
+}

@@ -1,0 +1,167 @@
+/* The memory of animations: every allocation failed once, and a peak that does not grow with the frames. */
+#include "src/io/growable.h"
+#include "src/io/point_cache_write.h"
+#include "tests/support/io/frame_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { VERTICES = 4, FRAMES = 70 /* more names than the list first has room for */ };
+
+static long allocations_left = -1; /* the one after these fails; negative: none */
+
+void *io_realloc(void *memory, size_t size) {
+    if (allocations_left == 0) return NULL;
+    if (allocations_left > 0) allocations_left--;
+    return realloc(memory, size);
+}
+
+static int remove_folder(void **state) {
+    allocations_left = -1;
+    return frame_fixture_remove_folder(state);
+}
+
+static void write_frames(void) {
+    char name[32];
+    for (uint32_t frame = 0; frame < FRAMES; frame++) {
+        snprintf(name, sizeof name, "f%u.obj", frame);
+        frame_fixture_write_mesh(&frame_fixture_folder, name, VERTICES, frame);
+    }
+}
+
+/* Opens with the first, second, ... allocation failing until none is left to fail. */
+static void fail_every_allocation(const char *const *paths, size_t path_count, long least) {
+    animation *opened = NULL;
+    long successes = 0;
+    for (;; successes++) {
+        io_error error = {""};
+        allocations_left = successes;
+        const bool done = animation_open(paths, path_count, VERTICES, &opened, &error);
+        allocations_left = -1;
+        if (done) break;
+        assert_null(opened);
+        frame_fixture_check_error(&error, frame_fixture_folder.path, "out of memory", NULL);
+    }
+    assert_true(successes >= least);
+    frame_fixture_check(opened, VERTICES, animation_frame_count(opened) - 1,
+                        animation_frame_count(opened) - 1);
+    animation_close(opened);
+}
+
+static void point_cache_survives_failed_allocations(void **state) {
+    (void)state;
+    const frame_fixture_bytes bytes = frame_fixture_pc2(VERTICES, 3);
+    const temp_path path = frame_fixture_write(&frame_fixture_folder, "cache.pc2", &bytes);
+    const char *const paths[] = {path.text};
+    fail_every_allocation(paths, 1, 2);
+}
+
+static void sequences_survive_failed_allocations(void **state) {
+    (void)state;
+    write_frames();
+    const temp_path pattern = temp_file_path(&frame_fixture_folder, "f%d.obj"),
+                    first = temp_file_path(&frame_fixture_folder, "f0.obj");
+    const temp_path second = temp_file_path(&frame_fixture_folder, "f1.obj");
+    const char *const pattern_paths[] = {pattern.text}, *const folder_paths[] = {frame_fixture_folder.path};
+    const char *const list_paths[] = {first.text, second.text};
+    fail_every_allocation(pattern_paths, 1, FRAMES + 4);
+    fail_every_allocation(folder_paths, 1, FRAMES + 4);
+    fail_every_allocation(list_paths, 2, 2 + 4);
+}
+
+static void reading_survives_failed_allocations(void **state) {
+    (void)state;
+    const temp_path path = frame_fixture_write_mesh(&frame_fixture_folder, "f0.obj", VERTICES, 0);
+    animation *opened = frame_fixture_open(path.text, VERTICES);
+    double positions[VERTICES * 3];
+    io_error error;
+    long successes = 0;
+    for (;; successes++) {
+        allocations_left = successes;
+        const bool done = animation_read(opened, 0, positions, &error);
+        allocations_left = -1;
+        if (done) break;
+        frame_fixture_check_error(&error, "frame 0: ", path.text, NULL);
+    }
+    assert_true(successes > 0);
+    frame_fixture_check(opened, VERTICES, 0, 0);
+    animation_close(opened);
+}
+
+static void writer_survives_a_failed_allocation(void **state) {
+    (void)state;
+    const temp_path path = temp_file_path(&frame_fixture_folder, "cache.pc2");
+    point_cache_writer *writer = NULL;
+    io_error error;
+    allocations_left = 0;
+    assert_false(point_cache_writer_open(path.text, VERTICES, 1, &writer, &error));
+    allocations_left = -1;
+    assert_null(writer);
+    frame_fixture_check_error(&error, path.text, "out of memory", NULL);
+    assert_int_not_equal(access(path.text, F_OK), 0);
+}
+
+/* ---- the peak ---------------------------------------------------------------------------------------- */
+
+enum { LARGE = 2000 };
+static double large_frame[LARGE * 3];
+
+static temp_path write_large(const char *name, uint32_t frame_count) {
+    const temp_path path = temp_file_path(&frame_fixture_folder, name);
+    point_cache_writer *writer;
+    io_error error;
+    assert_true(point_cache_writer_open(path.text, LARGE, frame_count, &writer, &error));
+    for (uint32_t frame = 0; frame < frame_count; frame++)
+        assert_true(point_cache_writer_write(writer, large_frame, &error));
+    assert_true(point_cache_writer_close(writer, &error));
+    return path;
+}
+
+/* The peak resident size of a process that reads all frames. */
+static long peak_of_reading(const char *path, uint32_t frame_count) {
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        animation *opened;
+        bool done =
+            animation_open(&path, 1, LARGE, &opened, NULL) && animation_frame_count(opened) == frame_count;
+        for (uint32_t frame = 0; done && frame < frame_count; frame++)
+            done = animation_read(opened, frame, large_frame, NULL);
+        _exit(done ? 0 : 1);
+    }
+    int status;
+    struct rusage usage;
+    assert_int_equal(wait4(child, &status, 0, &usage), child);
+    assert_int_equal(status, 0);
+    return usage.ru_maxrss;
+}
+
+/* The 540 frames more are 12,960 KiB; the system itself counts resident pages in batches. */
+static void peak_does_not_grow_with_the_frames(void **state) {
+    (void)state;
+    static const char *const names[][2] = {{"short.pc2", "long.pc2"}, {"short.mdd", "long.mdd"}};
+    for (size_t i = 0; i < 2; i++) {
+        const temp_path few = write_large(names[i][0], 60), many = write_large(names[i][1], 600);
+        const long few_peak = peak_of_reading(few.text, 60), many_peak = peak_of_reading(many.text, 600);
+        if (many_peak - few_peak > 512)
+            fail_msg("600 frames take %ld KiB, 60 take %ld KiB", many_peak, few_peak);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+#define TEST(name) cmocka_unit_test_setup_teardown(name, frame_fixture_make_folder, remove_folder)
+        TEST(point_cache_survives_failed_allocations), TEST(sequences_survive_failed_allocations),
+        TEST(reading_survives_failed_allocations),     TEST(writer_survives_a_failed_allocation),
+        TEST(peak_does_not_grow_with_the_frames),
+    };
+    return cmocka_run_group_tests_name("animation_memory", tests, NULL, NULL);
+}

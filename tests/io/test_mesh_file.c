@@ -1,0 +1,283 @@
+/* Mesh files: which format is chosen, files that cannot be opened, writing OBJ, and memory that runs out. */
+#include "src/io/growable.h"
+#include "src/io/mesh_builder.h"
+#include "src/io/text.h"
+#include "tests/support/io/mesh_check.h"
+#include "tests/support/temp_file.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+/* How many allocations still succeed; negative: all. */
+static int allocations_left = -1;
+
+/* In the place of the readers' own. */
+void *io_realloc(void *memory, size_t size) {
+    if (allocations_left == 0) return NULL;
+    if (allocations_left > 0) allocations_left--;
+    return realloc(memory, size);
+}
+
+#define SQUARE_OBJ "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"
+#define SQUARE_OFF "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
+#define SQUARE_PLY                                                                                           \
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"        \
+    "element face 1\nproperty list uchar int vertex_index\nend_header\n"                                     \
+    "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"
+
+static void chooses_the_format(void **state) {
+    (void)state;
+    mesh_check_square(FILE_OF("a.obj", SQUARE_OBJ));
+    mesh_check_square(FILE_OF("a.OBJ", SQUARE_OBJ));
+    mesh_check_square(FILE_OF("a.obj", SQUARE_OFF));
+    mesh_check_square(FILE_OF("a.off", SQUARE_PLY));
+    mesh_check_square(FILE_OF("a", SQUARE_PLY));
+    mesh_check_square(FILE_OF("a.Off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"));
+    mesh_check_error(FILE_OF("a.txt", SQUARE_OBJ), ": ", "unknown format", "ply or OFF or is named .obj");
+    mesh_check_error(FILE_OF("a.PLY", SQUARE_OBJ), ":line 1: ", "found 'v'", "expected ply");
+    mesh_check_error(FILE_OF("a.off", SQUARE_OBJ), ":line 1: ", "found 'v'", "the number of vertices");
+}
+
+static void check_unreadable(const char *path, const char *found) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    assert_false(mesh_file_read(path, &mesh, &error));
+    assert_non_null(strstr(error.text, found));
+    assert_null(mesh.positions);
+    assert_false(mesh_file_read(path, &mesh, NULL));
+}
+
+static void refuses_what_is_no_file(void **state) {
+    (void)state;
+    temp_folder folder = temp_folder_make();
+    check_unreadable(temp_file_path(&folder, "none.obj").text, "/none.obj: cannot open: No such file");
+    check_unreadable(temp_file_path(&folder, "none/a.obj").text, "/none/a.obj: cannot open: No such file");
+    check_unreadable(folder.path, ": is a directory, expected a file");
+    check_unreadable("/dev/zero", "/dev/zero: is a device, expected a file");
+    check_unreadable("", ": cannot open: No such file");
+    temp_folder_remove(&folder);
+    mesh_check_error(FILE_OF("a.obj", ""), ": ", "the file is empty", "expected an OBJ, PLY or OFF mesh");
+    mesh_check_error(FILE_OF("a.ply", ""), ": ", "the file is empty", "expected an OBJ, PLY or OFF mesh");
+}
+
+static void keeps_messages_on_one_line(void **state) {
+    (void)state;
+    io_error error = {""};
+    mesh_file mesh;
+    char path[3000];
+    memset(path, 'a', sizeof path);
+    memcpy(path + sizeof path - 12, "\nend/end.obj", 13 - 1);
+    path[sizeof path - 1] = '\0';
+    assert_false(mesh_file_read(path, &mesh, &error));
+    assert_memory_equal(error.text, "...aaaa", 7);
+    assert_non_null(strstr(error.text, "a?end/end.ob: cannot open: "));
+}
+
+/* A pipe does not say how much it will give. */
+static void reads_pipes(void **state) {
+    (void)state;
+    int ends[2];
+    char path[64], bytes[20000];
+    io_error error = {""};
+    mesh_file mesh = {0};
+    memset(bytes, '\n', sizeof bytes);
+    memcpy(bytes, SQUARE_OFF, sizeof SQUARE_OFF - 1);
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(write(ends[1], bytes, sizeof bytes), sizeof bytes);
+    close(ends[1]);
+    snprintf(path, sizeof path, "/dev/fd/%d", ends[0]);
+    bool done = mesh_file_read(path, &mesh, &error);
+    close(ends[0]);
+    assert_string_equal(error.text, "");
+    assert_true(done);
+    assert_int_equal(mesh.triangle_count, 2);
+    mesh_file_free(&mesh);
+}
+
+static void frees_zeroed_meshes(void **state) {
+    (void)state;
+    mesh_file mesh = {0};
+    mesh_file_free(&mesh);
+    mesh_file_free(&mesh);
+    assert_null(mesh.positions);
+}
+
+/* The next after failure reads as if nothing had happened. */
+static void survives_every_failed_allocation(void **state) {
+    (void)state;
+    const file_bytes files[] = {FILE_OF("a.obj", SQUARE_OBJ), FILE_OF("a.off", SQUARE_OFF),
+                                FILE_OF("a.ply", SQUARE_PLY)};
+    for (size_t i = 0; i < 3; i++) {
+        int failures = 0;
+        for (;; failures++) {
+            mesh_file mesh = {0};
+            io_error error = {""};
+            allocations_left = failures;
+            bool done = mesh_check_read(files[i], &mesh, &error);
+            allocations_left = -1;
+            if (done) {
+                mesh_file_free(&mesh);
+                break;
+            }
+            assert_non_null(strstr(error.text, files[i].name));
+            assert_non_null(strstr(error.text, "out of memory"));
+            assert_null(mesh.positions);
+            mesh_check_square(files[i]);
+        }
+        assert_true(failures >= 3);
+    }
+}
+
+static void grows_only_to_sizes_that_exist(void **state) {
+    (void)state;
+    growable array = growable_of(24);
+    assert_false(growable_reserve(&array, SIZE_MAX / 24 + 1));
+    assert_false(growable_reserve(&array, SIZE_MAX));
+    assert_true(array.data == NULL && array.capacity == 0);
+    array.count = array.capacity = SIZE_MAX / 24; /* as if it were full; its data is not touched */
+    assert_null(growable_push(&array));
+    assert_int_equal(array.count, SIZE_MAX / 24);
+}
+
+static void counts_up_to_the_limit(void **state) {
+    (void)state;
+    io_error error = {""};
+    file_reader reader = {.path = "big.obj", .error = &error, .line = 12};
+    mesh_builder builder = mesh_builder_of(&reader, 1);
+    builder.triangles.count = MESH_COUNT_LIMIT; /* as if it were full; its data is not touched */
+    assert_true(mesh_builder_add_corner(&builder, 0) && mesh_builder_add_corner(&builder, 1));
+    assert_false(mesh_builder_add_corner(&builder, 2));
+    assert_string_equal(error.text, "big.obj:line 12: more than 2147483647 triangles, the most of a mesh");
+    builder.positions.count = MESH_COUNT_LIMIT;
+    assert_false(mesh_builder_add_vertex(&builder, (double[]){0, 0, 0}));
+    assert_string_equal(error.text, "big.obj:line 12: more than 2147483647 vertices, the most of a mesh");
+}
+
+static void parses_integers_up_to_18_digits(void **state) {
+    (void)state;
+    int64_t value = 0;
+    assert_true(text_parse_integer((text_token){"-999999999999999999", 19}, &value));
+    assert_int_equal(value, -999999999999999999);
+    assert_false(text_parse_integer((text_token){"1000000000000000000", 19}, &value));
+    assert_false(text_parse_integer((text_token){"", 0}, &value));
+    assert_false(text_parse_integer((text_token){"1 2", 3}, &value));
+}
+
+/* A xorshift generator: the same garbage in every run. */
+static uint64_t next_random(uint64_t *random) {
+    *random ^= *random << 13;
+    *random ^= *random >> 7;
+    *random ^= *random << 17;
+    return *random;
+}
+
+static void survives_garbage(void **state) {
+    (void)state;
+    static const char *const names[] = {"a.obj", "a.off", "a.ply", "a"};
+    static const char *const starts[] = {"", "OFF\n", "ply\nformat binary_big_endian 1.0\nelement vertex 3\n",
+                                         "f v "};
+    static const char alphabet[] = "0123 4567\n89-.\rvf e/\\#n+xlist";
+    uint64_t random = 88172645463325252u;
+    for (int i = 0; i < 4000; i++) {
+        char bytes[512];
+        const char *start = starts[i / 4 % 4];
+        size_t used = strlen(start), size = used + next_random(&random) % (sizeof bytes - used);
+        memcpy(bytes, start, used);
+        for (size_t j = used; j < size; j++) {
+            uint64_t r = next_random(&random);
+            bytes[j] = (char)(i % 3 == 0 ? r & 0xff : (uint64_t)alphabet[r % (sizeof alphabet - 1)]);
+        }
+        mesh_check_survives((file_bytes){names[i % 4], bytes, size});
+    }
+}
+
+static void writes_what_it_reads(void **state) {
+    (void)state;
+    double positions[] = {0.1, -1.0 / 3, 1e-300, 4.9406564584124654e-324, 1.7976931348623157e308, -0.0,
+                          3,   2,        1};
+    uint32_t triangles[] = {0, 1, 2, 2, 1, 0};
+    mesh_file mesh = {3, 2, positions, triangles}, again = {0};
+    io_error error = {""};
+    temp_folder folder = temp_folder_make();
+    temp_path path = temp_file_path(&folder, "out.obj");
+    assert_true(mesh_file_write_obj(path.text, &mesh, &error));
+    assert_true(mesh_file_read(path.text, &again, &error));
+    temp_folder_remove(&folder);
+    assert_string_equal(error.text, "");
+    assert_int_equal(again.vertex_count, 3);
+    assert_int_equal(again.triangle_count, 2);
+    assert_memory_equal(again.positions, positions, sizeof positions);
+    assert_memory_equal(again.triangles, triangles, sizeof triangles);
+    mesh_file_free(&again);
+}
+
+static double some_positions[3000];
+static uint32_t some_triangles[3000];
+static const mesh_file some_mesh = {1000, 1, some_positions, some_triangles};
+static const mesh_file many_triangles = {1, 1000, some_positions, some_triangles};
+
+static void reports_where_it_cannot_write(void **state) {
+    (void)state;
+    struct stat status;
+    io_error error = {""};
+    temp_folder folder = temp_folder_make();
+    assert_false(mesh_file_write_obj(temp_file_path(&folder, "none/a.obj").text, &some_mesh, &error));
+    assert_non_null(strstr(error.text, "none/a.obj: cannot open for writing: No such file"));
+    assert_false(mesh_file_write_obj(folder.path, &some_mesh, &error));
+    assert_non_null(strstr(error.text, ": cannot open for writing: Is a directory"));
+    assert_false(mesh_file_write_obj("/dev/full", &some_mesh, &error));
+    assert_string_equal(error.text, "/dev/full: cannot write: No space left on device");
+    assert_false(mesh_file_write_obj("/dev/full", &many_triangles, &error));
+    assert_string_equal(error.text, "/dev/full: cannot write: No space left on device");
+    assert_int_equal(stat("/dev/full", &status), 0); /* it removes files only */
+    temp_folder_remove(&folder);
+}
+
+static void removes_what_it_cannot_finish(void **state) {
+    (void)state;
+    struct rlimit before, limit;
+    struct stat status;
+    io_error error = {""};
+    temp_folder folder = temp_folder_make();
+    temp_path path = temp_file_path(&folder, "out.obj");
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    limit = before;
+    limit.rlim_cur = 5000;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    bool done = mesh_file_write_obj(path.text, &some_mesh, &error);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, handler);
+    assert_false(done);
+    assert_non_null(strstr(error.text, "/out.obj: cannot write: File too large"));
+    assert_int_not_equal(stat(path.text, &status), 0);
+    temp_folder_remove(&folder);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chooses_the_format),
+        cmocka_unit_test(refuses_what_is_no_file),
+        cmocka_unit_test(keeps_messages_on_one_line),
+        cmocka_unit_test(reads_pipes),
+        cmocka_unit_test(frees_zeroed_meshes),
+        cmocka_unit_test(survives_every_failed_allocation),
+        cmocka_unit_test(grows_only_to_sizes_that_exist),
+        cmocka_unit_test(counts_up_to_the_limit),
+        cmocka_unit_test(parses_integers_up_to_18_digits),
+        cmocka_unit_test(survives_garbage),
+        cmocka_unit_test(writes_what_it_reads),
+        cmocka_unit_test(reports_where_it_cannot_write),
+        cmocka_unit_test(removes_what_it_cannot_finish),
+    };
+    return cmocka_run_group_tests_name("mesh_file", tests, NULL, NULL);
+}

@@ -1,0 +1,170 @@
+/* OBJ meshes: every form of record and index, exact numbers, and each error with its line. */
+#include "tests/support/io/mesh_check.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define OBJ(literal) FILE_OF("mesh.obj", literal)
+#define SQUARE       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static void reads_all_index_forms(void **state) {
+    (void)state;
+    mesh_check_square(OBJ(SQUARE "f 1 2 3\nf 1 3 4\n"));
+    mesh_check_square(OBJ(SQUARE "vt 0 0\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n"));
+    mesh_check_square(OBJ(SQUARE "vn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"));
+    mesh_check_square(OBJ(SQUARE "f 1/1/1 2/2/2 3/3/3\nf 1/1/1 3/3/3 4/4/4\n"));
+    mesh_check_square(OBJ(SQUARE "f -4 -3 -2\nf -4/-4/-4 -2//-2 -1/-1\n"));
+    mesh_check_square(OBJ(SQUARE "f 1/ 2// 3\nf 1 +3 4\n"));
+}
+
+static void reads_polygons_as_fans(void **state) {
+    (void)state;
+    static const double positions[] = {0, 0, 0, 2, 0, 0, 3, 1, 0, 2, 2, 0, 0, 2, 0};
+    static const uint32_t triangles[] = {4, 0, 1, 4, 1, 2, 4, 2, 3};
+    mesh_check_square(OBJ(SQUARE "f 1 2 3 4\n"));
+    mesh_check_equal(OBJ("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 2 2 0\nv 0 2 0\nf 5 1 2 3 4\n"), 5, positions, 3,
+                     triangles);
+}
+
+static void reads_negative_indices_from_where_the_face_is(void **state) {
+    (void)state;
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0};
+    static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
+    mesh_check_equal(OBJ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n"), 6,
+                     positions, 2, triangles);
+}
+
+static void reads_faces_ahead_of_their_vertices(void **state) {
+    (void)state;
+    mesh_check_square(OBJ("f 1 2 3\nf 1 3 4\n" SQUARE));
+}
+
+static void reads_layouts(void **state) {
+    (void)state;
+    mesh_check_square(OBJ("# a square\r\n\r\nv 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n"));
+    mesh_check_square(OBJ("v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4"));
+    mesh_check_square(OBJ("\xef\xbb\xbf" SQUARE "f 1 2 3 4"));
+    mesh_check_square(OBJ("\t v\t0  0 0 \n v 1 0 0# one\n v 1 1 0 # two\nv 0 1 0\nf 1 2 3 4 # five\n"));
+    mesh_check_square(OBJ("v 0 0 \\\n0\nv \\\r\n1 0 0\nv 1 1 0\nv 0 1\\\n 0\nf 1 2 \\\n  3 \\\n4\n"));
+    /* A comment that ends in a backslash does not go on; another record does. */
+    mesh_check_square(
+        OBJ("# in C:\\meshes\\\nv 0 0 0\nvn 1 2 \\\nv 9 9 9\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+    mesh_check_square(
+        OBJ("mtllib a.mtl\no square\nv 0 0 0 1\nv 1 0 0 0.5\nv 1 1 0 0.2 0.3 0.4\nv 0 1 0 1 1 1\n"
+            "vp 1 2\nvt 1\nvn 0 0 1\ng all\nusemtl red\ns off\nl 1 2\np 1\nf 1 2 3 4\nfoo\n"));
+}
+
+static void reads_numbers_exactly(void **state) {
+    (void)state;
+    static const double positions[] = {0.1,
+                                       -0.1,
+                                       1e-300,
+                                       1.7976931348623157e308,
+                                       4.9406564584124654e-324,
+                                       -0.0,
+                                       1.0 / 3,
+                                       1e23,
+                                       .5,
+                                       12345678901234567890.0,
+                                       3,
+                                       0x1.fffffffffffffp-1};
+    static const uint32_t triangles[] = {0, 1, 2};
+    mesh_check_equal(OBJ("v 0.1 -.1 1E-300\n"
+                         "v 1.7976931348623157e308 4.9406564584124654e-324 -0\n"
+                         "v 0.33333333333333331 1e+23 +.5\n"
+                         "v 12345678901234567890 3. 0.99999999999999988897769753748434595763683319091796875\n"
+                         "f 1 2 3\n"),
+                     4, positions, 1, triangles);
+}
+
+static void refuses_bad_vertices(void **state) {
+    (void)state;
+    mesh_check_error(OBJ("v 0 0 0\nv 1 0\nv 0 1 0\n"), ":line 2: ", "the line ends",
+                     "coordinate z of the vertex");
+    mesh_check_error(OBJ("v 0 0 0\n\n# c\nv"), ":line 4: ", "the file ends", "coordinate x of the vertex");
+    mesh_check_error(OBJ("v 0 0,5 0\n"), ":line 1: ", "found '0,5'", "coordinate y");
+    mesh_check_error(OBJ("v 0 0 0x10\n"), ":line 1: ", "found '0x10'", "coordinate z");
+    mesh_check_error(OBJ("v 0 1e 0\n"), ":line 1: ", "found '1e'", "coordinate y");
+    mesh_check_error(OBJ("v 0 1\0002 0\n"), ":line 1: ", "found '1?2'", "coordinate y");
+    mesh_check_error(OBJ("v 0 0 0\r\nv 0 nan 0\r\n"), ":line 2: ", "coordinate y of vertex 2 is nan",
+                     "finite");
+    mesh_check_error(OBJ("v 0 0 -inf\n"), ":line 1: ", "coordinate z of vertex 1 is -inf", "finite");
+    mesh_check_error(OBJ("v 1e309 0 0\n"), ":line 1: ", "coordinate x of vertex 1 is inf", "finite");
+    mesh_check_error(OBJ("v 0 \\\n 0 \\\n q\n"), ":line 3: ", "found 'q'", "coordinate z");
+}
+
+static void refuses_bad_faces(void **state) {
+    (void)state;
+    mesh_check_error(OBJ(SQUARE "f 1 2\n"), ":line 5: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f 1\n"), ":line 5: ", "a face of 1 corner,", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f"), ":line 5: ", "a face of 0 corners", "3 or more");
+    mesh_check_error(OBJ(SQUARE "f 1 2 x\n"), ":line 5: ", "found 'x'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3/4/5/6\n"), ":line 5: ", "found '3/4/5/6'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3.5\n"), ":line 5: ", "found '3.5'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 /3\n"), ":line 5: ", "found '/3'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 -\n"), ":line 5: ", "found '-'", "v/vt/vn");
+    mesh_check_error(OBJ(SQUARE "f 1 2 2\n"), ":line 5: ", "triangle 1 2 2 repeats vertex 2", "different");
+    mesh_check_error(OBJ(SQUARE "f 3 -2 4\n"), ":line 5: ", "triangle 3 3 4 repeats vertex 3", "different");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3 4 1\n"), ":line 5: ", "triangle 1 4 1 repeats vertex 1",
+                     "different");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3 3 4\n"), ":line 5: ", "triangle 1 3 3 repeats vertex 3",
+                     "different");
+}
+
+static void refuses_indices_out_of_range(void **state) {
+    (void)state;
+    mesh_check_error(OBJ(SQUARE "f 1 2 0\n"), ":line 5: ", "face index 0 is out of range",
+                     "the first vertex is 1");
+    mesh_check_error(OBJ(SQUARE "f 1 2 3\nf 1 2 5\nf 1 2 3\n"), ":line 6: ", "face index 5 is out of range",
+                     "the file has 4 vertices");
+    mesh_check_error(OBJ(SQUARE "f 1 2 -5\nv 0 0 0\n"), ":line 5: ", "face index -5 is out of range",
+                     "the file has 4 vertices before it");
+    mesh_check_error(OBJ(SQUARE "f 1 2 2147483648\n"), ":line 5: ", "face index 2147483648 is out of range",
+                     "at most 2147483647 vertices");
+    mesh_check_error(OBJ(SQUARE "f 1 2 99999999999999999999\n"), ":line 5: ", "found '99999999999999999999'",
+                     "face corner");
+    mesh_check_error(OBJ("f 1 2 7\n" SQUARE), ":line 1: ", "face index 7 is out of range",
+                     "the file has 4 vertices");
+}
+
+static void refuses_incomplete_meshes(void **state) {
+    (void)state;
+    mesh_check_error(OBJ("# nothing\n"), ": ", "no vertices", "expected a triangle mesh");
+    mesh_check_error(OBJ("f 1 2 3\n"), ": ", "no vertices", "expected a triangle mesh");
+    mesh_check_error(OBJ(SQUARE), ": ", "no faces found for the 4 vertices", "expected a triangle mesh");
+    mesh_check_error(OBJ("\x01\x02\xff\xfe garbage \0\0\0"), ": ", "no vertices", "expected a triangle mesh");
+}
+
+static void shows_long_tokens_cut(void **state) {
+    (void)state;
+    mesh_check_error(OBJ("v 0 0 0123456789012345678901234567890123456789012345678901234567890123456789x\n"),
+                     ":line 1: ", "found '01234567890123456789012345678901234567890123...'", "coordinate z");
+}
+
+static void survives_damage(void **state) {
+    (void)state;
+    mesh_check_damage(OBJ("# a\r\nv 0 0 0\nv 1 .5e1 \\\n-2\nv 1 1 0 1\nvn 1 0 0\nv 0 1 0\nf 1 2/1 3//2 4\n"
+                          "f -4/1/1 -2 -1\n"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_all_index_forms),
+        cmocka_unit_test(reads_polygons_as_fans),
+        cmocka_unit_test(reads_negative_indices_from_where_the_face_is),
+        cmocka_unit_test(reads_faces_ahead_of_their_vertices),
+        cmocka_unit_test(reads_layouts),
+        cmocka_unit_test(reads_numbers_exactly),
+        cmocka_unit_test(refuses_bad_vertices),
+        cmocka_unit_test(refuses_bad_faces),
+        cmocka_unit_test(refuses_indices_out_of_range),
+        cmocka_unit_test(refuses_incomplete_meshes),
+        cmocka_unit_test(shows_long_tokens_cut),
+        cmocka_unit_test(survives_damage),
+    };
+    return cmocka_run_group_tests_name("obj", tests, NULL, NULL);
+}

@@ -1,0 +1,124 @@
+/* OFF meshes: every form of header and row, and each error with its line. */
+#include "tests/support/io/mesh_check.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#define OFF(literal) FILE_OF("mesh.off", literal)
+#define VERTICES     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+#define FACES        "3 0 1 2\n3 0 2 3\n"
+#define REST         VERTICES FACES
+
+static void reads_headers(void **state) {
+    (void)state;
+    mesh_check_square(OFF("OFF\n4 2 5\n" REST));
+    mesh_check_square(OFF("OFF 4 2 5\n" REST));
+    mesh_check_square(OFF("OFF4 2 5\n" REST));
+    mesh_check_square(OFF("OFF\n4 2\n" REST));
+    mesh_check_square(OFF("4 2 0\n" REST));
+    mesh_check_square(OFF("# first\n\n OFF # here\n# and\n\n4 2 0 # there\n" REST));
+    mesh_check_square(
+        OFF("\xef\xbb\xbfOFF\r\n4 1 0\r\n0 0 0\r\n1 0 0\r\n1 1 0\r\n0 1 0\r\n4 0 1 2 3 # end\r\n"));
+    mesh_check_square(OFF("OFF\r4 2 0\r0 0 0\r1 0 0\r1 1 0\r0 1 0\r3 0 1 2\r3 0 2 3\r"));
+}
+
+static void reads_extra_vertex_data(void **state) {
+    (void)state;
+    mesh_check_square(
+        OFF("COFF\n4 1 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n4 0 1 2 3\n"));
+    mesh_check_square(OFF("NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3\n"));
+    mesh_check_square(OFF("STOFF\n4 1 0\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n"));
+    mesh_check_square(OFF("STCNOFF 4 1 0\n" VERTICES "4 0 1 2 3\n"));
+}
+
+static void reads_rows(void **state) {
+    (void)state;
+    static const double positions[] = {0.1, -1e-5, 3, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 0, -0.0};
+    static const uint32_t triangles[] = {4, 0, 1, 4, 1, 2, 4, 2, 3, 0, 1, 2};
+    mesh_check_square(
+        OFF("OFF\n4 2 0\n\n# vertices\n" VERTICES "\n# faces\n3 0 1 2 255 0 0\n3 0 2 3 0.5 .5 1 1\n\n#\n"));
+    mesh_check_square(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2 3"));
+    mesh_check_equal(OFF("OFF\n5 2 0\n.1 -1e-5 3\n1 2 3\n4 5 6\n7 8 9\n0 0 -0\n5 4 0 1 2 3\n3 0 1 2\n"), 5,
+                     positions, 4, triangles);
+    mesh_check_square(FILE_OF("mesh.txt", "OFF\n4 2 5\n" REST));
+    mesh_check_square(FILE_OF("mesh.obj", "OFF\n4 2 5\n" REST));
+}
+
+static void refuses_bad_headers(void **state) {
+    (void)state;
+    mesh_check_error(OFF("OFF"), ":line 1: ", "the file ends", "the number of vertices");
+    mesh_check_error(OFF("# only this\n"), ":line 2: ", "the file ends", "the number of vertices");
+    mesh_check_error(OFF("OFF\n4\n"), ":line 2: ", "the line ends", "the number of faces");
+    mesh_check_error(OFF("OFF\nfour 2 0\n"), ":line 2: ", "found 'four'", "the number of vertices");
+    mesh_check_error(OFF("OFF\n4 2 x\n"), ":line 2: ", "found 'x'", "the number of edges");
+    mesh_check_error(OFF("OFF\n4 2 0 0\n"), ":line 2: ", "found '0'", "the end of the line");
+    mesh_check_error(OFF("OFF\n-4 2 0\n"), ":line 2: ", "the number of vertices is -4",
+                     "expected 0 to 2147483647");
+    mesh_check_error(OFF("OFF\n4 2147483648 0\n"), ":line 2: ", "the number of faces is 2147483648",
+                     "0 to 2147483647");
+    mesh_check_error(OFF("4OFF\n4 2 0\n"), ":line 1: ", "found '4OFF'", "three dimensions");
+    mesh_check_error(OFF("nOFF\n3\n4 2 0\n"), ":line 1: ", "found 'nOFF'", "three dimensions");
+    mesh_check_error(OFF("OFF BINARY\n\0\0\0\4"), ":line 1: ", "binary OFF", "expected text");
+    mesh_check_error(OFF("OFFSET 1\n"), ":line 1: ", "found 'OFFSET'", "the number of vertices");
+    mesh_check_error(OFF("\x01\x02\xff\xfe\0\0\0"), ":line 1: ", "found '????", "the number of vertices");
+}
+
+static void refuses_bad_rows(void **state) {
+    (void)state;
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n" FACES), ":line 4: ", "the line ends",
+                     "coordinate z");
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 zero 0\n"), ":line 4: ", "found 'zero'", "coordinate y");
+    mesh_check_error(OFF("OFF\n4 2 0\n0 0 0\n1 0 NaN\n"), ":line 4: ", "coordinate z of vertex 1 is nan",
+                     "finite");
+    mesh_check_error(OFF("OFF\n4 2 0\n-1e400 0 0\n"), ":line 3: ", "coordinate x of vertex 0 is -inf",
+                     "finite");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2 0 1\n"), ":line 7: ", "a face of 2 corners", "3 or more");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "-3 0 1 2\n"), ":line 7: ", "a face of -3 corners",
+                     "3 or more");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2\n"), ":line 7: ", "the line ends",
+                     "a vertex index");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1.5 2\n"), ":line 7: ", "found '1.5'",
+                     "a vertex index");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 4\n"), ":line 7: ", "face index 4 is out of range",
+                     "the file has 4 vertices");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "3 0 1 -1\n"), ":line 7: ", "face index -1 is out of range",
+                     "the file has 4 vertices");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "4 0 1 2 0\n"),
+                     ":line 7: ", "triangle 0 2 0 repeats vertex 0", "different");
+}
+
+static void refuses_counts_that_do_not_fit(void **state) {
+    (void)state;
+    mesh_check_error(OFF("OFF\n4 3 0\n" REST), ":line 9: ", "file ends before face 3 of 3", "");
+    mesh_check_error(OFF("OFF\n4 2000000000 0\n" REST), ":line 9: ", "file ends before face 3 of 2000000000",
+                     "");
+    mesh_check_error(OFF("OFF\n2000000000 2 0\n" VERTICES),
+                     ":line 7: ", "file ends before vertex 5 of 2000000000", "");
+    mesh_check_error(OFF("OFF\n4 1 0\n" REST), ":line 8: ", "found '3' after the last face",
+                     "the end of the file");
+    mesh_check_error(OFF("OFF\n4 1 0\n" VERTICES "2000000000 0 1 2\n"), ":line 7: ", "the line ends",
+                     "a vertex index");
+    mesh_check_error(OFF("OFF\n0 0 0\n"), ": ", "no vertices", "expected a triangle mesh");
+    mesh_check_error(OFF("OFF\n4 0 0\n" VERTICES), ": ", "no faces found for the 4 vertices",
+                     "expected a triangle");
+}
+
+static void survives_damage(void **state) {
+    (void)state;
+    mesh_check_damage(
+        OFF("# a\nOFF 4 2 0\r\n0 0 0\n1 0.5e1 -2\n\n1 1 0 1 1 1\n0 1 0\n4 0 1 2 3 255 0 0\n3 0 2 1\n"));
+    mesh_check_damage(FILE_OF("mesh", "OFF\n3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_headers),    cmocka_unit_test(reads_extra_vertex_data),
+        cmocka_unit_test(reads_rows),       cmocka_unit_test(refuses_bad_headers),
+        cmocka_unit_test(refuses_bad_rows), cmocka_unit_test(refuses_counts_that_do_not_fit),
+        cmocka_unit_test(survives_damage),
+    };
+    return cmocka_run_group_tests_name("off", tests, NULL, NULL);
+}

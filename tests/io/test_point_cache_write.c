@@ -1,0 +1,227 @@
+/* The point cache writer: the exact bytes, and no file left behind by a failure. */
+#include "src/io/point_cache_write.h"
+#include "tests/support/io/frame_fixture.h"
+
+#include <float.h>
+#include <math.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { VERTICES = 5, FRAMES = 4 };
+
+static temp_folder folder;
+static double positions[VERTICES * 3];
+
+static int make_folder(void **state) {
+    (void)state;
+    folder = temp_folder_make();
+    memset(positions, 0, sizeof positions);
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+static point_cache_writer *open_writer(const char *path, uint32_t vertex_count, uint32_t frame_count) {
+    point_cache_writer *writer = NULL;
+    io_error error;
+    if (!point_cache_writer_open(path, vertex_count, frame_count, &writer, &error))
+        fail_msg("%s", error.text);
+    return writer;
+}
+
+static void write_fixture(const char *path) {
+    point_cache_writer *writer = open_writer(path, VERTICES, FRAMES);
+    io_error error;
+    for (uint32_t frame = 0; frame < FRAMES; frame++) {
+        for (uint32_t i = 0; i < VERTICES * 3; i++) positions[i] = frame_fixture_value(frame, i / 3, i % 3);
+        assert_true(point_cache_writer_write(writer, positions, &error));
+    }
+    assert_true(point_cache_writer_close(writer, &error));
+}
+
+static frame_fixture_bytes read_bytes(const char *path) {
+    frame_fixture_bytes bytes;
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    bytes.size = fread(bytes.data, 1, sizeof bytes.data, file);
+    fclose(file);
+    return bytes;
+}
+
+static void check_gone(const char *path) {
+    assert_int_not_equal(access(path, F_OK), 0);
+}
+
+static void writes_what_the_format_says(void **state) {
+    (void)state;
+    frame_fixture_bytes expected[] = {frame_fixture_pc2(VERTICES, FRAMES),
+                                      frame_fixture_mdd(VERTICES, FRAMES)};
+    frame_fixture_put_float(&expected[0], 20, 0.0F, false);
+    frame_fixture_put_float(&expected[0], 24, 1.0F, false);
+    static const char *const names[] = {"cache.pc2", "cache.MDD"};
+    for (size_t i = 0; i < 2; i++) {
+        const temp_path path = temp_file_path(&folder, names[i]);
+        write_fixture(path.text);
+        const frame_fixture_bytes written = read_bytes(path.text);
+        assert_int_equal(written.size, expected[i].size);
+        assert_memory_equal(written.data, expected[i].data, written.size);
+    }
+}
+
+static void replaces_an_existing_file(void **state) {
+    (void)state;
+    static const char old[1000] = "old";
+    const temp_path path = temp_file_write(&folder, "cache.pc2", old, sizeof old);
+    write_fixture(path.text);
+    assert_int_equal(read_bytes(path.text).size, 32 + FRAMES * VERTICES * 12);
+}
+
+static void rounds_to_float(void **state) {
+    (void)state;
+    const temp_path path = temp_file_path(&folder, "cache.mdd");
+    point_cache_writer *writer = open_writer(path.text, 1, 1);
+    const double written[] = {0.1, -(double)FLT_MAX, 1e-300};
+    io_error error;
+    assert_true(point_cache_writer_write(writer, written, &error));
+    assert_true(point_cache_writer_close(writer, &error));
+    animation *opened = frame_fixture_open(path.text, 1);
+    double read[3];
+    assert_true(animation_read(opened, 0, read, &error));
+    assert_true(read[0] == (double)0.1F && read[1] == -(double)FLT_MAX && read[2] == 0);
+    animation_close(opened);
+}
+
+static void refuses_what_float_cannot_hold(void **state) {
+    (void)state;
+    static const double values[] = {NAN, INFINITY, -1e39};
+    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    for (size_t i = 0; i < 3; i++) {
+        point_cache_writer *writer = open_writer(path.text, VERTICES, FRAMES);
+        io_error error;
+        positions[7] = 0;
+        assert_true(point_cache_writer_write(writer, positions, &error));
+        positions[7] = values[i];
+        assert_false(point_cache_writer_write(writer, positions, &error));
+        frame_fixture_check_error(&error, path.text, "frame 1, vertex 2, y", "fits in float32", NULL);
+        check_gone(path.text);
+        io_error again;
+        assert_false(point_cache_writer_write(writer, positions, &again));
+        frame_fixture_check_error(&again, path.text, "an earlier write failed", NULL);
+        const io_error before = error;
+        assert_false(point_cache_writer_close(writer, &error));
+        assert_string_equal(error.text, before.text);
+    }
+}
+
+static void refuses_a_wrong_number_of_frames(void **state) {
+    (void)state;
+    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    io_error error;
+    point_cache_writer *writer = open_writer(path.text, VERTICES, 2);
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    assert_false(point_cache_writer_close(writer, &error));
+    frame_fixture_check_error(&error, path.text, "only 1 frames were written, expected 2", NULL);
+    check_gone(path.text);
+
+    writer = open_writer(path.text, VERTICES, 1);
+    assert_true(point_cache_writer_write(writer, positions, &error));
+    assert_false(point_cache_writer_write(writer, positions, &error));
+    frame_fixture_check_error(&error, path.text, "one frame more than the 1", NULL);
+    assert_false(point_cache_writer_close(writer, NULL));
+    check_gone(path.text);
+    assert_true(point_cache_writer_close(NULL, &error));
+}
+
+static void check_open_fails(const char *path, uint32_t vertex_count, uint32_t frame_count,
+                             const char *part) {
+    point_cache_writer *writer = NULL;
+    io_error error;
+    assert_false(point_cache_writer_open(path, vertex_count, frame_count, &writer, &error));
+    assert_null(writer);
+    frame_fixture_check_error(&error, path, part, NULL);
+}
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    const temp_path path = temp_file_path(&folder, "cache.pc2");
+    check_open_fails(path.text, 0, 1, "1 frames of 0 vertices");
+    check_open_fails(path.text, 1, 0, "0 frames of 1 vertices");
+    check_open_fails(path.text, (uint32_t)INT32_MAX + 1, 1, "expected 1 to 2147483647");
+    check_open_fails(path.text, 1, UINT32_MAX, "expected 1 to 2147483647");
+    check_gone(path.text);
+    check_open_fails(temp_file_path(&folder, "none/cache.pc2").text, 1, 1, "cannot create: No such file");
+    const temp_path other = temp_file_write(&folder, "cache.obj", "mine", 4);
+    check_open_fails(other.text, 1, 1, "unknown extension, expected .pc2 or .mdd");
+    assert_int_equal(read_bytes(other.text).size, 4);
+}
+
+/* A limit on file sizes stands for a full disk: reached within a frame, and only when the last of it is
+ * flushed. */
+static void removes_the_file_when_the_disk_is_full(void **state) {
+    (void)state;
+    static double large[4000 * 3];
+    struct rlimit before;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const struct rlimit limited = {.rlim_cur = 20000, .rlim_max = before.rlim_max};
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limited), 0);
+    static const struct {
+        const char *name;
+        uint32_t vertex_count;
+    } cases[] = {{"cache.pc2", 4000}, {"cache.mdd", 4000}, {"flush.pc2", 1700}};
+    bool failed[3], gone[3];
+    io_error errors[3];
+    for (size_t i = 0; i < 3; i++) {
+        const temp_path path = temp_file_path(&folder, cases[i].name);
+        point_cache_writer *writer = open_writer(path.text, cases[i].vertex_count, 1);
+        const bool written = point_cache_writer_write(writer, large, &errors[i]);
+        failed[i] = !point_cache_writer_close(writer, written ? &errors[i] : NULL);
+        gone[i] = access(path.text, F_OK) != 0;
+    }
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, handler);
+    for (size_t i = 0; i < 3; i++) {
+        assert_true(failed[i]);
+        assert_true(gone[i]);
+        frame_fixture_check_error(&errors[i], cases[i].name, "cannot write", "File too large", NULL);
+    }
+}
+
+/* A device (here behind a link that has the extension) must not be removed. */
+static void leaves_devices_alone(void **state) {
+    (void)state;
+    const temp_path path = temp_file_path(&folder, "device.pc2");
+    assert_int_equal(symlink("/dev/null", path.text), 0);
+    point_cache_writer *writer = open_writer(path.text, VERTICES, 1);
+    assert_false(point_cache_writer_close(writer, NULL));
+    struct stat status;
+    assert_int_equal(lstat(path.text, &status), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+        TEST(writes_what_the_format_says),
+        TEST(replaces_an_existing_file),
+        TEST(rounds_to_float),
+        TEST(refuses_what_float_cannot_hold),
+        TEST(refuses_a_wrong_number_of_frames),
+        TEST(refuses_bad_arguments),
+        TEST(removes_the_file_when_the_disk_is_full),
+        TEST(leaves_devices_alone),
+    };
+    return cmocka_run_group_tests_name("point_cache_write", tests, NULL, NULL);
+}

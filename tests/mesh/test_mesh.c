@@ -1,0 +1,375 @@
+/* Meshes: edges, stars, components and what is wrong with them; bad input; memory. */
+#include "src/mesh/mesh.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/mesh_shapes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { NONE = -1 };
+
+/* ---- every mesh ---- */
+
+static uint32_t shared_by(const shape *s, const uint32_t edge[2], uint32_t triangle) {
+    uint32_t found = 0;
+    for (int i = 0; i < 3; i++)
+        found += s->triangles[triangle][i] == edge[0] || s->triangles[triangle][i] == edge[1];
+    return found;
+}
+
+static uint32_t has_vertex(const shape *s, uint32_t vertex, uint32_t triangle) {
+    const uint32_t *v = s->triangles[triangle];
+    return v[0] == vertex || v[1] == vertex || v[2] == vertex;
+}
+
+/* Edges sorted, once each; a triangle's edge i joins its corners i and i + 1. */
+static void check_edges(const cscd_mesh *mesh, const shape *s) {
+    for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {
+        uint32_t v[2], before[2];
+        cscd_mesh_edge(mesh, e, v);
+        assert_true(v[0] < v[1] && v[1] < s->vertex_count);
+        if (e == 0) continue;
+        cscd_mesh_edge(mesh, e - 1, before);
+        assert_true(before[0] < v[0] || (before[0] == v[0] && before[1] < v[1]));
+    }
+    for (uint32_t t = 0; t < s->triangle_count; t++) {
+        uint32_t v[3], edges[3], edge[2];
+        cscd_mesh_triangle(mesh, t, v);
+        cscd_mesh_triangle_edges(mesh, t, edges);
+        assert_memory_equal(v, s->triangles[t], sizeof v);
+        for (int i = 0; i < 3; i++) {
+            uint32_t a = v[i], b = v[(i + 1) % 3];
+            cscd_mesh_edge(mesh, edges[i], edge);
+            assert_true(edge[0] == (a < b ? a : b) && edge[1] == (a < b ? b : a));
+        }
+    }
+}
+
+/* The triangles that contain the feature, all of them, ascending. */
+static void check_stars(const cscd_mesh *mesh, const shape *s) {
+    for (uint32_t v = 0; v < s->vertex_count; v++) {
+        uint32_t count, next = 0;
+        const uint32_t *star = cscd_mesh_vertex_triangles(mesh, v, &count);
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            if (has_vertex(s, v, t)) assert_true(next < count && star[next++] == t);
+        }
+        assert_int_equal(next, count);
+    }
+    for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {
+        uint32_t edge[2], count, next = 0;
+        const uint32_t *star = cscd_mesh_edge_triangles(mesh, e, &count);
+        cscd_mesh_edge(mesh, e, edge);
+        for (uint32_t t = 0; t < s->triangle_count; t++) {
+            if (shared_by(s, edge, t) == 2) assert_true(next < count && star[next++] == t);
+        }
+        assert_true(next > 0 && next == count);
+    }
+}
+
+static cscd_context *new_context(counting_allocator *counter) {
+    cscd_context_options options = cscd_context_defaults();
+    cscd_context *context = NULL;
+    options.allocator = counting_allocator_interface(counter);
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    return context;
+}
+
+static cscd_status create(cscd_context *context, const shape *s, cscd_mesh **out) {
+    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles[0]};
+    return cscd_mesh_create(context, &desc, out);
+}
+
+/* What a shape's component should be; edge and vertex examples are named by their vertices. */
+typedef struct expected_component {
+    uint32_t vertices, edges, triangles;
+    uint32_t open, non_manifold, bow_ties, inconsistent;
+    int64_t euler;
+    int first_open[2], first_non_manifold[2], first_inconsistent[2], first_bow_tie; /* NONE */
+} expected_component;
+
+static void check_example(const cscd_mesh *mesh, uint32_t edge, const int expected[2]) {
+    if (edge == UINT32_MAX) {
+        assert_int_equal(expected[0], NONE);
+        return;
+    }
+    uint32_t v[2];
+    cscd_mesh_edge(mesh, edge, v);
+    assert_int_equal((int)v[0], expected[0]);
+    assert_int_equal((int)v[1], expected[1]);
+}
+
+static void check_component(const cscd_mesh *mesh, uint32_t index, const expected_component *expected) {
+    cscd_component c = cscd_mesh_component(mesh, index);
+    assert_int_equal(c.vertex_count, expected->vertices);
+    assert_int_equal(c.edge_count, expected->edges);
+    assert_int_equal(c.triangle_count, expected->triangles);
+    assert_int_equal(c.open_edges, expected->open);
+    assert_int_equal(c.non_manifold_edges, expected->non_manifold);
+    assert_int_equal(c.non_manifold_vertices, expected->bow_ties);
+    assert_int_equal(c.inconsistent_edges, expected->inconsistent);
+    assert_true(c.euler_characteristic == expected->euler);
+    bool flaws = expected->open + expected->non_manifold + expected->bow_ties + expected->inconsistent > 0;
+    assert_true(c.closed_manifold == !flaws);
+    check_example(mesh, c.first_open_edge, expected->first_open);
+    check_example(mesh, c.first_non_manifold_edge, expected->first_non_manifold);
+    check_example(mesh, c.first_inconsistent_edge, expected->first_inconsistent);
+    assert_true(c.first_non_manifold_vertex ==
+                (expected->first_bow_tie == NONE ? UINT32_MAX : (uint32_t)expected->first_bow_tie));
+}
+
+static void check_shape(const shape *s, uint32_t component_count, const expected_component *expected) {
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = new_context(&counter);
+    cscd_mesh *mesh = NULL;
+    assert_int_equal(create(context, s, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_vertex_count(mesh), s->vertex_count);
+    assert_int_equal(cscd_mesh_triangle_count(mesh), s->triangle_count);
+    check_edges(mesh, s);
+    check_stars(mesh, s);
+    assert_int_equal(cscd_mesh_component_count(mesh), component_count);
+    for (uint32_t i = 0; i < component_count; i++) check_component(mesh, i, &expected[i]);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.live, 0);
+}
+
+#define NO_EDGES                                                                                             \
+    {NONE, NONE}, {NONE, NONE}, {                                                                            \
+        NONE, NONE                                                                                           \
+    }
+
+/* ---- closed surfaces ---- */
+
+static void closed_surfaces(void **state) {
+    static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
+    static const expected_component cube = {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE};
+    static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_tetrahedron(&s, 0, 1, 2, 3);
+    check_shape(&s, 1, &tetrahedron);
+    s = (shape){0};
+    shape_add_cube(&s);
+    check_shape(&s, 1, &cube);
+    s = (shape){0};
+    shape_add_grid(&s, 5, 6, true, true);
+    check_shape(&s, 1, &torus);
+}
+
+static void isolated_vertices(void **state) {
+    static const expected_component tetrahedron = {4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_tetrahedron(&s, 1, 2, 4, 5);
+    s.vertex_count = 8;
+    check_shape(&s, 1, &tetrahedron);
+}
+
+static void two_components(void **state) {
+    static const expected_component expected[2] = {{4, 6, 4, 0, 0, 0, 0, 2, NO_EDGES, NONE},
+                                                   {8, 18, 12, 0, 0, 0, 0, 2, NO_EDGES, NONE}};
+    (void)state;
+    shape cube = {0}, s = {0};
+    shape_add_cube(&cube);
+    shape_add_tetrahedron(&s, 9, 11, 8, 10); /* numbered by the first triangle, not by vertices */
+    for (uint32_t t = 0; t < cube.triangle_count; t++)
+        shape_add_triangle(&s, cube.triangles[t][0], cube.triangles[t][1], cube.triangles[t][2]);
+    check_shape(&s, 2, expected);
+
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = new_context(&counter);
+    cscd_mesh *mesh = NULL;
+    memcpy(s.triangles[15], s.triangles[0],
+           sizeof s.triangles[0]); /* the tetrahedron once more, at the end */
+    assert_int_equal(create(context, &s, &mesh), CSCD_OK);
+    for (uint32_t t = 0; t < s.triangle_count; t++)
+        assert_int_equal(cscd_mesh_triangle_component(mesh, t), t < 4 || t == 15 ? 0 : 1);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+/* ---- flawed ones ---- */
+
+static void open_surfaces(void **state) {
+    static const expected_component triangle = {3,   3, 1, 3, 0, 0, 0, 1, {0, 1}, {NONE, NONE}, {NONE, NONE},
+                                                NONE};
+    static const expected_component sheet = {20, 43,     24,           14,           0,   0, 0,
+                                             1,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
+    static const expected_component cylinder = {24, 60,     36,           12,           0,   0, 0,
+                                                0,  {0, 1}, {NONE, NONE}, {NONE, NONE}, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_triangle(&s, 0, 1, 2);
+    check_shape(&s, 1, &triangle);
+    s = (shape){0};
+    shape_add_grid(&s, 3, 4, false, false);
+    check_shape(&s, 1, &sheet);
+    s = (shape){0};
+    shape_add_grid(&s, 3, 6, false, true);
+    check_shape(&s, 1, &cylinder);
+}
+
+static void moebius_strip(void **state) {
+    static const expected_component strip = {12, 24, 12, 12, 0, 0, 1, 0, {0, 2}, {NONE, NONE}, {0, 1}, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_moebius_strip(&s, 6);
+    check_shape(&s, 1, &strip);
+}
+
+static void bow_ties(void **state) {
+    static const expected_component tetrahedra = {7, 12, 8, 0, 0, 1, 0, 3, NO_EDGES, 3};
+    static const expected_component triangles = {5, 6, 2, 6, 0, 1, 0, 1, {0, 1}, {NONE, NONE}, {NONE, NONE},
+                                                 2};
+    (void)state;
+    shape s = {0};
+    shape_add_tetrahedron(&s, 0, 1, 2, 3);
+    shape_add_tetrahedron(&s, 4, 3, 6, 5);
+    check_shape(&s, 1, &tetrahedra);
+    s = (shape){0};
+    shape_add_triangle(&s, 0, 1, 2);
+    shape_add_triangle(&s, 2, 3, 4);
+    check_shape(&s, 1, &triangles);
+}
+
+static void three_on_an_edge(void **state) {
+    static const expected_component fins = {5, 7, 3, 6, 1, 0, 0, 1, {0, 2}, {0, 1}, {NONE, NONE}, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_triangle(&s, 0, 1, 2);
+    shape_add_triangle(&s, 1, 0, 3);
+    shape_add_triangle(&s, 0, 1, 4);
+    check_shape(&s, 1, &fins);
+}
+
+static void flipped_triangle(void **state) {
+    static const expected_component flipped = {8, 18,           12,           0,      0,   0, 3,
+                                               2, {NONE, NONE}, {NONE, NONE}, {0, 1}, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_cube(&s);
+    uint32_t *v = s.triangles[1], second = v[1]; /* 0 3 1 */
+    v[1] = v[2];
+    v[2] = second;
+    check_shape(&s, 1, &flipped);
+}
+
+/* The same triangle twice is a closed surface without volume; the other way round, an inconsistent one. */
+static void doubled_triangle(void **state) {
+    static const expected_component pillow = {3, 3, 2, 0, 0, 0, 0, 2, NO_EDGES, NONE};
+    static const expected_component doubled = {3,      3,   2, 0, 0, 0, 3, 2, {NONE, NONE}, {NONE, NONE},
+                                               {0, 1}, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_triangle(&s, 0, 1, 2);
+    shape_add_triangle(&s, 2, 1, 0);
+    check_shape(&s, 1, &pillow);
+    memcpy(s.triangles[1], (uint32_t[]){1, 2, 0}, sizeof s.triangles[1]);
+    check_shape(&s, 1, &doubled);
+}
+
+/* ---- bad input ---- */
+
+static void check_refused(cscd_context *context, const cscd_mesh_desc *desc, cscd_status expected,
+                          const char *detail) {
+    size_t bytes = cscd_context_bytes(context);
+    cscd_mesh *const untouched = (cscd_mesh *)&bytes;
+    cscd_mesh *mesh = untouched;
+    assert_int_equal(cscd_mesh_create(context, desc, &mesh), expected);
+    assert_ptr_equal(mesh, untouched);
+    assert_int_equal(cscd_context_bytes(context), bytes);
+    if (strstr(cscd_context_detail(context), detail) == NULL)
+        fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
+}
+
+static void refused(void **state) {
+    static const uint32_t good[] = {0, 1, 2, 0, 2, 3}, beyond[] = {0, 1, 2, 0, 2, 4};
+    static const uint32_t last[] = {0, 1, 2, 3, 2, UINT32_MAX};
+    static const uint32_t repeats[3][6] = {{0, 1, 2, 3, 3, 1}, {0, 1, 2, 3, 1, 3}, {0, 1, 2, 1, 3, 3}};
+    (void)state;
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = new_context(&counter);
+    check_refused(context, &(cscd_mesh_desc){4, 2, beyond}, CSCD_INVALID_MESH, "triangle 1 ");
+    check_refused(context, &(cscd_mesh_desc){4, 2, beyond}, CSCD_INVALID_MESH, "vertex 4");
+    check_refused(context, &(cscd_mesh_desc){4, 2, last}, CSCD_INVALID_MESH, "triangle 1 ");
+    for (int i = 0; i < 3; i++)
+        check_refused(context, &(cscd_mesh_desc){4, 2, repeats[i]}, CSCD_INVALID_MESH, "triangle 1 ");
+    check_refused(context, &(cscd_mesh_desc){0, 2, good}, CSCD_INVALID_MESH, "empty");
+    check_refused(context, &(cscd_mesh_desc){4, 0, good}, CSCD_INVALID_MESH, "empty");
+    check_refused(context, &(cscd_mesh_desc){4, 0, NULL}, CSCD_INVALID_MESH, "empty");
+    check_refused(context, &(cscd_mesh_desc){4, 0x80000000u, good}, CSCD_INVALID_MESH, "too many");
+    check_refused(context, &(cscd_mesh_desc){4, UINT32_MAX, good}, CSCD_INVALID_MESH, "too many");
+    check_refused(context, &(cscd_mesh_desc){4, 2, NULL}, CSCD_INVALID_ARGUMENT, "NULL");
+    check_refused(context, NULL, CSCD_INVALID_ARGUMENT, "NULL");
+    assert_int_equal(cscd_mesh_create(context, &(cscd_mesh_desc){4, 2, good}, NULL), CSCD_INVALID_ARGUMENT);
+    cscd_mesh *mesh = NULL;
+    assert_int_equal(cscd_mesh_create(NULL, &(cscd_mesh_desc){4, 2, good}, &mesh), CSCD_INVALID_ARGUMENT);
+    assert_null(mesh);
+    cscd_mesh_destroy(NULL);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.live, 0);
+}
+
+/* ---- memory ---- */
+
+/* Allocation number fail_at of cscd_mesh_create fails; the next try is right. False: it made no so many. */
+static bool fail_allocation(const shape *s, size_t fail_at, const expected_component *expected) {
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = new_context(&counter);
+    size_t bytes = counter.bytes, live = counter.live;
+    cscd_mesh *const untouched = (cscd_mesh *)&bytes;
+    cscd_mesh *mesh = untouched;
+    counter.fail_at = counter.calls + fail_at;
+    cscd_status status = create(context, s, &mesh);
+    bool failed = counter.calls > counter.fail_at;
+    assert_int_equal(status, failed ? CSCD_OUT_OF_MEMORY : CSCD_OK);
+    if (failed) {
+        assert_ptr_equal(mesh, untouched);
+        assert_int_equal(counter.bytes, bytes);
+        assert_int_equal(counter.live, live);
+        assert_int_equal(cscd_context_bytes(context), bytes);
+        assert_non_null(strstr(cscd_context_detail(context), "out of memory"));
+        assert_int_equal(create(context, s, &mesh), CSCD_OK);
+    }
+    check_edges(mesh, s);
+    check_stars(mesh, s);
+    check_component(mesh, 0, expected);
+    cscd_mesh_destroy(mesh);
+    assert_int_equal(counter.bytes, bytes);
+    cscd_context_destroy(context);
+    assert_int_equal(counter.bytes, 0);
+    assert_int_equal(counter.live, 0);
+    return failed;
+}
+
+static void every_allocation_may_fail(void **state) {
+    static const expected_component torus = {30, 90, 60, 0, 0, 0, 0, 0, NO_EDGES, NONE};
+    (void)state;
+    shape s = {0};
+    shape_add_grid(&s, 5, 6, true, true);
+    size_t count = 0;
+    while (fail_allocation(&s, count, &torus)) count++;
+    assert_true(count >= 10);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(closed_surfaces),
+        cmocka_unit_test(isolated_vertices),
+        cmocka_unit_test(two_components),
+        cmocka_unit_test(open_surfaces),
+        cmocka_unit_test(moebius_strip),
+        cmocka_unit_test(bow_ties),
+        cmocka_unit_test(three_on_an_edge),
+        cmocka_unit_test(flipped_triangle),
+        cmocka_unit_test(doubled_triangle),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);
+}

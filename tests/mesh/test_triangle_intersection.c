@@ -1,0 +1,294 @@
+/* triangles_intersect against the definition, feature pair by feature pair, on integers from -3 to 3.
+ *
+ * The oracle: two simplices meet when 0 is a convex combination of the differences of their corners, and
+ * then, by Caratheodory's theorem, one with positive weights of at most four affinely independent
+ * differences. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "src/mesh/triangle_intersection.h"
+#include "tests/support/random.h"
+
+#define ROUND_COUNT 100000
+
+typedef struct {
+    int64_t x, y, z;
+} vector;
+
+static int seed(void **state) {
+    (void)state;
+    random_seed(19690720);
+    return 0;
+}
+
+static vector cross(vector a, vector b) {
+    return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static int64_t dot(vector a, vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static int64_t determinant(vector a, vector b, vector c) {
+    return dot(a, cross(b, c));
+}
+
+/* 0 = wa a + wb b + wc c with positive weights, a, b, c affinely independent: the weights are as the areas of
+ * 0bc, 0ca, 0ab, which all turn the same way. */
+static bool inside_triangle(vector a, vector b, vector c) {
+    vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+
+    return dot(a, bc) == 0 && dot(bc, ca) > 0 && dot(ca, ab) > 0 && dot(ab, bc) > 0;
+}
+
+/* Cramer's rule. */
+static bool inside_tetrahedron(vector a, vector b, vector c, vector d) {
+    int64_t wa = determinant(b, c, d), wb = -determinant(a, c, d);
+    int64_t wc = determinant(a, b, d), wd = -determinant(a, b, c);
+
+    return (wa > 0 && wb > 0 && wc > 0 && wd > 0) || (wa < 0 && wb < 0 && wc < 0 && wd < 0);
+}
+
+static bool inside_segment(vector a, vector b) {
+    vector n = cross(a, b);
+
+    return dot(n, n) == 0 && dot(a, b) < 0;
+}
+
+static bool hull_contains_origin(const vector *d, int count) {
+    for (int i = 0; i < count; i++) {
+        if (dot(d[i], d[i]) == 0) return true;
+        for (int j = 0; j < i; j++) {
+            if (inside_segment(d[i], d[j])) return true;
+            for (int k = 0; k < j; k++) {
+                if (inside_triangle(d[i], d[j], d[k])) return true;
+                for (int l = 0; l < k; l++) {
+                    if (inside_tetrahedron(d[i], d[j], d[k], d[l])) return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+/* A vertex, an edge or a face: some corners of a triangle. */
+struct feature {
+    uint32_t index[3];
+    int count;
+};
+
+static bool features_share(const struct feature *a, const struct feature *b) {
+    for (int i = 0; i < a->count; i++) {
+        for (int j = 0; j < b->count; j++) {
+            if (a->index[i] == b->index[j]) return true;
+        }
+    }
+    return false;
+}
+
+static bool features_meet(const struct feature *a, const struct feature *b, const vector *points) {
+    vector differences[9];
+    int count = 0;
+
+    if (features_share(a, b)) return false;
+    for (int i = 0; i < a->count; i++) {
+        for (int j = 0; j < b->count; j++) {
+            vector p = points[a->index[i]], q = points[b->index[j]];
+
+            differences[count++] = (vector){p.x - q.x, p.y - q.y, p.z - q.z};
+        }
+    }
+    return hull_contains_origin(differences, count);
+}
+
+/* Three vertices, three edges, the face. */
+static void list_features(const uint32_t triangle[3], struct feature features[7]) {
+    for (int i = 0; i < 3; i++) {
+        features[i] = (struct feature){{triangle[i]}, 1};
+        features[3 + i] = (struct feature){{triangle[i], triangle[(i + 1) % 3]}, 2};
+    }
+    features[6] = (struct feature){{triangle[0], triangle[1], triangle[2]}, 3};
+}
+
+/* Vertex or edge with face, either way, and edge with edge. */
+static bool pair_counts(int a_count, int b_count) {
+    return (a_count == 3) != (b_count == 3) || (a_count == 2 && b_count == 2);
+}
+
+static bool oracle(const uint32_t a[3], const uint32_t b[3], const vector *points) {
+    struct feature a_features[7], b_features[7];
+
+    list_features(a, a_features);
+    list_features(b, b_features);
+    for (int i = 0; i < 7; i++) {
+        for (int j = 0; j < 7; j++) {
+            if (!pair_counts(a_features[i].count, b_features[j].count)) continue;
+            if (features_meet(&a_features[i], &b_features[j], points)) return true;
+        }
+    }
+    return false;
+}
+
+/* The second triangle begins with vertices of the first, then takes its own. */
+static void share_vertices(int shared_count, uint32_t a[3], uint32_t b[3]) {
+    for (uint32_t i = 0; i < 3; i++) {
+        a[i] = i;
+        b[i] = (int)i < shared_count ? (i + 1) % 3 : 3 + i;
+    }
+}
+
+/* Small ranges make coincident points, zero areas and common planes frequent. */
+static void random_points(vector points[6]) {
+    int range[3];
+
+    for (int k = 0; k < 3; k++) range[k] = random_integer(0, 3);
+    for (int i = 0; i < 6; i++) {
+        points[i].x = random_integer(-range[0], range[0]);
+        points[i].y = random_integer(-range[1], range[1]);
+        points[i].z = random_integer(-range[2], range[2]);
+    }
+}
+
+static void store(const vector points[6], double scale, double positions[18]) {
+    for (int i = 0; i < 6; i++) {
+        positions[3 * i] = scale * (double)points[i].x;
+        positions[3 * i + 1] = scale * (double)points[i].y;
+        positions[3 * i + 2] = scale * (double)points[i].z;
+    }
+}
+
+/* Both arguments in all orders of their corners, and the arguments exchanged. */
+static void check_all_orders(const uint32_t a[3], const uint32_t b[3], const double *positions,
+                             bool expected) {
+    static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+
+    for (int i = 0; i < 36; i++) {
+        const int *p = orders[i / 6], *q = orders[i % 6];
+        uint32_t a_turned[3] = {a[p[0]], a[p[1]], a[p[2]]}, b_turned[3] = {b[q[0]], b[q[1]], b[q[2]]};
+
+        assert_true(triangles_intersect(a_turned, b_turned, positions) == expected);
+        assert_true(triangles_intersect(b_turned, a_turned, positions) == expected);
+    }
+}
+
+/* Shears along x, y and z, one after the other, so never singular: the image keeps what meets, and no plane
+ * stays along the axes. */
+static vector shear(vector p, const int factor[6]) {
+    p.x += factor[0] * p.y + factor[1] * p.z;
+    p.y += factor[2] * p.x + factor[3] * p.z;
+    p.z += factor[4] * p.x + factor[5] * p.y;
+    return p;
+}
+
+static void random_shear(const vector points[6], vector sheared[6]) {
+    int offset[3];
+    int factor[6];
+
+    for (int k = 0; k < 3; k++) offset[k] = random_integer(-1000000, 1000000);
+    for (int k = 0; k < 6; k++) factor[k] = random_integer(-2000, 2000);
+    for (int i = 0; i < 6; i++) {
+        sheared[i] = shear(points[i], factor);
+        sheared[i].x += offset[0];
+        sheared[i].y += offset[1];
+        sheared[i].z += offset[2];
+    }
+}
+
+/* Compares one pair, its images under a shear and a scaling included. */
+static bool check_pair(const uint32_t a[3], const uint32_t b[3], const vector points[6], bool every_order) {
+    bool expected = oracle(a, b, points);
+    vector sheared[6];
+    double positions[18];
+
+    store(points, 1.0, positions);
+    assert_true(triangles_intersect(a, b, positions) == expected);
+    assert_true(triangles_intersect(b, a, positions) == expected);
+    if (every_order) check_all_orders(a, b, positions, expected);
+    store(points, ldexp(1.0, random_integer(-300, 298)), positions);
+    assert_true(triangles_intersect(a, b, positions) == expected);
+    random_shear(points, sheared);
+    store(sheared, ldexp(1.0, random_integer(-300, 250)), positions);
+    assert_true(triangles_intersect(a, b, positions) == expected);
+    if (every_order) check_all_orders(a, b, positions, expected);
+    return expected;
+}
+
+static void check_class(int shared_count) {
+    int meeting = 0, apart = 0;
+
+    for (int round = 0; round < ROUND_COUNT; round++) {
+        uint32_t a[3], b[3];
+        vector points[6];
+
+        share_vertices(shared_count, a, b);
+        random_points(points);
+        if (check_pair(a, b, points, round % 16 == 0)) {
+            meeting++;
+        } else {
+            apart++;
+        }
+    }
+    printf("%d shared: %7d meet %7d apart\n", shared_count, meeting, apart);
+    assert_true(apart >= 500);
+    if (shared_count == 3) assert_int_equal(meeting, 0);
+    if (shared_count < 3) assert_true(meeting >= 500);
+}
+
+static void no_shared_vertex(void **state) {
+    (void)state;
+    check_class(0);
+}
+
+static void one_shared_vertex(void **state) {
+    (void)state;
+    check_class(1);
+}
+
+static void two_shared_vertices(void **state) {
+    (void)state;
+    check_class(2);
+}
+
+static void three_shared_vertices(void **state) {
+    (void)state;
+    check_class(3);
+}
+
+static void known_pairs(void **state) {
+    /* A triangle in z = 0, then points above, below, within and beside it. */
+    const double positions[] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 1, 1, 1, -1, 9, 9, 1,
+                                1, 1, 0, 2, 2, 0, 5, 5, 0, 1, 2, 0, 4, 4, 0,  0, 0, 0};
+    const uint32_t base[3] = {0, 1, 2};
+
+    (void)state;
+    assert_true(triangles_intersect(base, (uint32_t[]){3, 4, 5}, positions));   /* pierced */
+    assert_true(triangles_intersect(base, (uint32_t[]){3, 5, 6}, positions));   /* touched by a vertex */
+    assert_true(triangles_intersect(base, (uint32_t[]){7, 8, 5}, positions));   /* touched on an edge */
+    assert_false(triangles_intersect(base, (uint32_t[]){3, 5, 8}, positions));  /* beside */
+    assert_true(triangles_intersect(base, (uint32_t[]){6, 9, 7}, positions));   /* one plane, inside */
+    assert_false(triangles_intersect(base, (uint32_t[]){0, 3, 5}, positions));  /* only the shared vertex */
+    assert_true(triangles_intersect(base, (uint32_t[]){0, 3, 4}, positions));   /* pierced beside it */
+    assert_true(triangles_intersect(base, (uint32_t[]){11, 3, 5}, positions));  /* same place, other vertex */
+    assert_false(triangles_intersect(base, (uint32_t[]){1, 2, 3}, positions));  /* hinge */
+    assert_false(triangles_intersect(base, (uint32_t[]){1, 2, 10}, positions)); /* flat hinge */
+    assert_true(triangles_intersect(base, (uint32_t[]){1, 2, 6}, positions));   /* folded hinge */
+    assert_false(triangles_intersect(base, (uint32_t[]){2, 1, 0}, positions));  /* the same three */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(known_pairs),
+        cmocka_unit_test_setup(no_shared_vertex, seed),
+        cmocka_unit_test_setup(one_shared_vertex, seed),
+        cmocka_unit_test_setup(two_shared_vertices, seed),
+        cmocka_unit_test_setup(three_shared_vertices, seed),
+    };
+
+    return cmocka_run_group_tests_name("triangle_intersection", tests, NULL, NULL);
+}

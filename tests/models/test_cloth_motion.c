@@ -1,0 +1,195 @@
+/* Certified motions: whatever a solver wants, nothing meets on the way; and nothing is changed without need.
+ */
+#include "models/cloth/cloth_scene.h"
+#include "models/cloth/garment.h"
+#include "models/cloth/safe_motion.h"
+#include "tests/support/random_stream.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { SIDE = 9 };
+
+static const double separation = 0.01;
+
+/* A sheet of width 1 at z = 0 above a floor, below a box with its lower side `above` the sheet. */
+typedef struct press {
+    body sheet, box;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *judge;              /* that finds what touches */
+    uint32_t vertex_count, floor, lid; /* first vertices of the obstacles */
+    double *inverse_masses, *x0, *x1;
+    safe_motion safe;
+} press;
+
+static const double box_height = 0.2;
+
+static press make_press(double below, double above) {
+    press p = {0};
+    garment_add_sheet(&p.sheet, SIDE, 1.0);
+    garment_add_box(&p.box, 2.0);
+    const cscd_mesh_desc sheet = {p.sheet.vertex_count, p.sheet.triangle_count, p.sheet.triangles};
+    const cscd_mesh_desc box = {p.box.vertex_count, p.box.triangle_count, p.box.triangles};
+    const cscd_object_desc objects[3] = {{sheet, false}, {box, true}, {box, true}};
+    assert_int_equal(cscd_context_create(NULL, &p.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create_scene(p.context, objects, 3, &p.mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(p.mesh, NULL, NULL, &p.judge), CSCD_OK);
+    p.vertex_count = cscd_mesh_vertex_count(p.mesh);
+    p.floor = p.sheet.vertex_count;
+    p.lid = p.floor + p.box.vertex_count;
+    p.inverse_masses = body_allocate(p.vertex_count, sizeof *p.inverse_masses);
+    p.x0 = body_allocate(p.vertex_count * 3, sizeof *p.x0);
+    p.x1 = body_allocate(p.vertex_count * 3, sizeof *p.x1);
+    for (uint32_t v = 0; v < p.floor; v++) p.inverse_masses[v] = 1.0 + v % 3;
+    memcpy(p.x0, p.sheet.positions, p.floor * 3 * sizeof *p.x0);
+    memcpy(p.x0 + p.floor * 3, p.box.positions, 24 * sizeof *p.x0);
+    memcpy(p.x0 + p.lid * 3, p.box.positions, 24 * sizeof *p.x0);
+    for (uint32_t v = p.floor; v < p.lid; v++) p.x0[v * 3 + 2] -= below;
+    for (uint32_t v = p.lid; v < p.vertex_count; v++) p.x0[v * 3 + 2] += box_height + above;
+    memcpy(p.x1, p.x0, p.vertex_count * 3 * sizeof *p.x1);
+    assert_int_equal(safe_motion_open(p.mesh, separation, p.inverse_masses, NULL, 0, &p.safe), CSCD_OK);
+    return p;
+}
+
+static void free_press(press *p) {
+    safe_motion_close(&p->safe);
+    cscd_detector_destroy(p->judge);
+    cscd_mesh_destroy(p->mesh);
+    cscd_context_destroy(p->context);
+    body_free(&p->sheet);
+    body_free(&p->box);
+    free(p->inverse_masses);
+    free(p->x0);
+    free(p->x1);
+}
+
+/* Makes the motion safe, judges it, and goes on to its end. Returns the length. */
+static double go_on(press *p) {
+    double length;
+    cscd_contacts found;
+    cscd_intersections crossing;
+    assert_int_equal(safe_motion_find(&p->safe, p->x0, p->x1, &length), CSCD_OK);
+    assert_true(length >= 0.0 && length <= 1.0);
+    assert_int_equal(cscd_detector_step(p->judge, p->x0, p->x1, &found), CSCD_OK);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(cscd_detector_check(p->judge, p->x1, &crossing), CSCD_OK);
+    assert_int_equal(crossing.count, 0);
+    memcpy(p->x0, p->x1, p->vertex_count * 3 * sizeof *p->x0);
+    return length;
+}
+
+static void lift(press *p, uint32_t first, uint32_t last, double by) {
+    for (uint32_t v = first; v < last; v++) p->x1[v * 3 + 2] += by;
+}
+
+static void free_motions_are_left_alone(void **state) {
+    (void)state;
+    press p = make_press(0.3, 0.3);
+    random_stream random = stream_start(3);
+    for (uint32_t i = 0; i < p.floor * 3; i++) p.x1[i] += stream_between(&random, -0.02, 0.02);
+    lift(&p, p.lid, p.vertex_count, -0.1);
+    double *wanted = body_allocate(p.vertex_count * 3, sizeof *wanted);
+    memcpy(wanted, p.x1, p.vertex_count * 3 * sizeof *wanted);
+    assert_true(go_on(&p) == 1.0);
+    assert_memory_equal(wanted, p.x1, p.vertex_count * 3 * sizeof *wanted);
+    assert_int_equal(p.safe.counts.steps, 1);
+    assert_int_equal(p.safe.counts.cut, 0);
+    free(wanted);
+    free_press(&p);
+}
+
+/* The sheet stops at the floor, not nearer than the separation, and keeps its motion along it. */
+static void what_falls_stops_at_the_floor(void **state) {
+    (void)state;
+    press p = make_press(0.1, 1.0);
+    lift(&p, 0, p.floor, -0.5);
+    for (uint32_t v = 0; v < p.floor; v++) p.x1[v * 3] += 0.2;
+    assert_true(go_on(&p) == 1.0);
+    assert_int_equal(p.safe.counts.cut, 1);
+    assert_int_equal(p.safe.counts.fallbacks, 0);
+    for (uint32_t v = 0; v < p.floor; v++) {
+        assert_true(p.x0[v * 3 + 2] > -0.1 + separation && p.x0[v * 3 + 2] < -0.04);
+        assert_true(fabs(p.x0[v * 3] - p.sheet.positions[v * 3] - 0.2) < 0.03);
+    }
+    free_press(&p);
+}
+
+/* Vertices that jump by more than an edge, again and again: the sheet ends in a tangle that does not cross.
+ */
+static void shaken_sheets_never_cross(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < 2; seed++) {
+        press p = make_press(0.3, 0.3);
+        random_stream random = stream_start(seed);
+        for (int motion = 0; motion < 15; motion++) {
+            for (uint32_t i = 0; i < p.floor * 3; i++) p.x1[i] += stream_between(&random, -0.3, 0.3);
+            go_on(&p);
+        }
+        assert_true(p.safe.counts.cut > 10);
+        free_press(&p);
+    }
+}
+
+/* The lid wants to go through sheet and floor: it waits above the sheet. Then it is told to go up again, and
+ * everything comes free. */
+static void obstacles_wait_for_what_they_press(void **state) {
+    (void)state;
+    press p = make_press(0.05, 0.05);
+    double way = 0.0;
+    for (int motion = 0; motion < 40; motion++) {
+        memcpy(p.x1, p.x0, p.vertex_count * 3 * sizeof *p.x1);
+        lift(&p, p.lid, p.vertex_count, -0.03);
+        way += 0.03 * go_on(&p);
+    }
+    assert_true(way > 0.08 && way < 0.1);
+    assert_true(p.safe.counts.fallbacks > 10 && p.safe.counts.tight > 0);
+    double lid = p.x0[p.lid * 3 + 2], floor = p.x0[(p.floor + 7) * 3 + 2];
+    assert_true(lid > floor && lid < floor + 4.0 * separation);
+    for (int motion = 0; motion < 3; motion++) {
+        lift(&p, p.lid, p.vertex_count, 0.03);
+        for (uint32_t v = 0; v < p.floor; v++) p.x1[v * 3 + 2] += 0.01;
+        assert_true(go_on(&p) == 1.0);
+    }
+    assert_true(p.x0[p.lid * 3 + 2] > lid + 0.08);
+    free_press(&p);
+}
+
+/* A sheet that moves as a whole while it folds onto itself keeps its momentum. */
+static void what_meets_itself_keeps_its_momentum(void **state) {
+    (void)state;
+    press p = make_press(5.0, 5.0);
+    double wanted[3] = {0.0}, got[3] = {0.0};
+    for (uint32_t v = 0; v < p.floor; v++) {
+        double *x = p.x1 + v * 3; /* the one half turns over onto the other, and through it */
+        if (x[0] > 0.1) x[2] += 0.4;
+        if (x[0] > 0.3) x[0] -= 0.9, x[2] -= 0.8;
+        x[1] += 0.5;
+        for (int k = 0; k < 3; k++) wanted[k] += (x[k] - p.x0[v * 3 + (uint32_t)k]) / p.inverse_masses[v];
+    }
+    double length = go_on(&p);
+    assert_true(length == 1.0);
+    assert_true(p.safe.counts.cut == 1);
+    for (uint32_t i = 0; i < p.floor * 3; i++)
+        got[i % 3] += (p.x0[i] - p.sheet.positions[i]) / p.inverse_masses[i / 3];
+    for (int k = 0; k < 3; k++) assert_true(fabs(wanted[k] - got[k]) < 1e-12 * SIDE * SIDE);
+    free_press(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(free_motions_are_left_alone),
+        cmocka_unit_test(what_falls_stops_at_the_floor),
+        cmocka_unit_test(shaken_sheets_never_cross),
+        cmocka_unit_test(obstacles_wait_for_what_they_press),
+        cmocka_unit_test(what_meets_itself_keeps_its_momentum),
+    };
+    return cmocka_run_group_tests_name("cloth motion", tests, NULL, NULL);
+}

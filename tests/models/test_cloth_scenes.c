@@ -1,0 +1,283 @@
+/* The cloth scenes, whole and small: nothing meets in any step, and yet much happens. */
+#include "models/cloth/cloth_simulation.h"
+#include "models/common/vec3.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
+ */
+#ifdef __SANITIZE_ADDRESS__
+enum { FRAMES = 75, THREADED_FRAMES = 16, SEWN_FRAMES = 48, BRUTE_EVERY = 70 };
+#else
+enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 70, BRUTE_EVERY = 70 };
+#endif
+
+enum { RESOLUTION = 18 };
+
+/* A run of a scene beside detectors that know nothing of the solver's, on what a recording keeps: positions
+ * in single precision. */
+typedef struct trial {
+    cscd_context *context;
+    cloth_simulation run;
+    uint32_t vertex_count, garment_count;
+    cscd_detector *judge, *brute; /* of the whole scene; both find what touches */
+    double *before, *after;       /* rounded */
+} trial;
+
+static void round_positions(const double *from, uint32_t vertex_count, double *to) {
+    body rounded = {.vertex_count = vertex_count, .positions = to};
+    memcpy(to, from, vertex_count * 3 * sizeof *to);
+    body_round(&rounded);
+}
+
+static cscd_detector *make_detector(const cloth_simulation *run, cscd_method method) {
+    cscd_detector *detector;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
+    options.seams = run->seams;
+    options.seam_count = run->seam_count;
+    assert_int_equal(cscd_detector_create(run->mesh, NULL, &options, &detector), CSCD_OK);
+    return detector;
+}
+
+static trial begin(const char *name, uint32_t thread_count) {
+    trial t = {0};
+    io_error error;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = thread_count;
+    assert_int_equal(cscd_context_create(&options, &t.context), CSCD_OK);
+    if (!cloth_open(cloth_scene_find(name), RESOLUTION, t.context, &t.run, &error))
+        fail_msg("%s", error.text);
+    t.vertex_count = cscd_mesh_vertex_count(t.run.mesh);
+    t.garment_count = t.run.garment.vertex_count;
+    t.judge = make_detector(&t.run, CSCD_METHOD_NONE);
+    t.brute = make_detector(&t.run, CSCD_METHOD_BRUTE);
+    t.before = body_allocate(t.vertex_count * 3, sizeof *t.before);
+    t.after = body_allocate(t.vertex_count * 3, sizeof *t.after);
+    round_positions(t.run.positions, t.vertex_count, t.after);
+    return t;
+}
+
+static void end(trial *t) {
+    cscd_detector_destroy(t->judge);
+    cscd_detector_destroy(t->brute);
+    cloth_close(&t->run);
+    cscd_context_destroy(t->context);
+    free(t->before);
+    free(t->after);
+}
+
+static void advance(trial *t) {
+    io_error error;
+    double *kept = t->before;
+    if (!cloth_advance(&t->run, &error)) fail_msg("%s", error.text);
+    t->before = t->after;
+    t->after = kept;
+    round_positions(t->run.positions, t->vertex_count, t->after);
+}
+
+static void expect_nothing(cscd_detector *detector, const double *from, const double *to, uint32_t frame) {
+    cscd_contacts found;
+    assert_int_equal(cscd_detector_step(detector, from, to, &found), CSCD_OK);
+    if (found.count > 0)
+        fail_msg("frame %u: %zu contacts, the first of %s %u and %u at %g", frame, found.count,
+                 cscd_contact_kind_name(found.items[0].kind), found.items[0].a, found.items[0].b,
+                 found.items[0].toi);
+}
+
+static void expect_embedded(cscd_detector *detector, const double *positions) {
+    cscd_intersections crossing;
+    assert_int_equal(cscd_detector_check(detector, positions, &crossing), CSCD_OK);
+    assert_int_equal(crossing.count, 0);
+    assert_int_equal(crossing.zero_area_triangles, 0);
+}
+
+/* Pairs nearer than 1.2 thicknesses: folds, of which the parts were more than six spacings apart at the
+ * start, and pairs of the garment with each obstacle. */
+typedef struct meetings {
+    size_t folds, obstacles[CLOTH_OBSTACLES_MAX];
+} meetings;
+
+static meetings count_meetings(trial *t) {
+    meetings m = {0};
+    cscd_proximities near;
+    const double reach = 1.2 * cloth_thickness(&t->run);
+    assert_int_equal(cscd_detector_near(t->judge, t->run.positions, reach, &near), CSCD_OK);
+    for (size_t i = 0; i < near.count; i++) {
+        const cscd_proximity *p = &near.items[i];
+        cscd_stencil s = cscd_mesh_stencil(t->run.mesh, p->kind, p->a, p->b, p->u, p->v);
+        uint32_t first = cscd_mesh_vertex_object(t->run.mesh, s.vertices[0]);
+        uint32_t last = cscd_mesh_vertex_object(t->run.mesh, s.vertices[3]);
+        double between[3];
+        if (first > 0 || last > 0) {
+            m.obstacles[(first > last ? first : last) - 1]++;
+            continue;
+        }
+        difference(t->run.garment.positions + s.vertices[0] * 3, t->run.garment.positions + s.vertices[3] * 3,
+                   between);
+        m.folds += norm(between) > 6.0 * t->run.spacing;
+    }
+    return m;
+}
+
+/* The largest motion of a vertex of the garment in the last frame. */
+static double largest_motion(const trial *t) {
+    double most = 0.0, between[3];
+    for (uint32_t v = 0; v < t->garment_count; v++) {
+        difference(t->run.positions + v * 3, t->run.start + v * 3, between);
+        most = fmax(most, norm(between));
+    }
+    return most;
+}
+
+/* No contact from frame to frame, and so no frame that crosses; no obstacle that had to wait. *most_folds: of
+ * a frame. True if that was the whole scene, which ends nearly at rest. */
+static bool run_scene(trial *t, size_t *most_folds) {
+    *most_folds = 0;
+    uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;
+    expect_embedded(t->judge, t->after);
+    for (uint32_t frame = 1; frame < frame_count; frame++) {
+        advance(t);
+        expect_nothing(t->judge, t->before, t->after, frame);
+        if (frame % BRUTE_EVERY == 0) expect_nothing(t->brute, t->before, t->after, frame);
+        if (frame % 20 > 0) continue;
+        expect_embedded(t->judge, t->after);
+        meetings m = count_meetings(t);
+        if (m.folds > *most_folds) *most_folds = m.folds;
+    }
+    assert_true(t->run.statistics.waited == 0.0);
+    if (frame_count < t->run.scene->frame_count) return false;
+    assert_true(largest_motion(t) < 0.5 * t->run.spacing);
+    return true;
+}
+
+/* It lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it. */
+static void the_sheet_drapes_over_the_ball(void **state) {
+    (void)state;
+    trial t = begin("cloth-drape", 1);
+    const cloth_obstacle *ball = &t.run.scene->obstacles[1];
+    double top = ball->centre[2] + ball->rise + ball->size, highest = 0.0;
+    size_t most_folds;
+    bool whole = run_scene(&t, &most_folds);
+    meetings m = count_meetings(&t);
+    assert_true(m.obstacles[1] > 10);
+    for (uint32_t v = 0; v < t.garment_count; v++) {
+        assert_true(t.run.positions[v * 3 + 2] > 0.0);
+        highest = fmax(highest, t.run.positions[v * 3 + 2]);
+    }
+    if (whole) {
+        assert_true(most_folds > 20 && m.obstacles[0] > 10);
+        assert_true(highest > top && highest < top + 2.0 * t.run.spacing);
+    }
+    end(&t);
+}
+
+/* Flat on the floor, below the ball. */
+static void the_sleeve_lies_in_folds(void **state) {
+    (void)state;
+    trial t = begin("sleeve", 1);
+    double highest = 0.0;
+    size_t most_folds;
+    bool whole = run_scene(&t, &most_folds);
+    meetings m = count_meetings(&t);
+    assert_true(m.obstacles[0] > 10);
+    for (uint32_t v = 0; v < t.garment_count; v++) {
+        assert_true(t.run.positions[v * 3 + 2] > 0.0);
+        highest = fmax(highest, t.run.positions[v * 3 + 2]);
+    }
+    if (whole) {
+        assert_true(most_folds > 20 && m.folds > 20 && m.obstacles[1] > 10);
+        assert_true(highest < 0.4 * t.run.scene->height);
+    }
+    end(&t);
+}
+
+/* The panels of the bag meet nothing but each other at their seams, where their vertices stay together, bit
+ * for bit. */
+static void seams_hold(void **state) {
+    (void)state;
+    trial t = begin("bag", 1);
+    expect_embedded(t.judge, t.after);
+    assert_true(t.run.seam_count > 3 * (RESOLUTION - 1));
+    for (uint32_t frame = 1; frame < SEWN_FRAMES; frame++) {
+        advance(&t);
+        expect_nothing(t.judge, t.before, t.after, frame);
+        for (uint32_t i = 0; i < t.run.seam_count; i++)
+            assert_memory_equal(t.run.positions + t.run.seams[2 * i] * 3,
+                                t.run.positions + t.run.seams[2 * i + 1] * 3, 3 * sizeof(double));
+    }
+    expect_embedded(t.judge, t.after);
+    assert_true(t.run.statistics.motion.cut > 0);
+    assert_true(count_meetings(&t).obstacles[1] > 10);
+    end(&t);
+}
+
+/* Steps of the garment alone, by a method that culls: of the open sheet nothing can be culled, and the sleeve
+ * is known to be embedded throughout. */
+static void expect_reason(const char *name, cscd_reason reason, bool culls) {
+    trial t = begin(name, 1);
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_detector *detector;
+    const body *garment = &t.run.garment;
+    const cscd_mesh_desc desc = {garment->vertex_count, garment->triangle_count, garment->triangles};
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = CSCD_METHOD_KMEANS;
+    assert_int_equal(cscd_mesh_create(t.context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_plan_create(mesh, garment->positions, &options, &plan), CSCD_OK);
+    assert_int_equal(cscd_detector_create(mesh, plan, NULL, &detector), CSCD_OK);
+    for (uint32_t frame = 1; frame < 40; frame++) {
+        advance(&t);
+        expect_nothing(detector, t.before, t.after, frame);
+        cscd_guarantee guarantee = cscd_detector_guarantee(detector, 0);
+        assert_int_equal(guarantee.reason, reason);
+        assert_true(guarantee.complete);
+        assert_int_equal(cscd_detector_counters(detector).clean == garment->triangle_count, culls);
+        assert_int_equal(cscd_detector_counters(detector).plus > garment->triangle_count / 4, culls);
+    }
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    end(&t);
+}
+
+static void guarantees_say_what_was_culled(void **state) {
+    (void)state;
+    expect_reason("cloth-drape", CSCD_REASON_SURFACE, false);
+    expect_reason("sleeve", CSCD_REASON_CLEAN, true);
+}
+
+static void threads_change_nothing(void **state) {
+    (void)state;
+    for (uint32_t i = 0; i < cloth_scene_count; i++) {
+        trial one = begin(cloth_scenes[i].name, 1), three = begin(cloth_scenes[i].name, 3);
+        for (uint32_t frame = 1; frame < THREADED_FRAMES; frame++) {
+            advance(&one);
+            advance(&three);
+            assert_memory_equal(one.run.positions, three.run.positions,
+                                one.vertex_count * 3 * sizeof *one.run.positions);
+        }
+        assert_int_equal(one.run.statistics.near_pairs, three.run.statistics.near_pairs);
+        assert_int_equal(one.run.statistics.motion.contacts, three.run.statistics.motion.contacts);
+        end(&one);
+        end(&three);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_sheet_drapes_over_the_ball),
+        cmocka_unit_test(the_sleeve_lies_in_folds),
+        cmocka_unit_test(seams_hold),
+        cmocka_unit_test(guarantees_say_what_was_culled),
+        cmocka_unit_test(threads_change_nothing),
+    };
+    return cmocka_run_group_tests_name("cloth scenes", tests, NULL, NULL);
+}

@@ -1,0 +1,297 @@
+/* The scenes of the IPC solver, small: every step it takes is free of contact by another detector's word, the
+ * energy falls, links hold each other, and the motion is repeatable. */
+#include "models/common/vec3.h"
+#include "models/ipc/solver.h"
+#include "tests/support/random_stream.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* RING_TRIANGLES: of all; STRIDE: of time steps whose lines are checked by the other detectors. */
+#ifdef __SANITIZE_ADDRESS__
+enum { RING_TRIANGLES = 480, RING_STEPS = 60, STRIDE = 25, REPEATED = 12 };
+#else
+enum { RING_TRIANGLES = 900, RING_STEPS = 90, STRIDE = 4, REPEATED = 30 };
+#endif
+
+/* The chain is taut after about 50 steps; the coil is pressed together most after 75. */
+static const struct extent {
+    const char *name;
+    uint32_t triangles, steps;
+} extents[] = {{"rings", RING_TRIANGLES, RING_STEPS}, {"press", 1400, 75}};
+
+enum { SCENE_COUNT = sizeof extents / sizeof *extents };
+
+static cscd_context *open_context(uint32_t threads) {
+    cscd_context_options options = cscd_context_defaults();
+    cscd_context *context;
+    options.thread_count = threads;
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    return context;
+}
+
+static ipc_solver open_scene(const struct extent *e, cscd_context *context) {
+    ipc_solver p;
+    const ipc_scene *scene = ipc_scene_find(e->name);
+    assert_non_null(scene);
+    if (ipc_solver_make(scene, e->triangles, context, &p) != CSCD_OK)
+        fail_msg("%s: %s", e->name, cscd_context_detail(context));
+    return p;
+}
+
+/* Others than the solver's: without the line, and one by brute force. */
+typedef struct judges {
+    cscd_detector *apart, *touching, *brute;
+    uint32_t judged;
+} judges;
+
+static judges call_judges(const ipc_solver *p) {
+    judges j = {.judged = 0};
+    cscd_detector_options options = cscd_detector_defaults();
+    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.touching), CSCD_OK);
+    options.method = CSCD_METHOD_BRUTE;
+    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.brute), CSCD_OK);
+    options.method = CSCD_METHOD_NONE;
+    options.min_separation = p->scene->min_separation;
+    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.apart), CSCD_OK);
+    return j;
+}
+
+static void dismiss(judges *j) {
+    cscd_detector_destroy(j->apart);
+    cscd_detector_destroy(j->touching);
+    cscd_detector_destroy(j->brute);
+}
+
+static void expect_none(cscd_detector *detector, const double *from, const double *to) {
+    cscd_contacts contacts;
+    assert_int_equal(cscd_detector_step(detector, from, to, &contacts), CSCD_OK);
+    if (contacts.count > 0)
+        fail_msg("%zu contacts, the first %s %u %u at %g", contacts.count,
+                 cscd_contact_kind_name(contacts.items[0].kind), contacts.items[0].a, contacts.items[0].b,
+                 contacts.items[0].toi);
+}
+
+/* Nothing touches on the way nor comes nearer than allowed, and the end crosses nowhere. */
+static void judge(judges *j, const double *from, const double *to) {
+    cscd_intersections crossing;
+    expect_none(j->touching, from, to);
+    expect_none(j->apart, from, to);
+    if (j->judged++ % 40 == 0) expect_none(j->brute, from, to);
+    assert_int_equal(cscd_detector_check(j->touching, to, &crossing), CSCD_OK);
+    assert_int_equal(crossing.count, 0);
+}
+
+/* The energy that the solver goes by is that of its positions and of the pairs that are near there. */
+static void check_energy(const ipc_solver *p, cscd_detector *detector) {
+    cscd_proximities near;
+    ipc_contacts contacts = {0};
+    assert_int_equal(cscd_detector_near(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
+    ipc_contacts_find(&contacts, p->mesh, p->shape.positions, p->positions, &near, &p->scene->barrier);
+    assert_int_equal(contacts.count, p->contacts.count);
+    assert_true(contacts.least_distance == p->contacts.least_distance);
+    assert_true(contacts.least_distance > p->scene->min_separation);
+    assert_true(ipc_solver_energy(p, p->positions, &contacts) == p->energy);
+    ipc_contacts_free(&contacts);
+}
+
+/* One time step, its lines judged. */
+static void step_and_judge(ipc_solver *p, judges *j, double *from) {
+    bool done = false;
+    ipc_solver_begin_step(p);
+    for (int i = 0; !done; i++) {
+        double energy = p->energy;
+        assert_true(i < 60);
+        memcpy(from, p->positions, (size_t)p->shape.vertex_count * 3 * sizeof *from);
+        assert_int_equal(ipc_solver_iterate(p, &done), CSCD_OK);
+        judge(j, from, p->positions);
+        if (p->arrived) assert_true(p->energy < energy);
+        if (i == 0) check_energy(p, j->touching);
+    }
+    ipc_solver_end_step(p);
+}
+
+static ipc_solver run_and_judge(const struct extent *e, cscd_context *context) {
+    ipc_solver p = open_scene(e, context);
+    judges j = call_judges(&p);
+    double *from = body_allocate(p.shape.vertex_count, 3 * sizeof *from);
+    for (uint32_t step = 0; step < e->steps; step++) {
+        if (step % STRIDE == 0)
+            step_and_judge(&p, &j, from);
+        else
+            assert_int_equal(ipc_solver_advance(&p), CSCD_OK);
+    }
+    assert_int_equal(p.statistics.steps, e->steps);
+    assert_int_equal(p.statistics.unfinished, 0);
+    assert_true(p.statistics.newton >= e->steps && p.statistics.trials >= p.statistics.newton);
+    assert_true(p.statistics.cut > 0 && p.statistics.candidates > 0 && p.statistics.near > 0);
+    assert_true(p.statistics.least_distance > p.scene->min_separation);
+    free(from);
+    dismiss(&j);
+    return p;
+}
+
+static void mean_of(const ipc_solver *p, uint32_t object, double out[3]) {
+    cscd_object o = cscd_mesh_object(p->mesh, object);
+    out[0] = out[1] = out[2] = 0.0;
+    for (uint32_t v = 0; v < o.vertex_count; v++)
+        add_scaled(out, 1.0 / o.vertex_count, p->positions + (size_t)(o.first_vertex + v) * 3);
+}
+
+/* Without contact the links would be 11 below the first by then. Two that hold each other are at most two
+ * inner radii of 0.78 apart, and somewhat more as they are stretched. */
+static void links_bear_each_other(void **state) {
+    (void)state;
+    cscd_context *context = open_context(1);
+    ipc_solver p = run_and_judge(&extents[0], context);
+    double above[3], below[3], between[3];
+    uint32_t count = cscd_mesh_object_count(p.mesh), loaded = 0;
+    mean_of(&p, 0, above);
+    assert_true(fabs(above[0]) < 1e-6 && fabs(above[2]) < 1e-6); /* has not moved */
+    for (uint32_t i = 1; i < count; i++) {
+        mean_of(&p, i, below);
+        difference(below, above, between);
+        assert_true(norm(between) > 0.5 && norm(between) < 2.1);
+        for (size_t c = 0; c < p.contacts.count; c++) {
+            uint32_t a = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[0]);
+            uint32_t b = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[3]);
+            if ((a == i && b == i - 1) || (b == i && a == i - 1)) {
+                loaded++;
+                break;
+            }
+        }
+        memcpy(above, below, sizeof above);
+    }
+    assert_true(above[2] < -3.0); /* it hangs */
+    assert_true(loaded >= 3);
+    ipc_solver_free(&p);
+    cscd_context_destroy(context);
+}
+
+/* Half way the upper plate is where it is to be, and the coil between the plates and on itself. */
+static void the_press_arrives_and_the_coil_gives_way(void **state) {
+    (void)state;
+    cscd_context *context = open_context(1);
+    ipc_solver p = run_and_judge(&extents[1], context);
+    cscd_object coil = cscd_mesh_object(p.mesh, 0), plate = cscd_mesh_object(p.mesh, 2);
+    double share = ipc_scene_travelled(p.scene, p.time), low = INFINITY, lowest = INFINITY,
+           highest = -INFINITY;
+    assert_true(plate.obstacle && !coil.obstacle);
+    for (uint32_t v = 0; v < plate.vertex_count; v++) {
+        uint32_t z = (plate.first_vertex + v) * 3 + 2;
+        assert_true(fabs(p.positions[z] - p.shape.positions[z] - share * p.travels[z]) < 1e-12);
+        low = fmin(low, p.positions[z]);
+    }
+    for (uint32_t v = 0; v < coil.vertex_count; v++) {
+        lowest = fmin(lowest, p.positions[v * 3 + 2]);
+        highest = fmax(highest, p.positions[v * 3 + 2]);
+    }
+    assert_true(highest < low && low - highest < 2.0 * p.scene->barrier.reach);
+    assert_true(highest - lowest < 2.6); /* 3.9 at rest */
+    uint32_t own = 0;
+    for (size_t c = 0; c < p.contacts.count; c++)
+        own += p.contacts.items[c].vertices[0] < coil.vertex_count &&
+               p.contacts.items[c].vertices[3] < coil.vertex_count;
+    assert_true(own > 0);
+    ipc_solver_free(&p);
+    cscd_context_destroy(context);
+}
+
+/* Vertices fly apart in all directions, so fast that Newton steps go too far. */
+static void the_energy_falls_however_wild_the_motion(void **state) {
+    (void)state;
+    cscd_context *context = open_context(1);
+    ipc_solver p = open_scene(&extents[1], context);
+    judges j = call_judges(&p);
+    random_stream random = stream_start(7);
+    double *from = body_allocate(p.shape.vertex_count, 3 * sizeof *from);
+    for (uint32_t i = 0; i < p.shape.vertex_count * 3; i++)
+        p.velocities[i] = p.inertia[i / 3] > 0.0 ? stream_between(&random, -60.0, 60.0) : 0.0;
+    for (int step = 0; step < 2; step++) step_and_judge(&p, &j, from);
+    assert_true(p.statistics.trials > p.statistics.newton && p.statistics.cut > 0);
+    free(from);
+    dismiss(&j);
+    ipc_solver_free(&p);
+    cscd_context_destroy(context);
+}
+
+static double *positions_after(const struct extent *e, uint32_t threads, size_t *size) {
+    cscd_context *context = open_context(threads);
+    ipc_solver p = open_scene(e, context);
+    for (uint32_t i = 0; i < REPEATED; i++) assert_int_equal(ipc_solver_advance(&p), CSCD_OK);
+    *size = (size_t)p.shape.vertex_count * 3 * sizeof(double);
+    double *out = memcpy(body_allocate(*size, 1), p.positions, *size);
+    assert_true(p.statistics.detect_ms > 0.0 && p.statistics.total_ms > p.statistics.detect_ms);
+    ipc_solver_free(&p);
+    cscd_context_destroy(context);
+    return out;
+}
+
+static void motion_is_the_same_for_any_number_of_threads(void **state) {
+    (void)state;
+    for (int i = 0; i < SCENE_COUNT; i++) {
+        size_t size, again_size;
+        double *once = positions_after(&extents[i], 1, &size),
+               *again = positions_after(&extents[i], 3, &again_size);
+        assert_int_equal(size, again_size);
+        assert_memory_equal(once, again, size);
+        free(once);
+        free(again);
+    }
+}
+
+/* Frame 0 is in single precision, free of crossings and of pairs within the least distance. */
+static void scenes_begin_apart(void **state) {
+    (void)state;
+    cscd_context *context = open_context(1);
+    assert_int_equal(ipc_scene_count, SCENE_COUNT);
+    assert_null(ipc_scene_find("ring"));
+    for (uint32_t i = 0; i < ipc_scene_count; i++) {
+        assert_string_equal(ipc_scenes[i].name, extents[i].name);
+        struct extent full = {.name = extents[i].name};
+        ipc_solver p = open_scene(&full, context);
+        judges j = call_judges(&p);
+        assert_true(p.shape.triangle_count > 3000 && p.springs.count > p.shape.vertex_count);
+        for (uint32_t k = 0; k < p.shape.vertex_count * 3; k++) {
+            volatile float rounded = (float)p.shape.positions[k];
+            assert_true((double)rounded == p.shape.positions[k] && p.positions[k] == p.shape.positions[k]);
+        }
+        judge(&j, p.positions, p.positions);
+        for (uint32_t c = 0; c < cscd_mesh_component_count(p.mesh); c++)
+            assert_true(cscd_mesh_component(p.mesh, c).closed_manifold);
+        dismiss(&j);
+        ipc_solver_free(&p);
+    }
+    cscd_context_destroy(context);
+}
+
+static void obstacles_travel_there_and_back(void **state) {
+    (void)state;
+    const ipc_scene *s = ipc_scene_find("press");
+    double last = 0.0;
+    assert_true(ipc_scene_travelled(s, 0.0) == 0.0 && ipc_scene_travelled(s, s->travel_seconds / 2.0) == 1.0);
+    for (int i = 1; i <= 50; i++) {
+        double share = ipc_scene_travelled(s, s->travel_seconds * i / 100.0);
+        assert_true(share > last &&
+                    fabs(share - ipc_scene_travelled(s, s->travel_seconds * (100 - i) / 100.0)) < 1e-9);
+        last = share;
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(links_bear_each_other),
+        cmocka_unit_test(the_press_arrives_and_the_coil_gives_way),
+        cmocka_unit_test(the_energy_falls_however_wild_the_motion),
+        cmocka_unit_test(motion_is_the_same_for_any_number_of_threads),
+        cmocka_unit_test(scenes_begin_apart),
+        cmocka_unit_test(obstacles_travel_there_and_back),
+    };
+    return cmocka_run_group_tests_name("ipc: scenes", tests, NULL, NULL);
+}

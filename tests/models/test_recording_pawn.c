@@ -1,0 +1,115 @@
+/* pawn-drop as a whole is what a recording must be: soft, of moderate speed, in contact at times, healing. */
+#include "models/common/motion.h"
+#include "models/softbody/recorder.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Under the sanitizers as far as the first contacts: the whole takes half a minute there. */
+#ifdef __SANITIZE_ADDRESS__
+enum { FRAMES = 40 };
+#else
+enum { FRAMES = 150 };
+#endif
+
+/* What was measured, and where the mesh crosses itself. */
+typedef struct measured {
+    motion totals;
+    bool crosses[FRAMES];
+    double first_energy, most_energy, last_energy, lowest;
+} measured;
+
+static measured m;
+
+static void measure_frame(const recorder *r, uint32_t frame) {
+    uint32_t crossing_before = m.totals.crossing_frames;
+    if (frame > 0) assert_int_equal(motion_add(&m.totals, r->frame), CSCD_OK);
+    m.crosses[frame] = m.totals.crossing_frames > crossing_before;
+    m.last_energy = recorder_energy(r);
+    m.most_energy = fmax(m.most_energy, m.last_energy);
+    for (uint32_t v = 0; v < r->shape.vertex_count; v++) m.lowest = fmin(m.lowest, r->frame[v * 3 + 2]);
+}
+
+static int record_pawn(void **state) {
+    (void)state;
+    recorder r;
+    io_error error;
+    const scene *s = scene_find("pawn-drop");
+    if (s == NULL || s->frame_count < FRAMES || !recorder_open(s, NULL, &r, &error)) return -1;
+    if (motion_begin(r.mesh, r.frame, &m.totals) != CSCD_OK) return -1;
+    m.first_energy = recorder_energy(&r);
+    measure_frame(&r, 0);
+    for (uint32_t frame = 1; frame < FRAMES; frame++) {
+        if (!recorder_advance(&r, &error)) return -1;
+        measure_frame(&r, frame);
+    }
+    motion counts = m.totals;
+    motion_free(&m.totals);
+    m.totals = counts; /* its numbers; what it pointed to is gone */
+    recorder_close(&r);
+    return 0;
+}
+
+static void is_visibly_soft(void **state) {
+    (void)state;
+    assert_int_equal(m.totals.frame_count, FRAMES);
+    assert_true(m.totals.soft_frames * 4 >= FRAMES);
+    assert_true(m.totals.largest_residual > 0.05 && m.totals.largest_residual < 0.4);
+}
+
+static void moves_a_few_edge_lengths_at_most(void **state) {
+    (void)state;
+    assert_true(m.totals.largest_motion > 0.5 && m.totals.largest_motion < 5.0);
+}
+
+static void runs_into_itself_at_times(void **state) {
+    (void)state;
+    uint32_t intervals = FRAMES - 1, contacts = m.totals.contact_intervals;
+    print_message("contacts in %u of %u intervals, crossing in %u frames\n", contacts, intervals,
+                  m.totals.crossing_frames);
+#ifdef __SANITIZE_ADDRESS__
+    assert_true(contacts > 0);
+#else
+    assert_true(contacts * 100 >= intervals * 15 && contacts * 100 <= intervals * 60);
+#endif
+}
+
+/* Penetrations begin and end. */
+static void penetrations_heal(void **state) {
+    (void)state;
+    uint32_t begun = 0, healed = 0;
+    assert_false(m.crosses[0]);
+    for (uint32_t frame = 1; frame < FRAMES; frame++) {
+        begun += m.crosses[frame] && !m.crosses[frame - 1];
+        healed += !m.crosses[frame] && m.crosses[frame - 1];
+    }
+    assert_true(begun > 0);
+#ifndef __SANITIZE_ADDRESS__
+    assert_true(healed > 0 && healed + 1 >= begun);
+#else
+    assert_true(healed <= begun);
+#endif
+}
+
+/* Of what it had from its height it keeps what lies on the ground; it is never below that. */
+static void comes_down_on_the_ground(void **state) {
+    (void)state;
+    assert_true(m.most_energy <= m.first_energy * (1.0 + 1e-9));
+    assert_true(m.last_energy > 0.0 && m.last_energy < 0.9 * m.first_energy);
+    assert_true(m.lowest > -1e-9 && m.lowest < 0.01);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(is_visibly_soft),           cmocka_unit_test(moves_a_few_edge_lengths_at_most),
+        cmocka_unit_test(runs_into_itself_at_times), cmocka_unit_test(penetrations_heal),
+        cmocka_unit_test(comes_down_on_the_ground),
+    };
+    return cmocka_run_group_tests_name("recording: pawn-drop", tests, record_pawn, NULL);
+}

@@ -1,0 +1,68 @@
+/* The three bodies are cut into regions as expected by the procedure that a caller gets by default. */
+#include "cscd/cscd.h"
+#include "tests/support/preprocess/region_check.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+/* The density takes time with the cube of the count; with sanitizers its matrix is slow, too. */
+#ifdef __SANITIZE_ADDRESS__
+enum { COUNT_MOST = 2000 };
+#else
+enum { COUNT_MOST = 6000 };
+#endif
+
+static void check_counts(body_kind kind, uint32_t triangle_count, uint32_t least, uint32_t most,
+                         double share) {
+    if (triangle_count > COUNT_MOST) return;
+    body b = body_of(kind, triangle_count);
+    cscd_mesh *mesh = body_mesh(&b, 2);
+    cscd_plan *plan;
+    double area = 0.0, seen = 0.0;
+    assert_int_equal(cscd_plan_create(mesh, b.positions, NULL, &plan), CSCD_OK);
+    assert_int_equal(cscd_plan_method(plan), CSCD_METHOD_CHARGE);
+    uint32_t count = cscd_plan_region_count(plan);
+    for (uint32_t r = 0; r < count; r++) {
+        cscd_region region = cscd_plan_region(plan, r);
+        area += region.area;
+        seen += region.area * region.visible_share;
+    }
+    print_message("  %s, %u triangles: %u regions, %.3f visible\n", body_kind_name(kind), triangle_count,
+                  count, seen / area);
+    assert_true(count >= least && count <= most);
+    assert_true(seen >= share * area);
+    cscd_plan_destroy(plan);
+    body_mesh_destroy(mesh);
+    body_free(&b);
+}
+
+static void pawn_has_three(void **state) {
+    (void)state;
+    const uint32_t counts[] = {1500, 2000, 3000, 5130};
+    for (int i = 0; i < 4; i++) check_counts(BODY_PAWN, counts[i], 3, 3, 0.99);
+}
+
+static void dumbbell_has_two(void **state) {
+    (void)state;
+    const uint32_t counts[] = {1000, 1710, 3000};
+    for (int i = 0; i < 3; i++) check_counts(BODY_DUMBBELL, counts[i], 2, 2, 0.99);
+}
+
+static void figure_has_five_or_more(void **state) {
+    (void)state;
+    const uint32_t counts[] = {1500, 2000, 4014};
+    for (int i = 0; i < 3; i++) check_counts(BODY_FIGURE, counts[i], 5, 7, 0.96);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pawn_has_three),
+        cmocka_unit_test(dumbbell_has_two),
+        cmocka_unit_test(figure_has_five_or_more),
+    };
+    return cmocka_run_group_tests_name("regions of the shapes", tests, NULL, NULL);
+}

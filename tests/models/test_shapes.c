@@ -1,0 +1,291 @@
+/* The bodies of models/shapes have exact counts and are closed, oriented, embedded, even and true to shape.
+ */
+#include "cscd/cscd.h"
+#include "tests/support/models/body_of.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* What is to come out; a volume of 0 has no formula. */
+static const struct expectation {
+    uint32_t components;
+    int64_t euler; /* of each */
+    double volume, least_angle;
+} expected[BODY_KIND_COUNT] = {
+    [BODY_PAWN] = {1, 2, 0.0, 30.0},
+    [BODY_DUMBBELL] = {1, 2, 0.0, 30.0},
+    [BODY_FIGURE] = {1, 2, 0.0, 20.0},
+    [BODY_SPHERE] = {1, 2, 4.0 / 3.0 * 3.14159265358979, 30.0},
+    [BODY_ELLIPSOID] = {1, 2, 4.0 / 3.0 * 3.14159265358979 * 1.5 * 0.7, 20.0},
+    [BODY_CUBE] = {1, 2, 8.0, 44.9},
+    [BODY_TORUS] = {1, 0, 2.0 * 9.8696044 * 0.35 * 0.35, 30.0},
+    [BODY_GENUS2] = {1, -2, 0.0, 20.0},
+    [BODY_CAPSULE] = {1, 2, 3.14159265358979 * (0.25 * 2.0 + 4.0 / 3.0 * 0.125), 30.0},
+    [BODY_COIL] = {1, 2, 0.0, 30.0},
+    [BODY_SLAB] = {1, 2, 0.0, 15.0},
+    [BODY_CHAIN] = {5, 0, 5.0 * 2.0 * 9.8696044 * 0.22 * 0.22, 30.0},
+    [BODY_LETTER_T] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_U] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_V] = {1, 2, 0.0, 30.0},
+    [BODY_LETTER_W] = {1, 2, 0.0, 30.0},
+};
+
+static cscd_context *context;
+
+static int make_context(void **state) {
+    (void)state;
+    return cscd_context_create(NULL, &context) == CSCD_OK ? 0 : -1;
+}
+
+static int destroy_context(void **state) {
+    (void)state;
+    cscd_context_destroy(context);
+    return 0;
+}
+
+/* Enclosed by one component: above 0 where it is counter-clockwise from outside. */
+static double component_volume(const body *b, const cscd_mesh *mesh, uint32_t component) {
+    body part = {b->vertex_count, 0, b->vertex_count, 0, b->positions, NULL};
+    for (uint32_t t = 0; t < b->triangle_count; t++) {
+        const uint32_t *v = b->triangles + (size_t)t * 3;
+        if (cscd_mesh_triangle_component(mesh, t) == component) body_add_triangle(&part, v[0], v[1], v[2]);
+    }
+    double volume = body_volume(&part);
+    free(part.triangles);
+    return volume;
+}
+
+static void check_embedded(const body *b, const cscd_mesh *mesh) {
+    cscd_detector *detector;
+    cscd_intersections found;
+    assert_int_equal(cscd_detector_create(mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(cscd_detector_check(detector, b->positions, &found), CSCD_OK);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(found.zero_area_triangles, 0);
+    cscd_detector_destroy(detector);
+}
+
+static void check_body(body_kind kind, const body *b) {
+    const struct expectation *e = &expected[kind];
+    cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    cscd_mesh *mesh;
+    uint32_t vertices = 0;
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_component_count(mesh), e->components);
+    for (uint32_t c = 0; c < e->components; c++) {
+        cscd_component component = cscd_mesh_component(mesh, c);
+        assert_true(component.closed_manifold);
+        assert_int_equal(component.euler_characteristic, e->euler);
+        assert_true(component_volume(b, mesh, c) > 0.0);
+        vertices += component.vertex_count;
+    }
+    assert_int_equal(vertices, b->vertex_count);
+    check_embedded(b, mesh);
+    cscd_mesh_destroy(mesh);
+    for (size_t i = 0; i < (size_t)b->vertex_count * 3; i++) {
+        volatile float single = (float)b->positions[i];
+        assert_true((double)single == b->positions[i]);
+    }
+}
+
+/* The largest area over the mean, the longest edge over the shortest. */
+static void unevenness(const body *b, double *areas, double *lengths) {
+    double sum = 0.0, most = 0.0, longest = 0.0, shortest = INFINITY;
+    for (uint32_t t = 0; t < b->triangle_count; t++) {
+        const uint32_t *v = b->triangles + (size_t)t * 3;
+        double edge[3], half = 0.0;
+        for (uint32_t k = 0; k < 3; k++) {
+            const double *p = b->positions + (size_t)v[k] * 3, *q = b->positions + (size_t)v[(k + 1) % 3] * 3;
+            edge[k] = hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]);
+            half += 0.5 * edge[k];
+            longest = fmax(longest, edge[k]);
+            shortest = fmin(shortest, edge[k]);
+        }
+        double area = sqrt(half * (half - edge[0]) * (half - edge[1]) * (half - edge[2]));
+        sum += area;
+        most = fmax(most, area);
+    }
+    *areas = most / (sum / b->triangle_count);
+    *lengths = longest / shortest;
+}
+
+static void the_three_bodies(void **state) {
+    (void)state;
+    const uint32_t counts[] = {5130, 1710, 4014};
+    for (int i = 0; i < 3; i++) {
+        body b = body_of((body_kind)i, 0);
+        double areas, lengths;
+        assert_int_equal(b.triangle_count, counts[i]);
+        assert_int_equal(b.vertex_count, counts[i] / 2 + 2);
+        check_body((body_kind)i, &b);
+        unevenness(&b, &areas, &lengths);
+        print_message(
+            "  %s: least angle %.1f degrees, largest area %.2f of the mean, longest edge %.2f of the "
+            "shortest\n",
+            body_kind_name((body_kind)i), body_least_angle(&b), areas, lengths);
+        assert_true(body_least_angle(&b) >= 30.0 && areas <= 2.1 && lengths <= 2.8);
+        body_free(&b);
+    }
+}
+
+static void all_bodies_at_several_counts(void **state) {
+    (void)state;
+    const uint32_t wanted[] = {0, 700, 1498, 3334};
+    for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
+        double least = 180.0;
+        for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+            uint32_t count = body_nearest_count((body_kind)kind, wanted[i]);
+            body b = body_of((body_kind)kind, count);
+            assert_int_equal(b.triangle_count, count);
+            check_body((body_kind)kind, &b);
+            least = fmin(least, body_least_angle(&b));
+            body_free(&b);
+        }
+        print_message("  %s: least angle %.1f degrees\n", body_kind_name((body_kind)kind), least);
+        assert_true(least >= expected[kind].least_angle);
+    }
+}
+
+static void extent(const body *b, double low[3], double high[3]) {
+    for (int k = 0; k < 3; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < (size_t)b->vertex_count * 3; i++) {
+        low[i % 3] = fmin(low[i % 3], b->positions[i]);
+        high[i % 3] = fmax(high[i % 3], b->positions[i]);
+    }
+}
+
+/* From a count to four and sixteen times as many, the volume converges, to what it should be, and the body
+ * stays where it is. */
+static void refinement_keeps_the_shape(void **state) {
+    (void)state;
+    for (int i = 0; i < BODY_KIND_COUNT; i++) {
+        body_kind kind = (body_kind)i;
+        uint32_t first = kind == BODY_COIL || kind == BODY_CHAIN ? 4000 : 1000;
+        double volumes[3], low[3][3], high[3][3];
+        for (uint32_t level = 0; level < 3; level++) {
+            body b = body_of(kind, body_nearest_count(kind, first << (2 * level)));
+            volumes[level] = body_volume(&b);
+            extent(&b, low[level], high[level]);
+            body_free(&b);
+        }
+        double first_step = fabs(volumes[1] - volumes[0]), second_step = fabs(volumes[2] - volumes[1]);
+        assert_true(second_step <= 0.5 * first_step + 1e-6);
+        assert_true(first_step < 0.08 * volumes[2]);
+        if (expected[i].volume > 0.0)
+            assert_true(fabs(volumes[2] - expected[i].volume) < 0.005 * expected[i].volume);
+        for (int k = 0; k < 3; k++) {
+            double size = high[2][k] - low[2][k];
+            assert_true(fabs(low[0][k] - low[2][k]) < 0.04 * size &&
+                        fabs(high[0][k] - high[2][k]) < 0.04 * size);
+            assert_true(fabs(low[1][k] - low[2][k]) < 0.02 * size &&
+                        fabs(high[1][k] - high[2][k]) < 0.02 * size);
+        }
+    }
+}
+
+/* Volumes by Pappus: the tube's axis, and the slab's middle, run through the centres of their sections. */
+static void bent_bodies_have_the_volume_of_straight_ones(void **state) {
+    (void)state;
+    double length = 5.0 * hypot(2.0 * pi, 0.7), tube = pi * 0.04 * length + 4.0 / 3.0 * pi * 0.008;
+    double sheet = 1.6 * 0.16 * (6.0 + 2.0 * pi * 0.2);
+    body coil = body_of(BODY_COIL, 40000), slab = body_of(BODY_SLAB, body_nearest_count(BODY_SLAB, 40000));
+    assert_true(fabs(body_volume(&coil) - tube) < 0.01 * tube);
+    assert_true(fabs(body_volume(&slab) - sheet) < 0.01 * sheet);
+    body_free(&coil);
+    body_free(&slab);
+}
+
+/* Each ring of the chain lies across its neighbours, and its tube passes through their holes. */
+static void links_are_linked(void **state) {
+    (void)state;
+    body b = body_of(BODY_CHAIN, 1000);
+    double middles[5];
+    for (uint32_t i = 0; i < 5; i++) {
+        body link = {100, 0, 0, 0, b.positions + (size_t)i * 300, NULL};
+        double low[3], high[3];
+        extent(&link, low, high);
+        middles[i] = 0.5 * (low[0] + high[0]);
+        uint32_t across = i % 2 == 0 ? 2 : 1;
+        assert_true(high[across] - low[across] < 0.45 && high[0] - low[0] > 2.3);
+        double apart = i > 0 ? middles[i] - middles[i - 1] : 1.35;
+        assert_true(apart > 0.44 && apart < 1.56);
+    }
+    body_free(&b);
+}
+
+static void repeatable(void **state) {
+    (void)state;
+    for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
+        uint32_t count = body_nearest_count((body_kind)kind, 1500);
+        body a = body_of((body_kind)kind, count), b = body_of((body_kind)kind, count);
+        assert_int_equal(a.vertex_count, b.vertex_count);
+        assert_memory_equal(a.positions, b.positions, (size_t)a.vertex_count * 3 * sizeof(double));
+        assert_memory_equal(a.triangles, b.triangles, (size_t)a.triangle_count * 3 * sizeof(uint32_t));
+        body_free(&a);
+        body_free(&b);
+    }
+}
+
+static void refusals_name_the_nearest(void **state) {
+    (void)state;
+    static const struct refusal {
+        body_kind kind;
+        uint32_t count;
+        const char *text;
+    } refused[] = {
+        {BODY_PAWN, 5131, "5130 or 5132"},       {BODY_PAWN, 10, "from 300 to"},
+        {BODY_FIGURE, 4015, "4014 or 4016"},     {BODY_FIGURE, 998, "from 1000 to"},
+        {BODY_CUBE, 1300, "1200 or 1452"},       {BODY_CUBE, 4, "from 12 to"},
+        {BODY_SPHERE, 4000002, "to 4000000"},    {BODY_SPHERE, UINT32_MAX, "to 4000000"},
+        {BODY_CUBE, 4000000, "3995148 at most"}, {BODY_SLAB, 1001, "988 or 1020"},
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        body b = {.vertex_count = 77};
+        io_error error;
+        assert_false(body_make(refused[i].kind, refused[i].count, &b, &error));
+        if (strstr(error.text, refused[i].text) == NULL) fail_msg("%s", error.text);
+        assert_non_null(strstr(error.text, body_kind_name(refused[i].kind)));
+        assert_true(b.vertex_count == 77 && b.positions == NULL);
+    }
+}
+
+static void names(void **state) {
+    (void)state;
+    body_kind kind = BODY_TORUS;
+    for (int i = 0; i < BODY_KIND_COUNT; i++) {
+        assert_true(body_kind_from_name(body_kind_name((body_kind)i), &kind) && kind == (body_kind)i);
+        assert_true(strlen(body_kind_description((body_kind)i)) > 0);
+        uint32_t standard = body_default_count((body_kind)i), least = body_least_count((body_kind)i);
+        assert_true(standard == body_nearest_count((body_kind)i, standard) && least <= standard);
+        assert_true(least == body_nearest_count((body_kind)i, least));
+    }
+    kind = BODY_TORUS;
+    assert_false(body_kind_from_name("knight", &kind));
+    assert_true(kind == BODY_TORUS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_three_bodies),
+        cmocka_unit_test(all_bodies_at_several_counts),
+        cmocka_unit_test(refinement_keeps_the_shape),
+        cmocka_unit_test(bent_bodies_have_the_volume_of_straight_ones),
+        cmocka_unit_test(links_are_linked),
+        cmocka_unit_test(repeatable),
+        cmocka_unit_test(refusals_name_the_nearest),
+        cmocka_unit_test(names),
+    };
+    return cmocka_run_group_tests_name("shapes", tests, make_context, destroy_context);
+}

@@ -1,0 +1,317 @@
+/* A soft body keeps the laws of motion: momentum, fall, collisions with ground and balls, energy. */
+#include "models/common/vec3.h"
+#include "models/softbody/soft_body.h"
+#include "tests/support/models/body_of.h"
+#include "tests/support/models/soft_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const material rubber = {.density = 1.0, .young = 150.0, .poisson = 0.4, .damping = 4.0};
+
+static body sphere;
+
+static int make_sphere(void **state) {
+    (void)state;
+    sphere = body_of(BODY_SPHERE, body_nearest_count(BODY_SPHERE, 500));
+    return 0;
+}
+
+static int free_sphere(void **state) {
+    (void)state;
+    body_free(&sphere);
+    return 0;
+}
+
+static void assert_near(double a, double b, double tolerance) {
+    if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
+}
+
+static void assert_same_vector(const double a[3], const double b[3], double tolerance) {
+    for (int k = 0; k < 3; k++) assert_near(a[k], b[k], tolerance);
+}
+
+static void advance(soft_body *b, obstacles *o, double seconds) {
+    soft_body_advance(b, o, NULL, seconds, (uint32_t)(seconds * 800.0 + 0.5));
+}
+
+/* ---- placing and pushing ---- */
+
+static void masses_are_those_of_the_cells(void **state) {
+    (void)state;
+    material heavy = rubber;
+    heavy.density = 2.5;
+    soft_body b = soft_body_of(&sphere, 0.4, &heavy);
+    double expected = 2.5 * b.frame.cell_count * 0.4 * 0.4 * 0.4;
+    assert_near(soft_momentum_of(&b).mass, expected, 1e-12 * expected);
+    for (uint32_t n = 0; n < b.frame.node_count; n++)
+        assert_near(b.masses[n] * b.inverse_masses[n], 1.0, 1e-15);
+    soft_body_free(&b);
+}
+
+static void placing_moves_everything(void **state) {
+    (void)state;
+    soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+    double turn[3][3], *expected = body_allocate(sphere.vertex_count, 3 * sizeof *expected);
+    const double offset[3] = {1.0, 2.0, 3.0};
+    rotation_matrix((double[3]){1.0, 1.0, 0.2}, 2.0, turn);
+    affine_map(turn, offset, b.vertices, sphere.vertex_count, expected);
+    soft_body_place(&b, turn, offset);
+    assert_true(largest_distance(b.vertices, expected, sphere.vertex_count) < 1e-13);
+    assert_near(soft_body_energy(&b, 0.0), 0.0, 1e-11);
+    free(expected);
+    soft_body_free(&b);
+}
+
+/* Turned about its centre of mass, whichever way it is thrown. */
+static void throwing_gives_velocity_and_spin(void **state) {
+    (void)state;
+    soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+    const double velocity[3] = {1.0, -2.0, 0.5}, spin[3] = {0.0, 0.0, 3.0};
+    soft_body_throw(&b, velocity, spin);
+    soft_momentum m = soft_momentum_of(&b);
+    double inertia = 0.0;
+    for (uint32_t n = 0; n < b.frame.node_count; n++) {
+        double x = b.nodes[n * 3] - m.centre[0], y = b.nodes[n * 3 + 1] - m.centre[1];
+        inertia += b.masses[n] * (x * x + y * y);
+    }
+    for (int k = 0; k < 3; k++) assert_near(m.linear[k], m.mass * velocity[k], 1e-12);
+    assert_near(m.angular[2], 3.0 * inertia, 1e-11);
+    assert_near(soft_body_energy(&b, 0.0), 0.5 * m.mass * 5.25 + 0.5 * 9.0 * inertia, 1e-10);
+    soft_body_free(&b);
+}
+
+/* A push moves its vertex exactly, and has the momentum of a point of that mobility. */
+static void pushes_move_their_vertex(void **state) {
+    (void)state;
+    soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+    const double change[3] = {0.01, -0.02, 0.005};
+    for (uint32_t v = 0; v < sphere.vertex_count; v += 17) {
+        double sum[3] = {0.0, 0.0, 0.0}, before[3], after[3], expected[3];
+        memcpy(b.previous, b.nodes, b.frame.node_count * 3 * sizeof *b.nodes);
+        lattice_place_vertex(&b.frame, b.nodes, v, before);
+        soft_body_push(&b, b.nodes, v, change);
+        lattice_place_vertex(&b.frame, b.nodes, v, after);
+        for (uint32_t n = 0; n < b.frame.node_count; n++) {
+            double moved[3];
+            difference(b.nodes + n * 3, b.previous + n * 3, moved);
+            add_scaled(sum, b.masses[n], moved);
+        }
+        for (int k = 0; k < 3; k++) expected[k] = change[k] / b.vertex_mobilities[v];
+        assert_same_vector(sum, expected, 1e-12);
+        add_scaled(before, 1.0, change);
+        assert_same_vector(after, before, 1e-13);
+    }
+    soft_body_free(&b);
+}
+
+/* ---- a free body ---- */
+
+/* Thrown, spinning, and swirling inside; what is lost of its angular momentum after two seconds. */
+static double angular_drift(double damping, uint32_t steps_per_second) {
+    material m = rubber;
+    m.damping = damping;
+    soft_body b = soft_body_of(&sphere, 0.4, &m);
+    obstacles nothing = {0};
+    double lost[3];
+    soft_body_throw(&b, (double[3]){1.0, 2.0, -0.5}, (double[3]){1.0, -2.0, 3.0});
+    for (uint32_t n = 0; n < b.frame.node_count; n++)
+        b.velocities[n * 3] += 0.7 * b.frame.rest[n * 3 + 1] * b.frame.rest[n * 3 + 2];
+    soft_momentum before = soft_momentum_of(&b);
+    double energy = soft_body_energy(&b, 0.0), last = energy;
+    for (int i = 0; i < 20; i++) {
+        soft_body_advance(&b, &nothing, NULL, 0.1, steps_per_second / 10);
+        assert_true(soft_body_energy(&b, 0.0) < last);
+        last = soft_body_energy(&b, 0.0);
+    }
+    soft_momentum after = soft_momentum_of(&b);
+    assert_same_vector(after.linear, before.linear, 1e-9);
+    add_scaled(before.centre, 2.0 / before.mass, before.linear);
+    assert_same_vector(after.centre, before.centre, 1e-9);
+    assert_true(last > 0.9 * energy);
+    difference(after.angular, before.angular, lost);
+    soft_body_free(&b);
+    return norm(lost) / norm(before.angular);
+}
+
+/* Linear momentum to rounding. Angular momentum as far as small steps go: steps that are implicit in the
+ * positions brake a spin by its square times the step. Damping adds nothing to that: it leaves rigid motion
+ * alone. */
+static void free_bodies_keep_their_momentum(void **state) {
+    (void)state;
+    double undamped = angular_drift(0.0, 800), damped = angular_drift(4.0, 800),
+           finer = angular_drift(4.0, 1600);
+    print_message("angular momentum lost: %.3g undamped, %.3g damped, %.3g with half the step\n", undamped,
+                  damped, finer);
+    assert_true(undamped < 0.04 && fabs(damped - undamped) < 0.1 * undamped);
+    assert_true(finer > 0.4 * damped && finer < 0.6 * damped);
+}
+
+static void damping_stills_vibrations(void **state) {
+    (void)state;
+    double energies[2];
+    for (int i = 0; i < 2; i++) {
+        material m = rubber;
+        m.damping = i == 0 ? 0.0 : 4.0;
+        soft_body b = soft_body_of(&sphere, 0.4, &m);
+        obstacles nothing = {0};
+        for (uint32_t n = 0; n < b.frame.node_count; n++) b.velocities[n * 3] += 0.8 * b.frame.rest[n * 3];
+        advance(&b, &nothing, 1.0);
+        energies[i] = soft_body_energy(&b, 0.0);
+        soft_body_free(&b);
+    }
+    assert_true(energies[1] < 0.1 * energies[0]);
+}
+
+/* n small steps of gravity after velocity; with finer steps a parabola. */
+static void free_fall_is_a_parabola(void **state) {
+    (void)state;
+    soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+    obstacles falling = {.gravity = 10.0};
+    const double velocity[3] = {1.5, 0.0, 4.0};
+    soft_body_throw(&b, velocity, (double[3]){0.5, 0.2, 0.0});
+    double start[3], step = 1.0 / 800.0;
+    memcpy(start, soft_momentum_of(&b).centre, sizeof start);
+    for (int i = 1; i <= 10; i++) {
+        double t = 0.1 * i, n = 80.0 * i;
+        advance(&b, &falling, 0.1);
+        soft_momentum m = soft_momentum_of(&b);
+        assert_near(m.centre[0], start[0] + 1.5 * t, 1e-10);
+        assert_near(m.centre[1], start[1], 1e-10);
+        assert_near(m.centre[2], start[2] + 4.0 * t - 10.0 * step * step * n * (n + 1.0) / 2.0, 1e-10);
+        assert_near(m.centre[2], start[2] + 4.0 * t - 5.0 * t * t, 5.0 * t * step + 1e-10);
+        assert_near(m.linear[2] / m.mass, 4.0 - 10.0 * t, 1e-9);
+    }
+    soft_body_free(&b);
+}
+
+/* ---- collisions ---- */
+
+/* Down to rounding, nothing is ever below the ground, and the energy never rises. */
+static void dropped_bodies_come_to_rest(void **state) {
+    (void)state;
+    material damped = rubber;
+    damped.damping = 20.0;
+    soft_body b = soft_body_of(&sphere, 0.4, &damped);
+    obstacles ground = {.gravity = 10.0, .friction = 0.6};
+    soft_body_lift(&b, 0.5 - lowest_vertex(&b));
+    double start = soft_body_energy(&b, ground.gravity), last = start, lost = 0.0;
+    for (int i = 0; i < 50; i++) {
+        advance(&b, &ground, 0.1);
+        assert_true(lowest_vertex(&b) >= -1e-14);
+        lost = last - soft_body_energy(&b, ground.gravity);
+        assert_true(lost >= 0.0);
+        last -= lost;
+    }
+    soft_momentum m = soft_momentum_of(&b);
+    assert_true(m.centre[2] > 0.6 && m.centre[2] < 0.9);
+    assert_true(fabs(m.linear[2]) < 0.02 * m.mass);
+    assert_true(lost < 1e-3 * (start - last));
+    soft_body_free(&b);
+}
+
+/* The ground pushes upwards only, unless there is friction. */
+static void friction_alone_brakes(void **state) {
+    (void)state;
+    double speeds[3];
+    const double frictions[3] = {0.0, 0.2, 0.8};
+    for (int i = 0; i < 3; i++) {
+        soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+        obstacles ground = {.gravity = 10.0, .friction = frictions[i]};
+        soft_body_lift(&b, 0.01 - lowest_vertex(&b));
+        soft_body_throw(&b, (double[3]){2.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 0.0});
+        advance(&b, &ground, 0.25);
+        soft_momentum m = soft_momentum_of(&b);
+        speeds[i] = m.linear[0] / m.mass;
+        assert_near(m.linear[1], 0.0, i == 0 ? 1e-10 : 0.01 * m.mass);
+        soft_body_free(&b);
+    }
+    assert_near(speeds[0], 2.0, 1e-10);
+    assert_true(speeds[1] < 1.9 && speeds[2] < speeds[1] && speeds[2] > 0.0);
+}
+
+/* Coulomb: a box that slides on frictionless ground but for mu is braked by mu g, not more. */
+static void friction_is_coulombs(void **state) {
+    (void)state;
+    body box = box_body((double[3]){-1.0, -1.0, -0.25}, (double[3]){1.0, 1.0, 0.25});
+    material stiff = {.density = 1.0, .young = 2000.0, .poisson = 0.3, .damping = 10.0};
+    soft_body b = soft_body_of(&box, 0.5, &stiff);
+    obstacles ground = {.gravity = 10.0, .friction = 0.2};
+    soft_body_lift(&b, -lowest_vertex(&b));
+    advance(&b, &ground, 1.0);
+    soft_body_throw(&b, (double[3]){3.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 0.0});
+    double before = soft_momentum_of(&b).linear[0];
+    advance(&b, &ground, 0.5);
+    soft_momentum m = soft_momentum_of(&b);
+    print_message("braked by %.4g of mu g\n", (before - m.linear[0]) / m.mass / (0.2 * 10.0 * 0.5));
+    assert_near((before - m.linear[0]) / m.mass, 0.2 * 10.0 * 0.5, 0.1);
+    soft_body_free(&b);
+    body_free(&box);
+}
+
+/* Off centre, with friction: what the ball gains the body loses. */
+static void balls_and_bodies_share_their_momentum(void **state) {
+    (void)state;
+    soft_body b = soft_body_of(&sphere, 0.4, &rubber);
+    obstacles o = {.friction = 0.6, .ball_count = 1};
+    o.balls[0] = (ball){.centre = {2.2, 0.4, soft_fixture_height + 0.3},
+                        .velocity = {-1.0, 0.0, 0.0},
+                        .radius = 0.6,
+                        .mass = 3.0};
+    soft_body_throw(&b, (double[3]){2.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 2.0});
+    soft_momentum before = soft_momentum_of(&b);
+    double energy = soft_body_energy(&b, 0.0) + obstacles_energy(&o), last = energy;
+    for (int i = 0; i < 40; i++) {
+        advance(&b, &o, 0.05);
+        soft_momentum now = soft_momentum_of(&b);
+        const double *v = o.balls[0].velocity;
+        for (int k = 0; k < 3; k++)
+            assert_near(now.linear[k] + 3.0 * v[k], before.linear[k] + (k == 0 ? -3.0 : 0.0), 1e-9);
+        assert_true(soft_body_energy(&b, 0.0) + obstacles_energy(&o) <= last * (1.0 + 1e-9));
+        last = soft_body_energy(&b, 0.0) + obstacles_energy(&o);
+    }
+    soft_momentum after = soft_momentum_of(&b);
+    assert_true(o.balls[0].velocity[0] > after.linear[0] / after.mass); /* they came apart */
+    assert_true(after.linear[0] < before.linear[0] - 1.0 && last < energy);
+    soft_body_free(&b);
+}
+
+static void motion_is_repeatable(void **state) {
+    (void)state;
+    soft_body bodies[2];
+    for (int i = 0; i < 2; i++) {
+        obstacles ground = {.gravity = 10.0, .friction = 0.6, .ball_count = 1};
+        ground.balls[0] = (ball){.centre = {0.5, 0.0, 0.5}, .radius = 0.5, .mass = 0.5};
+        bodies[i] = soft_body_of(&sphere, 0.4, &rubber);
+        soft_body_lift(&bodies[i], 1.5 - soft_fixture_height);
+        advance(&bodies[i], &ground, 1.0);
+    }
+    size_t bytes = (size_t)bodies[0].frame.node_count * 3 * sizeof(double);
+    assert_memory_equal(bodies[0].nodes, bodies[1].nodes, bytes);
+    assert_memory_equal(bodies[0].velocities, bodies[1].velocities, bytes);
+    for (int i = 0; i < 2; i++) soft_body_free(&bodies[i]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(masses_are_those_of_the_cells),
+        cmocka_unit_test(placing_moves_everything),
+        cmocka_unit_test(throwing_gives_velocity_and_spin),
+        cmocka_unit_test(pushes_move_their_vertex),
+        cmocka_unit_test(free_bodies_keep_their_momentum),
+        cmocka_unit_test(damping_stills_vibrations),
+        cmocka_unit_test(free_fall_is_a_parabola),
+        cmocka_unit_test(dropped_bodies_come_to_rest),
+        cmocka_unit_test(friction_alone_brakes),
+        cmocka_unit_test(friction_is_coulombs),
+        cmocka_unit_test(balls_and_bodies_share_their_momentum),
+        cmocka_unit_test(motion_is_repeatable),
+    };
+    return cmocka_run_group_tests_name("soft body", tests, make_sphere, free_sphere);
+}

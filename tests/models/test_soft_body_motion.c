@@ -1,0 +1,186 @@
+/* The measures of a recording: what the best rigid motion leaves, softness, motion, contacts and crossings.
+ */
+#include "models/common/motion.h"
+#include "models/common/vec3.h"
+#include "tests/support/models/body_of.h"
+#include "tests/support/models/soft_fixture.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const double no_offset[3] = {0.0, 0.0, 0.0};
+
+static body figure;
+static double *moved;
+
+static int make_figure(void **state) {
+    (void)state;
+    figure = body_of(BODY_FIGURE, body_least_count(BODY_FIGURE));
+    moved = body_allocate(figure.vertex_count, 3 * sizeof *moved);
+    return 0;
+}
+
+static int free_figure(void **state) {
+    (void)state;
+    body_free(&figure);
+    free(moved);
+    return 0;
+}
+
+static void assert_near(double a, double b, double tolerance) {
+    if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
+}
+
+/* Half turns and more are the hard ones for quaternions. The residual is a root of a difference: half of the
+ * digits are lost. */
+static void rigid_motions_leave_nothing(void **state) {
+    (void)state;
+    double turn[3][3];
+    const double pi = 3.14159265358979323846;
+    for (int i = 0; i <= 24; i++) {
+        rotation_matrix((double[3]){1.0 - i % 3, 0.5 * (i % 5) - 1.0, 0.3}, i * pi / 12.0, turn);
+        affine_map(turn, (double[3]){3.0, -0.1 * i, 0.2}, figure.positions, figure.vertex_count, moved);
+        assert_near(rigid_residual(figure.positions, moved, figure.vertex_count), 0.0, 1e-6);
+    }
+    for (int k = 0; k < 3; k++) {
+        rotation_matrix((double[3]){k == 0, k == 1, k == 2}, pi, turn);
+        affine_map(turn, no_offset, figure.positions, figure.vertex_count, moved);
+        assert_near(rigid_residual(figure.positions, moved, figure.vertex_count), 0.0, 1e-6);
+    }
+}
+
+/* Points a b c ... in pairs of opposite ones, so that the best motion is none but the turn. */
+static void deformations_leave_what_they_must(void **state) {
+    (void)state;
+    const double cross_shape[6][3] = {{3, 0, 0}, {-3, 0, 0}, {0, 2, 0}, {0, -2, 0}, {0, 0, 1}, {0, 0, -1}};
+    double stretched[6][3], turn[3][3];
+    /* Stretched by s along x: two points of six move by 3 (s - 1), turned or not. */
+    rotation_matrix((double[3]){1.0, 2.0, -1.0}, 2.0, turn);
+    for (int i = 0; i < 8; i++) {
+        double s = 0.8 + 0.1 * i, scale[3][3] = {{s, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        affine_map(scale, no_offset, cross_shape[0], 6, stretched[0]);
+        affine_map(turn, (double[3]){5.0, 6.0, 7.0}, stretched[0], 6, stretched[0]);
+        assert_near(rigid_residual(cross_shape[0], stretched[0], 6), 3.0 * fabs(s - 1.0) * sqrt(2.0 / 6.0),
+                    1e-6);
+    }
+    /* Sheared y by x with 2 g = amount, seen from the turn by g: a pure stretch of the square's diagonals. */
+    const double square[4][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    double shear[3][3] = {{1, 0.2, 0}, {0, 1, 0}, {0, 0, 1}}, sheared[4][3];
+    affine_map(shear, no_offset, square[0], 4, sheared[0]);
+    /* trace of S = sum of b a^T is 4, its antisymmetric part 0.4: the best turn's cosine part is their norm.
+     */
+    double squares = 4.0 + 4.0 + 2.0 * 0.04, best = sqrt(4.0 * 4.0 + 0.4 * 0.4);
+    assert_near(rigid_residual(square[0], sheared[0], 4), sqrt((squares - 2.0 * best) / 4.0), 1e-9);
+}
+
+/* The figure is its own mirror image but for its arms; a screw of points is not at all. */
+static void mirror_images_are_no_motions(void **state) {
+    (void)state;
+    double screw[40][3], mirrored[40][3], mirror[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+    for (int i = 0; i < 40; i++) {
+        screw[i][0] = cos(0.5 * i);
+        screw[i][1] = sin(0.5 * i);
+        screw[i][2] = 0.02 * i;
+    }
+    affine_map(mirror, no_offset, screw[0], 40, mirrored[0]);
+    assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
+    assert_near(rigid_residual(mirrored[0], mirrored[0], 40), 0.0, 1e-6);
+    /* Not even through the origin, where everything has the other sign. */
+    double inverted[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    affine_map(inverted, no_offset, screw[0], 40, mirrored[0]);
+    assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
+}
+
+static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t triangle_count,
+                          const uint32_t *triangles) {
+    const cscd_mesh_desc desc = {vertex_count, triangle_count, triangles};
+    cscd_mesh *mesh;
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    return mesh;
+}
+
+/* The tip of a tetrahedron flies through another: contacts in intervals 3 and 5, crossing from frame 4 on. */
+static void counts_contacts_and_crossings(void **state) {
+    (void)state;
+    enum { FRAMES = 8 };
+    recorded flight = recorded_tetrahedra(FRAMES);
+    cscd_context *context;
+    motion m;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_mesh *mesh = mesh_of(context, flight.vertex_count, flight.triangle_count, flight.triangles);
+    assert_int_equal(motion_begin(mesh, recorded_position(&flight, 0, 0), &m), CSCD_OK);
+    for (uint32_t k = 1; k < FRAMES; k++) {
+        assert_int_equal(motion_add(&m, recorded_position(&flight, k, 0)), CSCD_OK);
+        assert_int_equal(m.contact_intervals, k < 4 ? 0 : k < 6 ? 1 : 2);
+        assert_int_equal(m.crossing_frames, k < 4 ? 0 : k - 3);
+    }
+    assert_int_equal(m.frame_count, FRAMES);
+    motion_free(&m);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    recorded_free(&flight);
+}
+
+/* A box grows along x: residual and motion are those of its eight corners. */
+static void measures_softness_and_speed(void **state) {
+    (void)state;
+    body box = box_body((double[3]){-1.0, -0.5, -0.5}, (double[3]){1.0, 0.5, 0.5});
+    double diagonal = sqrt(6.0), frame[24],
+           edge_length = (4.0 * 2.0 + 8.0 + 4.0 * sqrt(5.0) + 2.0 * sqrt(2.0)) / 18.0;
+    cscd_context *context;
+    motion m;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_mesh *mesh = mesh_of(context, box.vertex_count, box.triangle_count, box.triangles);
+    assert_int_equal(motion_begin(mesh, box.positions, &m), CSCD_OK);
+    assert_near(m.diagonal, diagonal, 1e-15);
+    assert_near(m.edge_length, edge_length, 1e-14);
+    const double factors[] = {1.05, 1.08, 1.2, 1.0};
+    for (uint32_t i = 0; i < 4; i++) { /* 3 % of the diagonal are 7.3 % of half of the length */
+        double scale[3][3] = {{factors[i], 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        affine_map(scale, no_offset, box.positions, 8, frame);
+        assert_int_equal(motion_add(&m, frame), CSCD_OK);
+        assert_int_equal(m.soft_frames, i == 0 ? 0 : i == 1 ? 1 : 2);
+        assert_near(m.largest_residual, (fmin(i, 2) < i ? 0.2 : factors[i] - 1.0) / diagonal, 1e-7);
+    }
+    assert_near(m.largest_motion, 0.2 / edge_length, 1e-14);
+    assert_int_equal(m.crossing_frames, 0);
+    motion_free(&m);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    body_free(&box);
+}
+
+/* Nothing is left to free, as the sanitizers check. */
+static void bad_positions_are_refused(void **state) {
+    (void)state;
+    cscd_context *context;
+    motion m;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    cscd_mesh *mesh = mesh_of(context, figure.vertex_count, figure.triangle_count, figure.triangles);
+    memcpy(moved, figure.positions, figure.vertex_count * 3 * sizeof *moved);
+    moved[5] = NAN;
+    assert_int_equal(motion_begin(mesh, moved, &m), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(motion_begin(mesh, figure.positions, &m), CSCD_OK);
+    assert_int_equal(motion_add(&m, moved), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(m.frame_count, 1);
+    assert_int_equal(motion_add(&m, figure.positions), CSCD_OK);
+    motion_free(&m);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rigid_motions_leave_nothing),  cmocka_unit_test(deformations_leave_what_they_must),
+        cmocka_unit_test(mirror_images_are_no_motions), cmocka_unit_test(counts_contacts_and_crossings),
+        cmocka_unit_test(measures_softness_and_speed),  cmocka_unit_test(bad_positions_are_refused),
+    };
+    return cmocka_run_group_tests_name("soft body: motion", tests, make_figure, free_figure);
+}

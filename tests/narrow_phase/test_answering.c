@@ -1,0 +1,146 @@
+/* Where pairs of adjacent triangles are left out: every pair of features without a common vertex is answered
+ * for by exactly one other pair of triangles, or is an orphan. */
+#include "runtime/narrow_phase/answering.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
+#include "tests/support/scenes.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { TRIANGLES_MAX = 120, VERTICES_MAX = 130, EDGES_MAX = 3 * TRIANGLES_MAX, FAN = 64 };
+
+static uint32_t vf[VERTICES_MAX][TRIANGLES_MAX], ee[EDGES_MAX][EDGES_MAX];
+
+static void count_pair(const swept_interval *interval, triangle_pair pair) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint16_t answered = FEATURE_ALL;
+    answering_select(interval, &pair, 1, &answered);
+    uint32_t features = answered;
+    for (int i = 0; i < 3; i++) {
+        vf[mesh->triangles[pair.a][i]][pair.b] += features >> i & 1;
+        vf[mesh->triangles[pair.b][i]][pair.a] += features >> (FEATURE_VERTEX_B + i) & 1;
+    }
+    for (int i = 0; i < 9; i++) {
+        uint32_t a = mesh->triangle_edges[pair.a][i / 3], b = mesh->triangle_edges[pair.b][i % 3];
+        ee[a < b ? a : b][a < b ? b : a] += features >> (FEATURE_EDGES + i) & 1;
+    }
+}
+
+/* Returns the number of orphans. */
+static size_t check_mesh(const cscd_mesh *mesh) {
+    representatives r;
+    orphan_sets orphans;
+    bool too_many;
+    memset(vf, 0, sizeof vf);
+    memset(ee, 0, sizeof ee);
+    assert_int_equal(representatives_create(mesh, &r), CSCD_OK);
+    assert_int_equal(orphan_sets_create(mesh, &orphans, &too_many), CSCD_OK);
+    size_t count = orphans.vf_count + orphans.ee_count;
+    const swept_interval interval = {.mesh = mesh, .representatives = &r, .strangers = true};
+    for (uint32_t a = 0; !too_many && a < mesh->triangle_count; a++) {
+        for (uint32_t b = a + 1; b < mesh->triangle_count; b++) {
+            bool swapped = (a + b) % 2 == 1;
+            if (!triangles_share_vertex(mesh->triangles[a], mesh->triangles[b]))
+                count_pair(&interval, swapped ? (triangle_pair){b, a} : (triangle_pair){a, b});
+        }
+    }
+    for (size_t i = 0; i < orphans.vf_count; i++) vf[orphans.vf[i][0]][orphans.vf[i][1]]++;
+    for (size_t i = 0; i < orphans.ee_count; i++) ee[orphans.ee[i][0]][orphans.ee[i][1]]++;
+    for (uint32_t t = 0; !too_many && t < mesh->triangle_count; t++) {
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            bool used = mesh->vertex_star_offsets[v + 1] > mesh->vertex_star_offsets[v];
+            assert_int_equal(vf[v][t], used && !triangle_contains(mesh->triangles[t], v));
+        }
+    }
+    for (uint32_t a = 0; !too_many && a < mesh->edge_count; a++) {
+        for (uint32_t b = a + 1; b < mesh->edge_count; b++)
+            assert_int_equal(ee[a][b], !edges_share_vertex(mesh->edges[a], mesh->edges[b]));
+    }
+    representatives_free(mesh->context, &r);
+    orphan_sets_free(mesh->context, &orphans);
+    return count;
+}
+
+static size_t check_triangles(cscd_context *context, uint32_t vertex_count, uint32_t count,
+                              const uint32_t (*triangles)[3]) {
+    const cscd_mesh_desc desc = {vertex_count, count, triangles[0]};
+    cscd_mesh *mesh = NULL;
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    size_t orphans = check_mesh(mesh);
+    cscd_mesh_destroy(mesh);
+    return orphans;
+}
+
+/* Few vertices, so that edges have many triangles and triangles come twice. */
+static void any_triangles(void **state) {
+    (void)state;
+    cscd_context *context = NULL;
+    random_stream random = stream_start(5);
+    size_t orphans = 0;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    for (int round = 0; round < 200; round++) {
+        uint32_t triangles[TRIANGLES_MAX][3], count = 1 + stream_below(&random, TRIANGLES_MAX);
+        uint32_t vertices = 4 + stream_below(&random, VERTICES_MAX - 4);
+        for (uint32_t t = 0; t < count; t++) {
+            uint32_t *v = triangles[t];
+            do {
+                for (int i = 0; i < 3; i++) v[i] = stream_below(&random, vertices);
+            } while (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]);
+        }
+        orphans += check_triangles(context, vertices, count, (const uint32_t(*)[3])triangles);
+    }
+    assert_true(orphans > 1000);
+    cscd_context_destroy(context);
+}
+
+static void all_scenes(void **state) {
+    (void)state;
+    static scene s;
+    cscd_context *context = NULL;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 0; seed < 20; seed++) {
+            scene_make((scene_family)family, seed, &s);
+            if (s.triangle_count > TRIANGLES_MAX || s.vertex_count > VERTICES_MAX) continue;
+            check_triangles(context, s.vertex_count, s.triangle_count, (const uint32_t(*)[3])s.triangles);
+        }
+    }
+    cscd_context_destroy(context);
+}
+
+/* All of a fan are adjacent: its orphans grow with the square. */
+static void fans_have_too_many(void **state) {
+    (void)state;
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    uint32_t triangles[FAN][3];
+    for (uint32_t t = 0; t < FAN; t++) {
+        triangles[t][0] = 0;
+        triangles[t][1] = 1 + t;
+        triangles[t][2] = 2 + t;
+    }
+    const cscd_mesh_desc desc = {FAN + 2, FAN, triangles[0]};
+    orphan_sets orphans;
+    bool too_many = false;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(orphan_sets_create(mesh, &orphans, &too_many), CSCD_OK);
+    assert_true(too_many && orphans.vf_count == 0 && orphans.ee_count == 0);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_triangles),
+        cmocka_unit_test(all_scenes),
+        cmocka_unit_test(fans_have_too_many),
+    };
+    return cmocka_run_group_tests_name("answering", tests, NULL, NULL);
+}

@@ -1,0 +1,209 @@
+/* The sieve against exact gaps: which pairs of features of two triangles it keeps. */
+#include "runtime/bvh/traversal.h"
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/bvh/touching.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { PAIR_COUNT = 1500, LEVELS_MAX = CSCD_SIMD_AVX512 };
+
+static scene shape; /* large; one test at a time */
+static triangle_pair pairs[PAIR_COUNT];
+static uint16_t features[LEVELS_MAX][PAIR_COUNT];
+static forest_rig levels[LEVELS_MAX];
+static uint32_t level_count;
+static uint64_t kept_count, dropped_count;
+
+/* Levels of vector instructions that the processor has not are left out. */
+static void open_levels(uint32_t region_count, double distance) {
+    level_count = 0;
+    for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
+        forest_rig *r = &levels[level_count];
+        if (!forest_rig_create(&shape, (forest_setup){(cscd_simd)simd, 1, BOX_AXES, region_count}, r))
+            continue;
+        forest_move(&r->forest, shape.x0, shape.x1, distance);
+        level_count++;
+    }
+}
+
+static void close_levels(void) {
+    for (uint32_t i = 0; i < level_count; i++) forest_rig_destroy(&levels[i]);
+}
+
+/* Bit of a feature pair (runtime/bvh/kernels.h) to the vertices of its two features. */
+typedef struct feature_points {
+    uint32_t a[3], b[3];
+    int count_a, count_b;
+} feature_points;
+
+static feature_points points_of(const uint32_t *a, const uint32_t *b, int bit) {
+    feature_points out = {{0}, {0}, 1, 3};
+    if (bit >= FEATURE_EDGES) {
+        int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+        return (feature_points){{a[i], a[(i + 1) % 3]}, {b[j], b[(j + 1) % 3]}, 2, 2};
+    }
+    bool of_b = bit >= FEATURE_VERTEX_B;
+    out.a[0] = of_b ? b[bit - FEATURE_VERTEX_B] : a[bit];
+    memcpy(out.b, of_b ? a : b, sizeof out.b);
+    return out;
+}
+
+static bool share_vertex(const feature_points *p) {
+    for (int i = 0; i < p->count_a * p->count_b; i++) {
+        if (p->a[i % p->count_a] == p->b[i / p->count_a]) return true;
+    }
+    return false;
+}
+
+/* As documented: 48 u of both reaches and of what lies between the parts, along diagonals; as much again is
+ * what a gap may be off. */
+static long double slack_between(const forest *f, triangle_pair pair) {
+    const forest_part *p = &f->parts[f->leaf_parts[pair.a / FOREST_LANES]];
+    const forest_part *q = &f->parts[f->leaf_parts[pair.b / FOREST_LANES]];
+    long double size = (long double)p->reach + q->reach;
+    for (int i = 0; i < 6; i++) {
+        double from = p->origin[i / 3][i % 3], to = q->origin[i / 3][i % 3];
+        size += (fabs(to - from) + 0x1p-24 * (fabs(from) + fabs(to))) * f->scale;
+    }
+    return 0x1p-18L * size / f->scale;
+}
+
+static void check_features(uint32_t i, double distance) {
+    const forest *f = &levels[0].forest;
+    const uint32_t *a = shape.triangles + (size_t)forest_triangle(f, pairs[i].a) * 3;
+    const uint32_t *b = shape.triangles + (size_t)forest_triangle(f, pairs[i].b) * 3;
+    long double slack = slack_between(f, pairs[i]);
+    for (int bit = 0; bit < 15; bit++) {
+        bool kept = (features[0][i] >> bit & 1) != 0;
+        feature_points p = points_of(a, b, bit);
+        if (share_vertex(&p)) {
+            assert_false(kept);
+            continue;
+        }
+        long double gap = direction_gap((motion){shape.x0, shape.x1}, (point_set){p.a, p.count_a},
+                                        (point_set){p.b, p.count_b}, distance + slack);
+        if (gap <= distance) assert_true(kept);
+        if (gap > distance + slack) assert_false(kept);
+        kept_count += kept;
+        dropped_count += !kept;
+    }
+    assert_int_equal(features[0][i] & ~FEATURE_ALL, 0);
+}
+
+static void choose_pairs(random_stream *random) {
+    uint32_t n = shape.triangle_count;
+    for (uint32_t i = 0; i < PAIR_COUNT; i++) {
+        uint32_t a = stream_below(random, n), b = stream_below(random, n - 1);
+        if (i % 2 == 0) b = (a + stream_below(random, n < 20 ? n - 1 : 20)) % (n - 1); /* often neighbours */
+        b += b >= a;
+        pairs[i] = (triangle_pair){levels[0].forest.slots[a], levels[0].forest.slots[b]};
+    }
+}
+
+/* Any number of pairs at a time, and no more of them is written. */
+static void sieve_in_runs(const forest *f, double distance, uint16_t *out) {
+    enum { UNWRITTEN = 0xffff };
+    uint32_t run = 1;
+    for (uint32_t i = 0; i < PAIR_COUNT; i += run, run = run % 20 + 1) {
+        uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
+        uint16_t some[32];
+        for (int k = 0; k < 32; k++) some[k] = UNWRITTEN;
+        f->kernels->sieve(f, pairs + i, count, distance, some);
+        for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
+        memcpy(out + i, some, count * sizeof *some);
+    }
+}
+
+static void check_scene(random_stream *random, uint32_t region_count, double distance) {
+    if (shape.triangle_count < 2) return;
+    open_levels(region_count, distance);
+    choose_pairs(random);
+    for (uint32_t l = 0; l < level_count; l++) {
+        const forest *f = &levels[l].forest;
+        sieve_in_runs(f, distance, features[l]);
+        assert_memory_equal(features[l], features[0], sizeof features[l]);
+    }
+    for (uint32_t i = 0; i < PAIR_COUNT; i++) check_features(i, distance);
+    close_levels();
+}
+
+static void scale_shape(int exponent) {
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) {
+        shape.x0[i] = ldexp(shape.x0[i], exponent);
+        shape.x1[i] = ldexp(shape.x1[i], exponent);
+    }
+}
+
+static void check_families(uint64_t seed, const double far[3], int exponent, double distance) {
+    random_stream random = stream_start(seed);
+    kept_count = dropped_count = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint32_t region_count = 0; region_count < 3; region_count++) {
+            scene_make((scene_family)family, seed + region_count, &shape);
+            translate(shape.x1, shape.vertex_count, far);
+            scale_shape(exponent);
+            check_scene(&random, region_count * region_count * 6, ldexp(distance, exponent));
+        }
+    }
+    print_message("kept %llu, dropped %llu\n", (unsigned long long)kept_count,
+                  (unsigned long long)dropped_count);
+    assert_true(kept_count > 1000 && dropped_count > 1000);
+}
+
+static const double nowhere[3] = {0.0, 0.0, 0.0};
+
+static void keeps_what_may_touch(void **state) {
+    (void)state;
+    check_families(50, nowhere, 0, 0.0);
+}
+
+static void keeps_what_may_touch_in_flight(void **state) {
+    const double far[3] = {3000.0, -0.75, -2e5};
+    (void)state;
+    check_families(60, far, 0, 0.0);
+}
+
+/* What overlaps by nothing but rounding. */
+static void keeps_what_just_touches(void **state) {
+    random_stream random = stream_start(55);
+    (void)state;
+    for (uint32_t i = 0; i < 24; i++) {
+        make_touching_pairs(&random, 100, i % 2 == 0 ? 2.0 : 300.0, &shape);
+        open_levels(i / 2 % 4, 0.0);
+        uint32_t count = shape.triangle_count / 2;
+        for (uint32_t p = 0; p < count; p++) {
+            const uint32_t *slots = levels[0].forest.slots;
+            pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
+        }
+        levels[0].forest.kernels->sieve(&levels[0].forest, pairs, count, 0.0, features[0]);
+        for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
+        close_levels();
+    }
+}
+
+static void keeps_what_comes_within_the_distance(void **state) {
+    (void)state;
+    check_families(70, nowhere, 0, 0.1);
+}
+
+static void keeps_at_any_scale(void **state) {
+    (void)state;
+    check_families(80, nowhere, 280, 0.0);
+    check_families(90, nowhere, -250, 0.05);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keeps_what_may_touch),    cmocka_unit_test(keeps_what_may_touch_in_flight),
+        cmocka_unit_test(keeps_what_just_touches), cmocka_unit_test(keeps_what_comes_within_the_distance),
+        cmocka_unit_test(keeps_at_any_scale),
+    };
+    return cmocka_run_group_tests_name("sieve", tests, NULL, NULL);
+}

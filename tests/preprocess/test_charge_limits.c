@@ -1,0 +1,345 @@
+/* Charge densities: repeatability, degenerate triangles, memory, bad input. */
+#include "src/core/sort.h"
+#include "tests/support/preprocess/charge_rig.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+__attribute__((weak)) int openblas_get_num_threads(void);
+
+static void assert_near(double value, double expected, double tolerance) {
+    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.12g, expected %.12g", value, expected);
+}
+
+static void assert_says(const charge_rig *r, const char *words) {
+    if (strstr(cscd_context_detail(r->context), words) == NULL)
+        fail_msg("\"%s\" does not say \"%s\"", cscd_context_detail(r->context), words);
+}
+
+static conductor odd_ellipsoid(int level) {
+    const double axes[3] = {1.3, 0.8, 0.45}, offset[3] = {0.2, 0.1, -0.3};
+    conductor s = conductor_sphere(level);
+    conductor_transform(&s, axes, offset);
+    return s;
+}
+
+/* ---- repeatability ---- */
+
+/* 1,280 triangles; in other configurations than release 320. */
+#ifdef NDEBUG
+enum { FINE = 3 };
+#else
+enum { FINE = 2 };
+#endif
+
+typedef struct ranked {
+    float density;
+    uint32_t triangle;
+} ranked;
+
+static int by_density(const void *left, const void *right) {
+    const ranked *a = left, *b = right;
+    return a->density < b->density ? -1 : a->density > b->density;
+}
+
+/* The triangles by density rounded to 24 bits, ties in order. */
+static ranked *ranks_of(const charge_rig *r, uint32_t count) {
+    ranked *ranks = malloc(2 * count * sizeof *ranks);
+    assert_non_null(ranks);
+    for (uint32_t t = 0; t < count; t++) ranks[t] = (ranked){(float)r->density[t], t};
+    sort_items(ranks, ranks + count, count, sizeof *ranks, by_density);
+    return ranks;
+}
+
+static void repeats_to_the_bit(void **state) {
+    (void)state;
+    conductor s = odd_ellipsoid(FINE);
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        charge_rig a = charge_rig_solve(&s, threads), b = charge_rig_solve(&s, threads);
+        assert_memory_equal(a.density, b.density, s.triangle_count * sizeof *a.density);
+        assert_true(a.capacitance[0] == b.capacitance[0]);
+        charge_rig_destroy(&a);
+        charge_rig_destroy(&b);
+    }
+    conductor_free(&s);
+}
+
+static void thread_count_changes_no_rank(void **state) {
+    (void)state;
+    conductor s = odd_ellipsoid(FINE);
+    charge_rig one = charge_rig_solve(&s, 1);
+    ranked *expected = ranks_of(&one, s.triangle_count);
+    for (uint32_t threads = 2; threads <= 4; threads++) {
+        charge_rig r = charge_rig_solve(&s, threads);
+        ranked *ranks = ranks_of(&r, s.triangle_count);
+        for (uint32_t t = 0; t < s.triangle_count; t++) assert_near(r.density[t], one.density[t], 1e-12);
+        assert_memory_equal(ranks, expected, s.triangle_count * sizeof *ranks);
+        free(ranks);
+        charge_rig_destroy(&r);
+    }
+    free(expected);
+    charge_rig_destroy(&one);
+    conductor_free(&s);
+}
+
+/* Triangles in another order: the same densities, to the bit. */
+static void numbering_does_not_matter(void **state) {
+    (void)state;
+    conductor s = odd_ellipsoid(2), turned = odd_ellipsoid(2);
+    uint32_t n = s.triangle_count;
+    for (uint32_t t = 0; t < n; t++)
+        memcpy(turned.triangles + t * 3, s.triangles + (t * 7 + 5) % n * 3, 3 * sizeof *s.triangles);
+    charge_rig a = charge_rig_solve(&s, 2), b = charge_rig_solve(&turned, 2);
+    for (uint32_t t = 0; t < n; t++) assert_true(b.density[t] == a.density[(t * 7 + 5) % n]);
+    charge_rig_destroy(&a);
+    charge_rig_destroy(&b);
+    conductor_free(&s);
+    conductor_free(&turned);
+}
+
+static void puts_the_threads_of_blas_back(void **state) {
+    (void)state;
+    conductor s = odd_ellipsoid(1);
+    int before = openblas_get_num_threads != NULL ? openblas_get_num_threads() : 0;
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        charge_rig r = charge_rig_solve(&s, threads);
+        charge_rig_destroy(&r);
+        assert_int_equal(openblas_get_num_threads != NULL ? openblas_get_num_threads() : 0, before);
+    }
+    conductor_free(&s);
+}
+
+/* ---- degenerate triangles ---- */
+
+static conductor with_extra(const conductor *s, const double *positions, uint32_t vertex_count,
+                            const uint32_t *triangles, uint32_t triangle_count) {
+    conductor r = {s->vertex_count + vertex_count, s->triangle_count + triangle_count, NULL, NULL};
+    r.positions = malloc(r.vertex_count * 3 * sizeof *r.positions);
+    r.triangles = malloc(r.triangle_count * 3 * sizeof *r.triangles);
+    assert_non_null(r.positions);
+    assert_non_null(r.triangles);
+    memcpy(r.positions, s->positions, s->vertex_count * 3 * sizeof *r.positions);
+    memcpy(r.triangles, s->triangles, s->triangle_count * 3 * sizeof *r.triangles);
+    if (vertex_count > 0)
+        memcpy(r.positions + s->vertex_count * 3, positions, vertex_count * 3 * sizeof *r.positions);
+    memcpy(r.triangles + s->triangle_count * 3, triangles, triangle_count * 3 * sizeof *r.triangles);
+    return r;
+}
+
+static void zero_area_triangles_take_no_part(void **state) {
+    (void)state;
+    const double middle[3] = {0.25, 0.0, 0.0};
+    const uint32_t extra[3] = {0, 4, 1};
+    conductor s = conductor_tetrahedron(), more = with_extra(&s, middle, 1, extra, 1);
+    charge_rig a = charge_rig_solve(&s, 2), b = charge_rig_solve(&more, 2);
+    assert_memory_equal(a.density, b.density, 4 * sizeof *a.density);
+    assert_true(b.density[4] == 0.0 && b.capacitance[0] == a.capacitance[0]);
+    charge_rig_destroy(&a);
+    charge_rig_destroy(&b);
+    conductor_free(&s);
+    conductor_free(&more);
+}
+
+static void component_without_area(void **state) {
+    (void)state;
+    double positions[12] = {1, 1, 1, 2, 2, 2, 3, 3, 3, 1, 1, 1};
+    uint32_t triangles[6] = {0, 1, 2, 3, 0, 1};
+    conductor s = {4, 2, positions, triangles};
+    charge_rig r = charge_rig_solve(&s, 1);
+    assert_true(r.density[0] == 0.0 && r.density[1] == 0.0 && r.capacitance[0] == 0.0);
+    charge_rig_destroy(&r);
+}
+
+/* A face that is there three times, once inside out: its charge is shared. */
+static void coincident_triangles_share(void **state) {
+    (void)state;
+    const uint32_t extra[6] = {3, 1, 0, 1, 3, 0};
+    conductor s = conductor_tetrahedron(), more = with_extra(&s, NULL, 0, extra, 2);
+    charge_rig a = charge_rig_solve(&s, 2), b = charge_rig_solve(&more, 2);
+    for (int t = 0; t < 6; t++) {
+        bool shared = t == 1 || t > 3;
+        assert_near(b.density[t], shared ? a.density[1] / 3.0 : a.density[t], 1e-15);
+    }
+    assert_true(b.capacitance[0] == a.capacitance[0]);
+    charge_rig_destroy(&a);
+    charge_rig_destroy(&b);
+    conductor_free(&s);
+    conductor_free(&more);
+}
+
+static void assert_refused(const conductor *s, const char *words) {
+    charge_rig r = charge_rig_create(s, 2, NULL);
+    size_t bytes = cscd_context_bytes(r.context);
+    assert_int_equal(charge_solve(r.mesh, s->positions, r.density, r.capacitance, NULL),
+                     CSCD_INVALID_ARGUMENT);
+    assert_says(&r, words);
+    assert_true(charge_rig_untouched(&r));
+    assert_int_equal(cscd_context_bytes(r.context), bytes);
+    charge_rig_destroy(&r);
+}
+
+/* Two triangles about one point: two equal equations. */
+static void one_centroid_for_two(void **state) {
+    (void)state;
+    double positions[18] = {3, 0, 0, 0, 3, 0, -3, -3, 0, -3, 0, 0, 0, -3, 0, 3, 3, 0};
+    uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 0, 3, 5};
+    conductor s = {6, 3, positions, triangles};
+    assert_refused(&s, "triangles 0 and 1 of component 0 have the same centroid");
+}
+
+/* A sheet that lies on another at a distance: told apart while single precision tells the potentials apart.
+ */
+static void sheets_near_each_other(void **state) {
+    (void)state;
+    for (int digits = 2; digits <= 14; digits += 4) {
+        double h = pow(10.0, -digits);
+        double positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, h, 1, 0, h, 0, 1, h};
+        uint32_t triangles[9] = {0, 1, 2, 3, 4, 5, 0, 1, 4};
+        conductor s = {6, 3, positions, triangles};
+        if (digits > 8) {
+            assert_refused(&s, "of triangle 1: some triangles there lie (almost) on each other");
+        } else {
+            charge_rig r = charge_rig_solve(&s, 1);
+            assert_true(r.capacitance[0] > 0.2 && r.capacitance[0] < 0.4);
+            charge_rig_destroy(&r);
+        }
+    }
+}
+
+/* ---- memory ---- */
+
+/* The default allocator, which remembers the largest request, and refuses all when told to. */
+typedef struct watching_allocator {
+    size_t largest, calls;
+    bool refuse;
+} watching_allocator;
+
+static void *watch(void *user, size_t size, size_t alignment) {
+    watching_allocator *watcher = user;
+    watcher->calls++;
+    watcher->largest = size > watcher->largest ? size : watcher->largest;
+    return watcher->refuse ? NULL : aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+}
+
+static void drop(void *user, void *block, size_t size) {
+    (void)user;
+    (void)size;
+    free(block);
+}
+
+static void takes_what_it_estimates(void **state) {
+    (void)state;
+    watching_allocator watcher = {0, 0, false};
+    const cscd_allocator allocator = {watch, drop, &watcher};
+    conductor s = conductor_cube(2);
+    charge_rig r = charge_rig_create(&s, 2, &allocator);
+    size_t needed = charge_memory(r.mesh), held = cscd_context_bytes(r.context);
+    assert_true(needed > 192 * 192 * 4 && needed < 192 * 192 * 4 + 192 * 1000);
+    watcher.calls = watcher.largest = 0;
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, NULL), CSCD_OK);
+    assert_int_equal(watcher.calls, 1);
+    assert_true(watcher.largest >= needed && watcher.largest <= needed + 128); /* the block's header */
+    assert_int_equal(cscd_context_bytes(r.context), held);
+
+    double density = r.density[7];
+    for (uint32_t t = 0; t < s.triangle_count; t++) r.density[t] = -1.0;
+    r.capacitance[0] = -1.0;
+    watcher.refuse = true;
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, NULL), CSCD_OUT_OF_MEMORY);
+    assert_says(&r, "out of memory");
+    assert_true(charge_rig_untouched(&r));
+    assert_int_equal(cscd_context_bytes(r.context), held);
+    watcher.refuse = false;
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, NULL), CSCD_OK);
+    assert_true(r.density[7] == density);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+static void keeps_to_the_limit(void **state) {
+    (void)state;
+    conductor s = conductor_cube(3);
+    charge_rig r = charge_rig_create(&s, 2, NULL);
+    size_t needed = charge_memory(r.mesh);
+    assert_int_equal(charge_solve_within(r.mesh, s.positions, needed - 1, r.density, r.capacitance, NULL),
+                     CSCD_OUT_OF_MEMORY);
+    char words[128];
+    snprintf(words, sizeof words, "a component of 768 triangles takes %.4g GiB of memory",
+             (double)needed / 0x1p30);
+    assert_says(&r, words);
+    assert_true(charge_rig_untouched(&r));
+    assert_int_equal(charge_solve_within(r.mesh, s.positions, needed, r.density, r.capacitance, NULL),
+                     CSCD_OK);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+/* A fan of 500,000 triangles: 1 TB. */
+static void what_does_not_fit_is_refused(void **state) {
+    (void)state;
+    enum { COUNT = 500000 };
+    conductor s = {COUNT + 2, COUNT, calloc((COUNT + 2) * 3, sizeof(double)),
+                   malloc(COUNT * 3 * sizeof(uint32_t))};
+    assert_non_null(s.positions);
+    assert_non_null(s.triangles);
+    for (uint32_t t = 0; t < COUNT; t++) {
+        const uint32_t triangle[3] = {0, t + 1, t + 2};
+        memcpy(s.triangles + t * 3, triangle, sizeof triangle);
+    }
+    charge_rig r = charge_rig_create(&s, 1, NULL);
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, NULL), CSCD_OUT_OF_MEMORY);
+    assert_says(&r, "a component of 500000 triangles takes 931.");
+    assert_true(charge_rig_untouched(&r));
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+/* ---- bad input ---- */
+
+static void bad_arguments(void **state) {
+    (void)state;
+    conductor s = conductor_tetrahedron();
+    charge_rig r = charge_rig_create(&s, 1, NULL);
+    charge_timings timings = {-1.0, -1.0, -1.0, -1.0};
+    assert_int_equal(charge_solve(NULL, s.positions, r.density, r.capacitance, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(charge_solve(r.mesh, NULL, r.density, r.capacitance, NULL), CSCD_INVALID_ARGUMENT);
+    assert_says(&r, "NULL");
+    assert_int_equal(charge_solve(r.mesh, s.positions, NULL, r.capacitance, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    s.positions[7] = NAN;
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, &timings),
+                     CSCD_INVALID_ARGUMENT);
+    assert_says(&r, "vertex 2");
+    assert_true(charge_rig_untouched(&r) && timings.total_ms == -1.0);
+    s.positions[7] = 1.0;
+    assert_int_equal(charge_solve(r.mesh, s.positions, r.density, r.capacitance, &timings), CSCD_OK);
+    assert_true(timings.assembly_ms >= 0.0 && timings.factor_ms >= 0.0 && timings.refine_ms >= 0.0);
+    assert_true(timings.total_ms >= timings.assembly_ms + timings.factor_ms + timings.refine_ms);
+    charge_rig_destroy(&r);
+    conductor_free(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(repeats_to_the_bit),
+                                       cmocka_unit_test(thread_count_changes_no_rank),
+                                       cmocka_unit_test(numbering_does_not_matter),
+                                       cmocka_unit_test(puts_the_threads_of_blas_back),
+                                       cmocka_unit_test(zero_area_triangles_take_no_part),
+                                       cmocka_unit_test(component_without_area),
+                                       cmocka_unit_test(coincident_triangles_share),
+                                       cmocka_unit_test(one_centroid_for_two),
+                                       cmocka_unit_test(sheets_near_each_other),
+                                       cmocka_unit_test(takes_what_it_estimates),
+                                       cmocka_unit_test(keeps_to_the_limit),
+                                       cmocka_unit_test(what_does_not_fit_is_refused),
+                                       cmocka_unit_test(bad_arguments)};
+    return cmocka_run_group_tests_name("charge limits", tests, NULL, NULL);
+}

@@ -1,0 +1,217 @@
+/* Plans through the public API: every method, parts and their errors, the mesh's hash, refusals. */
+#include "cscd/cscd.h"
+#include "tests/support/models/body_of.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static body shape;
+static cscd_context *context;
+static cscd_mesh *mesh;
+
+static int make(void **state) {
+    (void)state;
+    shape = body_of(BODY_DUMBBELL, 1500);
+    cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+    if (cscd_context_create(NULL, &context) != CSCD_OK) return -1;
+    return cscd_mesh_create(context, &desc, &mesh) == CSCD_OK ? 0 : -1;
+}
+
+static int unmake(void **state) {
+    (void)state;
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    body_free(&shape);
+    return 0;
+}
+
+static cscd_plan *plan_by(cscd_method method, uint32_t k) {
+    cscd_plan *plan = NULL;
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = method;
+    options.k = k;
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_OK);
+    return plan;
+}
+
+static void check_regions(const cscd_plan *plan) {
+    uint32_t triangles = 0, count = cscd_plan_region_count(plan);
+    for (uint32_t r = 0; r < count; r++) {
+        cscd_region region = cscd_plan_region(plan, r);
+        assert_true(region.triangle_count > 0 && region.area > 0.0);
+        assert_true(region.visible_share >= 0.0 && region.visible_share <= 1.0);
+        triangles += region.triangle_count;
+    }
+    assert_int_equal(triangles, shape.triangle_count);
+    for (uint32_t t = 0; t < shape.triangle_count; t++)
+        assert_true(cscd_plan_triangle_region(plan, t) < count);
+}
+
+static void every_method(void **state) {
+    (void)state;
+    cscd_plan *single = plan_by(CSCD_METHOD_SINGLE, 0), *kmeans = plan_by(CSCD_METHOD_KMEANS, 3),
+              *charge = plan_by(CSCD_METHOD_CHARGE, 0);
+    assert_int_equal(cscd_plan_region_count(single), 1);
+    assert_int_equal(cscd_plan_region_count(kmeans), 3);
+    assert_int_equal(cscd_plan_region_count(charge), 2);
+    assert_int_equal(cscd_plan_method(charge), CSCD_METHOD_CHARGE);
+    check_regions(single);
+    check_regions(kmeans);
+    check_regions(charge);
+    assert_true(cscd_plan_capacitance(charge, 0) > 0.5 && cscd_plan_capacitance(charge, 0) < 4.6);
+    assert_true(cscd_plan_capacitance(single, 0) == 0.0 && cscd_plan_triangle_charge(single, 0) == 0.0);
+    double sum = 0.0;
+    for (uint32_t t = 0; t < shape.triangle_count; t++) sum += cscd_plan_triangle_charge(charge, t);
+    assert_true(sum > 0.0);
+    assert_true(cscd_plan_timings(charge).total_ms >= cscd_plan_timings(charge).solve_ms);
+    cscd_plan_destroy(single);
+    cscd_plan_destroy(kmeans);
+    cscd_plan_destroy(charge);
+    cscd_plan_destroy(NULL);
+}
+
+/* ---- parts ----------------------------------------------------------------------------------------- */
+
+static uint32_t *regions_of(const cscd_plan *plan) {
+    uint32_t *regions = malloc(shape.triangle_count * sizeof *regions);
+    assert_non_null(regions);
+    for (uint32_t t = 0; t < shape.triangle_count; t++) regions[t] = cscd_plan_triangle_region(plan, t);
+    return regions;
+}
+
+static double *points_of(const cscd_plan *plan) {
+    double *points = malloc(cscd_plan_region_count(plan) * sizeof(double[3]));
+    assert_non_null(points);
+    for (uint32_t r = 0; r < cscd_plan_region_count(plan); r++)
+        memcpy(points + r * 3, cscd_plan_region(plan, r).detector_point, sizeof(double[3]));
+    return points;
+}
+
+static void from_parts(void **state) {
+    (void)state;
+    cscd_plan *plan = plan_by(CSCD_METHOD_KMEANS, 4), *again = NULL;
+    uint32_t *regions = regions_of(plan);
+    double *points = points_of(plan);
+    cscd_plan_parts parts = {CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL};
+    assert_int_equal(cscd_plan_create_from_parts(mesh, shape.positions, &parts, &again), CSCD_OK);
+    for (uint32_t r = 0; r < cscd_plan_region_count(plan); r++) {
+        cscd_region a = cscd_plan_region(plan, r), b = cscd_plan_region(again, r);
+        assert_true(a.component == b.component && a.triangle_count == b.triangle_count && a.area == b.area &&
+                    a.visible_share == b.visible_share);
+        assert_memory_equal(a.detector_point, b.detector_point, sizeof a.detector_point);
+    }
+    cscd_plan_destroy(again);
+    cscd_plan_destroy(plan);
+    free(regions);
+    free(points);
+}
+
+static void expect_refusal(const cscd_plan_parts *parts, const char *word) {
+    cscd_plan *plan = NULL;
+    assert_int_equal(cscd_plan_create_from_parts(mesh, shape.positions, parts, &plan), CSCD_INVALID_ARGUMENT);
+    assert_null(plan);
+    assert_non_null(strstr(cscd_context_detail(context), word));
+}
+
+static void bad_parts(void **state) {
+    (void)state;
+    cscd_plan *plan = plan_by(CSCD_METHOD_KMEANS, 4);
+    uint32_t *regions = regions_of(plan);
+    double *points = points_of(plan);
+    const cscd_plan_parts good = {
+        CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL};
+    cscd_plan_parts parts = good;
+    parts.method = CSCD_METHOD_BRUTE;
+    expect_refusal(&parts, "brute");
+    parts = good;
+    parts.region_count = 0;
+    expect_refusal(&parts, "0 regions");
+    parts = good;
+    parts.region_count++;
+    double *more = calloc(parts.region_count, sizeof(double[3]));
+    assert_non_null(more);
+    parts.detector_points = more;
+    expect_refusal(&parts, "no triangle");
+    free(more);
+    parts = good;
+    parts.triangle_regions = NULL;
+    expect_refusal(&parts, "NULL");
+    parts = good;
+    parts.charges = points;
+    expect_refusal(&parts, "charge");
+    parts = good;
+    regions[7] = good.region_count;
+    expect_refusal(&parts, "triangle 7");
+    regions[7] = 0;
+    points[4] = NAN;
+    expect_refusal(&parts, "detector point of region 1");
+    cscd_plan_destroy(plan);
+    free(regions);
+    free(points);
+}
+
+/* ---- errors ---------------------------------------------------------------------------------------- */
+
+static void bad_options(void **state) {
+    (void)state;
+    cscd_plan *plan = NULL;
+    cscd_plan_options options = {0};
+    assert_int_equal(cscd_plan_create(NULL, shape.positions, NULL, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_plan_create(mesh, NULL, NULL, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    assert_non_null(strstr(cscd_context_detail(context), "cscd_plan_defaults"));
+    options = cscd_plan_defaults();
+    options.method = CSCD_METHOD_NONE;
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    options = cscd_plan_defaults();
+    options.threshold = NAN;
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    options = cscd_plan_defaults();
+    options.method = CSCD_METHOD_KMEANS;
+    options.k = 0;
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    options = cscd_plan_defaults();
+    options.memory_limit = 1000;
+    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_OUT_OF_MEMORY);
+    assert_non_null(strstr(cscd_context_detail(context), "GiB"));
+    assert_null(plan);
+}
+
+static void plans_fit_their_mesh(void **state) {
+    static const uint32_t tetrahedron[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    (void)state;
+    cscd_mesh_desc desc = {4, 4, tetrahedron};
+    cscd_mesh *other = NULL;
+    cscd_detector *detector = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_plan *plan = plan_by(CSCD_METHOD_SINGLE, 0);
+    assert_int_equal(cscd_mesh_create(context, &desc, &other), CSCD_OK);
+    assert_true(cscd_mesh_hash(other) != cscd_mesh_hash(mesh));
+    assert_int_equal(cscd_detector_create(other, plan, NULL, &detector), CSCD_INVALID_ARGUMENT);
+    assert_non_null(strstr(cscd_context_detail(context), "another mesh"));
+    options.method = CSCD_METHOD_CHARGE;
+    assert_int_equal(cscd_detector_create(mesh, plan, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_null(detector);
+    options.method = CSCD_METHOD_NONE;
+    assert_int_equal(cscd_detector_create(mesh, plan, &options, &detector), CSCD_OK);
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(other);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_method), cmocka_unit_test(from_parts),           cmocka_unit_test(bad_parts),
+        cmocka_unit_test(bad_options),  cmocka_unit_test(plans_fit_their_mesh),
+    };
+    return cmocka_run_group_tests_name("plan", tests, make, unmake);
+}

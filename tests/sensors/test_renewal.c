@@ -1,0 +1,316 @@
+/* When cells are due for renewal: nothing at rest, areas that grow, edges that stretch, parts that bend. */
+#include "runtime/sensors/renewal.h"
+#include "tests/support/random.h"
+#include "tests/support/rig.h"
+#include "tests/support/sensors/hand_partition.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { ROUNDS = 5, WALKED_SCENES = 36 };
+#else
+enum { ROUNDS = 50, WALKED_SCENES = 240 };
+#endif
+
+static scene body; /* large; one test at a time */
+static double moved[SCENE_VERTICES_MAX * 3];
+static uint32_t particles[SCENE_VERTICES_MAX];
+static cscd_renewal renewals[SCENE_TRIANGLES_MAX];
+
+static const double origin[3] = {0.0, 0.0, 0.0};
+static const upkeep_limits usual = {.area_factor = 2.0, .edge_length = 0.0};
+
+/* The body's mesh with its workspaces. */
+typedef struct bench {
+    rig rig;
+    cscd_partition *partition;
+    sensor_upkeep upkeep;
+} bench;
+
+/* Parts are the components; cells of body.x0, which the upkeep knows. */
+static bench bench_create(uint32_t cells_max) {
+    bench b = {.rig = rig_create(&body, 1, NULL)};
+    b.partition = hand_partition_create(b.rig.mesh, body.x0, NULL, b.rig.mesh->component_count, cells_max);
+    assert_int_equal(sensor_upkeep_create(b.partition, &b.upkeep), CSCD_OK);
+    sensor_upkeep_follow(&b.upkeep, b.partition, body.x0);
+    hand_partition_particles(b.partition, particles);
+    return b;
+}
+
+static void bench_destroy(bench *b) {
+    sensor_upkeep_destroy(&b->upkeep);
+    sensor_upkeep_destroy(&b->upkeep);
+    hand_partition_destroy(b->partition);
+    rig_destroy(&b->rig);
+}
+
+/* How many are due at `moved`, by the limits. */
+static uint32_t due(bench *b, const upkeep_limits *limits) {
+    return sensor_upkeep_check(&b->upkeep, b->partition, moved, particles, limits, renewals);
+}
+
+/* Undoes the half step that every second ring of a building block is turned by, which makes its quads fold
+ * inwards. */
+static void straighten(uint32_t first_vertex, double middle, uint32_t rings, uint32_t segments) {
+    double angle = -3.14159265358979323846 / segments;
+    for (uint32_t i = 0; i < rings * segments; i++) {
+        double *p = body.x0 + (size_t)(first_vertex + 1 + i) * 3, x = p[0] - middle, y = p[1];
+        if (i / segments % 2 == 0) continue;
+        p[0] = middle + x * cos(angle) - y * sin(angle);
+        p[1] = x * sin(angle) + y * cos(angle);
+    }
+}
+
+static void make_two_bodies(void) {
+    scene_clear(&body);
+    scene_add_sphere(&body, (double[3]){-4.0, 0.0, 0.0}, 0.5, 12, 16);
+    straighten(0, -4.0, 12, 16);
+    uint32_t first_of_second = body.vertex_count;
+    scene_add_capsule(&body, 6.0, 0.5, 24, 12);
+    straighten(first_of_second, 0.0, 24, 12);
+}
+
+/* Moves the second body's vertices, or all. */
+static void move(bool all, void (*how)(const double at[3], double amount, double out[3]), double amount) {
+    uint32_t first_of_second = 0;
+    while (body.x0[first_of_second * 3] < -2.0) first_of_second++;
+    memcpy(moved, body.x0, sizeof moved);
+    for (uint32_t v = all ? 0 : first_of_second; v < body.vertex_count; v++)
+        how(body.x0 + (size_t)v * 3, amount, moved + (size_t)v * 3);
+}
+
+static void grow(const double at[3], double amount, double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = at[k] * amount;
+}
+
+static void stretch(const double at[3], double amount, double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = at[k] * (k == 2 ? amount : 1.0 / sqrt(amount));
+}
+
+static void turn(const double at[3], double amount, double out[3]) {
+    double x = at[0] * cos(amount) - at[1] * sin(amount), z = at[2];
+    out[0] = x * cos(2.0 * amount) - z * sin(2.0 * amount) + 100.0 * amount;
+    out[1] = at[0] * sin(amount) + at[1] * cos(amount) - 7.0;
+    out[2] = x * sin(2.0 * amount) + z * cos(2.0 * amount);
+}
+
+/* Bends the capsule's axis to an arc of this angle. */
+static void bend(const double at[3], double amount, double out[3]) {
+    double radius = 6.0 / amount, angle = at[2] / radius;
+    out[0] = radius - (radius - at[0]) * cos(angle);
+    out[1] = at[1];
+    out[2] = (radius - at[0]) * sin(angle);
+}
+
+/* ---- nothing is due ------------------------------------------------------------------------------------ */
+
+static void rest_and_rigid_motion_need_nothing(void **state) {
+    (void)state;
+    random_seed(1);
+    make_two_bodies();
+    bench b = bench_create(12);
+    upkeep_limits narrow = {.area_factor = 1.0 + 1e-9, .edge_length = 0.0};
+    for (int i = 0; i < ROUNDS; i++) {
+        hand_partition_particles(b.partition, particles);
+        memcpy(moved, body.x0, sizeof moved);
+        assert_int_equal(due(&b, &narrow), 0);
+        move(true, turn, random_unit());
+        assert_int_equal(due(&b, &usual), 0);
+    }
+    for (uint32_t p = 0; p < 2; p++) assert_int_equal(renewals[p], CSCD_RENEWAL_NONE);
+    bench_destroy(&b);
+}
+
+/* ---- one reason each ----------------------------------------------------------------------------------- */
+
+static void growth_is_seen(void **state) {
+    (void)state;
+    random_seed(2);
+    make_two_bodies();
+    bench b = bench_create(12);
+    move(false, grow, 1.3);
+    assert_int_equal(due(&b, &usual), 0);
+    move(false, grow, 1.5);
+    assert_int_equal(due(&b, &usual), 1);
+    assert_int_equal(renewals[0], CSCD_RENEWAL_NONE);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_AREA);
+    bench_destroy(&b);
+}
+
+/* The same by walks alone. */
+static void growth_is_estimated(void **state) {
+    (void)state;
+    random_seed(3);
+    make_two_bodies();
+    bench b = bench_create(12);
+    for (uint32_t p = 0; p < 2; p++) b.upkeep.first[p].area = INFINITY;
+    move(false, grow, 1.3);
+    assert_int_equal(due(&b, &usual), 0);
+    move(false, grow, 3.0);
+    assert_int_equal(due(&b, &usual), 1);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_AREA);
+    assert_int_equal(sensor_upkeep_check(&b.upkeep, b.partition, moved, NULL, &usual, renewals), 0);
+    bench_destroy(&b);
+}
+
+static void long_edges_are_seen(void **state) {
+    (void)state;
+    random_seed(4);
+    make_two_bodies();
+    bench b = bench_create(12);
+    double longest = sqrt(b.upkeep.first[1].edge_squared);
+    upkeep_limits limits = {.area_factor = 4.0, .edge_length = 1.2 * longest};
+    assert_true(sqrt(b.upkeep.first[0].edge_squared) < limits.edge_length);
+    move(false, stretch, 1.1);
+    assert_int_equal(due(&b, &limits), 0);
+    move(false, stretch, 2.0);
+    assert_int_equal(due(&b, &limits), 1);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
+    limits.edge_length = 0.0;
+    assert_int_equal(due(&b, &limits), 0);
+    bench_destroy(&b);
+}
+
+/* A long edge stays long, and does not hide that new cells are due. */
+static void bending_is_told_before_long_edges(void **state) {
+    (void)state;
+    random_seed(10);
+    make_two_bodies();
+    bench b = bench_create(12);
+    upkeep_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.upkeep.first[1].edge_squared)};
+    move(false, bend, 0.05);
+    due(&b, &limits);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
+    move(false, bend, 3.0);
+    due(&b, &limits);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);
+    bench_destroy(&b);
+}
+
+static void flip_triangles(void) {
+    for (uint32_t t = 0; t < body.triangle_count; t++) {
+        uint32_t corner = body.triangles[t * 3];
+        body.triangles[t * 3] = body.triangles[t * 3 + 1];
+        body.triangles[t * 3 + 1] = corner;
+    }
+}
+
+/* Also where all triangles face inwards. */
+static void bending_is_seen(void **state) {
+    (void)state;
+    for (int flipped = 0; flipped < 2; flipped++) {
+        random_seed(5);
+        make_two_bodies();
+        if (flipped != 0) flip_triangles();
+        bench b = bench_create(12);
+        assert_true(b.upkeep.first[1].concave < 0.01);
+        move(false, bend, 0.05);
+        assert_int_equal(due(&b, &usual), 0);
+        move(false, bend, 3.0);
+        assert_int_equal(due(&b, &usual), 1);
+        assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);
+        bench_destroy(&b);
+    }
+}
+
+/* Renewed cells are measured anew; those of another part stay due. */
+static void renewal_settles_one_part(void **state) {
+    (void)state;
+    random_seed(6);
+    make_two_bodies();
+    bench b = bench_create(12);
+    move(true, grow, 2.0);
+    assert_int_equal(due(&b, &usual), 2);
+    b.partition->generation++;
+    b.partition->part_generations[1] = b.partition->generation;
+    sensor_upkeep_follow(&b.upkeep, b.partition, moved);
+    assert_int_equal(due(&b, &usual), 1);
+    assert_int_equal(renewals[0], CSCD_RENEWAL_AREA);
+    assert_int_equal(renewals[1], CSCD_RENEWAL_NONE);
+    bench_destroy(&b);
+}
+
+/* ---- walks --------------------------------------------------------------------------------------------- */
+
+/* A flat fan of four about vertex 0: the walks go along its spokes, 1 and 2 long one way, 3 and 4 the other.
+ */
+static void make_cross(void) {
+    const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
+    const double points[15] = {0, 0, 0, 1, 0, 0, 0, 2, 0, -3, 0, 0, 0, -4, 0};
+    scene_clear(&body);
+    body.vertex_count = 5;
+    body.triangle_count = 4;
+    memcpy(body.triangles, triangles, sizeof triangles);
+    memcpy(body.x0, points, sizeof points);
+}
+
+static void estimates_are_rectangles(void **state) {
+    (void)state;
+    random_seed(7);
+    make_cross();
+    bench b = bench_create(1);
+    assert_true(fabs(sensor_upkeep_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    for (uint32_t v = 1; v < 5; v++) b.partition->vertex_cells[v] = 1; /* the edge out of a cell counts */
+    assert_true(fabs(sensor_upkeep_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    assert_true(fabs(b.upkeep.first[0].area - 12.0) < 1e-12);
+    bench_destroy(&b);
+}
+
+/* Of one cell of a sphere's dozen, and where the whole sphere is one. */
+static void estimates_are_near_areas(void **state) {
+    (void)state;
+    random_seed(8);
+    scene_clear(&body);
+    scene_add_sphere(&body, origin, 1.0, 24, 32);
+    for (uint32_t cells = 1; cells <= 12; cells += 11) {
+        bench b = bench_create(cells);
+        double sum = 0.0, area = 12.566 / b.partition->cell_count;
+        for (uint32_t v = 0; v < body.vertex_count; v++)
+            sum += sensor_upkeep_estimate(b.partition, body.x0, v) / body.vertex_count;
+        assert_in_range((unsigned long)(100.0 * sum / area), 50, 250);
+        bench_destroy(&b);
+    }
+}
+
+/* Whatever the mesh, and whatever the motion has made of it. */
+static void walks_end_on_any_mesh(void **state) {
+    (void)state;
+    random_seed(9);
+    for (int i = 0; i < WALKED_SCENES; i++) {
+        scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &body);
+        bench b = bench_create((uint32_t)random_integer(1, 6));
+        for (uint32_t k = 0; k < body.vertex_count * 3; k++) {
+            double x = body.x1[k];
+            moved[k] = i % 4 == 0 ? 0.0 : i % 4 == 1 ? round(x) : i % 4 == 2 ? x + random_unit() : x * 1e200;
+        }
+        for (uint32_t v = 0; v < body.vertex_count; v++) {
+            double estimate = sensor_upkeep_estimate(b.partition, moved, v);
+            assert_true(i % 4 == 3 || (estimate >= 0.0 && isfinite(estimate)));
+        }
+        due(&b, &usual);
+        bench_destroy(&b);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rest_and_rigid_motion_need_nothing),
+        cmocka_unit_test(growth_is_seen),
+        cmocka_unit_test(growth_is_estimated),
+        cmocka_unit_test(long_edges_are_seen),
+        cmocka_unit_test(bending_is_told_before_long_edges),
+        cmocka_unit_test(bending_is_seen),
+        cmocka_unit_test(renewal_settles_one_part),
+        cmocka_unit_test(estimates_are_rectangles),
+        cmocka_unit_test(estimates_are_near_areas),
+        cmocka_unit_test(walks_end_on_any_mesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,186 @@
+/* What sensors find of what the detector finds, on random scenes. A contact that they report is one; that
+ * they report all is not promised, and the shares are printed. */
+#include "tests/support/sensors/sensor_rig.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { SEEDS = 20, FRAMES = 10 };
+#else
+enum { SEEDS = 40, FRAMES = 10 };
+#endif
+
+static scene s; /* large; one test at a time */
+static double x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];
+
+/* The scene's interval is cut into frames, or is one. */
+static void positions_at(int frame, int frames, double *x) {
+    double t = (double)frame / frames;
+    for (uint32_t i = 0; i < s.vertex_count * 3; i++) x[i] = s.x0[i] + t * (s.x1[i] - s.x0[i]);
+}
+
+/* Frames in which two objects touch, warned of, of these with a contact found, and of these the earliest;
+ * and frames warned of in which they do not touch. */
+typedef struct shares {
+    uint32_t frames, touching, warned, found, earliest, false_alarms, apart, part_pairs;
+} shares;
+
+static uint32_t object_of(const cscd_mesh *mesh, uint32_t vertex) {
+    uint32_t count, triangle = cscd_mesh_vertex_triangles(mesh, vertex, &count)[0];
+    return cscd_mesh_triangle_component(mesh, triangle);
+}
+
+static bool between_objects(const cscd_mesh *mesh, const cscd_contact *c) {
+    uint32_t first[3] = {c->a}, second[3];
+    if (c->kind == CSCD_CONTACT_VF) {
+        cscd_mesh_triangle(mesh, c->b, second);
+    } else {
+        cscd_mesh_edge(mesh, c->a, first);
+        cscd_mesh_edge(mesh, c->b, second);
+    }
+    return object_of(mesh, first[0]) != object_of(mesh, second[0]);
+}
+
+/* INFINITY: the two objects do not touch. */
+static double true_toi(const sensor_rig *r, cscd_detector *detector) {
+    cscd_contacts contacts;
+    double first = INFINITY;
+    assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
+    for (size_t i = 0; i < contacts.count; i++)
+        if (between_objects(r->mesh, &contacts.items[i])) first = fmin(first, contacts.items[i].toi);
+    return first;
+}
+
+static double nearest_vertices(const sensor_rig *r, const double *x) {
+    double least = INFINITY;
+    for (uint32_t a = 0; a < s.vertex_count; a++) {
+        for (uint32_t b = 0; b < a; b++) {
+            double d[3], squared = 0.0;
+            for (uint32_t k = 0; k < 3; k++) d[k] = x[a * 3 + k] - x[b * 3 + k];
+            for (int k = 0; k < 3; k++) squared += d[k] * d[k];
+            if (squared < least && object_of(r->mesh, a) != object_of(r->mesh, b)) least = squared;
+        }
+    }
+    return sqrt(least);
+}
+
+/* Returns whether all parts of the one object are certainly apart from all of the other. */
+static bool count_apart(const sensor_rig *r, shares *sum) {
+    uint32_t parts = cscd_partition_part_count(r->partition), touching = 0;
+    for (uint32_t a = 0; a < parts; a++) {
+        for (uint32_t b = 0; b < a; b++) {
+            bool one =
+                cscd_partition_part(r->partition, a).object == cscd_partition_part(r->partition, b).object;
+            if (one) continue;
+            bool apart = cscd_sensors_apart(r->sensors, a, b);
+            touching += !apart;
+            sum->apart += apart;
+            sum->part_pairs++;
+        }
+    }
+    return touching == 0;
+}
+
+static void look(const sensor_rig *r, cscd_detector *detector, shares *sum) {
+    cscd_warnings warnings = sensor_rig_step(r, x0, x1);
+    const cscd_warning *warning = find_warning(&warnings, 0, 1), *found = find_contact(&warnings, 0, 1);
+    double toi = true_toi(r, detector);
+    bool touching = toi < INFINITY, apart = count_apart(r, sum);
+    if (found != NULL) assert_true(touching && found->toi >= toi);
+    assert_false(apart && touching);
+    sum->frames++;
+    sum->touching += touching;
+    sum->warned += touching && warning != NULL;
+    sum->found += found != NULL;
+    sum->earliest += found != NULL && found->toi == toi;
+    sum->false_alarms += !touching && warning != NULL;
+}
+
+static void count_family(scene_family family, const sensor_setup *setup, const char *how) {
+    shares sum = {0};
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        cscd_detector *detector;
+        scene_make(family, seed, &s);
+        sensor_rig r = sensor_rig_create(&s, setup);
+        assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &detector), CSCD_OK);
+        for (int f = 0; f < FRAMES; f++) {
+            positions_at(f, FRAMES, x0);
+            positions_at(f + 1, FRAMES, x1);
+            look(&r, detector, &sum);
+        }
+        cscd_detector_destroy(detector);
+        sensor_rig_destroy(&r);
+    }
+    assert_true(sum.touching > 10);
+    print_message("%-14s %-6s of %u frames %3u touch, of these %3u warned of, %3u found, %3u earliest; %3u "
+                  "false alarms; of %u pairs of parts %u certainly apart\n",
+                  scene_family_name(family), how, sum.frames, sum.touching, sum.warned, sum.found,
+                  sum.earliest, sum.false_alarms, sum.part_pairs, sum.apart);
+}
+
+static void contacts_that_are_found_are_true(void **state) {
+    (void)state;
+    static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
+    cscd_sensor_options random = cscd_sensor_defaults();
+    random.method = CSCD_SENSORS_RANDOM;
+    sensor_setup with_plan = {8, NULL, NULL}, older = {0, NULL, &random};
+    for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
+        count_family(families[f], NULL, "cells");
+        count_family(families[f], &with_plan, "plan");
+        count_family(families[f], &older, "random");
+    }
+}
+
+/* The default mu misses no contact, however fast they fly, where every vertex has a particle. */
+static bool expect_found(const sensor_rig *r) {
+    cscd_detector *detector;
+    assert_int_equal(cscd_detector_create(r->mesh, NULL, NULL, &detector), CSCD_OK);
+    double toi = true_toi(r, detector);
+    cscd_warnings warnings = sensor_rig_step(r, x0, x1);
+    const cscd_warning *warning = find_warning(&warnings, 0, 1), *found = find_contact(&warnings, 0, 1);
+    if (toi < INFINITY) {
+        assert_non_null(found);
+        assert_true(found->toi == toi);
+    }
+    if (warning != NULL) {
+        double nearest = fmin(nearest_vertices(r, x0), nearest_vertices(r, x1));
+        assert_true(fabs(warning->distance - nearest) <= 1e-12);
+    }
+    cscd_detector_destroy(detector);
+    return toi < INFINITY;
+}
+
+static void mu_is_sound(void **state) {
+    (void)state;
+    static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
+    cscd_partition_options cells = cscd_partition_defaults();
+    uint32_t touching = 0;
+    cells.cells = SCENE_VERTICES_MAX;
+    sensor_setup setup = {0, &cells, NULL};
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        scene_make(families[seed % 3], seed, &s);
+        sensor_rig r = sensor_rig_create(&s, &setup);
+        assert_int_equal(cscd_partition_cell_count(r.partition), s.vertex_count);
+        int frames = seed % 2 ? 1 : 6, frame = seed % 2 ? 0 : (int)(seed / 2 % 6);
+        positions_at(frame, frames, x0);
+        positions_at(frame + 1, frames, x1);
+        touching += expect_found(&r);
+        sensor_rig_destroy(&r);
+    }
+    assert_true(touching > 10);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contacts_that_are_found_are_true),
+        cmocka_unit_test(mu_is_sound),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

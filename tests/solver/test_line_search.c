@@ -1,0 +1,384 @@
+/* Line searches: their steps against brute force, their candidates and nearness against the detector's. */
+#include "cscd/cscd.h"
+#include "runtime/solver/proximity.h"
+#include "tests/support/oracle.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/solver/free_step_check.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static scene interval; /* large; one test at a time */
+static free_step_call call;
+static double moment[SCENE_VERTICES_MAX * 3], exact[SCENE_VERTICES_MAX * 3];
+
+static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_ICCD,
+                                      CSCD_METHOD_BRUTE, CSCD_METHOD_PUBLISHED};
+enum { METHOD_COUNT = sizeof methods / sizeof *methods };
+
+/* A detector with a line. */
+typedef struct search {
+    rig r;
+    cscd_line *line;
+    cscd_detector_options options;
+} search;
+
+static search search_create(cscd_method method, double min_separation, uint32_t threads) {
+    search s = {.options = cscd_detector_defaults()};
+    s.options.method = method;
+    s.options.min_separation = min_separation;
+    s.r = rig_create(&interval, threads, &s.options);
+    assert_int_equal(cscd_line_create(s.r.detector, &s.line), CSCD_OK);
+    return s;
+}
+
+static void search_destroy(search *s) {
+    cscd_line_destroy(s->line);
+    rig_destroy(&s->r);
+}
+
+static void begin(const search *s, const double *x0, const double *x1, double reach) {
+    assert_int_equal(cscd_line_begin(s->line, x0, x1, reach), CSCD_OK);
+}
+
+static void step_on(cscd_line *line, const double *x0, const double *x1, double longest) {
+    free_step_prepare(x0, x1, longest, 0.8, &call);
+    call.status = cscd_line_max_step(line, longest, call.end, &call.step);
+}
+
+static void far_from_the_origin(void) {
+    for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
+        double shift = i % 3 == 0 ? 1e9 : i % 3 == 1 ? -7e8 : 123456.789;
+        interval.x0[i] += shift;
+        interval.x1[i] += shift;
+    }
+}
+
+/* ---- steps --------------------------------------------------------------------------------------------- */
+
+typedef struct tally {
+    size_t calls, in_contact, limited, whole;
+} tally;
+
+static void check_steps(const search *s, const rig *reference, tally *sum) {
+    static const double longest[] = {1.0, 0.37, 0x1p-20, 1e-300};
+    for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
+        step_on(s->line, interval.x0, interval.x1, longest[i]);
+        sum->calls++;
+        if (free_step_check(reference, s->r.context, &call)) {
+            sum->limited += call.step.limited;
+            sum->whole += !call.step.limited;
+        } else {
+            sum->in_contact++;
+        }
+    }
+}
+
+static void steps_are_certified(void **state) {
+    (void)state;
+    static const double distances[] = {0.0, 0.0, 1e-3, 0.02};
+    tally sum = {0};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 1; seed < 4; seed++) {
+            uint64_t turn = seed + (uint64_t)family;
+            scene_make((scene_family)family, 40 + seed, &interval);
+            if (seed == 3) far_from_the_origin();
+            search s =
+                search_create(methods[turn % METHOD_COUNT], distances[turn % 4], 1 + (uint32_t)seed % 3);
+            rig reference = free_step_reference(&interval, &s.options);
+            begin(&s, interval.x0, interval.x1, seed % 2 == 0 ? 0.0 : 0.01);
+            check_steps(&s, &reference, &sum);
+            rig_destroy(&reference);
+            search_destroy(&s);
+        }
+    }
+    print_message("  %zu calls: %zu in contact, %zu limited, %zu whole\n", sum.calls, sum.in_contact,
+                  sum.limited, sum.whole);
+    assert_true(sum.limited > 15 && sum.whole > 50 && sum.in_contact > 2);
+}
+
+/* ---- nearness ------------------------------------------------------------------------------------------ */
+
+/* What the line finds at a length, the detector finds at its positions, bit for bit; and brute force. */
+static size_t check_near(const search *s, const rig *other, const rig *brute, double length,
+                         double distance) {
+    cscd_proximities on_line, by_trees, truth;
+    assert_int_equal(cscd_line_positions(s->line, length, moment), CSCD_OK);
+    free_step_positions(&s->r, interval.x0, interval.x1, length, exact);
+    assert_memory_equal(moment, exact, interval.vertex_count * sizeof(double[3]));
+    assert_int_equal(cscd_detector_near(other->detector, moment, distance, &by_trees), CSCD_OK);
+    assert_int_equal(cscd_detector_near(brute->detector, moment, distance, &truth), CSCD_OK);
+    assert_int_equal(cscd_line_near(s->line, length, distance, &on_line), CSCD_OK);
+    assert_int_equal(on_line.count, by_trees.count);
+    assert_int_equal(on_line.count, truth.count);
+    assert_true(cscd_line_candidate_count(s->line) >= truth.count);
+    size_t bytes = truth.count * sizeof *truth.items;
+    if (bytes == 0) return 0;
+    assert_memory_equal(on_line.items, by_trees.items, bytes);
+    assert_memory_equal(on_line.items, truth.items, bytes);
+    return truth.count;
+}
+
+static size_t check_moments(const search *s, double reach, uint64_t seed) {
+    cscd_detector_options options = s->options;
+    rig other = rig_create(&interval, 1, &options);
+    options.method = CSCD_METHOD_BRUTE;
+    rig brute = rig_create(&interval, 1, &options);
+    random_stream random = stream_start(seed);
+    size_t pairs = 0;
+    for (int i = 0; i < 5; i++) {
+        double length = i == 0 ? 0.0 : i == 1 ? 1.0 : i == 2 ? 0x1p-40 : stream_between(&random, 0.0, 1.0);
+        double distance = i % 2 == 0 ? reach : reach * stream_between(&random, 0.01, 1.0);
+        pairs += check_near(s, &other, &brute, length, distance);
+    }
+    rig_destroy(&brute);
+    rig_destroy(&other);
+    return pairs;
+}
+
+static void near_equals_the_detectors(void **state) {
+    (void)state;
+    static const double reaches[] = {1e-6, 0.02, 0.15};
+    size_t pairs = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 1; seed < 3; seed++) {
+            uint64_t turn = seed + (uint64_t)family;
+            scene_make((scene_family)family, 70 + seed, &interval);
+            if (seed == 2) far_from_the_origin();
+            search s = search_create(methods[turn % METHOD_COUNT], turn % 4 == 0 ? 1e-3 : 0.0,
+                                     1 + (uint32_t)seed % 3);
+            begin(&s, interval.x0, interval.x1, reaches[turn % 3]);
+            pairs += check_moments(&s, reaches[turn % 3], seed);
+            search_destroy(&s);
+        }
+    }
+    print_message("  %zu pairs\n", pairs);
+    assert_true(pairs > 3000);
+}
+
+static void scales_do_not_matter(void **state) {
+    (void)state;
+    static const int exponents[] = {-250, 270};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        int exponent = exponents[family % 2];
+        scene_make((scene_family)family, 90, &interval);
+        for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
+            interval.x0[i] = ldexp(interval.x0[i], exponent);
+            interval.x1[i] = ldexp(interval.x1[i], exponent);
+        }
+        search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
+        rig reference = free_step_reference(&interval, &s.options);
+        tally sum = {0};
+        begin(&s, interval.x0, interval.x1, ldexp(0.05, exponent));
+        check_steps(&s, &reference, &sum);
+        if (family % 3 == 0) check_moments(&s, ldexp(0.05, exponent), 1);
+        rig_destroy(&reference);
+        search_destroy(&s);
+    }
+}
+
+/* ---- states -------------------------------------------------------------------------------------------- */
+
+/* An embedded start of closed surfaces, and an end in contact. */
+static void make_limited(scene_family family, uint64_t seed) {
+    for (;; seed++) {
+        scene_make(family, seed, &interval);
+        rig r = rig_create(&interval, 1, NULL);
+        bool fits = rig_step(&r, &interval).count > 0 && free_step_embedded(&r, interval.x0);
+        rig_destroy(&r);
+        if (fits) return;
+    }
+}
+
+static void expect_known(const search *s, const rig *reference, const double *x0, const double *x1) {
+    cscd_contacts found, truth;
+    assert_int_equal(cscd_detector_step(s->r.detector, x0, x1, &found), CSCD_OK);
+    assert_int_equal(cscd_detector_counters(s->r.detector).static_checks, 0);
+    assert_int_equal(cscd_detector_counters(s->r.detector).clean, interval.triangle_count);
+    assert_int_equal(cscd_detector_step(reference->detector, x0, x1, &truth), CSCD_OK);
+    assert_int_equal(found.count, truth.count);
+    if (found.count > 0) assert_memory_equal(found.items, truth.items, found.count * sizeof *found.items);
+}
+
+/* The detector knows where a step of the line ends, as often as one is taken, whatever lies between. */
+static void the_detector_knows_the_end(void **state) {
+    (void)state;
+    static const scene_family families[] = {SCENE_SPIKE, SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES,
+                                            SCENE_BENT_CAPSULE};
+    static const double longest[] = {1.0, 0.5, 0.01, 1.0};
+    for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
+        make_limited(families[f], 1);
+        search s = search_create(CSCD_METHOD_SINGLE, 0.0, 2);
+        rig reference = free_step_reference(&interval, &s.options);
+        cscd_contacts found;
+        assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+        begin(&s, interval.x0, interval.x1, 0.0);
+        for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
+            step_on(s.line, interval.x0, interval.x1, longest[i]);
+            assert_true(free_step_check(&reference, s.r.context, &call));
+            expect_known(&s, &reference, call.end, interval.x1);
+        }
+        rig_destroy(&reference);
+        search_destroy(&s);
+    }
+}
+
+/* It did not know the start: its next step proves its own. */
+static void what_is_not_known_stays_so(void **state) {
+    (void)state;
+    make_limited(SCENE_SPIKE, 1);
+    search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
+    cscd_contacts found;
+    begin(&s, interval.x0, interval.x1, 0.0);
+    step_on(s.line, interval.x0, interval.x1, 1.0);
+    assert_int_equal(call.status, CSCD_OK);
+    assert_int_equal(cscd_detector_step(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
+    assert_int_equal(cscd_detector_counters(s.r.detector).static_checks, 1);
+    search_destroy(&s);
+}
+
+/* A sphere whose pole has been pushed through the other one: the cap there meets nothing, but is cut off. */
+static void make_cut_off(void) {
+    static const int segments = 9;
+    scene_clear(&interval);
+    scene_add_sphere(&interval, (double[3]){0, 0, 0}, 1.0, 6, segments);
+    for (int v = 0; v <= segments; v++) interval.x0[v * 3 + 2] = v == 0 ? 2.5 : 2.0;
+    memcpy(interval.x1, interval.x0, sizeof interval.x1);
+    interval.x1[2] += 0.1;
+}
+
+/* How many triangles are clean to a detector after it has checked the start of a step. */
+static uint64_t clean_when_checked(cscd_detector *d, const double *x) {
+    cscd_contacts found;
+    cscd_intersections crossing;
+    assert_int_equal(cscd_detector_check(d, x, &crossing), CSCD_OK);
+    assert_true(crossing.count > 0);
+    assert_int_equal(cscd_detector_step(d, x, x, &found), CSCD_OK);
+    return cscd_detector_counters(d).clean;
+}
+
+/* A caller's word is not proof: a check takes it back, also where a line has handed it on. */
+static void a_word_stays_a_word(void **state) {
+    (void)state;
+    make_cut_off();
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_SINGLE;
+    options.start = CSCD_START_VOUCHED;
+    rig r = rig_create(&interval, 1, &options), other = rig_create(&interval, 1, &options);
+    cscd_line *line = NULL;
+    cscd_contacts found;
+    assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, 0.0), CSCD_OK);
+    clean_when_checked(r.detector, interval.x0);
+    step_on(line, interval.x0, interval.x1, 1.0);
+    assert_true(call.status == CSCD_OK && !call.step.limited);
+    assert_int_equal(clean_when_checked(r.detector, interval.x1),
+                     clean_when_checked(other.detector, interval.x1));
+    cscd_line_destroy(line);
+    rig_destroy(&other);
+    rig_destroy(&r);
+}
+
+/* ---- together ------------------------------------------------------------------------------------------ */
+
+/* Two lines of one detector and steps of its own, in turn: each as if it were alone. */
+static void lines_and_steps_take_turns(void **state) {
+    (void)state;
+    size_t bytes = sizeof interval.x0;
+    double *x2 = malloc(bytes);
+    assert_non_null(x2);
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 21, &interval);
+        for (uint32_t i = 0; i < interval.vertex_count * 3; i++)
+            x2[i] = 0.5 * (interval.x0[i] + interval.x1[i]);
+        search s = search_create(methods[family % 3], 0.0, 1);
+        rig reference = free_step_reference(&interval, &s.options);
+        cscd_line *second = NULL;
+        cscd_contacts found, truth;
+        cscd_free_step ignored;
+        assert_int_equal(cscd_line_create(s.r.detector, &second), CSCD_OK);
+        begin(&s, interval.x0, interval.x1, 0.01);
+        assert_int_equal(cscd_line_begin(second, x2, interval.x1, 0.0), CSCD_OK);
+        for (int round = 0; round < 1 + (family == SCENE_SPIKE); round++) {
+            step_on(second, x2, interval.x1, 1.0);
+            free_step_check(&reference, s.r.context, &call);
+            assert_int_equal(cscd_detector_step(s.r.detector, x2, interval.x1, &found), CSCD_OK);
+            assert_int_equal(cscd_detector_step(reference.detector, x2, interval.x1, &truth), CSCD_OK);
+            assert_int_equal(found.count, truth.count);
+            step_on(s.line, interval.x0, interval.x1, 1.0);
+            free_step_check(&reference, s.r.context, &call);
+            cscd_status status =
+                cscd_detector_max_step(s.r.detector, interval.x0, interval.x1, NULL, &ignored);
+            assert_int_equal(status, call.status);
+            assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, x2, &found), CSCD_OK);
+            assert_int_equal(cscd_detector_step(reference.detector, interval.x0, x2, &truth), CSCD_OK);
+            assert_int_equal(found.count, truth.count);
+        }
+        cscd_line_destroy(second);
+        rig_destroy(&reference);
+        search_destroy(&s);
+    }
+    free(x2);
+}
+
+/* ---- arguments ----------------------------------------------------------------------------------------- */
+
+static void expect_words(const search *s, cscd_status status, const char *words) {
+    assert_int_equal(status, CSCD_INVALID_ARGUMENT);
+    if (strstr(cscd_context_detail(s->r.context), words) == NULL)
+        fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(s->r.context));
+}
+
+static void misuse_is_named(void **state) {
+    (void)state;
+    static const double bad[] = {-0x1p-1000, 1.0 + 0x1p-52, NAN, INFINITY, -1.0};
+    scene_make(SCENE_SPIKE, 1, &interval);
+    search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
+    cscd_proximities near = {NULL, 4711};
+    cscd_free_step step = {.length = -1.0};
+    assert_int_equal(cscd_line_create(NULL, NULL), CSCD_INVALID_ARGUMENT);
+    expect_words(&s, cscd_line_create(s.r.detector, NULL), "out is NULL");
+    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1, &near), "cscd_line_begin first");
+    expect_words(&s, cscd_line_max_step(s.line, 1.0, NULL, &step), "cscd_line_begin first");
+    expect_words(&s, cscd_line_positions(s.line, 1.0, moment), "cscd_line_begin first");
+    assert_int_equal(cscd_line_candidate_count(s.line), 0);
+    expect_words(&s, cscd_line_begin(s.line, NULL, interval.x1, 0.1), "x0 is NULL");
+    expect_words(&s, cscd_line_begin(s.line, interval.x0, NULL, 0.1), "x1 is NULL");
+    begin(&s, interval.x0, interval.x1, 0.1);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        expect_words(&s, cscd_line_near(s.line, bad[i], 0.1, &near), "length is ");
+        expect_words(&s, cscd_line_max_step(s.line, bad[i], NULL, &step), "longest is ");
+        expect_words(&s, cscd_line_positions(s.line, bad[i], moment), "length is ");
+        if (bad[i] < 1.0 || bad[i] > 2.0 || isnan(bad[i]))
+            expect_words(&s, cscd_line_begin(s.line, interval.x0, interval.x1, bad[i]), "reach is ");
+    }
+    expect_words(&s, cscd_line_max_step(s.line, 0.0, NULL, &step), "longest is 0");
+    expect_words(&s, cscd_line_max_step(s.line, 1.0, NULL, NULL), "out is NULL");
+    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1 + 1e-12, &near), "reach of 0.1");
+    expect_words(&s, cscd_line_near(s.line, 0.5, 0.0, &near), "distance is 0");
+    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1, NULL), "out is NULL");
+    expect_words(&s, cscd_line_positions(s.line, 0.5, NULL), "positions is NULL");
+    assert_true(near.count == 4711 && step.length == -1.0);
+    assert_int_equal(cscd_line_near(s.line, 0.5, 0.1, &near), CSCD_OK);
+    begin(&s, interval.x0, interval.x1, 0.0);
+    expect_words(&s, cscd_line_near(s.line, 0.5, 0x1p-300, &near), "reach of 0");
+    search_destroy(&s);
+    cscd_line_destroy(NULL);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_are_certified),        cmocka_unit_test(near_equals_the_detectors),
+        cmocka_unit_test(scales_do_not_matter),       cmocka_unit_test(the_detector_knows_the_end),
+        cmocka_unit_test(what_is_not_known_stays_so), cmocka_unit_test(a_word_stays_a_word),
+        cmocka_unit_test(lines_and_steps_take_turns), cmocka_unit_test(misuse_is_named)};
+    return cmocka_run_group_tests_name("line", tests, NULL, NULL);
+}

@@ -1,0 +1,285 @@
+/* An exact answer to the elementary tests, by algebraic numbers: slow, and shares nothing with the product.
+ *
+ * The features touch when 0 lies in the convex hull of the differences w of their points: three of them for
+ * VF (face - vertex), four for EE (end of a - end of b). By Caratheodory's theorem 0 is then a positive
+ * combination of an affinely independent subset, and in terms of the Gram matrix g of the w (all minors are
+ * taken of it, no determinant of coordinates) that is one of
+ *     single  g_ii = 0,
+ *     pair    g_ii g_jj - g_ij^2 = 0 and g_ij < 0,
+ *     triple  det = 0 and the first row of the adjugate is positive (then the rank is 2, the adjugate is
+ *             c n n^T with c > 0, and n combines the three w to 0).
+ * Four affinely independent w there are not: for EE w00 - w01 - w10 + w11 = 0. For the same reason the four
+ * triples of EE have one determinant.
+ *
+ * Each w is linear in t, so all these are polynomials, and the answer depends on their signs only. The
+ * touching times are a closed set; let t* > 0 be the first. Which times can it be? det not 0 throughout:
+ * singles, pairs and triples need dependent w, so t* is a root of det. det = 0 throughout: if a triple holds
+ * at t*, its adjugate row is positive just before t* as well, where det = 0 too, so the features touched
+ * earlier. If a pair holds at t* whose minor is 0 throughout, g_ij < 0 just before t* as well, and they
+ * touched earlier. So t* is a root of the minor of a pair that is not 0 throughout, or of a g_ii (not 0
+ * throughout, else they touch at 0). Nothing was assumed about the position of the points, so this covers all
+ * that is flat, collinear or coincident, for a moment or for good. Hence the candidates: 0, and the roots in
+ * [0,1] of one polynomial, or of those minors. det is the square of a cubic. Minors and g_ii are nowhere
+ * negative, so that their real roots are multiple, and roots of the greatest common divisor with the
+ * derivative. */
+#include "tests/support/ccd/algebraic_oracle.h"
+
+#include "tests/support/ccd/algebraic_moment.h"
+
+#include <flint/flint.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+typedef struct gram {
+    int count; /* of differences: 3 or 4 */
+    fmpz_poly_t at[4][4];
+    fmpz_poly_t det;   /* of the first three */
+    fmpz_poly_t slope; /* of the root of det */
+    fmpz_poly_t product, entry;
+} gram;
+
+/* ---- set-up ---- */
+
+/* A coordinate axis along which one feature stays behind the other. */
+static bool apart_along(pair_kind kind, const double x[4][3], int k, int direction) {
+    int first_count = kind == PAIR_VF ? 1 : 2;
+    for (int i = 0; i < first_count; i++)
+        for (int j = first_count; j < 4; j++)
+            if (!(direction > 0 ? x[i][k] < x[j][k] : x[i][k] > x[j][k])) return false;
+    return true;
+}
+
+static bool apart(pair_kind kind, const elementary_query *query) {
+    for (int k = 0; k < 3; k++)
+        for (int direction = -1; direction <= 1; direction += 2)
+            if (apart_along(kind, query->x0, k, direction) && apart_along(kind, query->x1, k, direction))
+                return true;
+    return false;
+}
+
+/* value = mantissa 2^exponent, mantissa odd or 0 */
+static int64_t odd_part(double value, int *exponent) {
+    int64_t mantissa = (int64_t)ldexp(frexp(value, exponent), 53);
+    *exponent -= 53;
+    if (mantissa == 0) return 0;
+    int zeros = __builtin_ctzll((uint64_t)mantissa);
+    *exponent += zeros;
+    return mantissa / ((int64_t)1 << zeros);
+}
+
+/* Coordinate k of the four points as start and change, times a power of two that makes them integers.
+ * Touching does not depend on the units of the axes. */
+static void integer_axis(const elementary_query *query, int k, fmpz_t start[4], fmpz_t change[4]) {
+    int exponents[8], smallest = INT32_MAX;
+    int64_t mantissas[8];
+    for (int i = 0; i < 8; i++) {
+        mantissas[i] = odd_part(i < 4 ? query->x0[i][k] : query->x1[i - 4][k], &exponents[i]);
+        if (mantissas[i] != 0 && exponents[i] < smallest) smallest = exponents[i];
+    }
+    for (int i = 0; i < 8; i++) {
+        fmpz *out = i < 4 ? start[i] : change[i - 4];
+        fmpz_set_si(out, mantissas[i]);
+        if (mantissas[i] != 0) fmpz_mul_2exp(out, out, (ulong)(exponents[i] - smallest));
+    }
+    for (int i = 0; i < 4; i++) fmpz_sub(change[i], change[i], start[i]);
+}
+
+/* ends[n]: the points of which difference n is taken */
+static int difference_ends(pair_kind kind, int ends[4][2]) {
+    for (int n = 0; n < 4; n++) {
+        ends[n][0] = kind == PAIR_VF ? 0 : n / 2;
+        ends[n][1] = kind == PAIR_VF ? n % 3 + 1 : n % 2 + 2;
+    }
+    return kind == PAIR_VF ? 3 : 4;
+}
+
+/* Adds the products of the differences' coordinates k, each start + change t. */
+static void add_axis(gram *g, const int ends[4][2], fmpz_t start[4], fmpz_t change[4]) {
+    fmpz_t a[4], b[4];
+    for (int n = 0; n < g->count; n++) {
+        fmpz_init(a[n]);
+        fmpz_init(b[n]);
+        fmpz_sub(a[n], start[ends[n][1]], start[ends[n][0]]);
+        fmpz_sub(b[n], change[ends[n][1]], change[ends[n][0]]);
+    }
+    for (int i = 0; i < g->count; i++) {
+        for (int j = i; j < g->count; j++) {
+            fmpz *c = g->at[i][j]->coeffs;
+            fmpz_addmul(c, a[i], a[j]);
+            fmpz_addmul(c + 1, a[i], b[j]);
+            fmpz_addmul(c + 1, b[i], a[j]);
+            fmpz_addmul(c + 2, b[i], b[j]);
+        }
+    }
+    for (int n = 0; n < g->count; n++) {
+        fmpz_clear(a[n]);
+        fmpz_clear(b[n]);
+    }
+}
+
+static void gram_init(gram *g, pair_kind kind, const elementary_query *query) {
+    fmpz_t start[4], change[4];
+    int ends[4][2];
+    g->count = difference_ends(kind, ends);
+    for (int i = 0; i < 4; i++) {
+        fmpz_init(start[i]);
+        fmpz_init(change[i]);
+        for (int j = i; j < g->count; j++) {
+            fmpz_poly_init2(g->at[i][j], 3);
+            _fmpz_poly_set_length(g->at[i][j], 3);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        integer_axis(query, k, start, change);
+        add_axis(g, ends, start, change);
+    }
+    for (int i = 0; i < 4; i++) {
+        fmpz_clear(start[i]);
+        fmpz_clear(change[i]);
+        for (int j = i; j < g->count; j++) _fmpz_poly_normalise(g->at[i][j]);
+    }
+    fmpz_poly_init(g->det);
+    fmpz_poly_init(g->slope);
+    fmpz_poly_init(g->product);
+    fmpz_poly_init(g->entry);
+}
+
+static void gram_clear(gram *g) {
+    for (int i = 0; i < g->count; i++)
+        for (int j = i; j < g->count; j++) fmpz_poly_clear(g->at[i][j]);
+    fmpz_poly_clear(g->det);
+    fmpz_poly_clear(g->slope);
+    fmpz_poly_clear(g->product);
+    fmpz_poly_clear(g->entry);
+}
+
+/* ---- minors; each lies in entry until the next one ---- */
+
+static const fmpz_poly_struct *at(const gram *g, int i, int j) {
+    return i <= j ? g->at[i][j] : g->at[j][i];
+}
+
+/* g_ik g_jl - g_il g_jk: rows i, j, columns k, l */
+static const fmpz_poly_struct *minor(gram *g, int i, int j, int k, int l) {
+    fmpz_poly_mul(g->entry, at(g, i, k), at(g, j, l));
+    fmpz_poly_mul(g->product, at(g, i, l), at(g, j, k));
+    fmpz_poly_sub(g->entry, g->entry, g->product);
+    return g->entry;
+}
+
+/* Entry (i, column n) of the adjugate of rows and columns i, j, k. */
+static const fmpz_poly_struct *adjugate(gram *g, int i, int j, int k, int n) {
+    if (n == 0) return minor(g, j, k, j, k);
+    return n == 1 ? minor(g, j, k, k, i) : minor(g, j, k, i, j);
+}
+
+static void find_det(gram *g) {
+    fmpz_poly_t term;
+    fmpz_poly_init(term);
+    for (int n = 0; n < 3; n++) {
+        fmpz_poly_mul(term, adjugate(g, 0, 1, 2, n), at(g, 0, n));
+        fmpz_poly_add(g->det, g->det, term);
+    }
+    fmpz_poly_clear(term);
+}
+
+/* ---- a moment ---- */
+
+static bool pair_combines(gram *g, moment *m, int i, int j) {
+    return moment_sign(m, at(g, i, j)) < 0 && moment_sign(m, minor(g, i, j, i, j)) == 0;
+}
+
+/* Where det = 0. */
+static bool triple_combines(gram *g, moment *m, int i, int j, int k) {
+    for (int n = 2; n >= 0; n--)
+        if (moment_sign(m, adjugate(g, i, j, k, n)) <= 0) return false;
+    return true;
+}
+
+static bool touching_at(gram *g, moment *m) {
+    if (moment_sign(m, g->det) != 0) return false;
+    for (int i = 0; i < g->count; i++)
+        if (moment_sign(m, at(g, i, i)) == 0) return true;
+    for (int i = 0; i < g->count; i++)
+        for (int j = i + 1; j < g->count; j++)
+            if (pair_combines(g, m, i, j)) return true;
+    for (int i = 0; i < g->count; i++)
+        for (int j = i + 1; j < g->count; j++)
+            for (int k = j + 1; k < g->count; k++)
+                if (triple_combines(g, m, i, j, k)) return true;
+    return false;
+}
+
+/* ---- candidates ---- */
+
+/* p is nowhere negative. */
+static void add_multiple_roots(moment_list *list, const fmpz_poly_struct *p) {
+    if (fmpz_poly_is_zero(p)) return;
+    fmpz_poly_t common;
+    fmpz_poly_init(common);
+    fmpz_poly_derivative(common, p);
+    fmpz_poly_gcd(common, common, p);
+    moments_add_roots(list, common);
+    fmpz_poly_clear(common);
+}
+
+static void add_roots_of_det(gram *g, moment_list *list) {
+    fmpz_poly_t root;
+    fmpz_poly_init(root);
+    if (!fmpz_poly_sqrt(root, g->det)) abort();
+    moments_add_roots(list, root);
+    fmpz_poly_derivative(g->slope, root);
+    fmpz_poly_clear(root);
+}
+
+/* From 0 on; the moment 0 itself aside. */
+static void add_candidates(gram *g, moment_list *list) {
+    if (!fmpz_poly_is_zero(g->det)) {
+        add_roots_of_det(g, list);
+        return;
+    }
+    for (int i = 0; i < g->count; i++) {
+        add_multiple_roots(list, at(g, i, i));
+        for (int j = i + 1; j < g->count; j++) add_multiple_roots(list, minor(g, i, j, i, j));
+    }
+}
+
+static const oracle_verdict never = {.touching = false, .toi_low = 2.0, .toi_high = 2.0};
+
+static oracle_verdict first_touch(gram *g, moment_list *list) {
+    oracle_verdict verdict = never;
+    for (slong i = 0; i < list->count; i++) {
+        moment *m = &list->items[i];
+        double low, high;
+        moment_bounds(m, &low, &high);
+        if (low >= verdict.toi_high || !touching_at(g, m)) continue;
+        verdict.touching = true;
+        verdict.simple = moment_sign(m, g->slope) != 0;
+        verdict.toi_low = fmin(low, verdict.toi_low);
+        verdict.toi_high = fmin(high, verdict.toi_high);
+    }
+    return verdict;
+}
+
+oracle_verdict algebraic_oracle(pair_kind kind, const elementary_query *query) {
+    if (apart(kind, query)) return never;
+    gram g;
+    moment_list list;
+    gram_init(&g, kind, query);
+    moments_init(&list);
+    find_det(&g);
+    moments_add_rational(&list, 0, 1);
+    oracle_verdict verdict = first_touch(&g, &list);
+    if (!verdict.touching) {
+        add_candidates(&g, &list);
+        verdict = first_touch(&g, &list);
+    }
+    moments_clear(&list);
+    gram_clear(&g);
+    return verdict;
+}
+
+void algebraic_oracle_finish(void) {
+    flint_cleanup();
+}

@@ -1,0 +1,134 @@
+/* The distance of two moving features, in long double and by cases: nothing in common with the oracle. */
+#include "tests/support/ccd/feature_distance.h"
+
+#include <math.h>
+
+typedef struct vector {
+    long double x[3];
+} vector;
+
+enum { MOST_INTERVALS = 1 << 12 };
+
+typedef struct proof {
+    pair_kind kind;
+    const elementary_query *query;
+    long double speed, distance;
+    int intervals;
+} proof;
+
+static vector position(const elementary_query *query, int i, long double t) {
+    vector out;
+    for (int k = 0; k < 3; k++) out.x[k] = (1 - t) * query->x0[i][k] + t * query->x1[i][k];
+    return out;
+}
+
+static vector difference(vector a, vector b) {
+    return (vector){{a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]}};
+}
+
+/* a + f (b - a) */
+static vector between(vector a, vector b, long double f) {
+    for (int k = 0; k < 3; k++) a.x[k] = (1 - f) * a.x[k] + f * b.x[k];
+    return a;
+}
+
+static long double dot(vector a, vector b) {
+    return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2];
+}
+
+static long double norm(vector a) {
+    return sqrtl(dot(a, a));
+}
+
+static vector cross(vector a, vector b) {
+    vector out;
+    for (int k = 0; k < 3; k++)
+        out.x[k] = a.x[(k + 1) % 3] * b.x[(k + 2) % 3] - a.x[(k + 2) % 3] * b.x[(k + 1) % 3];
+    return out;
+}
+
+static long double point_segment(vector p, vector a, vector b) {
+    vector side = difference(b, a);
+    long double square = dot(side, side);
+    long double f = square > 0 ? dot(difference(p, a), side) / square : 0;
+    return norm(difference(p, between(a, b, fminl(fmaxl(f, 0), 1))));
+}
+
+static long double point_triangle(const vector p[4]) {
+    vector n = cross(difference(p[2], p[1]), difference(p[3], p[1]));
+    long double best = INFINITY;
+    bool inside = dot(n, n) > 0;
+    for (int i = 1; i < 4; i++) {
+        const vector *a = &p[i], *b = &p[i % 3 + 1];
+        best = fminl(best, point_segment(p[0], *a, *b));
+        inside = inside && dot(cross(difference(*b, *a), difference(p[0], *a)), n) >= 0;
+    }
+    return inside ? fminl(best, fabsl(dot(difference(p[0], p[1]), n)) / norm(n)) : best;
+}
+
+static long double segment_segment(const vector p[4]) {
+    vector a = difference(p[1], p[0]), b = difference(p[3], p[2]), c = difference(p[2], p[0]),
+           n = cross(a, b);
+    long double square = dot(n, n);
+    long double best = fminl(point_segment(p[0], p[2], p[3]), point_segment(p[1], p[2], p[3]));
+    best = fminl(best, fminl(point_segment(p[2], p[0], p[1]), point_segment(p[3], p[0], p[1])));
+    if (!(square > 0)) return best;
+    long double u = dot(cross(c, b), n) / square, v = dot(cross(c, a), n) / square;
+    bool inside = u >= 0 && u <= 1 && v >= 0 && v <= 1;
+    return inside ? fminl(best, fabsl(dot(c, n)) / sqrtl(square)) : best;
+}
+
+long double feature_distance(pair_kind kind, const elementary_query *query, long double t) {
+    vector p[4];
+    for (int i = 0; i < 4; i++) p[i] = position(query, i, t);
+    return kind == PAIR_VF ? point_triangle(p) : segment_segment(p);
+}
+
+long double named_distance(pair_kind kind, const elementary_query *query, long double t, long double u,
+                           long double v) {
+    vector p[4];
+    for (int i = 0; i < 4; i++) p[i] = position(query, i, t);
+    if (kind == PAIR_EE) return norm(difference(between(p[0], p[1], u), between(p[2], p[3], v)));
+    for (int k = 0; k < 3; k++) p[0].x[k] -= (1 - u - v) * p[1].x[k] + u * p[2].x[k] + v * p[3].x[k];
+    return norm(p[0]);
+}
+
+static vector motion(const elementary_query *query, int i) {
+    return difference(position(query, i, 1), position(query, i, 0));
+}
+
+/* No two points of the features approach faster. */
+static long double closing_speed(pair_kind kind, const elementary_query *query) {
+    long double fastest = 0;
+    int first_count = kind == PAIR_VF ? 1 : 2;
+    for (int i = 0; i < first_count; i++)
+        for (int j = first_count; j < 4; j++)
+            fastest = fmaxl(fastest, norm(difference(motion(query, i), motion(query, j))));
+    return fastest;
+}
+
+static bool stays_apart(proof *p, long double low, long double high) {
+    long double middle = (low + high) / 2, near = p->speed * (high - low) / 2 * (1 + 0x1p-40L);
+    if (p->intervals++ > MOST_INTERVALS) return false;
+    if (feature_distance(p->kind, p->query, middle) > near + p->distance) return true;
+    return stays_apart(p, low, middle) && stays_apart(p, middle, high);
+}
+
+bool proved_apart(pair_kind kind, const elementary_query *query, long double low, long double high,
+                  long double distance) {
+    proof p = {kind, query, closing_speed(kind, query), distance + 0x1p-55L * largest_coordinate(query), 0};
+    return stays_apart(&p, low, high);
+}
+
+long double largest_coordinate(const elementary_query *query) {
+    long double largest = 0;
+    for (int i = 0; i < 12; i++)
+        largest = fmaxl(largest, fmaxl(fabsl(query->x0[i / 3][i % 3]), fabsl(query->x1[i / 3][i % 3])));
+    return largest;
+}
+
+long double largest_displacement(const elementary_query *query) {
+    long double largest = 0;
+    for (int i = 0; i < 4; i++) largest = fmaxl(largest, norm(motion(query, i)));
+    return largest;
+}

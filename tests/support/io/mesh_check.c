@@ -1,0 +1,102 @@
+/* Reads bytes as a mesh file and checks the mesh or the error; used inside cmocka tests. */
+#include "tests/support/io/mesh_check.h"
+
+#include "tests/support/temp_file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error) {
+    temp_folder folder = temp_folder_make();
+    temp_path path = temp_file_write(&folder, file.name, file.bytes, file.size);
+    bool done = mesh_file_read(path.text, mesh, error);
+    temp_folder_remove(&folder);
+    return done;
+}
+
+void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *positions,
+                      uint32_t triangle_count, const uint32_t *triangles) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    if (!mesh_check_read(file, &mesh, &error)) fail_msg("refused: %s", error.text);
+    assert_int_equal(mesh.vertex_count, vertex_count);
+    assert_int_equal(mesh.triangle_count, triangle_count);
+    assert_memory_equal(mesh.positions, positions, 3 * vertex_count * sizeof *positions);
+    assert_memory_equal(mesh.triangles, triangles, 3 * triangle_count * sizeof *triangles);
+    mesh_file_free(&mesh);
+    assert_null(mesh.positions);
+    assert_null(mesh.triangles);
+}
+
+void mesh_check_square(file_bytes file) {
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+    mesh_check_equal(file, 4, positions, 2, triangles);
+}
+
+void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected) {
+    double untouched;
+    mesh_file mesh = {.vertex_count = 7, .positions = &untouched};
+    io_error error = {""};
+    char start[256];
+    snprintf(start, sizeof start, "%s%s", file.name, place);
+    if (mesh_check_read(file, &mesh, &error)) {
+        mesh_file_free(&mesh);
+        fail_msg("accepted, expected '%s' and '%s'", start, found);
+    }
+    const char *texts[] = {start, found, expected};
+    for (size_t i = 0; i < 3; i++) {
+        if (strstr(error.text, texts[i]) == NULL) fail_msg("no '%s' in '%s'", texts[i], error.text);
+    }
+    assert_null(strpbrk(error.text, "\r\n"));
+    assert_true(mesh.vertex_count == 7 && mesh.positions == &untouched && mesh.triangles == NULL);
+}
+
+static void check_in_range(const mesh_file *mesh) {
+    assert_true(mesh->vertex_count > 0 && mesh->triangle_count > 0);
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) assert_true(isfinite(mesh->positions[i]));
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const uint32_t *corner = mesh->triangles + 3 * i;
+        for (int j = 0; j < 3; j++) {
+            assert_true(corner[j] < mesh->vertex_count);
+            assert_true(corner[j] != corner[(j + 1) % 3]);
+        }
+    }
+}
+
+void mesh_check_survives(file_bytes file) {
+    mesh_file mesh = {0};
+    io_error error = {""};
+    if (mesh_check_read(file, &mesh, &error)) {
+        check_in_range(&mesh);
+        mesh_file_free(&mesh);
+    } else {
+        assert_true(strstr(error.text, file.name) != NULL && strpbrk(error.text, "\r\n") == NULL);
+        assert_null(mesh.positions);
+    }
+}
+
+void mesh_check_damage(file_bytes file) {
+    char *bytes = malloc(file.size + 1);
+    assert_non_null(bytes);
+    for (size_t i = 0; i < file.size; i++) {
+        memcpy(bytes, file.bytes, file.size);
+        mesh_check_survives((file_bytes){file.name, bytes, i});
+        for (int bit = 0; bit < 8; bit++) {
+            bytes[i] = (char)(bytes[i] ^ 1 << bit);
+            mesh_check_survives((file_bytes){file.name, bytes, file.size});
+            bytes[i] = (char)(bytes[i] ^ 1 << bit);
+        }
+        memmove(bytes + i + 1, bytes + i, file.size - i);
+        mesh_check_survives((file_bytes){file.name, bytes, file.size + 1});
+        memmove(bytes + i, bytes + i + 2, file.size - i - 1);
+        mesh_check_survives((file_bytes){file.name, bytes, file.size - 1});
+    }
+    free(bytes);
+}

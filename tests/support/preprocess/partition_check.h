@@ -1,0 +1,25 @@
+/* What holds for every partition, and bodies to partition; used inside cmocka tests. */
+#pragma once
+
+#include "src/mesh/partition.h"
+#include "tests/support/preprocess/region_check.h"
+
+/* Each vertex with a triangle is in one cell of a part that has most of its triangles; cells are not empty,
+ * are numbered part by part and connected; all lists agree. */
+void check_partition(const cscd_partition *partition);
+
+/* A partition that has passed the check; the test fails where it cannot be made. */
+cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                             const cscd_partition_options *options);
+
+/* Bodies of about 600 triangles beside each other as the components of one mesh, scaled; and its partition.
+ */
+typedef struct row {
+    body b;
+    cscd_mesh *mesh;
+    cscd_partition *partition;
+} row;
+
+row row_of(uint32_t count, const body_kind *kinds, const double *scales,
+           const cscd_partition_options *options);
+void row_free(row *r);

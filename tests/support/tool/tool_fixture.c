@@ -1,0 +1,285 @@
+/* Recordings that the tests of the tool replay: meshes with frames, and the files that hold them. */
+#include "tests/support/tool/tool_fixture.h"
+
+#include "src/io/mesh_file.h"
+#include "src/io/point_cache_write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static void require(bool done, const char *what) {
+    if (done) return;
+    fprintf(stderr, "test fixture: %s\n", what);
+    abort();
+}
+
+static recorded make(uint32_t vertex_count, uint32_t triangle_count, uint32_t frame_count) {
+    recorded r = {vertex_count, triangle_count, frame_count, NULL, NULL};
+    r.triangles = calloc((size_t)triangle_count * 3, sizeof *r.triangles);
+    r.frames = calloc((size_t)frame_count * vertex_count * 3, sizeof *r.frames);
+    require(r.triangles != NULL && r.frames != NULL, "out of memory");
+    return r;
+}
+
+void recorded_free(recorded *r) {
+    free(r->triangles);
+    free(r->frames);
+    *r = (recorded){0};
+}
+
+static double *at(const recorded *r, uint32_t frame, uint32_t vertex) {
+    return r->frames + ((size_t)frame * r->vertex_count + vertex) * 3;
+}
+
+const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vertex) {
+    return at(r, frame, vertex);
+}
+
+/* Volatile: gcc 12 drops neighbouring (double)(float) conversions where it joins them into vectors. */
+static double to_float32(double x) {
+    volatile float rounded = (float)x;
+    return (double)rounded;
+}
+
+static void put(const recorded *r, uint32_t frame, uint32_t vertex, double x, double y, double z) {
+    double *p = at(r, frame, vertex);
+    p[0] = to_float32(x);
+    p[1] = to_float32(y);
+    p[2] = to_float32(z);
+}
+
+/* The four outward triangles of a tetrahedron whose first three vertices are counter-clockwise from outside.
+ */
+static void add_tetrahedron(const recorded *r, uint32_t triangle, const uint32_t v[4]) {
+    static const int corners[12] = {0, 1, 2, 1, 0, 3, 2, 1, 3, 0, 2, 3};
+    for (int i = 0; i < 12; i++) r->triangles[(size_t)triangle * 3 + (size_t)i] = v[corners[i]];
+}
+
+recorded recorded_tetrahedra(uint32_t frame_count) {
+    static const uint32_t hit[4] = {0, 1, 2, 3}, flying[4] = {5, 6, 7, 4};
+    recorded r = make(8, 8, frame_count);
+    add_tetrahedron(&r, 0, hit);
+    add_tetrahedron(&r, 4, flying);
+    for (uint32_t k = 0; k < frame_count; k++) {
+        double x = 3.5 - k;
+        put(&r, k, 0, 0, 0, 0);
+        put(&r, k, 1, 0, 4, 0);
+        put(&r, k, 2, 0, 0, 4);
+        put(&r, k, 3, -4, 0, 0);
+        put(&r, k, 4, x, 1, 1);
+        put(&r, k, 5, x + 4, 1.5, 1);
+        put(&r, k, 6, x + 4, 0.5, 1.5);
+        put(&r, k, 7, x + 4, 0.5, 0.5);
+    }
+    return r;
+}
+
+/* A grid of quads, each two triangles. closed: its ends are joined both ways. */
+static void add_grid(const recorded *r, uint32_t columns, uint32_t rows, bool closed) {
+    uint32_t *t = r->triangles, across = closed ? columns : columns + 1, along = closed ? rows : rows + 1;
+    for (uint32_t j = 0; j < rows; j++) {
+        for (uint32_t i = 0; i < columns; i++, t += 6) {
+            uint32_t a = j * across + i, b = j * across + (i + 1) % across;
+            uint32_t c = (j + 1) % along * across + (i + 1) % across, d = (j + 1) % along * across + i;
+            memcpy(t, (uint32_t[6]){a, b, c, a, c, d}, 6 * sizeof *t);
+        }
+    }
+}
+
+/* The strip bends in its middle fifth: s is the length along it from there, w the place across. */
+static void put_folded(const recorded *r, uint32_t frame, uint32_t vertex, double s, double w, double angle) {
+    const double half = 1.0;
+    double radius = 2.0 * half / angle, turned = angle * fmin(1.0, fmax(0.0, (s + half) / (2.0 * half)));
+    double before = fmin(0.0, s + half), after = fmax(0.0, s - half);
+    double wave = 0.05 * sin(1.7 * s + 2.3 * w) + 0.03 * cos(3.1 * w - 0.9 * s);
+    double x = before + radius * sin(turned) + after * cos(turned) - wave * sin(turned);
+    double z = radius * (1.0 - cos(turned)) + after * sin(turned) + wave * cos(turned);
+    put(r, frame, vertex, x, w + 0.04 * after, z);
+}
+
+recorded recorded_fold(uint32_t columns, uint32_t rows, uint32_t frame_count) {
+    recorded r = make((columns + 1) * (rows + 1), columns * rows * 2, frame_count);
+    add_grid(&r, columns, rows, false);
+    for (uint32_t k = 0; k < frame_count; k++) {
+        double angle = 0.1 + (200.0 / 180.0 * pi - 0.1) * (frame_count > 1 ? k / (frame_count - 1.0) : 0.0);
+        for (uint32_t v = 0; v < r.vertex_count; v++) {
+            double s = 10.0 * (v % (columns + 1)) / columns - 5.0, w = 4.0 * (v / (columns + 1)) / rows;
+            put_folded(&r, k, v, s, w, angle);
+        }
+    }
+    return r;
+}
+
+/* Corner c of a cube (bits x, y, z), turned generically about its centre. */
+static void cube_corner(uint32_t c, double out[3]) {
+    double p[3] = {c & 1 ? 1.0 : -1.0, c & 2 ? 1.0 : -1.0, c & 4 ? 1.0 : -1.0};
+    static const double angles[3] = {0.71, 0.43, 0.29};
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double x = p[i], y = p[j];
+        p[i] = cos(angles[k]) * x - sin(angles[k]) * y;
+        p[j] = sin(angles[k]) * x + cos(angles[k]) * y;
+    }
+    memcpy(out, p, sizeof p);
+}
+
+/* Corners of each side of a cube, counter-clockwise from outside. */
+static const uint32_t cube_sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+
+recorded recorded_cube(bool split) {
+    uint32_t corners = split ? 24 : 8;
+    recorded r = make(corners + 4, 16, 3);
+    for (uint32_t side = 0; side < 6; side++) {
+        uint32_t v[4];
+        for (uint32_t i = 0; i < 4; i++) v[i] = split ? side * 4 + i : cube_sides[side][i];
+        memcpy(r.triangles + (size_t)side * 6, (uint32_t[6]){v[0], v[1], v[2], v[0], v[2], v[3]},
+               6 * sizeof *v);
+    }
+    add_tetrahedron(&r, 12, (uint32_t[4]){corners, corners + 1, corners + 2, corners + 3});
+    for (uint32_t k = 0; k < 3; k++) {
+        for (uint32_t v = 0; v < corners; v++) {
+            double p[3];
+            cube_corner(split ? cube_sides[v / 4][v % 4] : v, p);
+            put(&r, k, v, p[0] - 4.0 + 2.1 * k, p[1] + 0.1, p[2] - 0.2);
+        }
+        put(&r, k, corners, 1.1, -3, -2);
+        put(&r, k, corners + 1, 0.8, 3, -2);
+        put(&r, k, corners + 2, 1, 0.3, 3);
+        put(&r, k, corners + 3, -2, 0.5, 0.2);
+    }
+    return r;
+}
+
+recorded recorded_bow_tie(void) {
+    recorded r = make(7, 8, 1);
+    add_tetrahedron(&r, 0, (uint32_t[4]){1, 2, 3, 0});
+    add_tetrahedron(&r, 4, (uint32_t[4]){6, 5, 4, 0});
+    for (uint32_t v = 1; v < 7; v++) {
+        double x = v < 4 ? 2.0 : -2.0, turn = 2.0 * pi * (v % 3) / 3.0;
+        put(&r, 0, v, x, cos(turn), sin(turn));
+    }
+    return r;
+}
+
+recorded recorded_torus(uint32_t rings, uint32_t segments) {
+    recorded r = make(rings * segments, rings * segments * 2, 1);
+    add_grid(&r, segments, rings, true);
+    for (uint32_t v = 0; v < r.vertex_count; v++) {
+        double u = 2.0 * pi * (v % segments) / segments, w = 2.0 * pi * (v / segments) / rings;
+        put(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), sin(u));
+    }
+    return r;
+}
+
+/* The tips are the last two vertices. */
+static void add_spindle(const recorded *r, uint32_t rings, uint32_t segments) {
+    uint32_t *t = r->triangles, first = rings * segments, last = first + 1;
+    for (uint32_t i = 0; i < segments; i++) {
+        uint32_t next = (i + 1) % segments, end = (rings - 1) * segments;
+        memcpy(t, (uint32_t[6]){first, next, i, last, end + i, end + next}, 6 * sizeof *t);
+        t += 6;
+        for (uint32_t j = 0; j + 1 < rings; j++, t += 6) {
+            uint32_t a = j * segments + i, b = j * segments + next;
+            memcpy(t, (uint32_t[6]){a, b, a + segments, b, b + segments, a + segments}, 6 * sizeof *t);
+        }
+    }
+}
+
+/* s runs along the spindle from -6 to 6, w around it; bent by the angle in the xy plane, and a little out of
+ * it. */
+static void put_spindle(const recorded *r, uint32_t frame, uint32_t vertex, double s, double w,
+                        double angle) {
+    double radius = 12.0 / angle, turned = s / radius, thick = sqrt(fmax(0.0, 1.0 - s * s / 36.0));
+    double from_centre = radius + thick * cos(w);
+    put(r, frame, vertex, from_centre * sin(turned), from_centre * cos(turned) - radius,
+        thick * sin(w) + 0.03 * s + 0.01 * sin(3.0 * s));
+}
+
+recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count) {
+    recorded r = make(rings * segments + 2, rings * segments * 2, frame_count);
+    add_spindle(&r, rings, segments);
+    for (uint32_t k = 0; k < frame_count; k++) {
+        double angle = (30.0 + 370.0 * k / (frame_count - 1.0)) / 180.0 * pi;
+        for (uint32_t v = 0; v < rings * segments; v++) {
+            double s = 12.0 * (v / segments + 1) / (rings + 1.0) - 6.0;
+            put_spindle(&r, k, v, s, 2.0 * pi * (v % segments + 0.3 * (v / segments)) / segments, angle);
+        }
+        put_spindle(&r, k, rings * segments, -6.0, 0.0, angle);
+        put_spindle(&r, k, rings * segments + 1, 6.0, 0.0, angle);
+    }
+    return r;
+}
+
+static void write_ply(const char *path, const mesh_file *mesh) {
+    FILE *file = fopen(path, "w");
+    require(file != NULL, path);
+    fprintf(file, "ply\nformat ascii 1.0\nelement vertex %u\n", mesh->vertex_count);
+    fprintf(file, "property double x\nproperty double y\nproperty double z\nelement face %u\n",
+            mesh->triangle_count);
+    fprintf(file, "property list uchar int vertex_indices\nend_header\n");
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->positions + (size_t)v * 3;
+        fprintf(file, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *v = mesh->triangles + (size_t)t * 3;
+        fprintf(file, "3 %u %u %u\n", v[0], v[1], v[2]);
+    }
+    require(fclose(file) == 0, path);
+}
+
+temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const recorded *r,
+                              uint32_t frame) {
+    temp_path path = temp_file_path(folder, name);
+    mesh_file mesh = {r->vertex_count, r->triangle_count, at(r, frame, 0), r->triangles};
+    io_error error = {""};
+    if (strlen(name) > 4 && strcmp(name + strlen(name) - 4, ".ply") == 0)
+        write_ply(path.text, &mesh);
+    else
+        require(mesh_file_write_obj(path.text, &mesh, &error), error.text);
+    return path;
+}
+
+/* 0 1 2 3 2 1 0 1 ... for four frames */
+static uint32_t cycle_frame(uint32_t k, uint32_t frame_count) {
+    if (frame_count == 1) return 0;
+    uint32_t period = 2 * (frame_count - 1), place = k % period;
+    return place < frame_count ? place : period - place;
+}
+
+temp_path recorded_write_cycle(const temp_folder *folder, const char *name, const recorded *r,
+                               uint32_t frame_count) {
+    temp_path path = temp_file_path(folder, name);
+    point_cache_writer *writer = NULL;
+    io_error error = {""};
+    require(point_cache_writer_open(path.text, r->vertex_count, frame_count, &writer, &error), error.text);
+    for (uint32_t k = 0; k < frame_count; k++) {
+        uint32_t frame = cycle_frame(k, r->frame_count);
+        require(point_cache_writer_write(writer, at(r, frame, 0), &error), error.text);
+    }
+    require(point_cache_writer_close(writer, &error), error.text);
+    return path;
+}
+
+temp_path recorded_write_cache(const temp_folder *folder, const char *name, const recorded *r) {
+    return recorded_write_cycle(folder, name, r, r->frame_count);
+}
+
+/* The pattern's %04d, or the like, is replaced here: the compiler could not check a format from outside. */
+temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r) {
+    const char *conversion = strchr(pattern, '%');
+    require(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");
+    int digits = atoi(conversion + 1);
+    for (uint32_t k = 0; k < r->frame_count; k++) {
+        char name[128];
+        snprintf(name, sizeof name, "%.*s%0*u%s", (int)(conversion - pattern), pattern, digits, k,
+                 strchr(conversion, 'd') + 1);
+        recorded_write_mesh(folder, name, r, k);
+    }
+    return temp_file_path(folder, pattern);
+}

@@ -1,0 +1,254 @@
+/* Methods, modes and starts of a replay: the same contacts, or the first ones, and what is said about that.
+ */
+#include "tests/support/tool/json_reader.h"
+#include "tests/support/tool/run_tool.h"
+#include "tests/support/tool/tool_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { FRAMES = 16 };
+
+static temp_folder folder;
+static temp_path model, cache, csv, summary;
+static size_t touching; /* the first interval with a contact */
+
+static int make_files(void **state) {
+    (void)state;
+    folder = temp_folder_make();
+    recorded spindle = recorded_spindle(24, 10, FRAMES);
+    model = recorded_write_mesh(&folder, "spindle.obj", &spindle, 0);
+    cache = recorded_write_cache(&folder, "spindle.pc2", &spindle);
+    csv = temp_file_path(&folder, "out.csv");
+    summary = temp_file_path(&folder, "out.json");
+    recorded_free(&spindle);
+    return 0;
+}
+
+static int remove_files(void **state) {
+    (void)state;
+    temp_folder_remove(&folder);
+    return 0;
+}
+
+/* The summary of a replay with more arguments. */
+static json_node *replay(const char *const *more) {
+    const char *arguments[24] = {"replay",     model.text, cache.text, "--quiet",
+                                 "--contacts", csv.text,   "--json",   summary.text};
+    for (int i = 0; more[i] != NULL; i++) arguments[8 + i] = more[i];
+    run_tool_expect(0, arguments);
+    return json_node_read_file(summary.text);
+}
+
+#define REPLAY(...) replay((const char *const[]){__VA_ARGS__, NULL})
+
+static const json_node *interval(const json_node *root, size_t k) {
+    return json_node_item(json_node_member(root, "intervals"), k);
+}
+
+/* The guarantee of the one component in interval k. */
+static void expect_guarantee(const json_node *root, size_t k, const char *mode, const char *reason) {
+    const json_node *list = json_node_member(interval(root, k), "guarantee");
+    assert_int_equal(list->count, 1);
+    assert_string_equal(json_node_string(json_node_item(list, 0), "mode"), mode);
+    if (strstr(json_node_string(json_node_item(list, 0), "reason"), reason) == NULL)
+        fail_msg("interval %zu: expected '%s' in '%s'", k, reason,
+                 json_node_string(json_node_item(list, 0), "reason"));
+}
+
+static size_t first_contact(const json_node *root) {
+    size_t k = 0;
+    while (json_node_member(interval(root, k), "earliest_toi")->kind == JSON_NULL) k++;
+    return k;
+}
+
+static void methods_agree_in_mode_all(void **state) {
+    (void)state;
+    static const char *const ways[][6] = {
+        {"--method", "charge"},
+        {"--method", "single", "--threads", "3"},
+        {"--method", "kmeans:4"},
+        {"--method", "brute"},
+        {"--method", "iccd", "--threads", "2"},
+        {"--method", "iccd", "--mode", "earliest", "--no-check"},
+        {"--method", "single", "--no-check"},
+        {"--method", "kmeans:7", "--start", "unknown"},
+        {"--start", "unknown", "--no-check"},
+    };
+    json_node *root = REPLAY("--method", "none");
+    touching = first_contact(root);
+    assert_true(touching > 5 && touching < FRAMES - 1);
+    json_node_free(root);
+    char *expected = read_whole_file(csv.text, NULL);
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        json_node_free(replay(ways[i]));
+        char *bytes = read_whole_file(csv.text, NULL);
+        assert_string_equal(bytes, expected);
+        free(bytes);
+    }
+    free(expected);
+}
+
+/* Nothing is lost before the first contact, and that one is there at its time. */
+static void earliest_finds_the_first_contact(void **state) {
+    (void)state;
+    static const char *const methods[] = {"charge", "single", "kmeans:4"};
+    json_node *all = REPLAY("--method", "none");
+    double toi = json_node_number(interval(all, touching), "earliest_toi");
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        json_node *root = REPLAY("--method", methods[i], "--mode", "earliest");
+        const json_node *total = json_node_member(root, "summary");
+        assert_string_equal(json_node_string(total, "mode"), "earliest");
+        assert_int_equal(first_contact(root), touching);
+        assert_true(json_node_number(interval(root, touching), "earliest_toi") == toi);
+        assert_true(json_node_number(total, "intervals_complete") == FRAMES - 2);
+        assert_true(json_node_number(total, "contradictions") == 0);
+        for (size_t k = 0; k < touching; k++) expect_guarantee(root, k, "all", "no contact");
+        expect_guarantee(root, touching, "earliest", "later contacts may be missing");
+        for (size_t k = touching + 1; k < FRAMES - 1; k++) expect_guarantee(root, k, "all", "at the start");
+        json_node_free(root);
+    }
+    json_node_free(all);
+}
+
+static void counters_tell_that_culling_is_on(void **state) {
+    (void)state;
+    json_node *none = REPLAY("--method", "none"),
+              *single = REPLAY("--method", "single", "--mode", "earliest");
+    double pairs[2] = {0, 0};
+    for (size_t k = 0; k < touching; k++) {
+        const json_node *without = interval(none, k), *with = interval(single, k);
+        assert_true(json_node_number(without, "plus") == 0 && json_node_number(without, "minus") == 0);
+        assert_true(json_node_number(with, "plus") > 240);
+        assert_true(json_node_number(with, "plus") + json_node_number(with, "minus") <= 480);
+        assert_true(json_node_number(json_node_member(with, "ms"), "orientation") > 0);
+        pairs[0] += json_node_number(without, "pcp");
+        pairs[1] += json_node_number(with, "pcp");
+        expect_guarantee(none, k, "all", "");
+    }
+    assert_true(pairs[1] * 4 < pairs[0]);
+    assert_true(json_node_number(json_node_member(json_node_member(single, "summary"), "plus"), "mean") > 0);
+    json_node_free(none);
+    json_node_free(single);
+}
+
+/* The frames are checked anyway; without that, the detector proves its first start and needs no more. */
+static void starts_are_proven_once(void **state) {
+    (void)state;
+    char before[16];
+    snprintf(before, sizeof before, "0:%zu", touching);
+    static const struct {
+        const char *start, *check;
+        double static_checks;
+        const char *reason;
+    } cases[] = {{"prove", "--quiet", 0, "no contact"},
+                 {"prove", "--no-check", 1, "no contact"},
+                 {"vouched", "--no-check", 0, "no contact"},
+                 {"unknown", "--quiet", 0, "no contact"},
+                 {"unknown", "--no-check", 0, "not known"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        json_node *root = REPLAY("--method", "single", "--mode", "earliest", "--frames", before, "--start",
+                                 cases[i].start, cases[i].check);
+        const json_node *total = json_node_member(root, "summary");
+        if (json_node_number(total, "static_checks") != cases[i].static_checks)
+            fail_msg("case %zu: %g static checks", i, json_node_number(total, "static_checks"));
+        for (size_t k = 0; k < touching; k++) expect_guarantee(root, k, "all", cases[i].reason);
+        json_node_free(root);
+    }
+}
+
+static int count_of(const char *text, const char *word) {
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, word)) != NULL; at++) count++;
+    return count;
+}
+
+static void tables_have_a_column_for_orientation(void **state) {
+    (void)state;
+    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "single", "--mode", "earliest");
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "mode earliest: in 1 of 15 intervals later contacts"));
+    assert_non_null(strstr(run.out, "\nsingle "));
+    assert_int_equal(count_of(run.out, " X "), 2); /* the contour, in both rows */
+    tool_run_free(&run);
+    run = RUN_TOOL("replay", model.text, cache.text, "--method", "none");
+    assert_int_equal(count_of(run.out, " X "), 6);
+    assert_null(strstr(run.out, "may be missing"));
+    tool_run_free(&run);
+}
+
+/* It promises nothing, and what it loses is no news. */
+static void published_is_marked_as_such(void **state) {
+    (void)state;
+    tool_run run =
+        RUN_TOOL("replay", model.text, cache.text, "--method", "published", "--json", summary.text);
+    assert_int_equal(run.code, 0);
+    assert_string_equal(run.error, "");
+    assert_non_null(strstr(run.out, "method published: in "));
+    assert_non_null(strstr(run.out, "\npublished "));
+    json_node *root = json_node_read_file(summary.text);
+    assert_string_equal(json_node_string(json_node_member(root, "summary"), "method"), "published");
+    json_node_free(root);
+    tool_run_free(&run);
+}
+
+/* Contours instead of orientations; promises all, needs no start and no plan. */
+static void iccd_has_a_column_for_contours(void **state) {
+    (void)state;
+    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "iccd", "--json", summary.text);
+    assert_int_equal(run.code, 0);
+    assert_non_null(strstr(run.out, "\niccd "));
+    assert_non_null(strstr(run.out, " contour "));
+    assert_non_null(strstr(run.out, "plan: none"));
+    assert_null(strstr(run.out, "may be missing"));
+    assert_int_equal(count_of(run.out, " X "), 4); /* orientation and proof, in both rows */
+    tool_run_free(&run);
+    json_node *root = json_node_read_file(summary.text), *none = REPLAY("--method", "none");
+    const json_node *total = json_node_member(root, "summary");
+    assert_string_equal(json_node_string(total, "method"), "iccd");
+    assert_true(json_node_number(total, "static_checks") == 0);
+    assert_true(json_node_number(total, "intervals_complete") == FRAMES - 1);
+    assert_true(json_node_number(json_node_member(total, "contour_ms"), "mean") > 0);
+    for (size_t k = 0; k < FRAMES - 1; k++) {
+        expect_guarantee(root, k, "all", "patches");
+        assert_true(json_node_number(json_node_member(interval(root, k), "ms"), "contour") > 0);
+        assert_true(json_node_number(json_node_member(interval(none, k), "ms"), "contour") == 0);
+        assert_true(json_node_number(interval(root, k), "pcp") < json_node_number(interval(none, k), "pcp"));
+    }
+    json_node_free(root);
+    json_node_free(none);
+}
+
+static void iccd_as_published_is_marked_as_such(void **state) {
+    (void)state;
+    tool_run run =
+        RUN_TOOL("replay", model.text, cache.text, "--method", "iccd-published", "--json", summary.text);
+    assert_int_equal(run.code, 0);
+    assert_string_equal(run.error, "");
+    assert_non_null(strstr(run.out, "method iccd-published: in 15 of 15 intervals contacts"));
+    assert_non_null(strstr(run.out, "\niccd-published "));
+    tool_run_free(&run);
+    json_node *root = json_node_read_file(summary.text);
+    for (size_t k = 0; k < FRAMES - 1; k++) expect_guarantee(root, k, "earliest", "published");
+    json_node_free(root);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(methods_agree_in_mode_all),
+        cmocka_unit_test(earliest_finds_the_first_contact),
+        cmocka_unit_test(counters_tell_that_culling_is_on),
+        cmocka_unit_test(starts_are_proven_once),
+        cmocka_unit_test(tables_have_a_column_for_orientation),
+        cmocka_unit_test(published_is_marked_as_such),
+        cmocka_unit_test(iccd_has_a_column_for_contours),
+        cmocka_unit_test(iccd_as_published_is_marked_as_such),
+    };
+    return cmocka_run_group_tests_name("tool_modes", tests, make_files, remove_files);
+}
