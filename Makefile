@@ -97,7 +97,7 @@ MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -152,6 +152,10 @@ gallery: models
 	@.ci/packages browser
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
+
+# All programs, and all tests, without running them.
+programs: tool library $(MODELS) $(BENCHMARKS)
+test-programs: $(TESTS)
 
 test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)

@@ -1,4 +1,4 @@
-/* Nanoseconds per pair of triangles for the sieve, and per pair of features for signs and roots: on each
+/* Nanoseconds per pair of triangles for the feature_filter, and per pair of features for signs and roots: on each
  * level of vector instructions, and one by one. */
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/detector.h"
@@ -13,7 +13,8 @@ static const char help[] =
     "usage: narrow_phase START END\n"
     "\n"
     "Records the pairs of triangles of the mesh START (OBJ, PLY, OFF) whose volumes overlap on the way to\n"
-    "END, the same mesh at other positions, and all pairs of features that their sieve leaves, and times\n"
+    "END, the same mesh at other positions, and all pairs of features that their feature_filter leaves, and "
+    "times\n"
     "the narrow phase on them (one thread's processor time, least of 5).\n";
 
 /* The features of so many pairs of triangles never fill the queue. */
@@ -78,7 +79,7 @@ static uint32_t triangle_chunk(const recording *r, size_t i) {
 static bool record_pairs(recording *r) {
     traversal *t = &r->detector->traversal;
     bool good = true, more = true;
-    traversal_begin(t, &r->detector->forest, TRAVERSAL_KEPT);
+    traversal_begin(t, &r->detector->bvh, TRAVERSAL_KEPT);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
         for (uint32_t i = 0; good && i < t->lane_count; i++)
@@ -102,12 +103,12 @@ static bool open_recording(recording *r, io_error *error) {
         cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
         upkeep_move(r->detector, r->start.positions, r->end.positions, 0.0) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
-    forest_move(&r->detector->forest, r->start.positions, r->end.positions, 0.0);
+    bvh_refit(&r->detector->bvh, r->start.positions, r->end.positions, 0.0);
     r->lane = &r->detector->contact_lanes[0];
     r->interval = (swept_interval){.mesh = r->mesh,
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
-                                   .forest = &r->detector->forest,
+                                   .bvh = &r->detector->bvh,
                                    .strangers = true,
                                    .representatives = &r->detector->representatives,
                                    .limit = r->detector->limit};
@@ -145,8 +146,8 @@ static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
 
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
-/* Representatives, sieve, queue; what is in the queue then is dropped. */
-static void sieve(recording *r, cscd_contact_kind kind) {
+/* Representatives, feature_filter, queue; what is in the queue then is dropped. */
+static void feature_filter(recording *r, cscd_contact_kind kind) {
     (void)kind;
     for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
         narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
@@ -216,17 +217,17 @@ static double percent(uint64_t part, size_t whole) {
 
 static void use_level(recording *r, cscd_simd level) {
     r->context->simd = level;
-    r->detector->forest.kernels = kernels_of(r->context);
+    r->detector->bvh.kernels = kernels_of(r->context);
 }
 
 static void print_triangles(recording *r) {
     cscd_simd best = r->context->simd;
     size_t pairs = r->triangles.count, left = r->of_kind[0].count + r->of_kind[1].count;
-    puts("ns per pair of triangles      pairs    sieve");
+    puts("ns per pair of triangles      pairs    feature_filter");
     for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
         use_level(r, (cscd_simd)level);
         printf("    %-10s %20zu %8.1f\n", cscd_simd_name((cscd_simd)level), pairs,
-               time_pairs(r, CSCD_CONTACT_VF, pairs, sieve));
+               time_pairs(r, CSCD_CONTACT_VF, pairs, feature_filter));
     }
     printf("    leaves %.2f of 15 pairs of features\n\n", (double)left / (double)(pairs > 0 ? pairs : 1));
 }

@@ -40,7 +40,7 @@ static void print_summary(const ipc_solver *p, const motion *m) {
     printf(
         "  motion: at most %.1f edge lengths a frame; softness: at most %.1f %% of the diagonal from rigid\n",
         m->largest_motion, 100.0 * m->largest_residual);
-    printf("  %.1f s; in cscd %.2f s (%.0f %%): lines %.2f, certified steps %.2f, nearness %.2f\n",
+    printf("  %.1f s; in cscd %.2f s (%.0f %%): lines %.2f, certified steps %.2f, proximity %.2f\n",
            1e-3 * s->total_ms, 1e-3 * s->detect_ms, 100.0 * s->detect_ms / s->total_ms, 1e-3 * s->begin_ms,
            1e-3 * s->certify_ms, 1e-3 * s->near_ms);
 }

@@ -49,7 +49,7 @@ typedef struct cscd_detector_options {
     cscd_start start;     /* default PROVE */
     cscd_volume volume;   /* default BOX */
 
-    /* Pairs to leave out: a contact or nearness is not reported, and a self-intersection not listed, when
+    /* Pairs to leave out: a contact or proximity is not reported, and a self-intersection not listed, when
      * this says true for two triangles a < b of which one contains (or is) the one feature and the other the
      * other. Called on the calling thread, for pairs in contact only. Default NULL: nothing is left out. */
     bool (*ignore)(void *user, uint32_t a, uint32_t b);

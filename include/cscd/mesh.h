@@ -25,7 +25,7 @@ CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 
 typedef struct cscd_object_desc {
     cscd_mesh_desc mesh; /* triangles name the object's own vertices, from 0 on */
-    bool obstacle;       /* moves as the caller says: contacts, crossings and nearness of its features with
+    bool obstacle;       /* moves as the caller says: contacts, crossings and proximity of its features with
                           * each other, and with other obstacles, are not looked for */
 } cscd_object_desc;
 

@@ -23,7 +23,7 @@ typedef struct cscd_stencil {
 CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
                                         double u, double v);
 
-/* ---- nearness at one moment -------------------------------------------------------------------------- */
+/* ---- proximity at one moment -------------------------------------------------------------------------- */
 
 /* Two features without a common vertex, and their nearest points, named by u and v as in cscd_contact. */
 typedef struct cscd_proximity {

@@ -10,14 +10,14 @@
 #include "src/mesh/mesh.h"
 
 /* 8^10 leaves hold more triangles than there may be, and 8^11 more parts. */
-enum { PART_LEVEL_MAX = 10, FOREST_LEVEL_MAX = PART_LEVEL_MAX + 11 };
-enum { BOX_AXES = 3, KDOP_AXES = 7, FOREST_LANES = 8, FOREST_ALL_LANES = 255 };
+enum { PART_LEVEL_MAX = 10, BVH_LEVEL_MAX = PART_LEVEL_MAX + 11 };
+enum { BOX_AXES = 3, KDOP_AXES = 7, BVH_LANES = 8, BVH_ALL_LANES = 255 };
 
 /* Corners are records; empty lanes, at the end of a part's last leaf, repeat the first triangle's. */
-typedef struct forest_leaf {
-    uint32_t corners[3][FOREST_LANES];
-    uint32_t triangles[FOREST_LANES]; /* UINT32_MAX: empty */
-} forest_leaf;
+typedef struct bvh_leaf {
+    uint32_t corners[3][BVH_LANES];
+    uint32_t triangles[BVH_LANES]; /* UINT32_MAX: empty */
+} bvh_leaf;
 
 /* Sets of lanes: of a leaf's triangles, or of a block's children, that hold triangles at all, triangles that
  * are all PLUS, all MINUS; fresh: that (may) have lost their flag since the pass before. */
@@ -26,8 +26,8 @@ typedef struct lane_flags {
 } lane_flags;
 
 /* Children of block i are first_children[i] and those after it, of the level below; on level 0 leaves, on the
- * forest's part level parts. */
-typedef struct forest_level {
+ * BVH's part level parts. */
+typedef struct bvh_level {
     uint32_t block_count;
     uint32_t *first_children;
     float *bounds; /* per block and axis 8 lows and 8 highs; no less than none for empty lanes */
@@ -35,11 +35,11 @@ typedef struct forest_level {
     uint64_t *within; /* byte i of a block: its children that are to be compared with child i; NULL: all */
     uint8_t *passive; /* per block: its children that hold obstacles only, which are not compared with each
                        * other; NULL: none, as below the part level */
-} forest_level;
+} bvh_level;
 
 /* A region, or a component. Its frame takes origin[0] from positions at the start and origin[1] at the end,
- * and multiplies by the forest's scale. */
-typedef struct forest_part {
+ * and multiplies by the BVH's scale. */
+typedef struct bvh_tree {
     uint32_t region;
     bool skip_adjacent; /* pairs of its triangles that share a vertex are not looked for */
     uint32_t first_leaf, leaf_count, first_record, record_count;
@@ -49,7 +49,7 @@ typedef struct forest_part {
     float slack[2];        /* bounds are rounded outward by so much along axes, and along diagonals */
     float detector[2][3];  /* its detector point in its frame */
     double weighted[2][3]; /* the mean of its records by their weights, at the start and at the end */
-} forest_part;
+} bvh_tree;
 
 /* Records begin to end - 1 of a part: what one thread copies in at a time. */
 typedef struct record_chunk {
@@ -57,13 +57,13 @@ typedef struct record_chunk {
     copied copied;
 } record_chunk;
 
-typedef struct forest {
+typedef struct bvh {
     const cscd_mesh *mesh;
     const kernels *kernels;
     int axis_count; /* of the volumes of blocks' children: BOX_AXES or KDOP_AXES */
     uint32_t part_count, leaf_count, record_count;
-    forest_part *parts;
-    forest_leaf *leaves;
+    bvh_tree *parts;
+    bvh_leaf *leaves;
     lane_flags *leaf_flags; /* of triangles */
     lane_flags *flags_before;
     uint64_t *leaf_within;              /* as in a level, of triangles; NULL: all */
@@ -73,62 +73,62 @@ typedef struct forest {
     record_chunk *chunks;
     uint32_t chunk_count;
     float (*records)[8]; /* x y z . at the start, x y z . at the end, scaled, in the part's frame */
-    forest_level levels[FOREST_LEVEL_MAX];
+    bvh_level levels[BVH_LEVEL_MAX];
     int part_level, level_count; /* on the part level children are parts, and the last level has one block */
     double scale;
     uint32_t *slots; /* where a triangle is: 8 * leaf + lane */
-} forest;
+} bvh;
 
 /* Triangles in regions 0 to count - 1, none of them empty; weights of triangles in their region's detector
  * point, which add up to 1 per region. */
-typedef struct forest_regions {
+typedef struct bvh_regions {
     const uint32_t *of_triangle;
     const double *triangle_weights;
     uint32_t count;
-} forest_regions;
+} bvh_regions;
 
-/* Orders triangles and shapes the trees by positions; bounds are left to forest_update. *out is untouched
+/* Orders triangles and shapes the trees by positions. *out is untouched
  * unless CSCD_OK. */
-cscd_status forest_build(const cscd_mesh *mesh, forest_regions regions, const double *positions,
-                         int axis_count, forest *out);
-void forest_free(forest *f);
+cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
+                      bvh *out);
+void bvh_free(bvh *f);
 
-/* Fills in the levels' passive children; a step of forest_build. False: no memory. */
-bool forest_mark_obstacles(forest *f);
+/* Fills in the levels' passive children; a step of bvh_build. False: no memory. */
+bool bvh_mark_obstacles(bvh *f);
 
-static inline uint32_t forest_triangle(const forest *f, uint32_t slot) {
-    return f->leaves[slot / FOREST_LANES].triangles[slot % FOREST_LANES];
+static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
+    return f->leaves[slot / BVH_LANES].triangles[slot % BVH_LANES];
 }
 
 /* Moves frames, records and bounds on to the interval from x0 to x1; the same array twice: to a moment. All
  * flags are cleared and no pair is hidden. distance: volumes are widened so that those of what comes within
  * it overlap. */
-void forest_move(forest *f, const double *x0, const double *x1, double distance);
+void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
 
 /* No pair is hidden by `within`, where there is such a thing. */
-void forest_show_all(forest *f);
+void bvh_show_all(bvh *f);
 
 /* Whose pairs of adjacent triangles are left out: per component; NULL: nobody's. */
-void forest_skip_adjacent(forest *f, const bool *components);
+void bvh_skip_adjacent(bvh *f, const bool *components);
 
 /* Which orientations count, and whence triangles are seen. */
-typedef struct forest_view {
+typedef struct orientation_query {
     const bool *culled;                  /* per component: do its triangles' orientations count? */
     const uint8_t *states;               /* triangle_state of each: only of clean ones; NULL: of all */
     const double (*detector_offsets)[3]; /* per region: from the weighted mean to the detector point */
     bool still;                          /* detector points stay where they are at the start */
-} forest_view;
+} orientation_query;
 
 /* Where the detector points are at both ends of the interval moved to last, per region, up to rounding. */
-void forest_detector_points(const forest *f, const forest_view *view, double (*points)[2][3]);
+void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]);
 
 /* Detector points and flags of the interval moved to last; orientations: per triangle of the mesh, written
  * where they count. */
-void forest_orient(forest *f, const forest_view *view, uint8_t *orientations);
+void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations);
 
 /* Flags of leaves and blocks anew, from orientations per triangle before and now: fresh is what has lost
  * its. */
-void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now);
+void bvh_mark_fresh(bvh *f, const uint8_t *before, const uint8_t *now);
 
 /* Fresh are these triangles, and there are no other flags. */
-void forest_mark_suspects(forest *f, const bool *suspects);
+void bvh_mark_suspects(bvh *f, const bool *suspects);

@@ -15,7 +15,7 @@ typedef struct ordering {
 typedef struct builder {
     cscd_context *context;
     const cscd_mesh *mesh;
-    forest_regions given;
+    bvh_regions given;
     ordering triangles, regions;
     uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
     uint32_t *record_of;      /* per vertex, in the part at hand if not below its first */
@@ -133,23 +133,22 @@ static void list_triangles(builder *b) {
 /* ---- parts, leaves, records ---------------------------------------------------------------------------- */
 
 static uint32_t rounded_up(uint32_t count) {
-    return (count + FOREST_LANES - 1) / FOREST_LANES * FOREST_LANES;
+    return (count + BVH_LANES - 1) / BVH_LANES * BVH_LANES;
 }
 
-static uint32_t record_of(builder *b, forest *f, const forest_part *p, uint32_t vertex) {
+static uint32_t record_of(builder *b, bvh *f, const bvh_tree *p, uint32_t vertex) {
     uint32_t known = b->record_of[vertex];
     if (known != UINT32_MAX && known >= p->first_record) return known;
     f->record_vertices[f->record_count] = vertex;
     return b->record_of[vertex] = f->record_count++;
 }
 
-static void fill_leaf(builder *b, forest *f, const forest_part *p, const uint32_t *triangles,
-                      uint32_t count) {
+static void fill_leaf(builder *b, bvh *f, const bvh_tree *p, const uint32_t *triangles, uint32_t count) {
     uint32_t index = f->leaf_count++;
-    forest_leaf *out = &f->leaves[index];
+    bvh_leaf *out = &f->leaves[index];
     f->leaf_parts[index] = (uint32_t)(p - f->parts);
     f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
-    for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+    for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
         uint32_t t = triangles[lane < count ? lane : 0];
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
@@ -157,13 +156,13 @@ static void fill_leaf(builder *b, forest *f, const forest_part *p, const uint32_
             out->corners[i][lane] = record;
             if (lane < count) f->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
         }
-        if (lane < count) f->slots[t] = index * FOREST_LANES + lane;
+        if (lane < count) f->slots[t] = index * BVH_LANES + lane;
     }
 }
 
 /* Chunks of a part's records. */
-static void add_chunks(forest *f, uint32_t index) {
-    const forest_part *p = &f->parts[index];
+static void add_chunks(bvh *f, uint32_t index) {
+    const bvh_tree *p = &f->parts[index];
     uint32_t end = p->first_record + p->record_count;
     for (uint32_t i = p->first_record; i < end; i += CHUNK_RECORDS) {
         uint32_t stop = end - i < CHUNK_RECORDS ? end : i + CHUNK_RECORDS;
@@ -171,16 +170,16 @@ static void add_chunks(forest *f, uint32_t index) {
     }
 }
 
-static void fill_part(builder *b, forest *f, uint32_t index) {
-    forest_part *p = &f->parts[index];
+static void fill_part(builder *b, bvh *f, uint32_t index) {
+    bvh_tree *p = &f->parts[index];
     uint32_t region = b->regions.items[index];
     uint32_t begin = b->region_offsets[region], end = b->region_offsets[region + 1];
     order_run(&b->triangles, begin, end);
-    *p = (forest_part){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
-    for (uint32_t i = begin; i < end; i += FOREST_LANES)
-        fill_leaf(b, f, p, b->triangles.items + i, end - i < FOREST_LANES ? end - i : FOREST_LANES);
+    *p = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
+    for (uint32_t i = begin; i < end; i += BVH_LANES)
+        fill_leaf(b, f, p, b->triangles.items + i, end - i < BVH_LANES ? end - i : BVH_LANES);
     p->leaf_count = f->leaf_count - p->first_leaf;
-    while (f->record_count % FOREST_LANES != 0)
+    while (f->record_count % BVH_LANES != 0)
         f->record_vertices[f->record_count++] = f->record_vertices[p->first_record];
     p->record_count = f->record_count - p->first_record;
     add_chunks(f, index);
@@ -189,11 +188,11 @@ static void fill_part(builder *b, forest *f, uint32_t index) {
 /* ---- levels -------------------------------------------------------------------------------------------- */
 
 static uint32_t blocks_over(uint32_t children) {
-    return (children + FOREST_LANES - 1) / FOREST_LANES;
+    return (children + BVH_LANES - 1) / BVH_LANES;
 }
 
-static bool allocate_level(cscd_context *context, forest_level *level, uint32_t block_count, int axis_count) {
-    size_t floats = (size_t)axis_count * 2 * FOREST_LANES;
+static bool allocate_level(cscd_context *context, bvh_level *level, uint32_t block_count, int axis_count) {
+    size_t floats = (size_t)axis_count * 2 * BVH_LANES;
     level->block_count = block_count;
     level->first_children = context_allocate(context, block_count, sizeof *level->first_children);
     level->bounds = context_allocate(context, block_count * floats, sizeof *level->bounds);
@@ -201,9 +200,9 @@ static bool allocate_level(cscd_context *context, forest_level *level, uint32_t 
     return level->first_children != NULL && level->bounds != NULL && level->flags != NULL;
 }
 
-static uint32_t add_blocks(forest_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
-    for (uint32_t i = 0; i < child_count; i += FOREST_LANES, at++) {
-        uint32_t count = child_count - i < FOREST_LANES ? child_count - i : FOREST_LANES;
+static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
+    for (uint32_t i = 0; i < child_count; i += BVH_LANES, at++) {
+        uint32_t count = child_count - i < BVH_LANES ? child_count - i : BVH_LANES;
         level->first_children[at] = first_child + i;
         level->flags[at].used = (uint8_t)((1u << count) - 1);
     }
@@ -211,7 +210,7 @@ static uint32_t add_blocks(forest_level *level, uint32_t at, uint32_t first_chil
 }
 
 /* How many levels the largest part has, at least one. */
-static int height_of(const forest *f) {
+static int height_of(const bvh *f) {
     int height = 1;
     for (uint32_t p = 0; p < f->part_count; p++) {
         int own = 1;
@@ -222,7 +221,7 @@ static int height_of(const forest *f) {
 }
 
 /* Blocks of one level of all parts; counts: of each part's children there, and then of its blocks. */
-static bool add_part_level(forest *f, int level, uint32_t *counts) {
+static bool add_part_level(bvh *f, int level, uint32_t *counts) {
     uint32_t total = 0, at = 0, child = 0;
     for (uint32_t p = 0; p < f->part_count; p++) total += blocks_over(counts[p]);
     if (!allocate_level(f->mesh->context, &f->levels[level], total, f->axis_count)) return false;
@@ -236,7 +235,7 @@ static bool add_part_level(forest *f, int level, uint32_t *counts) {
     return true;
 }
 
-static bool build_levels(forest *f, uint32_t *counts) {
+static bool build_levels(bvh *f, uint32_t *counts) {
     uint32_t blocks = 0;
     f->part_level = f->level_count = height_of(f);
     for (uint32_t p = 0; p < f->part_count; p++) {
@@ -250,7 +249,7 @@ static bool build_levels(forest *f, uint32_t *counts) {
     }
     uint32_t children = f->part_count;
     do {
-        forest_level *level = &f->levels[f->level_count++];
+        bvh_level *level = &f->levels[f->level_count++];
         if (!allocate_level(f->mesh->context, level, blocks_over(children), f->axis_count)) return false;
         add_blocks(level, 0, 0, children);
         children = level->block_count;
@@ -293,17 +292,17 @@ static uint32_t most_records(const builder *b) {
         }
         sum += several;
     }
-    return (uint32_t)sum + b->given.count * FOREST_LANES;
+    return (uint32_t)sum + b->given.count * BVH_LANES;
 }
 
 static uint32_t all_leaves(const builder *b) {
     uint32_t sum = 0;
     for (uint32_t r = 0; r < b->given.count; r++)
-        sum += rounded_up(b->region_offsets[r + 1] - b->region_offsets[r]) / FOREST_LANES;
+        sum += rounded_up(b->region_offsets[r + 1] - b->region_offsets[r]) / BVH_LANES;
     return sum;
 }
 
-static bool allocate_forest(const builder *b, forest *f) {
+static bool allocate_bvh(const builder *b, bvh *f) {
     cscd_context *context = b->context;
     uint32_t leaf_count = all_leaves(b), record_count = most_records(b);
     f->parts = context_allocate(context, f->part_count, sizeof *f->parts);
@@ -337,45 +336,45 @@ static double scale_for(const cscd_mesh *mesh, const double *positions) {
     return ldexp(1.0, -exponent);
 }
 
-cscd_status forest_build(const cscd_mesh *mesh, forest_regions regions, const double *positions,
-                         int axis_count, forest *out) {
+cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
+                      bvh *out) {
     builder b = {.context = mesh->context, .mesh = mesh, .given = regions};
-    forest f = {.mesh = mesh,
-                .kernels = kernels_of(mesh->context),
-                .axis_count = axis_count,
-                .part_count = regions.count,
-                .scale = scale_for(mesh, positions)};
+    bvh f = {.mesh = mesh,
+             .kernels = kernels_of(mesh->context),
+             .axis_count = axis_count,
+             .part_count = regions.count,
+             .scale = scale_for(mesh, positions)};
     bool made = allocate_builder(&b);
     if (made) {
         list_triangles(&b);
         find_centres(&b, positions, f.scale);
         order_run(&b.regions, 0, regions.count);
-        made = allocate_forest(&b, &f);
+        made = allocate_bvh(&b, &f);
         for (uint32_t p = 0; made && p < f.part_count; p++) fill_part(&b, &f, p);
-        made = made && build_levels(&f, b.regions.items) && forest_mark_obstacles(&f);
+        made = made && build_levels(&f, b.regions.items) && bvh_mark_obstacles(&f);
     }
     free_builder(&b);
     if (!made) {
-        forest_free(&f);
+        bvh_free(&f);
         return CSCD_OUT_OF_MEMORY;
     }
     *out = f;
     return CSCD_OK;
 }
 
-void forest_free(forest *f) {
+void bvh_free(bvh *f) {
     if (f->mesh == NULL) return;
     cscd_context *context = f->mesh->context;
     void *blocks[] = {f->parts,       f->leaves,      f->leaf_flags,      f->flags_before,
                       f->leaf_within, f->block_parts, f->record_vertices, f->record_weights,
                       f->records,     f->slots,       f->chunks,          f->leaf_parts};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
-    for (int i = 0; i < FOREST_LEVEL_MAX; i++) {
+    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
         context_free(context, f->levels[i].first_children);
         context_free(context, f->levels[i].bounds);
         context_free(context, f->levels[i].flags);
         context_free(context, f->levels[i].within);
         context_free(context, f->levels[i].passive);
     }
-    *f = (forest){0};
+    *f = (bvh){0};
 }

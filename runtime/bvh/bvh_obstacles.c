@@ -2,14 +2,14 @@
 #include "runtime/bvh/bvh.h"
 
 /* A part holds obstacles only, or none. */
-static bool part_is_passive(const forest *f, uint32_t part) {
+static bool part_is_passive(const bvh *f, uint32_t part) {
     return triangle_of_obstacle(f->mesh, f->leaves[f->parts[part].first_leaf].triangles[0]);
 }
 
-static uint8_t passive_children(const forest *f, int level, uint32_t block) {
-    const forest_level *at = &f->levels[level], *below = at - 1;
+static uint8_t passive_children(const bvh *f, int level, uint32_t block) {
+    const bvh_level *at = &f->levels[level], *below = at - 1;
     uint8_t passive = 0;
-    for (uint32_t i = 0; i < FOREST_LANES && (at->flags[block].used >> i & 1) != 0; i++) {
+    for (uint32_t i = 0; i < BVH_LANES && (at->flags[block].used >> i & 1) != 0; i++) {
         uint32_t child = at->first_children[block] + i;
         bool all = level == f->part_level ? part_is_passive(f, child)
                                           : below->passive[child] == below->flags[child].used;
@@ -18,10 +18,10 @@ static uint8_t passive_children(const forest *f, int level, uint32_t block) {
     return passive;
 }
 
-bool forest_mark_obstacles(forest *f) {
+bool bvh_mark_obstacles(bvh *f) {
     if (f->mesh->obstacles == NULL) return true;
     for (int level = f->part_level; level < f->level_count; level++) {
-        forest_level *at = &f->levels[level];
+        bvh_level *at = &f->levels[level];
         at->passive = context_allocate(f->mesh->context, at->block_count, sizeof *at->passive);
         if (at->passive == NULL) return false;
         for (uint32_t block = 0; block < at->block_count; block++)

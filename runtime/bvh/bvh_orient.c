@@ -1,16 +1,16 @@
-/* The forest's flags: what faces the detector points, and what has lost its flag. */
+/* The BVH's flags: what faces the detector points, and what has lost its flag. */
 #include "runtime/bvh/bvh.h"
 
 enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
 
 typedef struct orienting {
-    const forest *forest;
-    const forest_view *view;
+    const bvh *bvh;
+    const orientation_query *view;
     uint8_t *orientations;
 } orienting;
 
 /* A point in a part's frame is where it is there by definition: rounding only moves the detector point. */
-static void place_detector(const forest *f, forest_part *p, const forest_view *view) {
+static void place_detector(const bvh *f, bvh_tree *p, const orientation_query *view) {
     for (int e = 0; e < 2; e++) {
         for (int k = 0; k < 3; k++) {
             double offset = view->detector_offsets[p->region][k];
@@ -22,9 +22,9 @@ static void place_detector(const forest *f, forest_part *p, const forest_view *v
     }
 }
 
-void forest_detector_points(const forest *f, const forest_view *view, double (*points)[2][3]) {
+void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]) {
     for (uint32_t i = 0; i < f->part_count; i++) {
-        const forest_part *p = &f->parts[i];
+        const bvh_tree *p = &f->parts[i];
         for (int e = 0; e < 2; e++) {
             int end = view->still ? 0 : e;
             for (int k = 0; k < 3; k++)
@@ -34,11 +34,11 @@ void forest_detector_points(const forest *f, const forest_view *view, double (*p
     }
 }
 
-static uint32_t component_of(const forest *f, const forest_part *p) {
+static uint32_t component_of(const bvh *f, const bvh_tree *p) {
     return f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
 }
 
-static uint32_t part_of_leaf(const forest *f, uint32_t index) {
+static uint32_t part_of_leaf(const bvh *f, uint32_t index) {
     uint32_t first = 0, last = f->part_count - 1;
     while (first < last) {
         uint32_t middle = first + (last - first + 1) / 2;
@@ -52,11 +52,11 @@ static uint32_t part_of_leaf(const forest *f, uint32_t index) {
 
 static void orient_task(void *data, uint32_t index) {
     const orienting *now = data;
-    const forest *f = now->forest;
+    const bvh *f = now->bvh;
     uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
     end = end < f->leaf_count ? end : f->leaf_count;
     for (uint32_t i = part_of_leaf(f, begin); i < f->part_count && f->parts[i].first_leaf < end; i++) {
-        const forest_part *p = &f->parts[i];
+        const bvh_tree *p = &f->parts[i];
         if (!now->view->culled[component_of(f, p)]) continue;
         uint32_t stop = p->first_leaf + p->leaf_count;
         f->kernels->orient(f, p, begin > p->first_leaf ? begin : p->first_leaf, end < stop ? end : stop,
@@ -67,17 +67,17 @@ static void orient_task(void *data, uint32_t index) {
 /* ---- flags of blocks --------------------------------------------------------------------------------- */
 
 typedef struct marking {
-    const forest *forest;
+    const bvh *bvh;
     int level;
 } marking;
 
-static void mark_block(const forest *f, int index, uint32_t block) {
-    const forest_level *level = &f->levels[index];
+static void mark_block(const bvh *f, int index, uint32_t block) {
+    const bvh_level *level = &f->levels[index];
     lane_flags *flags = &level->flags[block];
     uint32_t plus = 0, minus = 0, fresh = 0;
     const lane_flags *children =
         (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[block];
-    for (uint32_t i = 0; i < FOREST_LANES && (flags->used >> i & 1) != 0; i++) {
+    for (uint32_t i = 0; i < BVH_LANES && (flags->used >> i & 1) != 0; i++) {
         plus |= (uint32_t)(children[i].plus == children[i].used) << i;
         minus |= (uint32_t)(children[i].minus == children[i].used) << i;
         fresh |= (uint32_t)(children[i].fresh != 0) << i;
@@ -91,11 +91,11 @@ static void mark_block(const forest *f, int index, uint32_t block) {
 static void mark_task(void *data, uint32_t index) {
     const marking *now = data;
     uint32_t begin = index * BLOCKS_PER_TASK, end = begin + BLOCKS_PER_TASK;
-    uint32_t count = now->forest->levels[now->level].block_count;
-    for (uint32_t b = begin; b < end && b < count; b++) mark_block(now->forest, now->level, b);
+    uint32_t count = now->bvh->levels[now->level].block_count;
+    for (uint32_t b = begin; b < end && b < count; b++) mark_block(now->bvh, now->level, b);
 }
 
-static void mark_blocks(const forest *f) {
+static void mark_blocks(const bvh *f) {
     marking now = {f, 0};
     for (; now.level < f->level_count; now.level++) {
         uint32_t tasks = (f->levels[now.level].block_count + BLOCKS_PER_TASK - 1) / BLOCKS_PER_TASK;
@@ -105,9 +105,9 @@ static void mark_blocks(const forest *f) {
 
 /* ---- flags of leaves --------------------------------------------------------------------------------- */
 
-static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orientations) {
+static lane_flags flags_of(const bvh *f, uint32_t index, const uint8_t *orientations) {
     lane_flags flags = {.used = f->leaf_flags[index].used};
-    for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++) {
+    for (uint32_t lane = 0; lane < BVH_LANES && (flags.used >> lane & 1) != 0; lane++) {
         uint8_t flag = orientations[f->leaves[index].triangles[lane]];
         flags.plus |= (uint8_t)((flag == ORIENTATION_PLUS) << lane);
         flags.minus |= (uint8_t)((flag == ORIENTATION_MINUS) << lane);
@@ -116,13 +116,13 @@ static lane_flags flags_of(const forest *f, uint32_t index, const uint8_t *orien
 }
 
 typedef struct refreshing {
-    const forest *forest;
+    const bvh *bvh;
     const uint8_t *before, *now;
 } refreshing;
 
 static void refresh_task(void *data, uint32_t index) {
     const refreshing *r = data;
-    const forest *f = r->forest;
+    const bvh *f = r->bvh;
     uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
     for (uint32_t i = begin; i < end && i < f->leaf_count; i++) {
         lane_flags earlier = flags_of(f, i, r->before), flags = flags_of(f, i, r->now);
@@ -132,28 +132,28 @@ static void refresh_task(void *data, uint32_t index) {
     }
 }
 
-static void run_over_leaves(const forest *f, parallel_task *task, void *data) {
+static void run_over_leaves(const bvh *f, parallel_task *task, void *data) {
     parallel_run(f->mesh->context->threads, (f->leaf_count + LEAVES_PER_TASK - 1) / LEAVES_PER_TASK, task,
                  data);
 }
 
-void forest_mark_fresh(forest *f, const uint8_t *before, const uint8_t *now) {
+void bvh_mark_fresh(bvh *f, const uint8_t *before, const uint8_t *now) {
     refreshing r = {f, before, now};
     run_over_leaves(f, refresh_task, &r);
     mark_blocks(f);
 }
 
-void forest_mark_suspects(forest *f, const bool *suspects) {
+void bvh_mark_suspects(bvh *f, const bool *suspects) {
     for (uint32_t i = 0; i < f->leaf_count; i++) {
         lane_flags flags = {.used = f->leaf_flags[i].used};
-        for (uint32_t lane = 0; lane < FOREST_LANES && (flags.used >> lane & 1) != 0; lane++)
+        for (uint32_t lane = 0; lane < BVH_LANES && (flags.used >> lane & 1) != 0; lane++)
             flags.fresh |= (uint8_t)(suspects[f->leaves[i].triangles[lane]] << lane);
         f->leaf_flags[i] = flags;
     }
     mark_blocks(f);
 }
 
-void forest_orient(forest *f, const forest_view *view, uint8_t *orientations) {
+void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations) {
     orienting now = {f, view, orientations};
     for (uint32_t i = 0; i < f->part_count; i++) place_detector(f, &f->parts[i], view);
     run_over_leaves(f, orient_task, &now);

@@ -10,11 +10,10 @@ static const double decayed = 1.25, of_use = 1.1;
 
 /* As published, a patch of ICCD is any set of triangles: then all components are one part, and all obstacles
  * another. */
-static cscd_status build(const cscd_detector *d, const double *positions, forest *out) {
+static cscd_status build(const cscd_detector *d, const double *positions, bvh *out) {
     int axis_count = d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
     uint32_t *one_part = NULL;
-    forest_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights,
-                              d->culling.region_count};
+    bvh_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights, d->culling.region_count};
     if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) {
         one_part = context_allocate(d->context, d->mesh->triangle_count, sizeof *one_part);
         if (one_part == NULL) return CSCD_OUT_OF_MEMORY;
@@ -22,24 +21,23 @@ static cscd_status build(const cscd_detector *d, const double *positions, forest
         for (uint32_t t = 0; t < count; t++) obstacles += one_part[t] = triangle_of_obstacle(d->mesh, t);
         bool both = obstacles > 0 && obstacles < count;
         if (!both) memset(one_part, 0, count * sizeof *one_part);
-        regions = (forest_regions){one_part, d->culling.triangle_weights, both ? 2 : 1};
+        regions = (bvh_regions){one_part, d->culling.triangle_weights, both ? 2 : 1};
     }
-    cscd_status status = forest_build(d->mesh, regions, positions, axis_count, out);
+    cscd_status status = bvh_build(d->mesh, regions, positions, axis_count, out);
     context_free(d->context, one_part);
     return status;
 }
 
 /* How far blocks of parts extend, as a multiple of their parts; 0: there is one block. */
-static double spread_of_parts(const forest *f) {
-    const forest_level *level = &f->levels[f->part_level];
-    const size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
+static double spread_of_parts(const bvh *f) {
+    const bvh_level *level = &f->levels[f->part_level];
+    const size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
     double whole = 0.0, of_parts = 0.0;
     for (uint32_t block = 0; level->block_count > 1 && block < level->block_count; block++) {
         for (int k = 0; k < BOX_AXES; k++) {
-            const float *low = level->bounds + block * stride + 2 * k * FOREST_LANES,
-                        *high = low + FOREST_LANES;
+            const float *low = level->bounds + block * stride + 2 * k * BVH_LANES, *high = low + BVH_LANES;
             float least = INFINITY, greatest = -INFINITY;
-            for (int i = 0; i < FOREST_LANES && (level->flags[block].used >> i & 1) != 0; i++) {
+            for (int i = 0; i < BVH_LANES && (level->flags[block].used >> i & 1) != 0; i++) {
                 least = fminf(least, low[i]);
                 greatest = fmaxf(greatest, high[i]);
                 of_parts += (double)(high[i] - low[i]);
@@ -50,7 +48,7 @@ static double spread_of_parts(const forest *f) {
     return of_parts > 0.0 ? whole / of_parts : 0.0;
 }
 
-static tree_spread spread_of(const forest *f) {
+static tree_spread spread_of(const bvh *f) {
     extents sum = f->kernels->extents_at_start(f);
     return (tree_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_parts(f)};
 }
@@ -61,27 +59,27 @@ static bool beyond(tree_spread now, tree_spread before, double factor) {
 
 /* What hangs on the order of the triangles goes with the old trees; without memory for new ones they stay. */
 static bool rebuild(cscd_detector *d, const double *positions) {
-    forest fresh;
+    bvh fresh;
     if (build(d, positions, &fresh) != CSCD_OK) return false;
     patches_free(d->context, &d->patches);
-    forest_free(&d->forest);
-    d->forest = fresh;
+    bvh_free(&d->bvh);
+    d->bvh = fresh;
     d->rebuilt = true;
     return true;
 }
 
 static cscd_status move(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    bool fresh = d->forest.mesh == NULL;
+    bool fresh = d->bvh.mesh == NULL;
     if (fresh) {
-        cscd_status status = build(d, x0, &d->forest);
+        cscd_status status = build(d, x0, &d->bvh);
         if (status != CSCD_OK) return status;
     }
     if (fresh) { /* judged by volumes as wide as those of steps */
-        forest_move(&d->forest, x0, x1, d->limit.distance);
-        d->spread_when_built = spread_of(&d->forest);
+        bvh_refit(&d->bvh, x0, x1, d->limit.distance);
+        d->spread_when_built = spread_of(&d->bvh);
         if (distance == d->limit.distance) return CSCD_OK;
     }
-    forest_move(&d->forest, x0, x1, distance);
+    bvh_refit(&d->bvh, x0, x1, distance);
     return CSCD_OK;
 }
 
@@ -92,11 +90,11 @@ cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double dis
 /* Compares the trees, moved as for a step, with what they were when they were built, and builds them anew if
  * need be. */
 static void look(cscd_detector *d, const double *x0, const double *x1) {
-    tree_spread spread = spread_of(&d->forest);
+    tree_spread spread = spread_of(&d->bvh);
     d->intervals_unlooked = 0;
     if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return;
-    forest_move(&d->forest, x0, x1, d->limit.distance);
-    d->spread_when_built = spread_of(&d->forest);
+    bvh_refit(&d->bvh, x0, x1, d->limit.distance);
+    d->spread_when_built = spread_of(&d->bvh);
     if (beyond(spread, d->spread_when_built, of_use))
         d->useless_rebuilds = 0;
     else if (d->useless_rebuilds < USELESS_MAX)
@@ -108,6 +106,6 @@ cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, do
     cscd_status status = move(d, x0, x1, due ? d->limit.distance : distance);
     if (status != CSCD_OK || !due) return status;
     look(d, x0, x1);
-    if (distance != d->limit.distance) forest_move(&d->forest, x0, x1, distance);
+    if (distance != d->limit.distance) bvh_refit(&d->bvh, x0, x1, distance);
     return CSCD_OK;
 }

@@ -3,7 +3,7 @@
 
 #include "runtime/detector/detector.h"
 
-/* Moves the forest, built from x0 if there is none, on to the interval from x0 to x1.
+/* Moves the BVH, built from x0 if there is none, on to the interval from x0 to x1.
  *
  * A refit keeps together what was near when the trees were built. Every 16th interval the extents of leaves
  * are compared with those of their triangles, and those of blocks of parts with those of their parts; where

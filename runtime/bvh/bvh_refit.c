@@ -1,4 +1,4 @@
-/* The forest follows the positions: frames, records, bounds, flags. */
+/* The BVH follows the positions: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ enum { SAMPLE_COUNT = 64, SHARED_BLOCKS_MIN = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_
 static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
 
 typedef struct moving {
-    forest *forest;
+    bvh *bvh;
     const double *x0, *x1;
     double distance;
     int level;
@@ -22,7 +22,7 @@ typedef struct moving {
 
 /* The origins are the means of a few vertices: any points serve. What lies between them at the two ends is
  * the part's common displacement, which is so taken out of all its volumes. */
-static void place_frame(const forest *f, forest_part *p, const moving *m) {
+static void place_frame(const bvh *f, bvh_tree *p, const moving *m) {
     uint32_t step = p->record_count / SAMPLE_COUNT + 1, count = 0;
     double sums[2][3] = {{0.0}};
     const double *first = m->x0 + (size_t)f->record_vertices[p->first_record] * 3;
@@ -41,14 +41,14 @@ static void place_frame(const forest *f, forest_part *p, const moving *m) {
 
 static void copy_chunk(void *data, uint32_t index) {
     const moving *now = data;
-    const forest *f = now->forest;
+    const bvh *f = now->bvh;
     record_chunk *c = &f->chunks[index];
     f->kernels->copy_in(f, &f->parts[c->part], c->begin, c->end, now->x0, now->x1, &c->copied);
 }
 
 /* Copies all records; returns the largest magnitude of a coordinate. */
 static double copy_records(moving *now) {
-    const forest *f = now->forest;
+    const bvh *f = now->bvh;
     double reach = 0.0;
     parallel_run(f->mesh->context->threads, f->chunk_count, copy_chunk, now);
     for (uint32_t i = 0; i < f->chunk_count; i++)
@@ -65,7 +65,7 @@ static float float_above(double x) {
  * 2.1 u M along axes. Along diagonals it is 3 u M, 5 u M for two additions of sums up to 2 M and 3 M, and
  * 3 u M: 11.1 u M. 4 u M and 16 u M are taken. Volumes that are each widened by half a distance d, along
  * diagonals by sqrt 3 / 2 of it, overlap where features come within d. */
-static void finish_part(forest_part *p, double distance, const copied *sum) {
+static void finish_part(bvh_tree *p, double distance, const copied *sum) {
     p->reach = float_above(sum->reach);
     p->slack[0] = float_above(sum->reach * 0x1p-22 + 0.5 * distance);
     p->slack[1] = float_above(sum->reach * 0x1p-20 + 0.8660254038 * distance);
@@ -73,7 +73,7 @@ static void finish_part(forest_part *p, double distance, const copied *sum) {
 }
 
 /* Chunks stand in the order of parts. */
-static void finish_parts(const forest *f, double distance) {
+static void finish_parts(const bvh *f, double distance) {
     for (uint32_t i = 0, at = 0; i < f->part_count; i++) {
         copied sum = {0};
         for (; at < f->chunk_count && f->chunks[at].part == i; at++) {
@@ -86,7 +86,7 @@ static void finish_parts(const forest *f, double distance) {
 }
 
 static void move_records(moving *now) {
-    forest *f = now->forest;
+    bvh *f = now->bvh;
     for (uint32_t i = 0; i < f->part_count; i++) place_frame(f, &f->parts[i], now);
     double reach = copy_records(now);
     if (reach > greatest_reach || (reach > 0.0 && reach < least_reach)) {
@@ -100,7 +100,7 @@ static void move_records(moving *now) {
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static uint32_t blocks_per_task(const forest *f, int level) {
+static uint32_t blocks_per_task(const bvh *f, int level) {
     uint32_t count = f->levels[level].block_count;
     if (count < SHARED_BLOCKS_MIN) return count;
     return level == 0 ? LOW_BLOCKS_PER_TASK : HIGH_BLOCKS_PER_TASK;
@@ -108,14 +108,14 @@ static uint32_t blocks_per_task(const forest *f, int level) {
 
 static void refit_task(void *data, uint32_t index) {
     const moving *now = data;
-    const forest *f = now->forest;
+    const bvh *f = now->bvh;
     uint32_t size = blocks_per_task(f, now->level), begin = index * size;
     uint32_t rest = f->levels[now->level].block_count - begin;
     f->kernels->refit(f, now->level, begin, begin + (rest < size ? rest : size));
 }
 
 static void refit_level(moving *now) {
-    const forest *f = now->forest;
+    const bvh *f = now->bvh;
     uint32_t size = blocks_per_task(f, now->level);
     uint32_t tasks = (f->levels[now->level].block_count + size - 1) / size;
     parallel_run(f->mesh->context->threads, tasks, refit_task, now);
@@ -129,7 +129,7 @@ static double along(const double v[3], int axis) {
 
 /* A part's volume over the interval in the frame of another one, rounded outward by 2^-20 of what is added.
  */
-static void place_part(const forest *f, const forest_part *p, const float *own, const forest_part *frame,
+static void place_part(const bvh *f, const bvh_tree *p, const float *own, const bvh_tree *frame,
                        float *bounds) {
     double from[2][3], size = 4.0 * (double)p->reach;
     for (int i = 0; i < 6; i++) {
@@ -140,29 +140,29 @@ static void place_part(const forest *f, const forest_part *p, const float *own, 
     for (int k = 0; k < f->axis_count; k++) {
         double low = INFINITY, high = -INFINITY;
         double start = along(from[0], k), end = along(from[1], k);
-        for (int i = 0; i < FOREST_LANES; i++) {
-            low = fmin(low, (double)own[2 * k * FOREST_LANES + i]);
-            high = fmax(high, (double)own[(2 * k + 1) * FOREST_LANES + i]);
+        for (int i = 0; i < BVH_LANES; i++) {
+            low = fmin(low, (double)own[2 * k * BVH_LANES + i]);
+            high = fmax(high, (double)own[(2 * k + 1) * BVH_LANES + i]);
         }
-        bounds[2 * k * FOREST_LANES] = (float)(low + fmin(start, end) - 0x1p-20 * size);
-        bounds[(2 * k + 1) * FOREST_LANES] = (float)(high + fmax(start, end) + 0x1p-20 * size);
+        bounds[2 * k * BVH_LANES] = (float)(low + fmin(start, end) - 0x1p-20 * size);
+        bounds[(2 * k + 1) * BVH_LANES] = (float)(high + fmax(start, end) + 0x1p-20 * size);
     }
 }
 
-static void place_nothing(const forest *f, float *bounds) {
+static void place_nothing(const bvh *f, float *bounds) {
     for (int k = 0; k < f->axis_count; k++) {
-        bounds[2 * k * FOREST_LANES] = INFINITY;
-        bounds[(2 * k + 1) * FOREST_LANES] = -INFINITY;
+        bounds[2 * k * BVH_LANES] = INFINITY;
+        bounds[(2 * k + 1) * BVH_LANES] = -INFINITY;
     }
 }
 
 /* The part level: each part has one block on the level below, of its own number. */
-static void place_parts(const forest *f) {
-    const forest_level *level = &f->levels[f->part_level];
-    size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
+static void place_parts(const bvh *f) {
+    const bvh_level *level = &f->levels[f->part_level];
+    size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
     const float *roots = f->levels[f->part_level - 1].bounds;
-    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * FOREST_LANES; i++) {
-        float *bounds = level->bounds + i / FOREST_LANES * stride + i % FOREST_LANES;
+    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * BVH_LANES; i++) {
+        float *bounds = level->bounds + i / BVH_LANES * stride + i % BVH_LANES;
         if (i < f->part_count)
             place_part(f, &f->parts[i], roots + i * stride, &f->parts[0], bounds);
         else
@@ -176,15 +176,15 @@ static void clear_flags(lane_flags *flags, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) flags[i] = (lane_flags){.used = flags[i].used};
 }
 
-void forest_show_all(forest *f) {
+void bvh_show_all(bvh *f) {
     if (f->leaf_within != NULL) memset(f->leaf_within, 0xff, f->leaf_count * sizeof *f->leaf_within);
     for (int i = 0; i < f->part_level; i++) {
-        forest_level *level = &f->levels[i];
+        bvh_level *level = &f->levels[i];
         if (level->within != NULL) memset(level->within, 0xff, level->block_count * sizeof *level->within);
     }
 }
 
-void forest_move(forest *f, const double *x0, const double *x1, double distance) {
+void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
     moving now = {f, x0, x1, distance, 0};
     move_records(&now);
     for (; now.level < f->level_count; now.level++) {
@@ -195,12 +195,12 @@ void forest_move(forest *f, const double *x0, const double *x1, double distance)
         clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
     }
     clear_flags(f->leaf_flags, f->leaf_count);
-    forest_show_all(f);
+    bvh_show_all(f);
 }
 
-void forest_skip_adjacent(forest *f, const bool *components) {
+void bvh_skip_adjacent(bvh *f, const bool *components) {
     for (uint32_t i = 0; i < f->part_count; i++) {
-        forest_part *p = &f->parts[i];
+        bvh_tree *p = &f->parts[i];
         uint32_t component = f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
         p->skip_adjacent = components != NULL && components[component];
     }

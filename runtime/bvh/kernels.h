@@ -5,8 +5,8 @@
 #include "src/core/context.h"
 
 struct cscd_mesh;
-struct forest;
-struct forest_part;
+struct bvh;
+struct bvh_tree;
 struct representatives;
 struct separation;
 struct traversal;
@@ -56,30 +56,30 @@ typedef void root_kernel(const feature_source *source, const uint32_t *a, const 
 /* For eight pairs: those that certainly stay farther apart than a limit's distance and tolerance, those
  * certainly within its distance at the start, and, for these, the nearest points there, as parameters and as
  * the way from b's to a's, and its length. */
-typedef struct nearness_outcomes {
+typedef struct proximity_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double u[KERNEL_LANES], v[KERNEL_LANES], offset[3][KERNEL_LANES], distance[KERNEL_LANES];
-} nearness_outcomes;
+} proximity_outcomes;
 
-typedef void nearness_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             const struct separation *limit, nearness_outcomes *out);
+typedef void proximity_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                              const struct separation *limit, proximity_outcomes *out);
 
 typedef struct kernels {
     const char *name;
 
-    /* Fills records begin to end - 1, multiples of 8, of a part; see runtime/forest.h. */
-    void (*copy_in)(const struct forest *f, const struct forest_part *p, uint32_t begin, uint32_t end,
+    /* Fills records begin to end - 1, multiples of 8, of a part; see runtime/bvh/bvh.h. */
+    void (*copy_in)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
                     const double *x0, const double *x1, copied *out);
 
     /* Bounds of the children of blocks begin to end - 1 of any level but the part level. */
-    void (*refit)(const struct forest *f, int level, uint32_t begin, uint32_t end);
+    void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
 
     /* How far leaves, and their triangles, extend at the start. */
-    extents (*extents_at_start)(const struct forest *f);
+    extents (*extents_at_start)(const struct bvh *f);
 
     /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; states: triangle_state
      * of each triangle of the mesh, of which only the clean ones have an orientation; NULL: all. */
-    void (*orient)(const struct forest *f, const struct forest_part *p, uint32_t begin, uint32_t end,
+    void (*orient)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
                    const uint8_t *states, uint8_t *orientations);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
@@ -88,8 +88,8 @@ typedef struct kernels {
 
     /* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
      * their volumes, and that share no vertex. */
-    void (*sieve)(const struct forest *f, const struct triangle_pair *pairs, uint32_t count, double distance,
-                  uint16_t *features);
+    void (*feature_filter)(const struct bvh *f, const struct triangle_pair *pairs, uint32_t count,
+                           double distance, uint16_t *features);
 
     /* Of features of pairs of triangles, those that these represent; open: those whose representatives share
      * a vertex, where the features share none. */
@@ -108,7 +108,7 @@ typedef struct kernels {
     root_kernel *two_roots_vf, *two_roots_ee;
 
     /* Pairs from a[0], b[0] to a[7], b[7]. */
-    nearness_kernel *nearness_vf, *nearness_ee;
+    proximity_kernel *proximity_vf, *proximity_ee;
 
     /* Of pairs of different triangles, in place and in any order, keeps those that may meet (see
      * src/mesh/triangle_intersection.h) at positions, which are as positions_check wants them; returns how

@@ -7,7 +7,7 @@
 /* By corner, end of the interval and axis, a lane per triangle. */
 typedef f32x8 leaf_corners[3][2][3];
 
-static inline void load_corners(const forest *f, const forest_leaf *l, leaf_corners out) {
+static inline void load_corners(const bvh *f, const bvh_leaf *l, leaf_corners out) {
     for (int i = 0; i < 3; i++) {
         f32x8 rows[8];
         for (int lane = 0; lane < LANES; lane++) rows[lane] = f32x8_load(f->records[l->corners[i][lane]]);

@@ -33,7 +33,7 @@ static f32x8 dot(const f32x8 a[3], const f32x8 b[3]) {
 }
 
 /* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
-static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+static void orient(const bvh_tree *p, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
     f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
     float detector_reach = 0.0f;
     for (int e = 0; e < 2; e++) {
@@ -63,7 +63,7 @@ static void orient(const forest_part *p, f32x8 (*corners)[2][3], uint32_t *plus,
 }
 
 /* Of the triangles used, those that are clean. */
-static uint32_t clean_lanes(const forest_leaf *l, uint32_t used, const uint8_t *states) {
+static uint32_t clean_lanes(const bvh_leaf *l, uint32_t used, const uint8_t *states) {
     uint32_t clean = 0;
     for (int lane = 0; lane < LANES; lane++) {
         uint32_t triangle = l->triangles[(used >> lane & 1) != 0 ? lane : 0];
@@ -76,7 +76,7 @@ _Static_assert((ORIENTATION_ZERO ^ 2) == ORIENTATION_PLUS && (ORIENTATION_ZERO ^
                "written without branches below");
 
 /* Lanes that are not used are after those that are, and repeat the first triangle. */
-static void store_orientations(const forest_leaf *l, uint32_t used, uint32_t plus, uint32_t minus,
+static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, uint32_t minus,
                                uint8_t *orientations) {
     for (int lane = LANES - 1; lane >= 0; lane--) {
         int from = (used >> lane & 1) != 0 ? lane : 0;
@@ -85,9 +85,9 @@ static void store_orientations(const forest_leaf *l, uint32_t used, uint32_t plu
     }
 }
 
-static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, const uint8_t *states,
+static void orient_leaf(const bvh *f, const bvh_tree *p, uint32_t index, const uint8_t *states,
                         uint8_t *orientations) {
-    const forest_leaf *l = &f->leaves[index];
+    const bvh_leaf *l = &f->leaves[index];
     uint32_t plus, minus, used = f->leaf_flags[index].used;
     uint32_t clean = states != NULL ? clean_lanes(l, used, states) : used;
     leaf_corners corners;
@@ -100,7 +100,7 @@ static void orient_leaf(const forest *f, const forest_part *p, uint32_t index, c
     store_orientations(l, used, plus, minus, orientations);
 }
 
-void SIMD_NAME(orient)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end,
-                       const uint8_t *states, uint8_t *orientations) {
+void SIMD_NAME(orient)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const uint8_t *states,
+                       uint8_t *orientations) {
     for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, states, orientations);
 }

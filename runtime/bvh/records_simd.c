@@ -22,7 +22,7 @@ static double sum_of(f64x8 v) {
     return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-void SIMD_NAME(copy_in)(const forest *f, const forest_part *p, uint32_t begin, uint32_t end, const double *x0,
+void SIMD_NAME(copy_in)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const double *x0,
                         const double *x1, copied *out) {
     f64x8 reach = f64x8_all(0.0), start_sum[3], end_sum[3];
     for (int k = 0; k < 3; k++) start_sum[k] = end_sum[k] = f64x8_all(0.0);

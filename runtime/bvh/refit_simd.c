@@ -4,7 +4,7 @@
 #include "runtime/bvh/leaf_volumes.h"
 
 /* Least and greatest of a leaf's records, lane by lane. */
-static void enclose_records(const forest *f, const forest_leaf *l, f32x8 *low, f32x8 *high) {
+static void enclose_records(const bvh *f, const bvh_leaf *l, f32x8 *low, f32x8 *high) {
     f32x8 least = f32x8_load(f->records[l->corners[0][0]]), greatest = least;
     for (int i = 0; i < 3; i++) {
         for (int lane = 0; lane < LANES; lane++) {
@@ -38,9 +38,9 @@ static void store_diagonals(leaf_corners corners, const float slack[2], int lane
 }
 
 /* A block of level 0. */
-static void enclose_leaves(const forest *f, uint32_t block) {
-    const forest_part *p = &f->parts[f->block_parts[block]];
-    const forest_level *level = &f->levels[0];
+static void enclose_leaves(const bvh *f, uint32_t block) {
+    const bvh_tree *p = &f->parts[f->block_parts[block]];
+    const bvh_level *level = &f->levels[0];
     float *bounds = level->bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
     f32x8 low[8], high[8];
     for (uint32_t lane = 0; lane < LANES; lane++) {
@@ -64,8 +64,8 @@ static void enclose_leaves(const forest *f, uint32_t block) {
 }
 
 /* A block of a higher level. */
-static void enclose_blocks(const forest *f, int index, uint32_t block) {
-    const forest_level *level = &f->levels[index], *below = level - 1;
+static void enclose_blocks(const bvh *f, int index, uint32_t block) {
+    const bvh_level *level = &f->levels[index], *below = level - 1;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     float *bounds = level->bounds + block * stride;
     const float *children = below->bounds + level->first_children[block] * stride;
@@ -88,7 +88,7 @@ static void enclose_blocks(const forest *f, int index, uint32_t block) {
     }
 }
 
-void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end) {
+void SIMD_NAME(refit)(const bvh *f, int level, uint32_t begin, uint32_t end) {
     for (uint32_t block = begin; block < end; block++) {
         if (level == 0)
             enclose_leaves(f, block);
@@ -99,7 +99,7 @@ void SIMD_NAME(refit)(const forest *f, int level, uint32_t begin, uint32_t end) 
 
 /* Empty lanes repeat the first triangle, so they do not extend the leaf; they count as triangles, the same
  * ones every time. */
-extents SIMD_NAME(extents_at_start)(const forest *f) {
+extents SIMD_NAME(extents_at_start)(const bvh *f) {
     extents sum = {0.0, 0.0};
     for (uint32_t i = 0; i < f->leaf_count; i++) {
         leaf_corners corners;

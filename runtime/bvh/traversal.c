@@ -1,11 +1,11 @@
-/* Self-traversal of the forest: batches, and how lanes share the work. */
+/* Self-traversal of the BVH: batches, and how lanes share the work. */
 #include "runtime/bvh/traversal.h"
 
 #include "src/core/timer.h"
 
 #include <string.h>
 
-/* Shares are block pairs, at least so many per lane where there are as many. A forest of fewer leaves is not
+/* Shares are block pairs, at least so many per lane where there are as many. A BVH of fewer leaves is not
  * worth a second thread. */
 enum { STACK_START = 1024, SHARES_PER_LANE = 128, SHARED_LEAVES_MIN = 96, VISITS_AT_ONCE = 16 };
 
@@ -64,7 +64,7 @@ static bool spread(traversal *t) {
         if (!make_room(t->context, first, TRAVERSAL_PUSHES_PER_VISIT + 1)) return false;
         first->stack[first->stack_count] = first->stack[next++];
         first->stack_count++;
-        t->forest->kernels->search(t, first, 1);
+        t->bvh->kernels->search(t, first, 1);
     }
     t->share_count = (uint32_t)(first->stack_count - next);
     memcpy(t->shares, first->stack + next, t->share_count * sizeof *t->shares);
@@ -72,8 +72,8 @@ static bool spread(traversal *t) {
     return true;
 }
 
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass) {
-    t->forest = f;
+void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
+    t->bvh = f;
     t->pass = pass;
     t->share_count = 0;
     atomic_store(&t->next_share, 0);
@@ -119,7 +119,7 @@ static void fill(traversal *t, traversal_lane *lane, uint32_t enough) {
         if (!make_room(t->context, lane, TRAVERSAL_PUSHES_PER_VISIT))
             lane->out_of_memory = true;
         else
-            t->forest->kernels->search(t, lane, VISITS_AT_ONCE);
+            t->bvh->kernels->search(t, lane, VISITS_AT_ONCE);
     }
 }
 

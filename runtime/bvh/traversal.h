@@ -1,4 +1,4 @@
-/* Self-traversal of the forest: batches of triangle pairs whose volumes overlap, without recursion. */
+/* Self-traversal of the BVH: batches of triangle pairs whose volumes overlap, without recursion. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -24,7 +24,7 @@ typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECT
 
 /* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
  * They are the kernels' own (leaf_volumes); here is only how large they are. */
-enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * FOREST_LANES };
+enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * BVH_LANES };
 
 typedef struct leaf_cache {
     uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */
@@ -50,7 +50,7 @@ enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT, TRAVERSAL_BATCH_ENO
 
 typedef struct traversal {
     cscd_context *context;
-    const forest *forest;
+    const bvh *bvh;
     traversal_pass pass;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
@@ -67,7 +67,7 @@ cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
 /* Starts anew at the root of f, which is up to date. */
-void traversal_begin(traversal *t, const forest *f, traversal_pass pass);
+void traversal_begin(traversal *t, const bvh *f, traversal_pass pass);
 
 /* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
  * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and

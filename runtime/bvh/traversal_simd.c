@@ -17,7 +17,7 @@ static double along(const double v[3], int axis) {
 
 /* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
  * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
-static displacement between(const forest *f, const forest_part *a, const forest_part *b) {
+static displacement between(const bvh *f, const bvh_tree *a, const bvh_tree *b) {
     displacement out;
     double start[3], end[3], size = (double)a->reach + (double)b->reach;
     for (int k = 0; k < 3; k++) {
@@ -94,7 +94,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
     if ((c->passive_a >> i & 1) != 0) lanes &= ~c->passive_b;
-    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)FOREST_ALL_LANES << (i + 1));
+    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)BVH_ALL_LANES << (i + 1));
     if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
     if (c->pass == TRAVERSAL_FRESH) {
         if (!c->one_part) return 0;
@@ -112,8 +112,8 @@ static inline uint32_t wanted(const comparison *c, int i) {
 _Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
                "traversal.h makes room for these");
 
-static const leaf_volumes *leaf_volumes_of(const forest *f, leaf_cache *cache, uint32_t index,
-                                           const forest_part *p) {
+static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint32_t index,
+                                           const bvh_tree *p) {
     uint32_t place = index % LEAF_CACHE_SIZE;
     leaf_volumes *out = (leaf_volumes *)cache->volumes + place;
     if (cache->tags[place] == index + 1) return out;
@@ -144,9 +144,8 @@ typedef struct leaf_pair {
 } leaf_pair;
 
 /* Of lanes, those of b whose triangles share no vertex with triangle i of a. */
-static inline uint32_t strangers(const forest *f, const leaf_pair *pair, int i, uint32_t lanes,
-                                 bool one_part) {
-    const forest_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
+static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes, bool one_part) {
+    const bvh_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
     if (one_part) {
         i32x8 shared = {0};
         for (int j = 0; j < 3; j++) {
@@ -168,7 +167,7 @@ static inline uint32_t strangers(const forest *f, const leaf_pair *pair, int i, 
 
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
                                   bool skip_adjacent, bool one_part, const displacement *d) {
-    const forest *f = t->forest;
+    const bvh *f = t->bvh;
     const comparison c = {.a = f->leaf_flags[pair->a],
                           .b = f->leaf_flags[pair->b],
                           .before_a = f->flags_before[pair->a],
@@ -200,8 +199,8 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
 /* Lane i of block a against lanes of block b. */
 static inline void descend(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
                            uint32_t lanes, const displacement *d) {
-    const forest *f = t->forest;
-    const forest_level *level = &f->levels[at->level];
+    const bvh *f = t->bvh;
+    const bvh_level *level = &f->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
     bool skip_adjacent = f->parts[at->part_a].skip_adjacent; /* part b is of the component, or not adjacent */
     size_t stride = (size_t)f->axis_count * 2 * LANES;
@@ -214,7 +213,7 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
                                                             parts ? child_b : at->part_b, at->level - 1};
             continue;
         }
-        leaf_pair pair = {child_a, child_b, NULL, NULL, FOREST_ALL_LANES, FOREST_ALL_LANES};
+        leaf_pair pair = {child_a, child_b, NULL, NULL, BVH_ALL_LANES, BVH_ALL_LANES};
         pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
             leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
@@ -235,8 +234,8 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
 }
 
 static inline void visit(const traversal *t, traversal_lane *lane, block_pair at) {
-    const forest *f = t->forest;
-    const forest_level *level = &f->levels[at.level];
+    const bvh *f = t->bvh;
+    const bvh_level *level = &f->levels[at.level];
     bool below = at.level < f->part_level, crosses = below && at.part_a != at.part_b;
     displacement between_parts;
     if (crosses) between_parts = between(f, &f->parts[at.part_a], &f->parts[at.part_b]);

@@ -14,7 +14,7 @@ void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, co
                              root_outcomes *out);
 void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out);
-void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                            const struct separation *limit, nearness_outcomes *out);
-void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                            const struct separation *limit, nearness_outcomes *out);
+void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             const struct separation *limit, proximity_outcomes *out);
+void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             const struct separation *limit, proximity_outcomes *out);

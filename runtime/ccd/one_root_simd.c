@@ -1,10 +1,10 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic certainly has one root: the
  * same intervals and verdicts as cubic.c and inside.c have. */
 #include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/wide_roots.h"
+#include "runtime/ccd/cubic_simd.h"
 
 /* Lanes in which the coefficients certainly change sign once: from positive to negative, and back. */
-static inline void single_changes(const wide_cubics *f, uint32_t *falling, uint32_t *rising) {
+static inline void single_changes(const cubics_x8 *f, uint32_t *falling, uint32_t *rising) {
     uint32_t above[4], below[4];
     for (int i = 0; i < 4; i++) {
         above[i] = f64w_below(f->error, f->b[i]);
@@ -15,7 +15,7 @@ static inline void single_changes(const wide_cubics *f, uint32_t *falling, uint3
 }
 
 /* Lanes in which exactly one root is certainly in the interval, and none outside of it. */
-static inline uint32_t isolate(const wide_cubics *f, wide_intervals *out) {
+static inline uint32_t isolate(const cubics_x8 *f, intervals_x8 *out) {
     uint32_t falling, rising;
     single_changes(f, &falling, &rising);
     f64w root = f->b[0] / (f->b[0] - f->b[3]);
@@ -23,10 +23,10 @@ static inline uint32_t isolate(const wide_cubics *f, wide_intervals *out) {
     return isolate_between(f->b, f->error, falling | rising, f64w_all(0.0), f64w_all(1.0), change, root, out);
 }
 
-static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
-    wide_vectors vectors;
-    wide_cubics f;
-    wide_intervals interval;
+static inline void decide(const points_x8 *points, int first_count, int i, root_outcomes *out) {
+    vectors_x8 vectors;
+    cubics_x8 f;
+    intervals_x8 interval;
     vectors_between(points, first_count, &vectors);
     cubics_of(&vectors, &f);
     uint32_t isolated = isolate(&f, &interval);

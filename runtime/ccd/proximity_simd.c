@@ -1,8 +1,8 @@
 /* Distances of features at rest, many pairs at a time, each with a proof: a plane across the nearest points.
  */
 #include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/feature_pairs_simd.h"
 #include "runtime/ccd/min_separation.h"
-#include "runtime/ccd/wide_pairs.h"
 #include "src/core/vec3.h"
 
 /* Nearest points of lanes: parameters as in cscd_contact, and the way from b's to a's. */
@@ -154,7 +154,7 @@ static inline void multiply(moment_vectors *v, f64w factor) {
     }
 }
 
-static inline void keep(const nearest *n, f64w distance, f64w factor, int i, nearness_outcomes *out) {
+static inline void keep(const nearest *n, f64w distance, f64w factor, int i, proximity_outcomes *out) {
     memcpy(out->u + i, &n->u, sizeof n->u);
     memcpy(out->v + i, &n->v, sizeof n->v);
     distance /= factor;
@@ -172,8 +172,8 @@ static inline void keep(const nearest *n, f64w distance, f64w factor, int i, nea
  * least of differences that are linear in time, so it is least at an end. Pairs that come within the
  * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
  * (SEPARATION_FINEST). */
-static inline void decide(wide_points *p, int first_count, int i, const separation *limit,
-                          nearness_outcomes *out) {
+static inline void decide(points_x8 *p, int first_count, int i, const separation *limit,
+                          proximity_outcomes *out) {
     moment_vectors start, end;
     f64w error = f64w_all(0x1p-45), direction[3];
     vectors_at(p->x0, first_count, &start);
@@ -197,21 +197,21 @@ static inline void decide(wide_points *p, int first_count, int i, const separati
 }
 
 static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                              int first_count, const separation *limit, nearness_outcomes *out) {
+                              int first_count, const separation *limit, proximity_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
-        wide_points points;
+        points_x8 points;
         (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
         decide(&points, first_count, i, limit, out);
     }
 }
 
-void SIMD_NAME(nearness_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                            const separation *limit, nearness_outcomes *out) {
+void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             const separation *limit, proximity_outcomes *out) {
     decide_all(source, a, b, 1, limit, out);
 }
 
-void SIMD_NAME(nearness_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                            const separation *limit, nearness_outcomes *out) {
+void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                             const separation *limit, proximity_outcomes *out) {
     decide_all(source, a, b, 2, limit, out);
 }

@@ -1,10 +1,10 @@
 /* Level one of the elementary tests on many pairs at a time: separating axes, signs of the cubic. */
 #include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/feature_pairs_simd.h"
 #include "runtime/ccd/keep.h"
-#include "runtime/ccd/wide_pairs.h"
 
 /* Lanes whose features lie beyond each other along an axis, on the same side at both ends. */
-static uint32_t separated_by_axes(const wide_points *p, int first_count) {
+static uint32_t separated_by_axes(const points_x8 *p, int first_count) {
     uint32_t apart = 0;
     for (int k = 0; k < 3; k++) {
         uint32_t before = ALL_WIDTH, beyond = ALL_WIDTH;
@@ -28,7 +28,7 @@ static uint32_t separated_by_axes(const wide_points *p, int first_count) {
 }
 
 /* Lanes in which all coefficients lie beyond the error on one side of zero. */
-static uint32_t excluded(const wide_cubics *f) {
+static uint32_t excluded(const cubics_x8 *f) {
     uint32_t above = ALL_WIDTH, below = ALL_WIDTH;
     for (int i = 0; i < 4; i++) {
         above &= f64w_below(f->error, f->b[i]);
@@ -37,9 +37,9 @@ static uint32_t excluded(const wide_cubics *f) {
     return above | below;
 }
 
-static inline uint32_t open_lanes(const wide_points *points, int first_count) {
-    wide_vectors vectors;
-    wide_cubics f;
+static inline uint32_t open_lanes(const points_x8 *points, int first_count) {
+    vectors_x8 vectors;
+    cubics_x8 f;
     uint32_t open = ALL_WIDTH & ~separated_by_axes(points, first_count);
     if (open == 0) return 0;
     vectors_between(points, first_count, &vectors);
@@ -60,7 +60,7 @@ static inline void keep_open(const feature_source *source, feature_pairs *pairs,
     if (pairs->count == 0) return;
     repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += WIDTH) {
-        wide_points points;
+        points_x8 points;
         (first_count == 1 ? load_vf : load_ee)(source, pairs->a + i, pairs->b + i, &points);
         uint32_t rest = pairs->count - i, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH;
         uint32_t open = real & open_lanes(&points, first_count);

@@ -1,7 +1,7 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic has the same sign at both ends:
  * no root, or two. The same intervals and verdicts as cubic.c and inside.c have. */
 #include "runtime/ccd/ccd_kernels.h"
-#include "runtime/ccd/wide_roots.h"
+#include "runtime/ccd/cubic_simd.h"
 
 /* A cubic that is above its error at both ends, cut at t: Bernstein coefficients of its two parts are
  * b[0], first, low, value and value, high, last, b[3]. */
@@ -20,7 +20,7 @@ static inline f64w lowest_at(const f64w b[4]) {
 }
 
 /* Returns the lanes that are above their errors at both ends, and cut within. */
-static inline uint32_t cut(const wide_cubics *f, cut_cubics *out) {
+static inline uint32_t cut(const cubics_x8 *f, cut_cubics *out) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w sign = f64w_select(f64w_below(zero, f->b[0]), one, -one);
     for (int i = 0; i < 4; i++) out->b[i] = sign * f->b[i];
@@ -48,8 +48,7 @@ static inline uint32_t with_two_roots(const cut_cubics *c, f64w error) {
 }
 
 /* The two roots, one after the other, in the lanes in which both are isolated. */
-static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t lanes,
-                                    wide_intervals roots[2]) {
+static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t lanes, intervals_x8 roots[2]) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w left = c->t * (c->b[0] / (c->b[0] - c->value));
     f64w right = one - (one - c->t) * (c->b[3] / (c->b[3] - c->value));
@@ -57,11 +56,11 @@ static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t la
     return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
 }
 
-static inline void decide(const wide_points *points, int first_count, int i, root_outcomes *out) {
-    wide_vectors vectors;
-    wide_cubics f;
+static inline void decide(const points_x8 *points, int first_count, int i, root_outcomes *out) {
+    vectors_x8 vectors;
+    cubics_x8 f;
     cut_cubics parts;
-    wide_intervals roots[2];
+    intervals_x8 roots[2];
     vectors_between(points, first_count, &vectors);
     cubics_of(&vectors, &f);
     uint32_t lanes = cut(&f, &parts);

@@ -158,7 +158,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->traversal.lanes != NULL) traversal_destroy(&d->traversal);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
-    forest_free(&d->forest);
+    bvh_free(&d->bvh);
     exclusions_free(context, &d->exclusions);
     representatives_free(context, &d->representatives);
     orphan_sets_free(context, &d->orphans);

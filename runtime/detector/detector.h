@@ -48,8 +48,8 @@ struct cscd_detector {
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches;               /* of the forest, with ICCD */
-    forest forest;                 /* of the interval or moment at hand */
+    patches patches;               /* of the BVH, with ICCD */
+    bvh bvh;                       /* of the interval or moment at hand */
     tree_spread spread_when_built; /* and how good it is: see upkeep.h */
     uint32_t intervals_unlooked, useless_rebuilds;
     bool rebuilt; /* in the interval at hand */

@@ -11,7 +11,7 @@ interval_search interval_search_begin(cscd_detector *d, const double *x0, const 
                              .interval = {.mesh = d->mesh,
                                           .x0 = x0,
                                           .x1 = x1,
-                                          .forest = &d->forest,
+                                          .bvh = &d->bvh,
                                           .representatives = &d->representatives,
                                           .limit = limit}};
 }
@@ -60,7 +60,7 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
     double since = timer_now_ms(), together = 0.0;
     bool last = pass == TRAVERSAL_FRESH;
     progress_stage(d->context, last ? "further passes" : "traversal", last ? 0.9 : 0.3, last ? 1.0 : 0.9);
-    traversal_begin(&d->traversal, &d->forest, pass);
+    traversal_begin(&d->traversal, &d->bvh, pass);
     timer_lap(&since, &search->timings.traversal_ms);
     parallel_run(d->context->threads, d->traversal.busy_lanes, search_and_test, search);
     timer_lap(&since, &together);
@@ -84,7 +84,7 @@ static void test_orphans(void *data, uint32_t index) {
 static void skip_adjacent(cscd_detector *d, bool everywhere, const bool *culled) {
     for (uint32_t c = 0; c < d->mesh->component_count; c++)
         d->skipped[c] = everywhere && (culled == NULL || !culled[c]);
-    forest_skip_adjacent(&d->forest, d->skipped);
+    bvh_skip_adjacent(&d->bvh, d->skipped);
 }
 
 void interval_search_skip_adjacent(interval_search *search, bool everywhere) {

@@ -81,17 +81,17 @@ static void choose_culled(step_work *work) {
     }
 }
 
-static forest_view view_of(const step_work *work) {
+static orientation_query view_of(const step_work *work) {
     const cscd_detector *d = work->search.detector;
     bool all = work->all_clean || follows(d, PUBLISHED_UNPROVEN);
-    return (forest_view){d->culled, all ? NULL : d->starts.triangles,
-                         (const double(*)[3])d->culling.detector_offsets, follows(d, PUBLISHED_STILL)};
+    return (orientation_query){d->culled, all ? NULL : d->starts.triangles,
+                               (const double(*)[3])d->culling.detector_offsets, follows(d, PUBLISHED_STILL)};
 }
 
-static void orient(step_work *work, const forest_view *view) {
+static void orient(step_work *work, const orientation_query *view) {
     cscd_detector *d = work->search.detector;
     double since = timer_now_ms();
-    forest_orient(&d->forest, view, d->culling.facing);
+    bvh_orient(&d->bvh, view, d->culling.facing);
     culling_begin(&d->culling);
     timer_lap(&since, &work->search.timings.orientation_ms);
     work->search.counters.plus = d->culling.plus;
@@ -109,7 +109,7 @@ static cscd_status close_contacts(step_work *work) {
         double since = timer_now_ms();
         culling_pass_done(&d->culling);
         if (tainting_look(d) == 0) return CSCD_OK;
-        forest_mark_fresh(&d->forest, d->culling.earlier, d->culling.orientations);
+        bvh_mark_fresh(&d->bvh, d->culling.earlier, d->culling.orientations);
         timer_lap(&since, &work->search.timings.orientation_ms);
         cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_FRESH);
         if (status != CSCD_OK) return status;
@@ -123,10 +123,10 @@ static cscd_status find_unsealed(step_work *work) {
     bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
     double since = timer_now_ms();
     if (d->patches.tree.node_count == 0) {
-        cscd_status status = patches_create(d->mesh, &d->forest, &d->patches);
+        cscd_status status = patches_create(d->mesh, &d->bvh, &d->patches);
         if (status != CSCD_OK) return status;
     }
-    patches_seal(&d->patches, d->mesh, &d->forest, work->search.interval.x0, work->search.interval.x1,
+    patches_seal(&d->patches, d->mesh, &d->bvh, work->search.interval.x0, work->search.interval.x1,
                  published);
     timer_lap(&since, &work->search.timings.contour_ms);
     work->search.counters.contours = d->patches.contours;
@@ -142,8 +142,8 @@ static cscd_status find_by_trees(step_work *work) {
     if (status != CSCD_OK) return status;
     if (detector_seals(d)) return find_unsealed(work);
     choose_culled(work);
-    forest_view view = view_of(work);
-    if (detector_region_count(d) > 0) forest_detector_points(&d->forest, &view, d->culling.detector_points);
+    orientation_query view = view_of(work);
+    if (detector_region_count(d) > 0) bvh_detector_points(&d->bvh, &view, d->culling.detector_points);
     if (!work->any_culled) return interval_search_everything(&work->search);
     orient(work, &view);
     if (d->options.method == CSCD_METHOD_PUBLISHED) {

@@ -36,12 +36,12 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
 /* The batch, which is consumed, becomes one of triangles, those of different components left out where these
  * do not count. */
 static void name_triangles(const moment *now, traversal_lane *batch) {
-    const forest *f = &now->detector->forest;
+    const bvh *f = &now->detector->bvh;
     const uint32_t *components = now->detector->mesh->triangle_components;
     bool within = now->pass == TRAVERSAL_SUSPECTS;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < batch->pair_count; i++) {
-        triangle_pair pair = {forest_triangle(f, batch->pairs[i].a), forest_triangle(f, batch->pairs[i].b)};
+        triangle_pair pair = {bvh_triangle(f, batch->pairs[i].a), bvh_triangle(f, batch->pairs[i].b)};
         batch->pairs[kept] = pair;
         kept += !within || components[pair.a] == components[pair.b];
     }
@@ -54,8 +54,7 @@ static void test_batch(void *data, uint32_t index) {
     traversal_lane *batch = &d->traversal.lanes[index];
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])d->mesh->triangles;
     name_triangles(now, batch);
-    uint32_t open =
-        d->forest.kernels->keep_meeting(triangles, now->positions, batch->pairs, batch->pair_count);
+    uint32_t open = d->bvh.kernels->keep_meeting(triangles, now->positions, batch->pairs, batch->pair_count);
     for (uint32_t i = 0; i < open; i++) {
         triangle_pair pair = batch->pairs[i];
         if (triangles_intersect(triangles[pair.a], triangles[pair.b], now->positions))
@@ -81,8 +80,7 @@ static void mark_zero_area(const moment *now, intersection_lane *lane, uint32_t 
         count += d->suspects[t];
     }
     memset(d->crossing + begin, false, (end - begin) * sizeof *d->crossing);
-    count =
-        d->forest.kernels->keep_thin((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
+    count = d->bvh.kernels->keep_thin((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
     for (uint32_t i = 0; i < count; i++) {
         if (!has_no_area(now, list[i])) continue;
         d->crossing[list[i]] = true;
@@ -147,8 +145,8 @@ static cscd_status collect(cscd_detector *d, const double *positions, cscd_inter
 static cscd_status find_intersections(moment *now) {
     cscd_detector *d = now->detector;
     parallel_run(d->context->threads, d->traversal.lane_count, count_zero_area, now);
-    forest_skip_adjacent(&d->forest, NULL);
-    traversal_begin(&d->traversal, &d->forest, now->pass);
+    bvh_skip_adjacent(&d->bvh, NULL);
+    traversal_begin(&d->traversal, &d->bvh, now->pass);
     for (bool more = true; more;) {
         if (!progress_go_on(d->context, traversal_done(&d->traversal))) break;
         cscd_status status = traversal_round(&d->traversal, &more);
@@ -178,7 +176,7 @@ static void record_starts(const moment *now) {
 cscd_status static_check_suspects(cscd_detector *detector, const double *positions) {
     moment now = {detector, positions, TRAVERSAL_SUSPECTS};
     progress_stage(detector->context, "start", 0.0, 0.3);
-    forest_mark_suspects(&detector->forest, detector->suspects);
+    bvh_mark_suspects(&detector->bvh, detector->suspects);
     cscd_status status = find_intersections(&now);
     if (status == CSCD_OK) record_starts(&now);
     return status;

@@ -2,7 +2,7 @@
  * by what they share, as many at a time as the processor takes. */
 #include "runtime/bvh/this_level.h"
 
-#include "runtime/intersections/wide_intersection.h"
+#include "runtime/intersections/triangle_intersection_simd.h"
 
 enum { CHUNK = 256, LIST_SIZE = CHUNK + LANES };
 
@@ -60,7 +60,7 @@ static inline void sort_out(const uint32_t (*triangles)[3], const triangle_pair 
  * looked at. */
 static inline void load_corners(const uint32_t (*triangles)[3], const double *positions,
                                 const pair_list *list, uint32_t first, uint32_t loaded,
-                                wide_vector corners[6]) {
+                                vector_x8 corners[6]) {
     uint32_t vertices[6][WIDTH];
     for (uint32_t lane = 0; lane < WIDTH; lane++) {
         uint32_t from = first + lane < list->count ? first + lane : first, shared = list->shared[from];
@@ -75,14 +75,14 @@ static inline void load_corners(const uint32_t (*triangles)[3], const double *po
     }
 }
 
-typedef uint32_t test_lanes(const wide_vector corners[6]);
+typedef uint32_t test_lanes(const vector_x8 corners[6]);
 
 /* Keeps the pairs that a test leaves open. */
 static inline void keep_open(pair_list *list, const uint32_t (*triangles)[3], const double *positions,
                              uint32_t loaded, test_lanes *test) {
     uint32_t kept = 0;
     for (uint32_t first = 0; first < list->count; first += WIDTH) {
-        wide_vector corners[6];
+        vector_x8 corners[6];
         load_corners(triangles, positions, list, first, loaded, corners);
         uint32_t rest = list->count - first, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH;
         for (uint32_t open = test(corners) & real; open != 0; open &= open - 1) {
@@ -108,7 +108,7 @@ uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *p
         keep_open(&lists[0], triangles, positions, FREE_CORNERS, piercing_is_open);
         keep_open(&lists[0], triangles, positions, FREE_CORNERS, flat_free_is_open);
         keep_open(&lists[1], triangles, positions, FAN_CORNERS, fan_is_open);
-        keep_open(&lists[1], triangles, positions, FAN_CORNERS, wide_fan_is_open);
+        keep_open(&lists[1], triangles, positions, FAN_CORNERS, fan_is_open_x8);
         keep_open(&lists[1], triangles, positions, FAN_CORNERS, flat_fan_is_open);
         keep_open(&lists[2], triangles, positions, HINGE_CORNERS, hinge_is_open);
         for (int i = 0; i < 3; i++) { /* three shared vertices: nothing is left to meet */
@@ -127,8 +127,8 @@ uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *posi
     for (uint32_t first = 0; first < count; first += WIDTH) {
         uint32_t rest = count - first, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH, clear = 0;
         uint32_t vertices[3][WIDTH];
-        wide_vector corners[3], u, v;
-        wide_normal normal;
+        vector_x8 corners[3], u, v;
+        normal_x8 normal;
         for (uint32_t lane = 0; lane < WIDTH; lane++) {
             const uint32_t *triangle = triangles[list[lane < rest ? first + lane : first]];
             for (int i = 0; i < 3; i++) vertices[i][lane] = triangle[i];
@@ -138,7 +138,7 @@ uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *posi
         from_to(corners[0], corners[2], v);
         normal_of(u, v, &normal);
         for (int k = 0; k < 3; k++) {
-            wide_sign sign = turn_of(&normal, k);
+            sign_x8 sign = turn_of(&normal, k);
             clear |= sign.plus | sign.minus;
         }
         for (uint32_t open = real & ~clear; open != 0; open &= open - 1)

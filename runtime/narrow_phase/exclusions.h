@@ -20,7 +20,7 @@ static inline bool exclusions_any(const exclusions *e) {
     return e->ignore != NULL || e->ignored_count > 0 || e->names != NULL;
 }
 
-/* Is this contact, or nearness, of two features without a common vertex to be left out? */
+/* Is this contact, or proximity, of two features without a common vertex to be left out? */
 bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
 
 /* Is this intersection of two triangles a < b? Seams: where all that meets has a vertex of one in common. */

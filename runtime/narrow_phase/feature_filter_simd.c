@@ -19,11 +19,11 @@ enum { FEATURE_COUNT = 15 };
 typedef f32x8 coordinates[2][6];
 
 /* Of eight pairs of triangles. */
-typedef struct octet {
+typedef struct pairs_x8 {
     f32x8 points[6][8]; /* of corners of a, then of b: x y z . at the start, x y z . at the end */
     uint32_t vertices[6][LANES];
     float gap[LANES], wide[LANES]; /* beyond rounding and distance, along axes and diagonals */
-} octet;
+} pairs_x8;
 
 typedef struct range {
     f32x8 low, high;
@@ -79,7 +79,7 @@ static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x
     return features;
 }
 
-static inline i32x8 near_along_axes(const octet *o, i32x8 features) {
+static inline i32x8 near_along_axes(const pairs_x8 *o, i32x8 features) {
     f32x8 gaps[FEATURE_COUNT];
     for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
     for (int k = 0; k < 3; k++) {
@@ -98,7 +98,7 @@ static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
                     : p[1] - p[0] + p[2];
 }
 
-static inline i32x8 near_along_diagonals(const octet *o, i32x8 features) {
+static inline i32x8 near_along_diagonals(const pairs_x8 *o, i32x8 features) {
     f32x8 gaps[FEATURE_COUNT];
     for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
     for (int k = 0; k < 4; k++) {
@@ -110,7 +110,7 @@ static inline i32x8 near_along_diagonals(const octet *o, i32x8 features) {
 }
 
 /* Features of a and b of which a vertex is the same one. */
-static inline i32x8 sharing(const octet *o) {
+static inline i32x8 sharing(const pairs_x8 *o) {
     i32x8 corners[6], same[3][3], features = {0};
     for (int i = 0; i < 6; i++) corners[i] = i32x8_load(o->vertices[i]);
     for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
@@ -130,11 +130,11 @@ static inline i32x8 sharing(const octet *o) {
 typedef struct part_pair {
     uint32_t a, b;
     f32x8 between;   /* what is to be added to a record of b */
-    float gap, wide; /* as in an octet */
+    float gap, wide; /* as in an pairs_x8 */
 } part_pair;
 
-static void relate(const forest *f, uint32_t a, uint32_t b, double distance, part_pair *out) {
-    const forest_part *p = &f->parts[a], *q = &f->parts[b];
+static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, part_pair *out) {
+    const bvh_tree *p = &f->parts[a], *q = &f->parts[b];
     float between[LANES] = {0.0f};
     double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
     for (int i = 0; i < 6 && a != b; i++) {
@@ -150,12 +150,12 @@ static void relate(const forest *f, uint32_t a, uint32_t b, double distance, par
 }
 
 /* The places of the last pair are filled up with itself. */
-static inline void load(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                        part_pair *parts, octet *out) {
+static inline void load(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+                        part_pair *parts, pairs_x8 *out) {
     f32x8 rows[6][LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         triangle_pair pair = pairs[lane < count ? lane : count - 1];
-        const forest_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
+        const bvh_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
         uint32_t part_a = f->leaf_parts[pair.a / LANES], part_b = f->leaf_parts[pair.b / LANES];
         if (part_a != parts->a || part_b != parts->b) relate(f, part_a, part_b, distance, parts);
         for (int i = 0; i < 3; i++) {
@@ -178,12 +178,12 @@ static inline bool any(i32x8 features) {
     return i32x8_negative(-features) != 0;
 }
 
-void SIMD_NAME(sieve)(const forest *f, const triangle_pair *pairs, uint32_t count, double distance,
-                      uint16_t *features) {
+void SIMD_NAME(feature_filter)(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+                               uint16_t *features) {
     part_pair parts = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
-        octet o;
+        pairs_x8 o;
         load(f, pairs + p, lanes, distance, &parts, &o);
         i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
         if (any(kept)) kept = near_along_diagonals(&o, kept);

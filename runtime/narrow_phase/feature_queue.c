@@ -93,7 +93,7 @@ static void decide_by_levels(const swept_interval *interval, cscd_contact_kind k
 
 /* The nearest points of lane i at the start. */
 static elementary_hit nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
-                                     const nearness_outcomes *near, uint32_t i) {
+                                     const proximity_outcomes *near, uint32_t i) {
     elementary_hit hit = {.u = near->u[i], .v = near->v[i]};
     bool vf = kind == CSCD_CONTACT_VF;
     const double *first = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][0]) * 3;
@@ -106,15 +106,15 @@ static elementary_hit nearest_points(const swept_interval *interval, cscd_contac
 }
 
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
-static void decide_nearness(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
-                            contact_lane *lane) {
+static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                             contact_lane *lane) {
     const kernels *table = kernels_of(interval->mesh->context);
-    nearness_kernel *kernel = kind == CSCD_CONTACT_VF ? table->nearness_vf : table->nearness_ee;
+    proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
     feature_source source = feature_queue_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
-        nearness_outcomes near;
+        proximity_outcomes near;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);
         for (uint32_t lanes = real & near.hits; lanes != 0; lanes &= lanes - 1) {
@@ -130,7 +130,7 @@ static void decide_nearness(const swept_interval *interval, cscd_contact_kind ki
 static void test_separations(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_lane *lane) {
     lane->separations += pairs->count;
-    decide_nearness(interval, kind, pairs, lane);
+    decide_proximity(interval, kind, pairs, lane);
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_hit hit;

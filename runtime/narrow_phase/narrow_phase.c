@@ -117,14 +117,14 @@ static void put(const swept_interval *interval, triangle_pair pair, uint32_t fea
 
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
-    const forest *f = interval->forest;
+    const bvh *f = interval->bvh;
     uint16_t features[PAIRS_AT_ONCE];
     triangle_pair pairs[PAIRS_AT_ONCE];
     uint32_t kept = 0;
-    f->kernels->sieve(f, slots, count, interval->limit.distance, features);
+    f->kernels->feature_filter(f, slots, count, interval->limit.distance, features);
     for (uint32_t i = 0; i < count; i++) {
         if (features[i] == 0) continue;
-        pairs[kept] = (triangle_pair){forest_triangle(f, slots[i].a), forest_triangle(f, slots[i].b)};
+        pairs[kept] = (triangle_pair){bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
         features[kept++] = features[i];
     }
     answering_select(interval, pairs, kept, features);

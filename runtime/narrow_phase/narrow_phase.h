@@ -15,7 +15,7 @@
 typedef struct swept_interval {
     const cscd_mesh *mesh;
     const double *x0, *x1;
-    const forest *forest; /* slots of triangle pairs */
+    const bvh *bvh; /* slots of triangle pairs */
     const representatives *representatives;
     const culling *culling; /* NULL: the representatives answer, or: */
     const bool *culled;     /* with culling: components whose pairs are answered for by the flags */

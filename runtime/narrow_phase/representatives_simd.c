@@ -3,15 +3,15 @@
 #include "runtime/bvh/this_level.h"
 
 /* Corners of a and b, and of their representatives what is not theirs; edge i joins corners i and i + 1. */
-typedef struct octet {
+typedef struct pairs_x8 {
     uint32_t corners[2][3][LANES], others[2][3][2][LANES], opposite[2][3][LANES], represented[LANES];
-} octet;
+} pairs_x8;
 
 /* A set of corners, or edges: all bits of a lane. */
 typedef i32x8 lane_set[3];
 
 static inline void load_triangle(const cscd_mesh *mesh, const representatives *r, uint32_t triangle, int t,
-                                 uint32_t lane, octet *out) {
+                                 uint32_t lane, pairs_x8 *out) {
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = mesh->triangles[triangle][i];
         out->corners[t][i][lane] = vertex;
@@ -26,7 +26,7 @@ static inline i32x8 is_corner(const lane_set corners, i32x8 vertex) {
 }
 
 /* The corners of t whose representatives share a vertex with the other triangle. */
-static inline i32x8 adjacent_corners(const octet *o, int t, int first_bit) {
+static inline i32x8 adjacent_corners(const pairs_x8 *o, int t, int first_bit) {
     i32x8 features = {0};
     lane_set face;
     for (int i = 0; i < 3; i++) face[i] = i32x8_load(o->corners[1 - t][i]);
@@ -39,7 +39,7 @@ static inline i32x8 adjacent_corners(const octet *o, int t, int first_bit) {
 }
 
 /* Pairs of edges whose representatives share a vertex, if the edges share none. */
-static inline i32x8 adjacent_edges(const octet *o) {
+static inline i32x8 adjacent_edges(const pairs_x8 *o) {
     i32x8 features = {0};
     lane_set corners[2], over[2],
         at[2][3]; /* at[t][i]: of t's corners, what is opposite edge i of the other */
@@ -68,7 +68,7 @@ static inline uint32_t spread(uint32_t edges) {
 void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
                           uint32_t count, uint16_t *features, uint16_t *open) {
     for (uint32_t p = 0; p < count; p += LANES) {
-        octet o;
+        pairs_x8 o;
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         for (uint32_t i = 0; i < LANES; i++) {
             triangle_pair pair = pairs[i < lanes ? p + i : p];

@@ -138,7 +138,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
     cscd_status status = check_length(line, length, "cscd_line_near");
-    if (status == CSCD_OK) status = near_check_distance(d->context, distance);
+    if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
     if (status != CSCD_OK) return status;
     if (out == NULL) return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_near: out is NULL");
     if (distance > line->reach)
@@ -148,10 +148,10 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
     call_begin(d);
     motion m = motion_of(line);
     motion_at(&m, length, line->reached);
-    interval_search search = near_search(d, line->reached, distance);
+    interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
-    if (status == CSCD_OK) status = near_collect(d, line->reached, &found);
+    if (status == CSCD_OK) status = proximity_collect(d, line->reached, &found);
     if (status != CSCD_OK) return call_fail(d, status);
     *out = found;
     return CSCD_OK;

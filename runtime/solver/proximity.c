@@ -23,7 +23,7 @@ _Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name
 
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
-cscd_status near_check_distance(cscd_context *context, double distance) {
+cscd_status proximity_check_distance(cscd_context *context, double distance) {
     if (distance >= 0x1p-300 && distance <= 0x1p300) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
                         "distance is %g, expected a length from 2^-300 to 2^300", distance);
@@ -84,7 +84,7 @@ static void describe_share(void *data, uint32_t index) {
         describe(d->mesh, d->keys[i].of, d->positions, &d->items[i]);
 }
 
-cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
+cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
     cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
@@ -106,17 +106,17 @@ cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximi
     return CSCD_OK;
 }
 
-separation near_limit(double distance) {
+separation proximity_limit(double distance) {
     return (separation){distance, relative_tolerance * distance};
 }
 
-interval_search near_search(cscd_detector *d, const double *positions, double distance) {
-    return interval_search_begin(d, positions, positions, near_limit(distance));
+interval_search proximity_search(cscd_detector *d, const double *positions, double distance) {
+    return interval_search_begin(d, positions, positions, proximity_limit(distance));
 }
 
 static cscd_status find_near(cscd_detector *d, const double *positions, double distance,
                              cscd_proximities *out) {
-    interval_search search = near_search(d, positions, distance);
+    interval_search search = proximity_search(d, positions, distance);
     cscd_status status = CSCD_OK;
     if (d->options.method == CSCD_METHOD_BRUTE) {
         status = interval_search_by_brute_force(&search);
@@ -124,7 +124,7 @@ static cscd_status find_near(cscd_detector *d, const double *positions, double d
         status = upkeep_move_to(d, positions, distance);
         if (status == CSCD_OK) status = interval_search_everything(&search);
     }
-    return status == CSCD_OK ? near_collect(d, positions, out) : status;
+    return status == CSCD_OK ? proximity_collect(d, positions, out) : status;
 }
 
 cscd_status cscd_detector_near(cscd_detector *detector, const double *positions, double distance,
@@ -132,7 +132,7 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_near: out is NULL");
-    cscd_status status = near_check_distance(context, distance);
+    cscd_status status = proximity_check_distance(context, distance);
     if (status == CSCD_OK)
         status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;

@@ -4,13 +4,13 @@
 #include "runtime/detector/interval_search.h"
 
 /* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
-cscd_status near_check_distance(cscd_context *context, double distance);
+cscd_status proximity_check_distance(cscd_context *context, double distance);
 
 /* Within this distance pairs are reported; between that and the tolerance beyond it they may be. */
-separation near_limit(double distance);
+separation proximity_limit(double distance);
 
 /* A search of that moment, begun. */
-interval_search near_search(cscd_detector *d, const double *positions, double distance);
+interval_search proximity_search(cscd_detector *d, const double *positions, double distance);
 
 /* Of that search, in the detector's buffer. */
-cscd_status near_collect(cscd_detector *d, const double *positions, cscd_proximities *out);
+cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out);

@@ -28,7 +28,7 @@ typedef struct subject {
     cscd_mesh *mesh;
     uint32_t *regions;
     double *weights;
-    forest forest;
+    bvh bvh;
     patches patches;
 } subject;
 
@@ -39,15 +39,15 @@ static subject subject_create(cscd_mesh_desc desc, const double *positions) {
     f.regions = calloc(desc.triangle_count, sizeof *f.regions);
     f.weights = calloc(desc.triangle_count, sizeof *f.weights);
     assert_true(f.regions != NULL && f.weights != NULL);
-    forest_regions regions = {f.regions, f.weights, 1};
-    assert_int_equal(forest_build(f.mesh, regions, positions, BOX_AXES, &f.forest), CSCD_OK);
-    assert_int_equal(patches_create(f.mesh, &f.forest, &f.patches), CSCD_OK);
+    bvh_regions regions = {f.regions, f.weights, 1};
+    assert_int_equal(bvh_build(f.mesh, regions, positions, BOX_AXES, &f.bvh), CSCD_OK);
+    assert_int_equal(patches_create(f.mesh, &f.bvh, &f.patches), CSCD_OK);
     return f;
 }
 
 static void subject_destroy(subject *f) {
     patches_free(f->context, &f->patches);
-    forest_free(&f->forest);
+    bvh_free(&f->bvh);
     free(f->weights);
     free(f->regions);
     cscd_mesh_destroy(f->mesh);

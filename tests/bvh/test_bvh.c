@@ -1,4 +1,4 @@
-/* The forest: where triangles and corners lie in it, and that bounds hold what is below them. */
+/* The BVH: where triangles and corners lie in it, and that bounds hold what is below them. */
 #include "runtime/bvh/bvh.h"
 #include "tests/support/bvh/bvh_rig.h"
 
@@ -22,20 +22,20 @@ typedef struct child_place {
     uint32_t block, lane;
 } child_place;
 
-static child_place places[FOREST_LEVEL_MAX][SCENE_TRIANGLES_MAX];
+static child_place places[BVH_LEVEL_MAX][SCENE_TRIANGLES_MAX];
 
-static uint32_t child_count(const forest *f, int level) {
+static uint32_t child_count(const bvh *f, int level) {
     if (level == 0) return f->leaf_count;
     return level == f->part_level ? f->part_count : f->levels[level - 1].block_count;
 }
 
 /* Each child has one place. */
-static void find_places(const forest *f) {
+static void find_places(const bvh *f) {
     for (int level = 0; level < f->level_count; level++) {
-        const forest_level *l = &f->levels[level];
+        const bvh_level *l = &f->levels[level];
         memset(places[level], 0xff, sizeof places[level]);
         for (uint32_t b = 0; b < l->block_count; b++) {
-            for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+            for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
                 uint32_t child = l->first_children[b] + lane;
                 if ((l->flags[b].used >> lane & 1) == 0) continue;
                 assert_true(child < child_count(f, level));
@@ -52,11 +52,11 @@ static void find_places(const forest *f) {
 
 /* ---- what lies where ----------------------------------------------------------------------------------- */
 
-static void check_leaf(const forest_rig *r, uint32_t index, const forest_part *p, uint32_t *seen) {
-    const forest *f = &r->forest;
-    const forest_leaf *l = &f->leaves[index];
+static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint32_t *seen) {
+    const bvh *f = &r->bvh;
+    const bvh_leaf *l = &f->leaves[index];
     assert_ptr_equal(&f->parts[f->leaf_parts[index]], p);
-    for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+    for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
         uint32_t t = l->triangles[lane], from = t != UINT32_MAX ? t : l->triangles[0];
         assert_int_equal(f->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
         for (int i = 0; i < 3; i++) {
@@ -66,22 +66,22 @@ static void check_leaf(const forest_rig *r, uint32_t index, const forest_part *p
         }
         if (t == UINT32_MAX) continue;
         assert_int_equal(r->regions[t], p->region);
-        assert_int_equal(f->slots[t], index * FOREST_LANES + lane);
-        assert_int_equal(forest_triangle(f, f->slots[t]), t);
+        assert_int_equal(f->slots[t], index * BVH_LANES + lane);
+        assert_int_equal(bvh_triangle(f, f->slots[t]), t);
         seen[t]++;
     }
 }
 
-static void check_layout(const forest_rig *r) {
+static void check_layout(const bvh_rig *r) {
     static uint32_t seen[SCENE_TRIANGLES_MAX];
-    const forest *f = &r->forest;
+    const bvh *f = &r->bvh;
     uint32_t leaf = 0, record = 0;
     memset(seen, 0, sizeof seen);
     for (uint32_t i = 0; i < f->part_count; i++) {
-        const forest_part *p = &f->parts[i];
+        const bvh_tree *p = &f->parts[i];
         assert_int_equal(p->first_leaf, leaf);
         assert_int_equal(p->first_record, record);
-        assert_int_equal(p->record_count % FOREST_LANES, 0);
+        assert_int_equal(p->record_count % BVH_LANES, 0);
         for (; leaf < p->first_leaf + p->leaf_count; leaf++) {
             check_leaf(r, leaf, p, seen);
             assert_int_equal(f->block_parts[places[0][leaf].block], i);
@@ -98,31 +98,31 @@ static void every_triangle_has_one_slot(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 11, &shape);
         for (int i = 0; i < REGION_CHOICES; i++) {
-            forest_rig r;
+            bvh_rig r;
             assert_true(
-                forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, region_counts[i]}, &r));
-            find_places(&r.forest);
+                bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, region_counts[i]}, &r));
+            find_places(&r.bvh);
             check_layout(&r);
-            forest_rig_destroy(&r);
+            bvh_rig_destroy(&r);
         }
     }
 }
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
-static const float *bounds_of(const forest *f, int level, child_place at, int axis) {
-    size_t stride = (size_t)f->axis_count * 2 * FOREST_LANES;
-    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * FOREST_LANES + at.lane;
+static const float *bounds_of(const bvh *f, int level, child_place at, int axis) {
+    size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
+    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * BVH_LANES + at.lane;
 }
 
 /* Part level and above have no bounds where there is nothing to tell apart. */
-static int bounded_levels(const forest *f) {
+static int bounded_levels(const bvh *f) {
     return f->part_count > 1 ? f->level_count : f->part_level;
 }
 
 /* All bounds above a triangle hold one of its corners, and what lies within half the distance of it. */
-static void check_held(const forest *f, uint32_t leaf, motion m, uint32_t vertex, double distance) {
-    const forest_part *p = &f->parts[f->leaf_parts[leaf]];
+static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, double distance) {
+    const bvh_tree *p = &f->parts[f->leaf_parts[leaf]];
     for (int moment = 0; moment < 3; moment++) {
         long double own[3], common[3];
         in_frame(f, p, m, vertex, moment, own);
@@ -135,7 +135,7 @@ static void check_held(const forest *f, uint32_t leaf, motion m, uint32_t vertex
                 long double value = along_direction(level < f->part_level ? own : common, axis);
                 const float *low = bounds_of(f, level, at, axis);
                 assert_true((long double)low[0] <= value - wide);
-                assert_true((long double)low[FOREST_LANES] >= value + wide);
+                assert_true((long double)low[BVH_LANES] >= value + wide);
             }
             child = at.block;
         }
@@ -143,11 +143,11 @@ static void check_held(const forest *f, uint32_t leaf, motion m, uint32_t vertex
 }
 
 /* Bounds of a leaf are no wider than documented. */
-static void check_leaf_tight(const forest *f, uint32_t leaf, motion m) {
-    const forest_part *p = &f->parts[f->leaf_parts[leaf]];
+static void check_leaf_tight(const bvh *f, uint32_t leaf, motion m) {
+    const bvh_tree *p = &f->parts[f->leaf_parts[leaf]];
     for (int axis = 0; axis < f->axis_count; axis++) {
         long double least = INFINITY, greatest = -INFINITY;
-        for (int i = 0; i < 6 * FOREST_LANES; i++) {
+        for (int i = 0; i < 6 * BVH_LANES; i++) {
             long double own[3];
             uint32_t record = f->leaves[leaf].corners[i % 3][i / 6];
             in_frame(f, p, m, f->record_vertices[record], i % 6 < 3 ? 0 : 2, own);
@@ -157,31 +157,31 @@ static void check_leaf_tight(const forest *f, uint32_t leaf, motion m) {
         const float *low = bounds_of(f, 0, places[0][leaf], axis);
         long double slack = 2.0L * p->slack[axis < BOX_AXES ? 0 : 1];
         assert_true((long double)low[0] >= least - slack);
-        assert_true((long double)low[FOREST_LANES] <= greatest + slack);
+        assert_true((long double)low[BVH_LANES] <= greatest + slack);
     }
 }
 
 /* Above leaves, bounds are the union of those below. */
-static void check_union(const forest *f, int level, uint32_t child) {
+static void check_union(const bvh *f, int level, uint32_t child) {
     const lane_flags flags = f->levels[level - 1].flags[child];
     for (int axis = 0; axis < f->axis_count; axis++) {
         float least = INFINITY, greatest = -INFINITY;
-        for (uint32_t lane = 0; lane < FOREST_LANES; lane++) {
+        for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
             const float *low = bounds_of(f, level - 1, (child_place){child, lane}, axis);
             bool used = (flags.used >> lane & 1) != 0;
-            if (!used) assert_true(low[0] > low[FOREST_LANES]);
+            if (!used) assert_true(low[0] > low[BVH_LANES]);
             least = used ? fminf(least, low[0]) : least;
-            greatest = used ? fmaxf(greatest, low[FOREST_LANES]) : greatest;
+            greatest = used ? fmaxf(greatest, low[BVH_LANES]) : greatest;
         }
         if (level == f->part_level) continue;
         const float *low = bounds_of(f, level, places[level][child], axis);
-        assert_true(low[0] == least && low[FOREST_LANES] == greatest);
+        assert_true(low[0] == least && low[BVH_LANES] == greatest);
     }
 }
 
-static void check_bounds(const forest *f, motion m, double distance) {
+static void check_bounds(const bvh *f, motion m, double distance) {
     for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
-        for (int i = 0; i < 3 * FOREST_LANES; i++) {
+        for (int i = 0; i < 3 * BVH_LANES; i++) {
             uint32_t record = f->leaves[leaf].corners[i % 3][i / 3];
             check_held(f, leaf, m, f->record_vertices[record], distance);
         }
@@ -201,14 +201,14 @@ static void scale_scene(const scene *from, int exponent, scene *out) {
 }
 
 static void check_scene(const scene *s, int axis_count, uint32_t region_count, double distance) {
-    forest_rig r;
-    assert_true(forest_rig_create(s, (forest_setup){CSCD_SIMD_AUTO, 1, axis_count, region_count}, &r));
-    find_places(&r.forest);
-    forest_move(&r.forest, s->x0, s->x1, distance);
-    check_bounds(&r.forest, (motion){s->x0, s->x1}, distance);
-    forest_move(&r.forest, s->x1, s->x1, 0.0);
-    check_bounds(&r.forest, (motion){s->x1, s->x1}, 0.0);
-    forest_rig_destroy(&r);
+    bvh_rig r;
+    assert_true(bvh_rig_create(s, (bvh_setup){CSCD_SIMD_AUTO, 1, axis_count, region_count}, &r));
+    find_places(&r.bvh);
+    bvh_refit(&r.bvh, s->x0, s->x1, distance);
+    check_bounds(&r.bvh, (motion){s->x0, s->x1}, distance);
+    bvh_refit(&r.bvh, s->x1, s->x1, 0.0);
+    check_bounds(&r.bvh, (motion){s->x1, s->x1}, 0.0);
+    bvh_rig_destroy(&r);
 }
 
 static void bounds_hold_what_is_below(void **state) {
@@ -243,18 +243,18 @@ static void bounds_at_changing_scales(void **state) {
     static const int from[] = {0, 290, -290, 290, 10, -40, -40, 0},
                      to[] = {290, -290, 290, 290, 30, -40, 3, 0};
     static scene start, end;
-    forest_rig r;
+    bvh_rig r;
     (void)state;
     scene_make(SCENE_TWO_SPHERES, 14, &shape);
-    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, KDOP_AXES, 5}, &r));
-    find_places(&r.forest);
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, KDOP_AXES, 5}, &r));
+    find_places(&r.bvh);
     for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
         scale_scene(&shape, from[i], &start);
         scale_scene(&shape, to[i], &end);
-        forest_move(&r.forest, start.x0, end.x1, 0.0);
-        check_bounds(&r.forest, (motion){start.x0, end.x1}, 0.0);
+        bvh_refit(&r.bvh, start.x0, end.x1, 0.0);
+        check_bounds(&r.bvh, (motion){start.x0, end.x1}, 0.0);
     }
-    forest_rig_destroy(&r);
+    bvh_rig_destroy(&r);
 }
 
 /* All corners in one place, and a mesh that starts so. */
@@ -270,11 +270,11 @@ static void bounds_of_points(void **state) {
 /* ---- the same whatever computes it ----------------------------------------------------------------------
  */
 
-static void assert_same_forest(const forest *a, const forest *b) {
+static void assert_same_bvh(const bvh *a, const bvh *b) {
     assert_memory_equal(a->records, b->records, a->record_count * sizeof *a->records);
     assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);
     for (int level = 0; level < bounded_levels(a); level++) {
-        size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * FOREST_LANES;
+        size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * BVH_LANES;
         assert_memory_equal(a->levels[level].bounds, b->levels[level].bounds, floats * sizeof(float));
     }
     for (uint32_t i = 0; i < a->part_count; i++) {
@@ -286,20 +286,20 @@ static void assert_same_forest(const forest *a, const forest *b) {
 static void same_on_all_levels_and_threads(void **state) {
     (void)state;
     for (int i = 0; i < 4; i++) {
-        forest_rig one, other;
+        bvh_rig one, other;
         scene_make((scene_family)(i * 3), 16, &shape);
-        forest_setup setup = {CSCD_SIMD_SCALAR, 1, axis_counts[i % 2], region_counts[i]};
-        assert_true(forest_rig_create(&shape, setup, &one));
-        forest_move(&one.forest, shape.x0, shape.x1, 0.0);
+        bvh_setup setup = {CSCD_SIMD_SCALAR, 1, axis_counts[i % 2], region_counts[i]};
+        assert_true(bvh_rig_create(&shape, setup, &one));
+        bvh_refit(&one.bvh, shape.x0, shape.x1, 0.0);
         for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
             setup.simd = (cscd_simd)simd;
             setup.thread_count = (uint32_t)simd;
-            if (!forest_rig_create(&shape, setup, &other)) continue;
-            forest_move(&other.forest, shape.x0, shape.x1, 0.0);
-            assert_same_forest(&one.forest, &other.forest);
-            forest_rig_destroy(&other);
+            if (!bvh_rig_create(&shape, setup, &other)) continue;
+            bvh_refit(&other.bvh, shape.x0, shape.x1, 0.0);
+            assert_same_bvh(&one.bvh, &other.bvh);
+            bvh_rig_destroy(&other);
         }
-        forest_rig_destroy(&one);
+        bvh_rig_destroy(&one);
     }
 }
 
@@ -312,5 +312,5 @@ int main(void) {
         cmocka_unit_test(bounds_of_points),
         cmocka_unit_test(same_on_all_levels_and_threads),
     };
-    return cmocka_run_group_tests_name("forest", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("bvh", tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-enum { BATCH_COUNT = 12500, BATCH_SIZE = FOREST_LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
+enum { BATCH_COUNT = 12500, BATCH_SIZE = BVH_LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
 enum { UNIT_EXPONENT = -200 };
 
 static scene shape; /* large; one test at a time */
@@ -65,9 +65,9 @@ static void add_determinant(const exact_vector *a, const exact_vector *b, const 
 
 /* The signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the part's detector point.
  */
-static void exact_signs(const double x0[9], const double x1[9], const forest *f, int signs[4]) {
+static void exact_signs(const double x0[9], const double x1[9], const bvh *f, int signs[4]) {
     static const double zero[3] = {0.0, 0.0, 0.0};
-    const forest_part *p = &f->parts[0];
+    const bvh_tree *p = &f->parts[0];
     static exact_triangle t;
     static bool ready;
     exact_vector *vectors[6] = {&t.c[0], &t.c[1], &t.a[0], &t.a[1], &t.b[0], &t.b[1]};
@@ -120,18 +120,18 @@ static void move_triangles(double offset, double speed) {
 }
 
 /* Nearly in the plane of triangle t, at one end. */
-static void put_into_plane(forest *f, uint32_t t, int end) {
+static void put_into_plane(bvh *f, uint32_t t, int end) {
     const double *x = (end == 0 ? shape.x0 : shape.x1) + (size_t)t * 9;
     double u = 3.0 * random_unit(), v = 3.0 * random_unit();
-    forest_part *p = &f->parts[0];
+    bvh_tree *p = &f->parts[0];
     for (int k = 0; k < 3; k++) {
         double at = x[k] + u * (x[3 + k] - x[k]) + v * (x[6 + k] - x[k]);
         p->detector[end][k] = nudged((float)((at - p->origin[end][k]) * f->scale));
     }
 }
 
-static void place_detector(forest *f, double speed, bool near_zero) {
-    forest_part *p = &f->parts[0];
+static void place_detector(bvh *f, double speed, bool near_zero) {
+    bvh_tree *p = &f->parts[0];
     for (int k = 0; k < 3; k++) {
         p->detector[0][k] = (float)(2.0 * random_unit() * f->scale);
         p->detector[1][k] = p->detector[0][k] + (float)(speed * random_unit() * f->scale);
@@ -144,18 +144,18 @@ static void place_detector(forest *f, double speed, bool near_zero) {
 }
 
 /* Levels of vector instructions that the processor has not are left out. */
-static uint32_t open_levels(forest_rig levels[CSCD_SIMD_AVX512]) {
+static uint32_t open_levels(bvh_rig levels[CSCD_SIMD_AVX512]) {
     uint32_t count = 0;
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++)
-        count += forest_rig_create(&shape, (forest_setup){(cscd_simd)simd, 1, BOX_AXES, 1}, &levels[count]);
+        count += bvh_rig_create(&shape, (bvh_setup){(cscd_simd)simd, 1, BOX_AXES, 1}, &levels[count]);
     return count;
 }
 
-static void orient_all(forest *f, uint8_t *flags) {
+static void orient_all(bvh *f, uint8_t *flags) {
     f->kernels->orient(f, &f->parts[0], 0, f->leaf_count, NULL, flags);
 }
 
-static void check_batch(const forest *f, const uint8_t *flags, int count[4], int *lost) {
+static void check_batch(const bvh *f, const uint8_t *flags, int count[4], int *lost) {
     for (uint32_t t = 0; t < BATCH_SIZE; t++) {
         int signs[4];
         exact_signs(shape.x0 + (size_t)t * 9, shape.x1 + (size_t)t * 9, f, signs);
@@ -169,7 +169,7 @@ static void check_batch(const forest *f, const uint8_t *flags, int count[4], int
 
 static void signs_are_exact(void **state) {
     int count[4] = {0}, lost = 0;
-    forest_rig levels[CSCD_SIMD_AVX512];
+    bvh_rig levels[CSCD_SIMD_AVX512];
     (void)state;
     make_triangles(BATCH_SIZE);
     uint32_t level_count = open_levels(levels);
@@ -178,27 +178,27 @@ static void signs_are_exact(void **state) {
         uint8_t flags[CSCD_SIMD_AVX512][BATCH_SIZE];
         move_triangles(random_integer(0, 1) ? 0.0 : ldexp(random_unit(), random_integer(0, 20)), speed);
         for (uint32_t l = 0; l < level_count; l++) {
-            forest *f = &levels[l].forest;
-            forest_move(f, shape.x0, shape.x1, 0.0);
+            bvh *f = &levels[l].bvh;
+            bvh_refit(f, shape.x0, shape.x1, 0.0);
             if (l == 0) place_detector(f, speed, i % 3 == 0);
-            memcpy(f->parts[0].detector, levels[0].forest.parts[0].detector, sizeof f->parts[0].detector);
+            memcpy(f->parts[0].detector, levels[0].bvh.parts[0].detector, sizeof f->parts[0].detector);
             orient_all(f, flags[l]);
             assert_memory_equal(flags[l], flags[0], sizeof flags[l]);
         }
-        check_batch(&levels[0].forest, flags[0], count, &lost);
+        check_batch(&levels[0].bvh, flags[0], count, &lost);
     }
-    for (uint32_t l = 0; l < level_count; l++) forest_rig_destroy(&levels[l]);
+    for (uint32_t l = 0; l < level_count; l++) bvh_rig_destroy(&levels[l]);
     printf("S+ %d, S- %d, S0 %d, of which exact signs would decide %d\n", count[ORIENTATION_PLUS],
            count[ORIENTATION_MINUS], count[ORIENTATION_ZERO], lost);
     assert_true(count[ORIENTATION_PLUS] > 10000 && count[ORIENTATION_MINUS] > 10000);
     assert_true(lost < TRIANGLE_COUNT / 10);
 }
 
-static uint8_t orientation_from(forest *f, double end_height, const double start[3], const double end[3]) {
+static uint8_t orientation_from(bvh *f, double end_height, const double start[3], const double end[3]) {
     uint8_t flag;
     for (int i = 0; i < 3; i++) shape.x1[3 * i + 2] = end_height;
-    forest_move(f, shape.x0, shape.x1, 0.0);
-    forest_part *p = &f->parts[0];
+    bvh_refit(f, shape.x0, shape.x1, 0.0);
+    bvh_tree *p = &f->parts[0];
     for (int k = 0; k < 3; k++) {
         p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * f->scale);
         p->detector[1][k] = (float)((end[k] - p->origin[1][k]) * f->scale);
@@ -211,25 +211,25 @@ static void sides_of_a_plane(void **state) {
     static const double x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     static const double below[2][3] = {{0, 0, -1}, {5, 5, -1}}, above[2][3] = {{0, 0, 1}, {5, 5, 1}};
     static const double within[2][3] = {{7, 7, 0}, {8, 8, 0}};
-    forest_rig r;
+    bvh_rig r;
     (void)state;
     make_triangles(1);
     memcpy(shape.x0, x, sizeof x);
     memcpy(shape.x1, x, sizeof x);
-    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 1}, &r));
-    assert_int_equal(orientation_from(&r.forest, 0, below[0], below[1]), ORIENTATION_PLUS);
-    assert_int_equal(orientation_from(&r.forest, 0, above[0], above[1]), ORIENTATION_MINUS);
-    assert_int_equal(orientation_from(&r.forest, 0, below[0], above[1]), ORIENTATION_ZERO);
-    assert_int_equal(orientation_from(&r.forest, 0, within[0], within[1]), ORIENTATION_ZERO);
-    assert_int_equal(orientation_from(&r.forest, 3, above[0], above[1]), ORIENTATION_ZERO);
-    assert_int_equal(orientation_from(&r.forest, 3, below[0], below[1]), ORIENTATION_PLUS);
-    forest_rig_destroy(&r);
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, 1}, &r));
+    assert_int_equal(orientation_from(&r.bvh, 0, below[0], below[1]), ORIENTATION_PLUS);
+    assert_int_equal(orientation_from(&r.bvh, 0, above[0], above[1]), ORIENTATION_MINUS);
+    assert_int_equal(orientation_from(&r.bvh, 0, below[0], above[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.bvh, 0, within[0], within[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.bvh, 3, above[0], above[1]), ORIENTATION_ZERO);
+    assert_int_equal(orientation_from(&r.bvh, 3, below[0], below[1]), ORIENTATION_PLUS);
+    bvh_rig_destroy(&r);
 }
 
 /* ---- detector points ---- */
 
 /* Weights are the same for all triangles of a region (tests/support/bvh/bvh_rig.h). */
-static void expected_point(const forest_rig *r, uint32_t region, const double *x, long double out[3]) {
+static void expected_point(const bvh_rig *r, uint32_t region, const double *x, long double out[3]) {
     long double size = 0.0L;
     for (int k = 0; k < 3; k++) out[k] = 0.0L;
     for (uint32_t t = 0; t < r->mesh->triangle_count; t++) {
@@ -241,11 +241,11 @@ static void expected_point(const forest_rig *r, uint32_t region, const double *x
     for (int k = 0; k < 3; k++) out[k] /= size;
 }
 
-static void check_points(const forest_rig *r, const double (*offsets)[3], bool still) {
-    const forest *f = &r->forest;
+static void check_points(const bvh_rig *r, const double (*offsets)[3], bool still) {
+    const bvh *f = &r->bvh;
     double extent = motion_extent((motion){shape.x0, shape.x1}, shape.vertex_count);
     for (uint32_t i = 0; i < f->part_count; i++) {
-        const forest_part *p = &f->parts[i];
+        const bvh_tree *p = &f->parts[i];
         for (int end = 0; end < 2; end++) {
             long double expected[3];
             expected_point(r, p->region, end == 0 || still ? shape.x0 : shape.x1, expected);
@@ -263,18 +263,18 @@ static void detector_points_follow_their_regions(void **state) {
     (void)state;
     scene_make(SCENE_LINKED_TORI, 42, &shape);
     for (uint32_t region_count = 0; region_count < 4; region_count++) {
-        forest_rig r;
+        bvh_rig r;
         double offsets[4][3];
         bool culled[4] = {true, true, true, true};
         for (int i = 0; i < 12; i++) offsets[i / 3][i % 3] = random_unit();
-        assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
-        forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+        assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
+        bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
         for (int still = 0; still < 2; still++) {
-            forest_view view = {culled, NULL, (const double(*)[3])offsets, still != 0};
-            forest_orient(&r.forest, &view, flags);
+            orientation_query view = {culled, NULL, (const double(*)[3])offsets, still != 0};
+            bvh_orient(&r.bvh, &view, flags);
             check_points(&r, (const double(*)[3])offsets, still != 0);
         }
-        forest_rig_destroy(&r);
+        bvh_rig_destroy(&r);
     }
 }
 

@@ -25,8 +25,8 @@ static scene shape; /* large; one test at a time */
 static pair_table all, kept, others;
 
 /* Only pairs of two different triangles, none twice. */
-static void add_pair(const forest *f, triangle_pair pair, pair_table *out) {
-    uint32_t a = forest_triangle(f, pair.a), b = forest_triangle(f, pair.b);
+static void add_pair(const bvh *f, triangle_pair pair, pair_table *out) {
+    uint32_t a = bvh_triangle(f, pair.a), b = bvh_triangle(f, pair.b);
     assert_true(a < f->mesh->triangle_count && b < f->mesh->triangle_count && a != b);
     uint8_t *place = &out->found[a < b ? a : b][a < b ? b : a];
     assert_int_equal(*place, 0);
@@ -34,28 +34,27 @@ static void add_pair(const forest *f, triangle_pair pair, pair_table *out) {
     out->count++;
 }
 
-static void traverse_but(const forest_rig *r, traversal_pass pass, bool skip_adjacent, pair_table *out) {
+static void traverse_but(const bvh_rig *r, traversal_pass pass, bool skip_adjacent, pair_table *out) {
     static bool everywhere[SCENE_TRIANGLES_MAX];
-    forest same = r->forest;
+    bvh same = r->bvh;
     traversal t;
     memset(out, 0, sizeof *out);
     memset(everywhere, true, sizeof everywhere);
-    forest_skip_adjacent(&same, skip_adjacent ? everywhere : NULL);
+    bvh_skip_adjacent(&same, skip_adjacent ? everywhere : NULL);
     assert_int_equal(traversal_create(r->context, &t), CSCD_OK);
-    traversal_begin(&t, &r->forest, pass);
+    traversal_begin(&t, &r->bvh, pass);
     for (bool more = true; more;) {
         assert_int_equal(traversal_round(&t, &more), CSCD_OK);
         for (uint32_t i = 0; i < t.lane_count; i++) {
             assert_true(t.lanes[i].pair_count <= TRAVERSAL_BATCH_SIZE);
-            for (uint32_t k = 0; k < t.lanes[i].pair_count; k++)
-                add_pair(&r->forest, t.lanes[i].pairs[k], out);
+            for (uint32_t k = 0; k < t.lanes[i].pair_count; k++) add_pair(&r->bvh, t.lanes[i].pairs[k], out);
         }
     }
     out->boxes_tested = traversal_boxes_tested(&t);
     traversal_destroy(&t);
 }
 
-static void traverse(const forest_rig *r, traversal_pass pass, pair_table *out) {
+static void traverse(const bvh_rig *r, traversal_pass pass, pair_table *out) {
     traverse_but(r, pass, false, out);
 }
 
@@ -77,14 +76,14 @@ static void check_against_gaps(const pair_table *table, double distance) {
     }
 }
 
-static void check_scene(forest_setup setup, double distance) {
-    forest_rig r;
+static void check_scene(bvh_setup setup, double distance) {
+    bvh_rig r;
     assert_true(shape.triangle_count <= TRIANGLES_MAX);
-    assert_true(forest_rig_create(&shape, setup, &r));
-    forest_move(&r.forest, shape.x0, shape.x1, distance);
+    assert_true(bvh_rig_create(&shape, setup, &r));
+    bvh_refit(&r.bvh, shape.x0, shape.x1, distance);
     traverse(&r, TRAVERSAL_KEPT, &all);
     check_against_gaps(&all, distance);
-    forest_rig_destroy(&r);
+    bvh_rig_destroy(&r);
 }
 
 static void finds_what_may_touch(void **state) {
@@ -93,8 +92,8 @@ static void finds_what_may_touch(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (int i = 0; i < 4; i++) {
             scene_make((scene_family)family, (uint64_t)(20 + i), &shape);
-            forest_setup setup = {CSCD_SIMD_AUTO, 1, i % 2 == 0 ? BOX_AXES : KDOP_AXES,
-                                  region_counts[(i + family) % 4]};
+            bvh_setup setup = {CSCD_SIMD_AUTO, 1, i % 2 == 0 ? BOX_AXES : KDOP_AXES,
+                               region_counts[(i + family) % 4]};
             check_scene(setup, i == 3 ? 0.05 : 0.0);
         }
     }
@@ -107,9 +106,9 @@ static void finds_what_may_touch_in_flight(void **state) {
     for (uint32_t i = 0; i < 3; i++) {
         scene_make(SCENE_LINKED_TORI, 25, &shape);
         translate(shape.x1, shape.vertex_count, far);
-        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
+        check_scene((bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
         memcpy(shape.x1, shape.x0, (size_t)shape.vertex_count / 2 * sizeof(double[3]));
-        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
+        check_scene((bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, i * 4}, 0.0);
     }
 }
 
@@ -119,7 +118,7 @@ static void finds_what_just_touches(void **state) {
     (void)state;
     for (uint32_t i = 0; i < 16; i++) {
         make_touching_pairs(&random, 90, i % 2 == 0 ? 3.0 : 300.0, &shape);
-        check_scene((forest_setup){CSCD_SIMD_AUTO, 1, i % 4 < 2 ? BOX_AXES : KDOP_AXES, i / 4}, 0.0);
+        check_scene((bvh_setup){CSCD_SIMD_AUTO, 1, i % 4 < 2 ? BOX_AXES : KDOP_AXES, i / 4}, 0.0);
     }
 }
 
@@ -139,31 +138,31 @@ static void finds_what_may_touch_in_a_crowd(void **state) {
         for (uint32_t i = 0; i < 3; i++) shape.triangles[t * 3 + i] = first + i;
     }
     for (uint32_t region_count = 1; region_count < 5; region_count += 2)
-        check_scene((forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, 0.0);
+        check_scene((bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, 0.0);
 }
 
 /* ---- threads, levels, rounds -----------------------------------------------------------------------------
  */
 
-static void check_same(forest_setup setup) {
-    forest_rig r;
-    if (!forest_rig_create(&shape, setup, &r)) return;
-    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+static void check_same(bvh_setup setup) {
+    bvh_rig r;
+    if (!bvh_rig_create(&shape, setup, &r)) return;
+    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
     traverse(&r, TRAVERSAL_KEPT, &others);
     assert_memory_equal(&others, &all, sizeof all);
-    forest_rig_destroy(&r);
+    bvh_rig_destroy(&r);
 }
 
 static void check_all_ways(uint32_t region_count) {
-    forest_setup setup = {CSCD_SIMD_SCALAR, 1, BOX_AXES, region_count};
-    forest_rig r;
-    assert_true(forest_rig_create(&shape, setup, &r));
-    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+    bvh_setup setup = {CSCD_SIMD_SCALAR, 1, BOX_AXES, region_count};
+    bvh_rig r;
+    assert_true(bvh_rig_create(&shape, setup, &r));
+    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
     traverse(&r, TRAVERSAL_KEPT, &all);
-    forest_rig_destroy(&r);
+    bvh_rig_destroy(&r);
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
         for (uint32_t threads = 1; threads <= 3; threads++)
-            check_same((forest_setup){(cscd_simd)simd, threads, BOX_AXES, region_count});
+            check_same((bvh_setup){(cscd_simd)simd, threads, BOX_AXES, region_count});
     }
 }
 
@@ -198,19 +197,19 @@ static void many_rounds(void **state) {
 static uint8_t before[TRIANGLES_MAX], now[TRIANGLES_MAX];
 static bool suspects[TRIANGLES_MAX];
 
-static bool hidden(const forest_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
+static bool hidden(const bvh_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
     return r->regions[a] == r->regions[b] && !orientations_may_touch(orientations[a], orientations[b]);
 }
 
-static bool stays(const forest_rig *r, uint32_t a, uint32_t b) {
+static bool stays(const bvh_rig *r, uint32_t a, uint32_t b) {
     return !hidden(r, now, a, b);
 }
 
-static bool has_come(const forest_rig *r, uint32_t a, uint32_t b) {
+static bool has_come(const bvh_rig *r, uint32_t a, uint32_t b) {
     return hidden(r, before, a, b) && !hidden(r, now, a, b);
 }
 
-static bool both_suspect(const forest_rig *r, uint32_t a, uint32_t b) {
+static bool both_suspect(const bvh_rig *r, uint32_t a, uint32_t b) {
     (void)r;
     return suspects[a] && suspects[b];
 }
@@ -224,8 +223,8 @@ static bool adjacent(uint32_t a, uint32_t b) {
 }
 
 /* A pass finds those of all pairs of which this is true. */
-static void check_pass(const forest_rig *r, traversal_pass pass,
-                       bool (*of_pass)(const forest_rig *, uint32_t, uint32_t)) {
+static void check_pass(const bvh_rig *r, traversal_pass pass,
+                       bool (*of_pass)(const bvh_rig *, uint32_t, uint32_t)) {
     for (int skip_adjacent = 0; skip_adjacent < 2; skip_adjacent++) {
         traverse_but(r, pass, skip_adjacent != 0, &kept);
         for (uint32_t a = 0; a < shape.triangle_count; a++) {
@@ -250,19 +249,19 @@ static void choose_flags(random_stream *random, uint32_t run) {
 }
 
 static void check_passes(random_stream *random, uint32_t region_count) {
-    forest_rig r;
-    assert_true(forest_rig_create(&shape, (forest_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
-    forest_move(&r.forest, shape.x0, shape.x1, 0.0);
+    bvh_rig r;
+    assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
+    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
     traverse(&r, TRAVERSAL_KEPT, &all);
     for (uint32_t run = 1; run < 1000; run *= 6) {
         choose_flags(random, run);
-        forest_mark_fresh(&r.forest, before, now);
+        bvh_mark_fresh(&r.bvh, before, now);
         check_pass(&r, TRAVERSAL_KEPT, stays);
         check_pass(&r, TRAVERSAL_FRESH, has_come);
-        forest_mark_suspects(&r.forest, suspects);
+        bvh_mark_suspects(&r.bvh, suspects);
         check_pass(&r, TRAVERSAL_SUSPECTS, both_suspect);
     }
-    forest_rig_destroy(&r);
+    bvh_rig_destroy(&r);
 }
 
 static void passes_are_what_flags_say(void **state) {

@@ -56,7 +56,7 @@ typedef struct tally {
     size_t hits, misses, open;
 } tally;
 
-static void compare(const batch *b, const separation *limit, bool vf, const nearness_outcomes *found,
+static void compare(const batch *b, const separation *limit, bool vf, const proximity_outcomes *found,
                     tally *sum) {
     for (uint32_t i = 0; i < KERNEL_LANES; i++) {
         elementary_query query = query_of(b, i);
@@ -92,9 +92,9 @@ static void never_against_the_test_of_one_pair(void **state) {
             for (int level = 0; level < LEVEL_COUNT; level++) {
                 if (contexts[level] == NULL) continue;
                 const kernels *table = kernels_of(contexts[level]);
-                nearness_outcomes found;
-                (vf ? table->nearness_vf : table->nearness_ee)(&source, vf ? b.vf_a : b.ee_a,
-                                                               vf ? b.faces : b.ee_b, &limit, &found);
+                proximity_outcomes found;
+                (vf ? table->proximity_vf : table->proximity_ee)(&source, vf ? b.vf_a : b.ee_a,
+                                                                 vf ? b.faces : b.ee_b, &limit, &found);
                 compare(&b, &limit, vf, &found, &sum);
                 double own = found.distance[random_integer(0, KERNEL_LANES - 1)];
                 if (level == 0 && own > 1e-9 && own < 1e9)
@@ -152,5 +152,5 @@ static void same_bits_on_every_level(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(never_against_the_test_of_one_pair),
                                        cmocka_unit_test(same_bits_on_every_level)};
-    return cmocka_run_group_tests_name("nearness_kernel", tests, open_levels, close_levels);
+    return cmocka_run_group_tests_name("proximity_kernel", tests, open_levels, close_levels);
 }

@@ -132,7 +132,7 @@ static void wide_all(double x, double *out) {
     for (int i = 0; i < LANES; i += WIDTH) store_wide(out + i, f64w_all(x));
 }
 
-static void wide_load_points(const double *positions, const uint32_t *indices, double (*out)[8]) {
+static void load_points_x8(const double *positions, const uint32_t *indices, double (*out)[8]) {
     for (int i = 0; i < LANES; i += WIDTH) {
         f64w points[3];
         f64w_load_points(positions, indices + i, points);
@@ -165,5 +165,5 @@ const simd_operations SIMD_NAME(simd_operations) = {
     .f64w_at_most = wide_at_most,
     .f64w_select = wide_select,
     .f64w_all = wide_all,
-    .f64w_load_points = wide_load_points,
+    .f64w_load_points = load_points_x8,
 };

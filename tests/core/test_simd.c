@@ -201,16 +201,16 @@ static double *positions; /* after the last of them no memory can be read */
 
 static void check_points(const simd_operations *o, random_stream *random) {
     uint32_t indices[LANES];
-    double points[3][LANES], wide_points[3][LANES];
+    double points[3][LANES], points_x8[3][LANES];
     for (int i = 0; i < 3 * POINTS; i++) positions[i] = random_number(random);
     for (int i = 0; i < LANES; i++)
         indices[i] = stream_below(random, 2) == 0 ? POINTS - 1 : stream_below(random, POINTS);
     o->f64_load_points(positions, indices, points);
-    o->f64w_load_points(positions, indices, wide_points);
+    o->f64w_load_points(positions, indices, points_x8);
     for (int i = 0; i < 3 * LANES; i++) {
         double expected = positions[(size_t)indices[i / 3] * 3 + (size_t)i % 3];
         assert_number(points[i % 3][i / 3], expected);
-        assert_number(wide_points[i % 3][i / 3], expected);
+        assert_number(points_x8[i % 3][i / 3], expected);
     }
 }
 

@@ -189,7 +189,7 @@ typedef struct near_fixture {
 
 static const ipc_barrier_options barrier = {.reach = 0.3, .stiffness = 2.0};
 
-static near_fixture near_make(uint64_t seed, bool edges, double lean) {
+static near_fixture proximity_make(uint64_t seed, bool edges, double lean) {
     static const double shape[12] = {-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0};
     random_stream random = stream_start(seed);
     const cscd_mesh_desc desc = {8, 8, tetrahedra};
@@ -209,7 +209,7 @@ static near_fixture near_make(uint64_t seed, bool edges, double lean) {
     return f;
 }
 
-static void near_free(near_fixture *f) {
+static void proximity_free(near_fixture *f) {
     cscd_detector_destroy(f->detector);
     cscd_mesh_destroy(f->mesh);
     cscd_context_destroy(f->context);
@@ -247,9 +247,9 @@ static void check_gradient(near_fixture *f, double tolerance) {
 static void near_pairs_have_their_gradient(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++) {
-        near_fixture f = near_make(seed, seed % 2 == 0, 0.3 + 0.03 * (double)seed);
+        near_fixture f = proximity_make(seed, seed % 2 == 0, 0.3 + 0.03 * (double)seed);
         check_gradient(&f, 1e-5);
-        near_free(&f);
+        proximity_free(&f);
     }
 }
 
@@ -257,14 +257,14 @@ static void near_pairs_have_their_gradient(void **state) {
 static void nearly_parallel_edges_have_their_gradient(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
-        near_fixture f = near_make(seed, true, 0.012);
+        near_fixture f = proximity_make(seed, true, 0.012);
         for (int v = 0; v < 8; v++) {
             if (v % 4 >= 2) continue;
             f.x[v * 3 + 1] = v < 4 ? 0.0 : 0.1 + (v == 4 ? -0.01 : 0.012);
             f.x[v * 3 + 2] = v < 4 ? 0.0 : 0.1;
         }
         check_gradient(&f, 1e-5);
-        near_free(&f);
+        proximity_free(&f);
     }
 }
 
@@ -272,7 +272,7 @@ static void nearly_parallel_edges_have_their_gradient(void **state) {
 static void near_pairs_have_their_curvature(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
-        near_fixture f = near_make(seed, seed % 2 == 0, 0.9);
+        near_fixture f = proximity_make(seed, seed % 2 == 0, 0.9);
         random_stream random = stream_start(1000 + seed);
         ipc_contacts contacts = {0};
         double direction[24], product[24] = {0.0}, expected = 0.0, there[24], h = 1e-6;
@@ -298,7 +298,7 @@ static void near_pairs_have_their_curvature(void **state) {
         }
         assert_close(directional(product, direction, 24), expected, 1e-5 * (1.0 + expected));
         ipc_contacts_free(&contacts);
-        near_free(&f);
+        proximity_free(&f);
     }
 }
 

@@ -1,4 +1,4 @@
-/* The sieve against exact gaps: which pairs of features of two triangles it keeps. */
+/* The feature_filter against exact gaps: which pairs of features of two triangles it keeps. */
 #include "runtime/bvh/traversal.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/bvh/touching.h"
@@ -17,7 +17,7 @@ enum { PAIR_COUNT = 1500, LEVELS_MAX = CSCD_SIMD_AVX512 };
 static scene shape; /* large; one test at a time */
 static triangle_pair pairs[PAIR_COUNT];
 static uint16_t features[LEVELS_MAX][PAIR_COUNT];
-static forest_rig levels[LEVELS_MAX];
+static bvh_rig levels[LEVELS_MAX];
 static uint32_t level_count;
 static uint64_t kept_count, dropped_count;
 
@@ -25,16 +25,15 @@ static uint64_t kept_count, dropped_count;
 static void open_levels(uint32_t region_count, double distance) {
     level_count = 0;
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
-        forest_rig *r = &levels[level_count];
-        if (!forest_rig_create(&shape, (forest_setup){(cscd_simd)simd, 1, BOX_AXES, region_count}, r))
-            continue;
-        forest_move(&r->forest, shape.x0, shape.x1, distance);
+        bvh_rig *r = &levels[level_count];
+        if (!bvh_rig_create(&shape, (bvh_setup){(cscd_simd)simd, 1, BOX_AXES, region_count}, r)) continue;
+        bvh_refit(&r->bvh, shape.x0, shape.x1, distance);
         level_count++;
     }
 }
 
 static void close_levels(void) {
-    for (uint32_t i = 0; i < level_count; i++) forest_rig_destroy(&levels[i]);
+    for (uint32_t i = 0; i < level_count; i++) bvh_rig_destroy(&levels[i]);
 }
 
 /* Bit of a feature pair (runtime/bvh/kernels.h) to the vertices of its two features. */
@@ -64,9 +63,9 @@ static bool share_vertex(const feature_points *p) {
 
 /* As documented: 48 u of both reaches and of what lies between the parts, along diagonals; as much again is
  * what a gap may be off. */
-static long double slack_between(const forest *f, triangle_pair pair) {
-    const forest_part *p = &f->parts[f->leaf_parts[pair.a / FOREST_LANES]];
-    const forest_part *q = &f->parts[f->leaf_parts[pair.b / FOREST_LANES]];
+static long double slack_between(const bvh *f, triangle_pair pair) {
+    const bvh_tree *p = &f->parts[f->leaf_parts[pair.a / BVH_LANES]];
+    const bvh_tree *q = &f->parts[f->leaf_parts[pair.b / BVH_LANES]];
     long double size = (long double)p->reach + q->reach;
     for (int i = 0; i < 6; i++) {
         double from = p->origin[i / 3][i % 3], to = q->origin[i / 3][i % 3];
@@ -76,9 +75,9 @@ static long double slack_between(const forest *f, triangle_pair pair) {
 }
 
 static void check_features(uint32_t i, double distance) {
-    const forest *f = &levels[0].forest;
-    const uint32_t *a = shape.triangles + (size_t)forest_triangle(f, pairs[i].a) * 3;
-    const uint32_t *b = shape.triangles + (size_t)forest_triangle(f, pairs[i].b) * 3;
+    const bvh *f = &levels[0].bvh;
+    const uint32_t *a = shape.triangles + (size_t)bvh_triangle(f, pairs[i].a) * 3;
+    const uint32_t *b = shape.triangles + (size_t)bvh_triangle(f, pairs[i].b) * 3;
     long double slack = slack_between(f, pairs[i]);
     for (int bit = 0; bit < 15; bit++) {
         bool kept = (features[0][i] >> bit & 1) != 0;
@@ -103,19 +102,19 @@ static void choose_pairs(random_stream *random) {
         uint32_t a = stream_below(random, n), b = stream_below(random, n - 1);
         if (i % 2 == 0) b = (a + stream_below(random, n < 20 ? n - 1 : 20)) % (n - 1); /* often neighbours */
         b += b >= a;
-        pairs[i] = (triangle_pair){levels[0].forest.slots[a], levels[0].forest.slots[b]};
+        pairs[i] = (triangle_pair){levels[0].bvh.slots[a], levels[0].bvh.slots[b]};
     }
 }
 
 /* Any number of pairs at a time, and no more of them is written. */
-static void sieve_in_runs(const forest *f, double distance, uint16_t *out) {
+static void feature_filter_in_runs(const bvh *f, double distance, uint16_t *out) {
     enum { UNWRITTEN = 0xffff };
     uint32_t run = 1;
     for (uint32_t i = 0; i < PAIR_COUNT; i += run, run = run % 20 + 1) {
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
         for (int k = 0; k < 32; k++) some[k] = UNWRITTEN;
-        f->kernels->sieve(f, pairs + i, count, distance, some);
+        f->kernels->feature_filter(f, pairs + i, count, distance, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
         memcpy(out + i, some, count * sizeof *some);
     }
@@ -126,8 +125,8 @@ static void check_scene(random_stream *random, uint32_t region_count, double dis
     open_levels(region_count, distance);
     choose_pairs(random);
     for (uint32_t l = 0; l < level_count; l++) {
-        const forest *f = &levels[l].forest;
-        sieve_in_runs(f, distance, features[l]);
+        const bvh *f = &levels[l].bvh;
+        feature_filter_in_runs(f, distance, features[l]);
         assert_memory_equal(features[l], features[0], sizeof features[l]);
     }
     for (uint32_t i = 0; i < PAIR_COUNT; i++) check_features(i, distance);
@@ -179,10 +178,10 @@ static void keeps_what_just_touches(void **state) {
         open_levels(i / 2 % 4, 0.0);
         uint32_t count = shape.triangle_count / 2;
         for (uint32_t p = 0; p < count; p++) {
-            const uint32_t *slots = levels[0].forest.slots;
+            const uint32_t *slots = levels[0].bvh.slots;
             pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
         }
-        levels[0].forest.kernels->sieve(&levels[0].forest, pairs, count, 0.0, features[0]);
+        levels[0].bvh.kernels->feature_filter(&levels[0].bvh, pairs, count, 0.0, features[0]);
         for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
         close_levels();
     }
@@ -205,5 +204,5 @@ int main(void) {
         cmocka_unit_test(keeps_what_just_touches), cmocka_unit_test(keeps_what_comes_within_the_distance),
         cmocka_unit_test(keeps_at_any_scale),
     };
-    return cmocka_run_group_tests_name("sieve", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("feature_filter", tests, NULL, NULL);
 }

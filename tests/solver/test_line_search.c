@@ -1,4 +1,4 @@
-/* Line searches: their steps against brute force, their candidates and nearness against the detector's. */
+/* Line searches: their steps against brute force, their candidates and proximity against the detector's. */
 #include "cscd/cscd.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/oracle.h"
@@ -104,7 +104,7 @@ static void steps_are_certified(void **state) {
     assert_true(sum.limited > 15 && sum.whole > 50 && sum.in_contact > 2);
 }
 
-/* ---- nearness ------------------------------------------------------------------------------------------ */
+/* ---- proximity ------------------------------------------------------------------------------------------ */
 
 /* What the line finds at a length, the detector finds at its positions, bit for bit; and brute force. */
 static size_t check_near(const search *s, const rig *other, const rig *brute, double length,

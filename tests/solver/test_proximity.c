@@ -152,7 +152,7 @@ static void every_method_equals_brute_force(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < 3; seed++) {
             double distance = distances[((uint64_t)family + seed) % DISTANCE_COUNT];
-            separation limit = near_limit(distance);
+            separation limit = proximity_limit(distance);
             scene_make((scene_family)family, seed, &interval);
             hold_still();
             oracle_find_within(&still, &limit, &truth);
@@ -233,7 +233,7 @@ static void same_as_brute_force_far_away(void **state) {
         scene_make((scene_family)family, 17, &interval);
         for (uint32_t i = 0; i < interval.vertex_count * 3; i++) interval.x0[i] += i % 3 == 1 ? -3e8 : 1e9;
         hold_still();
-        separation limit = near_limit(0.1);
+        separation limit = proximity_limit(0.1);
         oracle_find_within(&still, &limit, &truth);
         if (truth.count > 0) qsort(truth.items, truth.count, sizeof *truth.items, compare_names);
         for (int m = 0; m < METHOD_COUNT; m++) {

@@ -189,18 +189,18 @@ static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, cont
     return true;
 }
 
-static bool allocate_within(forest *f) {
+static bool allocate_within(bvh *f) {
     cscd_context *context = f->mesh->context;
     if (f->leaf_within == NULL)
         f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
     bool allocated = f->leaf_within != NULL;
     for (int i = 0; i < f->part_level; i++) {
-        forest_level *level = &f->levels[i];
+        bvh_level *level = &f->levels[i];
         if (level->within == NULL)
             level->within = context_allocate(context, level->block_count, sizeof *level->within);
         allocated &= level->within != NULL;
     }
-    forest_show_all(f);
+    bvh_show_all(f);
     return allocated;
 }
 
@@ -226,7 +226,7 @@ static bool allocate(patches *p, contour_lists *lists) {
            p->small_roots != NULL && p->small_ends != NULL;
 }
 
-cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out) {
+cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
     cscd_context *context = mesh->context;
     patches p = {0};
     contour_lists lists = {.context = context};
@@ -370,7 +370,7 @@ static void decide_all(sealing *s) {
     parallel_run(threads, lanes, decide_small, s);
 }
 
-void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
+void patches_seal(patches *p, const cscd_mesh *mesh, bvh *f, const double *x0, const double *x1,
                   bool published) {
     sealing s = {.p = p, .mesh = mesh, .x0 = x0, .x1 = x1, .published = published};
     size_t size = p->tree.node_count * sizeof *p->passed;

@@ -24,15 +24,15 @@ typedef struct patches {
     uint64_t contours, sealed;    /* tests made, patches that passed */
 } patches;
 
-/* For a forest that is built, whose marks `within` are allocated; bounds do not matter. On failure there is
+/* For a BVH that is built, whose marks `within` are allocated; bounds do not matter. On failure there is
  * nothing to free. */
-cscd_status patches_create(const cscd_mesh *mesh, forest *f, patches *out);
+cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out);
 void patches_free(cscd_context *context, patches *p);
 
 /* Finds the nodes whose triangles cannot touch each other while the vertices move from x0 to x1, and hides
- * their pairs in the forest. See docs/iccd.md for the proof.
+ * their pairs in the BVH. See docs/iccd.md for the proof.
  * published: as in the literature, which loses contacts: cones hold the normals of both ends only and may
  * open up to pi, any set of triangles is a patch, contours are taken to be simple at the start, and pairs of
  * edges that the parent's contour has too are not tested again although the axis is another. */
-void patches_seal(patches *p, const cscd_mesh *mesh, forest *f, const double *x0, const double *x1,
+void patches_seal(patches *p, const cscd_mesh *mesh, bvh *f, const double *x0, const double *x1,
                   bool published);

@@ -1,4 +1,4 @@
-/* The forest's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
 #include "runtime/baselines/iccd/patch_tree.h"
 
 enum { LEAF_HEIGHT = 3, HEIGHT_PER_LEVEL = 3, DEPTH_MAX = 64 };
@@ -8,13 +8,13 @@ typedef struct pending_node {
     uint32_t first, height, parent;
 } pending_node;
 
-static uint32_t triangles_of(const forest *f, const forest_part *p) {
+static uint32_t triangles_of(const bvh *f, const bvh_tree *p) {
     uint32_t last = p->first_leaf + p->leaf_count - 1;
-    return (p->leaf_count - 1) * FOREST_LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
+    return (p->leaf_count - 1) * BVH_LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
 }
 
-static void add_tree(const forest *f, uint32_t index, patch_tree *tree) {
-    const forest_part *p = &f->parts[index];
+static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
+    const bvh_tree *p = &f->parts[index];
     uint32_t count = triangles_of(f, p), depth = 0, height = 0;
     pending_node stack[DEPTH_MAX];
     while ((uint64_t)1 << height < count) height++;
@@ -27,8 +27,8 @@ static void add_tree(const forest *f, uint32_t index, patch_tree *tree) {
         if (at.parent != UINT32_MAX) tree->nodes[at.parent].right = node;
         tree->nodes[node] = (patch_node){.part = index, .first_slot = at.first, .height = at.height};
         if (at.height == 0) {
-            const forest_leaf *l = &f->leaves[p->first_leaf + at.first / FOREST_LANES];
-            tree->nodes[node].triangle = l->triangles[at.first % FOREST_LANES];
+            const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / BVH_LANES];
+            tree->nodes[node].triangle = l->triangles[at.first % BVH_LANES];
             continue;
         }
         uint32_t half = 1u << (at.height - 1);
@@ -37,7 +37,7 @@ static void add_tree(const forest *f, uint32_t index, patch_tree *tree) {
     }
 }
 
-cscd_status patch_tree_build(const forest *f, patch_tree *out) {
+cscd_status patch_tree_build(const bvh *f, patch_tree *out) {
     cscd_context *context = f->mesh->context;
     patch_tree tree = {0};
     tree.nodes = context_allocate(context, (size_t)f->mesh->triangle_count * 2, sizeof *tree.nodes);
@@ -64,20 +64,20 @@ static uint64_t square(uint32_t first, uint32_t count) {
     return bits;
 }
 
-static void hide(const patch_node *node, forest *f) {
+static void hide(const patch_node *node, bvh *f) {
     if (node->height <= LEAF_HEIGHT) {
-        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / FOREST_LANES;
-        f->leaf_within[index] &= ~square(node->first_slot % FOREST_LANES, 1u << node->height);
+        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / BVH_LANES;
+        f->leaf_within[index] &= ~square(node->first_slot % BVH_LANES, 1u << node->height);
         return;
     }
     int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
     uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
     uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
-    uint32_t block = f->parts[node->part].first_blocks[level] + child / FOREST_LANES;
-    f->levels[level].within[block] &= ~square(child % FOREST_LANES, count);
+    uint32_t block = f->parts[node->part].first_blocks[level] + child / BVH_LANES;
+    f->levels[level].within[block] &= ~square(child % BVH_LANES, count);
 }
 
-void patch_tree_hide(const patch_tree *tree, const bool *sealed, forest *f) {
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f) {
     for (uint32_t i = 0; i < tree->node_count; i++) {
         if (sealed[i]) hide(&tree->nodes[i], f);
     }

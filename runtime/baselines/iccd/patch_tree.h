@@ -1,4 +1,4 @@
-/* The forest's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
+/* The BVH's order of triangles, halved and halved again: the binary trees whose nodes ICCD tests. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -20,12 +20,12 @@ typedef struct patch_tree {
 } patch_tree;
 
 /* *out is untouched unless CSCD_OK. */
-cscd_status patch_tree_build(const forest *f, patch_tree *out);
+cscd_status patch_tree_build(const bvh *f, patch_tree *out);
 void patch_tree_free(cscd_context *context, patch_tree *tree);
 
 static inline bool patch_is_leaf(const patch_node *node) {
     return node->right == 0;
 }
 
-/* Hides in a forest the pairs that lie in one patch of `sealed`, which is given per node. */
-void patch_tree_hide(const patch_tree *tree, const bool *sealed, forest *f);
+/* Hides in a BVH the pairs that lie in one patch of `sealed`, which is given per node. */
+void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f);

@@ -49,8 +49,8 @@ static bool hidden(const picture_visibility *visibility, const placed_marker *ma
     uint32_t columns = visibility->width * visibility->samples,
              rows = visibility->height * visibility->samples;
     if (!(x >= 0.0 && y >= 0.0 && x < columns && y < rows)) return false;
-    double nearness = visibility->nearness[(size_t)y * columns + (size_t)x];
-    return (marker->depth - ball_radius) * nearness > 1.0;
+    double proximity = visibility->proximity[(size_t)y * columns + (size_t)x];
+    return (marker->depth - ball_radius) * proximity > 1.0;
 }
 
 bool picture_draw_markers(picture_image *image, const picture_visibility *visibility,

@@ -1,4 +1,4 @@
-/* A forest over a scene's mesh, for tests; anything that fails there fails the test. */
+/* A BVH over a scene's mesh, for tests; anything that fails there fails the test. */
 #include "tests/support/bvh/bvh_rig.h"
 
 #include <setjmp.h>
@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-static void choose_regions(forest_rig *r, uint32_t region_count) {
+static void choose_regions(bvh_rig *r, uint32_t region_count) {
     const cscd_mesh *mesh = r->mesh;
     uint32_t most = mesh->triangle_count;
     r->region_count = region_count == 0 ? mesh->component_count : region_count < most ? region_count : most;
@@ -20,20 +20,20 @@ static void choose_regions(forest_rig *r, uint32_t region_count) {
                                           : (uint32_t)((uint64_t)t * r->region_count / mesh->triangle_count);
 }
 
-static void build(forest_rig *r, const double *positions, int axis_count) {
+static void build(bvh_rig *r, const double *positions, int axis_count) {
     uint32_t count = r->mesh->triangle_count;
     double *weights = malloc(count * sizeof *weights), *sizes = calloc(r->region_count, sizeof *sizes);
     assert_true(weights != NULL && sizes != NULL);
     for (uint32_t t = 0; t < count; t++) sizes[r->regions[t]] += 1.0;
     for (uint32_t t = 0; t < count; t++) weights[t] = 1.0 / sizes[r->regions[t]];
-    forest_regions regions = {r->regions, weights, r->region_count};
-    assert_int_equal(forest_build(r->mesh, regions, positions, axis_count, &r->forest), CSCD_OK);
+    bvh_regions regions = {r->regions, weights, r->region_count};
+    assert_int_equal(bvh_build(r->mesh, regions, positions, axis_count, &r->bvh), CSCD_OK);
     free(weights);
     free(sizes);
 }
 
-bool forest_rig_create(const scene *s, forest_setup setup, forest_rig *out) {
-    forest_rig r = {.context = NULL};
+bool bvh_rig_create(const scene *s, bvh_setup setup, bvh_rig *out) {
+    bvh_rig r = {.context = NULL};
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = setup.thread_count;
     options.simd = setup.simd;
@@ -49,8 +49,8 @@ bool forest_rig_create(const scene *s, forest_setup setup, forest_rig *out) {
     return true;
 }
 
-void forest_rig_destroy(forest_rig *r) {
-    forest_free(&r->forest);
+void bvh_rig_destroy(bvh_rig *r) {
+    bvh_free(&r->bvh);
     free(r->regions);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
@@ -60,12 +60,11 @@ void translate(double *x, uint32_t vertex_count, const double by[3]) {
     for (size_t i = 0; i < (size_t)vertex_count * 3; i++) x[i] += by[i % 3];
 }
 
-void in_frame(const forest *f, const forest_part *p, motion m, uint32_t vertex, int moment,
-              long double out[3]) {
+void in_frame(const bvh *f, const bvh_tree *p, motion m, uint32_t vertex, int moment, long double out[3]) {
     long double t = 0.5L * moment;
     for (size_t k = 0; k < 3; k++) {
         size_t at = (size_t)vertex * 3 + k;
-        const forest_part *frame = p != NULL ? p : &f->parts[0];
+        const bvh_tree *frame = p != NULL ? p : &f->parts[0];
         long double start = (long double)m.x0[at] - frame->origin[0][k];
         long double end = (long double)m.x1[at] - frame->origin[1][k];
         out[k] = ((1.0L - t) * start + t * end) * f->scale;

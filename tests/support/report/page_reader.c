@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#define OCTETS "<script type=\"application/octet-stream\" id=\"cscd-array-"
+#define OCTETS "<script type=\"application/pairs_x8-stream\" id=\"cscd-array-"
 #define JSON   "<script type=\"application/json\" id=\"cscd-report\">"
 #define END    "</script>\n"
 

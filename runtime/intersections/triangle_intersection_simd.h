@@ -42,23 +42,23 @@
 
 /* ---- signs ------------------------------------------------------------------------------------------- */
 
-typedef f64w wide_vector[3];
+typedef f64w vector_x8[3];
 
 /* Sets of lanes: certainly above zero, certainly below. */
-typedef struct wide_sign {
+typedef struct sign_x8 {
     uint32_t plus, minus;
-} wide_sign;
+} sign_x8;
 
 /* A cross product, and the sums of the absolute values that its components are differences of. */
-typedef struct wide_normal {
-    wide_vector n, size;
-} wide_normal;
+typedef struct normal_x8 {
+    vector_x8 n, size;
+} normal_x8;
 
-static inline void from_to(const wide_vector from, const wide_vector to, wide_vector out) {
+static inline void from_to(const vector_x8 from, const vector_x8 to, vector_x8 out) {
     for (int k = 0; k < 3; k++) out[k] = to[k] - from[k];
 }
 
-static inline void normal_of(const wide_vector u, const wide_vector v, wide_normal *out) {
+static inline void normal_of(const vector_x8 u, const vector_x8 v, normal_x8 *out) {
     for (int k = 0; k < 3; k++) {
         f64w left = u[(k + 1) % 3] * v[(k + 2) % 3], right = u[(k + 2) % 3] * v[(k + 1) % 3];
         out->n[k] = left - right;
@@ -66,60 +66,60 @@ static inline void normal_of(const wide_vector u, const wide_vector v, wide_norm
     }
 }
 
-static inline wide_sign sign_beyond(f64w value, f64w bound) {
-    return (wide_sign){f64w_below(bound, value), f64w_below(value, -bound)};
+static inline sign_x8 sign_beyond(f64w value, f64w bound) {
+    return (sign_x8){f64w_below(bound, value), f64w_below(value, -bound)};
 }
 
-static inline f64w dot(const wide_vector a, const wide_vector b) {
+static inline f64w dot(const vector_x8 a, const vector_x8 b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Of (u x v) . w. */
-static inline wide_sign side_of(const wide_normal *uv, const wide_vector w) {
-    wide_vector size = {f64w_abs(w[0]), f64w_abs(w[1]), f64w_abs(w[2])};
+static inline sign_x8 side_of(const normal_x8 *uv, const vector_x8 w) {
+    vector_x8 size = {f64w_abs(w[0]), f64w_abs(w[1]), f64w_abs(w[2])};
     return sign_beyond(dot(uv->n, w), f64w_all(0x1p-50) * dot(uv->size, size));
 }
 
 /* Of a component of u x v. */
-static inline wide_sign turn_of(const wide_normal *uv, int axis) {
+static inline sign_x8 turn_of(const normal_x8 *uv, int axis) {
     return sign_beyond(uv->n[axis], f64w_all(0x1p-51) * uv->size[axis]);
 }
 
-static inline wide_sign turn(const wide_vector u, const wide_vector v, int axis) {
+static inline sign_x8 turn(const vector_x8 u, const vector_x8 v, int axis) {
     int x = (axis + 1) % 3, y = (axis + 2) % 3;
     f64w left = u[x] * v[y], right = u[y] * v[x];
     return sign_beyond(left - right, f64w_all(0x1p-51) * (f64w_abs(left) + f64w_abs(right)));
 }
 
-static inline uint32_t same(wide_sign a, wide_sign b) {
+static inline uint32_t same(sign_x8 a, sign_x8 b) {
     return (a.plus & b.plus) | (a.minus & b.minus);
 }
 
-static inline uint32_t opposite(wide_sign a, wide_sign b) {
+static inline uint32_t opposite(sign_x8 a, sign_x8 b) {
     return (a.plus & b.minus) | (a.minus & b.plus);
 }
 
-static inline uint32_t same_of_three(const wide_sign s[3]) {
+static inline uint32_t same_of_three(const sign_x8 s[3]) {
     return (s[0].plus & s[1].plus & s[2].plus) | (s[0].minus & s[1].minus & s[2].minus);
 }
 
 /* Two of the three are certainly different, none of them zero. */
-static inline uint32_t mixed(wide_sign a, wide_sign b, wide_sign c) {
+static inline uint32_t mixed(sign_x8 a, sign_x8 b, sign_x8 c) {
     return (a.plus | b.plus | c.plus) & (a.minus | b.minus | c.minus);
 }
 
 /* ---- two shared vertices, and one -------------------------------------------------------------------- */
 
 /* corners: of the one triangle, then of the other; either apex first. */
-static inline uint32_t hinge_is_open(const wide_vector corners[6]) {
-    const wide_vector *c = &corners[0], *p = &corners[1], *q = &corners[2], *d = &corners[3];
-    wide_vector pq, pc, pd;
-    wide_normal face, other;
+static inline uint32_t hinge_is_open(const vector_x8 corners[6]) {
+    const vector_x8 *c = &corners[0], *p = &corners[1], *q = &corners[2], *d = &corners[3];
+    vector_x8 pq, pc, pd;
+    normal_x8 face, other;
     from_to(*p, *q, pq);
     from_to(*p, *c, pc);
     from_to(*p, *d, pd);
     normal_of(pq, pc, &face);
-    wide_sign side = side_of(&face, pd);
+    sign_x8 side = side_of(&face, pd);
     uint32_t apart = side.plus | side.minus;
     if (apart == ALL_WIDTH) return 0;
     normal_of(pq, pd, &other);
@@ -128,26 +128,26 @@ static inline uint32_t hinge_is_open(const wide_vector corners[6]) {
 }
 
 /* corners: the shared one first, in both. */
-static inline void cones_of(const wide_vector corners[6], wide_vector cones[2][2]) {
+static inline void cones_of(const vector_x8 corners[6], vector_x8 cones[2][2]) {
     for (int i = 0; i < 4; i++) from_to(corners[0], corners[i < 2 ? 1 + i : 2 + i], cones[i / 2][i % 2]);
 }
 
-static inline uint32_t fan_is_open(const wide_vector corners[6]) {
-    wide_vector cones[2][2];
-    wide_normal ab, cd;
+static inline uint32_t fan_is_open(const vector_x8 corners[6]) {
+    vector_x8 cones[2][2];
+    normal_x8 ab, cd;
     cones_of(corners, cones);
     normal_of(cones[0][0], cones[0][1], &ab);
-    wide_sign abc = side_of(&ab, cones[1][0]), abd = side_of(&ab, cones[1][1]);
+    sign_x8 abc = side_of(&ab, cones[1][0]), abd = side_of(&ab, cones[1][1]);
     if (same(abc, abd) == ALL_WIDTH) return 0;
     normal_of(cones[1][0], cones[1][1], &cd);
-    wide_sign acd = side_of(&cd, cones[0][0]), bcd = side_of(&cd, cones[0][1]);
+    sign_x8 acd = side_of(&cd, cones[0][0]), bcd = side_of(&cd, cones[0][1]);
     uint32_t across = opposite(abc, abd) & opposite(acd, bcd) & opposite(abd, acd);
     return ALL_WIDTH & ~(same(abc, abd) | same(acd, bcd) | across);
 }
 
 /* A plane through w, wherever it is, with a and b strictly on one side and c and d on the other. */
-static inline uint32_t wide_fan_is_open(const wide_vector corners[6]) {
-    wide_vector cones[2][2], across, size;
+static inline uint32_t fan_is_open_x8(const vector_x8 corners[6]) {
+    vector_x8 cones[2][2], across, size;
     uint32_t apart = ALL_WIDTH;
     cones_of(corners, cones);
     for (int k = 0; k < 3; k++) {
@@ -155,20 +155,20 @@ static inline uint32_t wide_fan_is_open(const wide_vector corners[6]) {
         size[k] = f64w_abs(across[k]);
     }
     for (int i = 0; i < 4; i++) {
-        const wide_vector *e = &cones[i / 2][i % 2];
-        wide_vector size_e = {f64w_abs((*e)[0]), f64w_abs((*e)[1]), f64w_abs((*e)[2])};
-        wide_sign side = sign_beyond(dot(across, *e), f64w_all(0x1p-50) * dot(size, size_e));
+        const vector_x8 *e = &cones[i / 2][i % 2];
+        vector_x8 size_e = {f64w_abs((*e)[0]), f64w_abs((*e)[1]), f64w_abs((*e)[2])};
+        sign_x8 side = sign_beyond(dot(across, *e), f64w_all(0x1p-50) * dot(size, size_e));
         apart &= i < 2 ? side.plus : side.minus;
     }
     return ALL_WIDTH & ~apart;
 }
 
-static inline uint32_t flat_fan_is_open(const wide_vector corners[6]) {
-    wide_vector cones[2][2];
+static inline uint32_t flat_fan_is_open(const vector_x8 corners[6]) {
+    vector_x8 cones[2][2];
     uint32_t apart = 0;
     cones_of(corners, cones);
     for (int k = 0; k < 3; k++) {
-        wide_sign between[2][2], own[2];
+        sign_x8 between[2][2], own[2];
         for (int i = 0; i < 2; i++) {
             for (int j = 0; j < 2; j++) between[i][j] = turn(cones[0][i], cones[1][j], k);
             own[i] = turn(cones[i][0], cones[i][1], k);
@@ -195,8 +195,8 @@ static inline f64w greatest(f64w a, f64w b, f64w c) {
     return f64w_max(f64w_max(a, b), c);
 }
 
-static inline uint32_t boxes_apart(const wide_vector corners[6]) {
-    const wide_vector *a = corners, *b = corners + 3;
+static inline uint32_t boxes_apart(const vector_x8 corners[6]) {
+    const vector_x8 *a = corners, *b = corners + 3;
     uint32_t apart = 0;
     for (int k = 0; k < 3; k++) {
         apart |= f64w_below(greatest(a[0][k], a[1][k], a[2][k]), least(b[0][k], b[1][k], b[2][k]));
@@ -206,26 +206,26 @@ static inline uint32_t boxes_apart(const wide_vector corners[6]) {
 }
 
 /* Edge i leads from corner i to corner i + 1. */
-static inline void edges_of(const wide_vector corners[3], wide_vector out[3]) {
+static inline void edges_of(const vector_x8 corners[3], vector_x8 out[3]) {
     for (int i = 0; i < 3; i++) from_to(corners[i], corners[(i + 1) % 3], out[i]);
 }
 
 /* The sides of the face's plane on which corners lie. */
-static inline void sides_of(const wide_vector face[3], const wide_vector corners[3], wide_sign out[3]) {
-    wide_vector u, v;
-    wide_normal normal;
+static inline void sides_of(const vector_x8 face[3], const vector_x8 corners[3], sign_x8 out[3]) {
+    vector_x8 u, v;
+    normal_x8 normal;
     from_to(face[0], face[1], u);
     from_to(face[0], face[2], v);
     normal_of(u, v, &normal);
     for (int i = 0; i < 3; i++) {
-        wide_vector to_corner;
+        vector_x8 to_corner;
         from_to(face[0], corners[i], to_corner);
         out[i] = side_of(&normal, to_corner);
     }
 }
 
-static inline uint32_t free_is_open(const wide_vector corners[6]) {
-    wide_sign sides[3];
+static inline uint32_t free_is_open(const vector_x8 corners[6]) {
+    sign_x8 sides[3];
     uint32_t apart = boxes_apart(corners);
     if (apart == ALL_WIDTH) return 0;
     sides_of(corners, corners + 3, sides);
@@ -235,10 +235,10 @@ static inline uint32_t free_is_open(const wide_vector corners[6]) {
     return ALL_WIDTH & ~(apart | same_of_three(sides));
 }
 
-static inline uint32_t piercing_is_open(const wide_vector corners[6]) {
-    const wide_vector *a = corners, *b = corners + 3;
-    wide_vector edges_a[3], edges_b[3];
-    wide_sign sides_a[3], sides_b[3], passes[3][3];
+static inline uint32_t piercing_is_open(const vector_x8 corners[6]) {
+    const vector_x8 *a = corners, *b = corners + 3;
+    vector_x8 edges_a[3], edges_b[3];
+    sign_x8 sides_a[3], sides_b[3], passes[3][3];
     uint32_t miss = ALL_WIDTH;
     edges_of(a, edges_a);
     edges_of(b, edges_b);
@@ -246,8 +246,8 @@ static inline uint32_t piercing_is_open(const wide_vector corners[6]) {
     sides_of(b, a, sides_a);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            wide_vector between;
-            wide_normal normal;
+            vector_x8 between;
+            normal_x8 normal;
             from_to(a[i], b[j], between);
             normal_of(edges_a[i], edges_b[j], &normal);
             passes[i][j] = side_of(&normal, between);
@@ -262,15 +262,15 @@ static inline uint32_t piercing_is_open(const wide_vector corners[6]) {
 }
 
 /* A line through an edge of a has b strictly on the one side, and a's third corner on the other. */
-static inline uint32_t parted_by_edge_of(const wide_vector a[3], const wide_vector b[3], int axis) {
-    wide_vector edges[3];
+static inline uint32_t parted_by_edge_of(const vector_x8 a[3], const vector_x8 b[3], int axis) {
+    vector_x8 edges[3];
     uint32_t apart = 0;
     edges_of(a, edges);
-    wide_sign own = turn(edges[0], edges[1], axis);
+    sign_x8 own = turn(edges[0], edges[1], axis);
     for (int i = 0; i < 3; i++) {
-        wide_sign turns[3];
+        sign_x8 turns[3];
         for (int j = 0; j < 3; j++) {
-            wide_vector between;
+            vector_x8 between;
             from_to(a[i], b[j], between);
             turns[j] = turn(edges[i], between, axis);
         }
@@ -280,8 +280,8 @@ static inline uint32_t parted_by_edge_of(const wide_vector a[3], const wide_vect
 }
 
 /* Where all corners are certainly off the plane, the edges have been asked already. */
-static inline uint32_t flat_free_is_open(const wide_vector corners[6]) {
-    wide_sign sides[3];
+static inline uint32_t flat_free_is_open(const vector_x8 corners[6]) {
+    sign_x8 sides[3];
     uint32_t apart = 0, flat = 0;
     sides_of(corners, corners + 3, sides);
     for (int i = 0; i < 3; i++) flat |= ALL_WIDTH & ~(sides[i].plus | sides[i].minus);

@@ -14,7 +14,7 @@ static const double budget_ms = 2000.0, crowded = 10.0; /* pairs per triangle */
 static const char models[] = "build/models";
 
 static const char help[] =
-    "usage: nearness [options]\n"
+    "usage: proximity [options]\n"
     "\n"
     "What cscd_detector_near, a step with min_separation, cscd_detector_max_step and a cscd_line take, in "
     "plain\n"
@@ -288,6 +288,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 }
 
 int main(int argument_count, char **arguments) {
-    static const bench_program program = {"nearness", help, NULL, 0, 0, run};
+    static const bench_program program = {"proximity", help, NULL, 0, 0, run};
     return bench_main(&program, argument_count, arguments);
 }

@@ -6,21 +6,20 @@
 #include "runtime/bvh/kernels.h"
 #include "src/core/simd.h"
 
-typedef struct wide_points {
+typedef struct points_x8 {
     f64w x0[4][3], x1[4][3]; /* points as in elementary_query, then coordinates */
-} wide_points;
+} points_x8;
 
-typedef struct wide_vectors {
+typedef struct vectors_x8 {
     f64w a[2][3], b[2][3], c[2][3]; /* as in point_vectors */
     f64w size_a[3], size_b[3], size_c[3];
-} wide_vectors;
+} vectors_x8;
 
-typedef struct wide_cubics {
+typedef struct cubics_x8 {
     f64w b[4], error;
-} wide_cubics;
+} cubics_x8;
 
-static inline void load_both_ends(const feature_source *source, uint32_t vertices[4][WIDTH],
-                                  wide_points *out) {
+static inline void load_both_ends(const feature_source *source, uint32_t vertices[4][WIDTH], points_x8 *out) {
     for (int i = 0; i < 4; i++) {
         f64w_load_points(source->x0, vertices[i], out->x0[i]);
         f64w_load_points(source->x1, vertices[i], out->x1[i]);
@@ -28,7 +27,7 @@ static inline void load_both_ends(const feature_source *source, uint32_t vertice
 }
 
 static inline void load_vf(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                           wide_points *out) {
+                           points_x8 *out) {
     uint32_t vertices[4][WIDTH];
     for (int lane = 0; lane < WIDTH; lane++) {
         const uint32_t *corners = source->triangles[b[lane]];
@@ -39,7 +38,7 @@ static inline void load_vf(const feature_source *source, const uint32_t *a, cons
 }
 
 static inline void load_ee(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                           wide_points *out) {
+                           points_x8 *out) {
     uint32_t vertices[4][WIDTH];
     for (int lane = 0; lane < WIDTH; lane++) {
         const uint32_t *ends_a = source->edges[a[lane]], *ends_b = source->edges[b[lane]];
@@ -51,8 +50,7 @@ static inline void load_ee(const feature_source *source, const uint32_t *a, cons
     load_both_ends(source, vertices, out);
 }
 
-static inline void subtract_at_ends(const wide_points *points, int to, int from, f64w out[2][3],
-                                    f64w size[3]) {
+static inline void subtract_at_ends(const points_x8 *points, int to, int from, f64w out[2][3], f64w size[3]) {
     for (int k = 0; k < 3; k++) {
         out[0][k] = points->x0[to][k] - points->x0[from][k];
         out[1][k] = points->x1[to][k] - points->x1[from][k];
@@ -61,7 +59,7 @@ static inline void subtract_at_ends(const wide_points *points, int to, int from,
 }
 
 /* first_count: 1 for VF, 2 for EE. */
-static inline void vectors_between(const wide_points *points, int first_count, wide_vectors *out) {
+static inline void vectors_between(const points_x8 *points, int first_count, vectors_x8 *out) {
     int vf = first_count == 1;
     subtract_at_ends(points, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
     subtract_at_ends(points, 3, vf ? 1 : 2, out->b, out->size_b);
@@ -78,7 +76,7 @@ static inline f64w dot(const f64w a[3], const f64w b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static inline void cubics_of(const wide_vectors *v, wide_cubics *f) {
+static inline void cubics_of(const vectors_x8 *v, cubics_x8 *f) {
     f64w start[3], end[3], one[3], other[3], mixed[3], permanent = f64w_all(0.0);
     cross(v->a[0], v->b[0], start);
     cross(v->a[1], v->b[1], end);

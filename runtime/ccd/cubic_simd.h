@@ -2,7 +2,7 @@
  * same order as cubic.c and inside.c, whose error bounds therefore hold. */
 #pragma once
 
-#include "runtime/ccd/wide_pairs.h"
+#include "runtime/ccd/feature_pairs_simd.h"
 
 enum { POLISH_STEPS = 10 };
 
@@ -45,19 +45,19 @@ static inline uint32_t polish(const f64w b[4], uint32_t lanes, f64w low, f64w hi
     return lanes & ~open;
 }
 
-typedef struct wide_intervals {
+typedef struct intervals_x8 {
     f64w begin, end;
-} wide_intervals;
+} intervals_x8;
 
 /* A root interval must be as narrow for its begin to be the TOI. */
-static inline uint32_t narrow_enough(const wide_intervals *interval) {
+static inline uint32_t narrow_enough(const intervals_x8 *interval) {
     return f64w_at_most(interval->end - interval->begin, f64w_all(0x1p-31));
 }
 
 /* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
  * between which it has exactly one root: the lanes in which that is certainly in the interval. */
 static inline uint32_t isolate_between(const f64w b[4], f64w error, uint32_t lanes, f64w low, f64w high,
-                                       f64w change, f64w root, wide_intervals *out) {
+                                       f64w change, f64w root, intervals_x8 *out) {
     lanes = polish(b, lanes, low, high, change, &root);
     polar p = polar_at(b, root);
     f64w slope = 3.0 * (p.high - p.low);
@@ -110,7 +110,7 @@ static inline sign_lanes join(sign_lanes so_far, bounded_value x, f64w sign) {
 }
 
 /* right: they touch at every time in the interval at which they are coplanar; wrong: at none. */
-static inline sign_lanes inside(const wide_vectors *v, int first_count, const wide_intervals *interval) {
+static inline sign_lanes inside(const vectors_x8 *v, int first_count, const intervals_x8 *interval) {
     f64w t = 0.5 * (interval->begin + interval->end), at[3][3], w3[3];
     f64w h = f64w_max(interval->end - t, t - interval->begin);
     f64w relative_error = 16.0 * 0x1p-53 + 5.0 * h;
@@ -144,13 +144,13 @@ static inline sign_lanes inside(const wide_vectors *v, int first_count, const wi
 /* ---- eight pairs --------------------------------------------------------------------------------------- */
 
 /* What becomes of the pairs i to i + WIDTH - 1 of the eight. */
-typedef void decide_some(const wide_points *points, int first_count, int i, root_outcomes *out);
+typedef void decide_some(const points_x8 *points, int first_count, int i, root_outcomes *out);
 
 static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
                                 int first_count, decide_some *decide, root_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
-        wide_points points;
+        points_x8 points;
         (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
         decide(&points, first_count, i, out);
     }
