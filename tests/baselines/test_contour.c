@@ -2,15 +2,10 @@
  * motions of plain polygons pass at any place and scale. */
 #include "runtime/baselines/iccd/contour.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { POLYGONS = 2000 };

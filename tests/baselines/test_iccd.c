@@ -1,14 +1,9 @@
 /* Method iccd on random intervals: the contacts of method none, bit for bit, in whatever way it is asked; as
  * published it loses some. */
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { INTERVALS_PER_FAMILY = 25 };

@@ -1,15 +1,10 @@
 /* Method iccd where it is easily wrong: each scene breaks one condition of the theorem in docs/iccd.md, and
  * has contacts that a test without that condition would lose. */
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 

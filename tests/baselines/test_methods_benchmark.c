@@ -3,19 +3,14 @@
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache_write.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 6 };
 

@@ -2,15 +2,10 @@
  * not. */
 #include "runtime/baselines/iccd/normal_cone.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES = 40000, MOMENTS = 17 };
 

@@ -4,15 +4,10 @@
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SCENES_PER_FAMILY = 3, BODY_TRIANGLES = 600 };

@@ -1,15 +1,10 @@
 /* Bodies that fly a hundred times their length within an interval: the same pairs and contacts as at rest. */
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 /* Positions and translations that are multiples of it add up exactly. */
 #define GRID_UNIT 0x1p-20

@@ -1,15 +1,10 @@
 /* The BVH: where triangles and corners lie in it, and that bounds hold what is below them. */
 #include "runtime/bvh/bvh.h"
 #include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene shape, moved; /* large; one test at a time */
 

@@ -2,15 +2,10 @@
  */
 #include "cscd/cscd.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* A pleated strip that is pulled flat: at first its layers lie on each other, so leaves hold triangles of
  * several of them. */

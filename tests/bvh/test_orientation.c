@@ -2,17 +2,12 @@
 #include "runtime/bvh/orientation.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <gmp.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { BATCH_COUNT = 12500, BATCH_SIZE = BVH_LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
 enum { UNIT_EXPONENT = -200 };

@@ -2,15 +2,10 @@
 #include "runtime/bvh/traversal.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/bvh/touching.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES_MAX = 1600 };
 

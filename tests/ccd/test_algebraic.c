@@ -3,16 +3,11 @@
 #include "runtime/ccd/exact/algebraic.h"
 #include "runtime/ccd/exact/exact_test.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <gmp.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 enum { ROUND_COUNT = 20000, LIMBS_MAX = 12 };
 

@@ -4,15 +4,10 @@
 #include "tests/support/ccd/elementary_families.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/feature_distance.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 typedef struct known_case {
     const char *name;

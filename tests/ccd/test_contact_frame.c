@@ -1,14 +1,9 @@
 /* What is told of a touch, where features are far smaller than their motion, or needles. */
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static double length(const double v[3]) {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);

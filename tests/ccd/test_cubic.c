@@ -3,17 +3,12 @@
 #include "runtime/ccd/cubic.h"
 #include "tests/support/ccd/exact_integer.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { ROUND_COUNT = 20000 };
 

@@ -2,14 +2,9 @@
  */
 #include "runtime/ccd/elementary.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <gsl/gsl_errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { QUERY_COUNT = 100000 };
 

@@ -3,15 +3,10 @@
 #include "runtime/ccd/elementary.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 enum { ROUND_COUNT = 5000, SYMMETRY_ROUND_COUNT = 1000 };
 

@@ -1,14 +1,9 @@
 /* Contacts that exist exactly, by integer construction, where floating point has the least to hold on to. */
 #include "runtime/ccd/elementary.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { CASES = 2000 };
 

@@ -3,14 +3,9 @@
 #include "runtime/ccd/elementary.h"
 #include "tests/support/ccd/elementary_cases.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static int seed(void **state) {
     (void)state;

@@ -3,15 +3,10 @@
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/feature_distance.h"
 #include "tests/support/ccd/oracle_comparison.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { QUERIES_A_FAMILY = 1100 };

@@ -2,15 +2,10 @@
  * work.
  */
 #include "tests/support/ccd/separation_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static separation within(double distance) {
     return (separation){distance, 1e-6 * distance};

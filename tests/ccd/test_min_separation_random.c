@@ -2,14 +2,9 @@
  * broken. */
 #include "tests/support/ccd/separation_check.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { ROUND_COUNT = 800 };
 

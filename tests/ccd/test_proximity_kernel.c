@@ -5,15 +5,10 @@
 #include "tests/support/levels.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { BATCHES = 4000, POINTS = 4 * KERNEL_LANES };
 

@@ -1,15 +1,10 @@
 /* Contexts are independent: several threads of a host, each with one of its own, at the same time. */
 #include "cscd/cscd.h"
+#include "tests/support/test.h"
 #include "tests/support/workload.h"
 
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 __attribute__((weak)) void openblas_set_num_threads(int count);
 __attribute__((weak)) int openblas_get_num_threads(void);

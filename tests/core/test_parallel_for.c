@@ -2,17 +2,12 @@
  * start.
  */
 #include "cscd/cscd.h"
+#include "tests/support/test.h"
 #include "tests/support/workload.h"
 
 #include <dirent.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static sequence q; /* large; one test at a time */
 

@@ -3,17 +3,12 @@
 #include "src/core/context.h"
 #include "src/core/timer.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/test.h"
 #include "tests/support/workload.h"
 
 #include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static sequence q; /* large; one test at a time */
 

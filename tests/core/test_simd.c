@@ -3,19 +3,14 @@
 #include "src/core/processor.h"
 #include "tests/core/simd_operations.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { LANES = OPERATION_LANES, ROUNDS = 5000 };
 

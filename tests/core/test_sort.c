@@ -1,12 +1,6 @@
 /* Sorts are stable, and agree with each other. */
 #include "src/core/sort.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 enum { ITEMS_MAX = 20000 };
 

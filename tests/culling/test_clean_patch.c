@@ -3,14 +3,9 @@
 #include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { RINGS = 9, SEGMENTS = 6 };
 

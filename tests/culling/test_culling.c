@@ -2,17 +2,12 @@
  * earliest loses no first contact of an embedded component; the published rule does. */
 #include "cscd/cscd.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { INTERVALS_PER_FAMILY = 25 };

@@ -2,15 +2,10 @@
  * a quarter of the triangle pairs, and one static check serves the whole recording. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { FRAME_COUNT = 16, TRIANGLE_COUNT = 2000 };
 

@@ -4,15 +4,10 @@
 #include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #define PI 3.14159265358979323846
 

@@ -7,16 +7,11 @@
 #include "tests/support/bvh/direction_gap.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/sequences.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SEQUENCES = 12, EXACT_PERCENT = 85 }; /* of so few sequences */

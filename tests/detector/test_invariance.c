@@ -3,15 +3,10 @@
 #include "cscd/cscd.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene interval, other; /* large; one test at a time */
 

@@ -5,16 +5,11 @@
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solver/free_step_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { INTERVALS_PER_FAMILY = 8 };
 

@@ -2,17 +2,12 @@
 #include "cscd/cscd.h"
 #include "src/core/context.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { INTERVALS = 4, COUNTS = 4, TASKS_MAX = 1000 };
 

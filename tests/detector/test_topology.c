@@ -3,16 +3,11 @@
 #include "tests/support/oracle.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { COLUMNS = 10, ROWS = 8, CUT = 5, TIP = 6, TEARS = 6, REGIONS_MAX = 16 };
 

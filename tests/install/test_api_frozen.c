@@ -3,14 +3,9 @@
  * test_api_frozen_sensors.c. */
 #include "cscd/cscd.h"
 #include "tests/support/shell.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #define VALUE(name, value) _Static_assert((int)(name) == (value), #name)
 

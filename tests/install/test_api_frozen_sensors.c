@@ -1,12 +1,6 @@
 /* As test_api_frozen.c, for <cscd/sensors.h>; and its defaults, which are as frozen. */
 #include "cscd/cscd.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 #define VALUE(name, value) _Static_assert((int)(name) == (value), #name)
 

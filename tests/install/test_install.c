@@ -3,17 +3,12 @@
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* The build that is installed, as the arguments of make that lead to it. */
 static struct {

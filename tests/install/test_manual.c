@@ -1,15 +1,10 @@
 /* The man pages: no warnings, every option of the tool and every function of the library, and no others. */
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* The text of cscd(1) without fonts, and a command's part of it. */
 #define PLAIN_PAGE "sed -e 's/\\\\f.//g' -e 's/\\\\-/-/g' docs/man/cscd.1"

@@ -4,13 +4,7 @@
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 static scene s; /* large; one test at a time */
 

@@ -6,16 +6,11 @@
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/levels.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { BATCH_MAX = 700, BATCHES = 600 };
 

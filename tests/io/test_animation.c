@@ -1,17 +1,14 @@
 /* Point caches as animations: PC2 and MDD, every header error, every truncation, every flipped bit. */
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { VERTICES = 5, FRAMES = 4 };
 

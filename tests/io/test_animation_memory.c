@@ -2,17 +2,14 @@
 #include "src/io/growable.h"
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { VERTICES = 4, FRAMES = 70 /* more names than the list first has room for */ };
 

@@ -1,16 +1,13 @@
 /* Mesh files as animations: patterns, folders and lists, their order, and everything that is wrong with them.
  */
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { VERTICES = 4 };
 

@@ -4,18 +4,15 @@
 #include "src/io/text.h"
 #include "tests/support/io/mesh_check.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;

@@ -1,12 +1,9 @@
 /* OBJ meshes: every form of record and index, exact numbers, and each error with its line. */
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #define OBJ(literal) FILE_OF("mesh.obj", literal)
 #define SQUARE       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"

@@ -1,11 +1,8 @@
 /* OFF meshes: every form of header and row, and each error with its line. */
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #define OFF(literal) FILE_OF("mesh.off", literal)
 #define VERTICES     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"

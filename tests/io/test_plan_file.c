@@ -2,16 +2,13 @@
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
 #include "src/io/plan_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;

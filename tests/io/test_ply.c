@@ -1,11 +1,8 @@
 /* PLY meshes: headers, the data in text, and each error with its line. */
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #define PLY(literal) FILE_OF("mesh.ply", literal)
 #define START        "ply\nformat ascii 1.0\n"

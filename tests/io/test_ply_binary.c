@@ -1,14 +1,11 @@
 /* Binary PLY meshes: every type in both byte orders, and each error with its byte offset. */
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 typedef struct byte_writer {
     bool big_endian;

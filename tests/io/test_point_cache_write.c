@@ -1,20 +1,17 @@
 /* The point cache writer: the exact bytes, and no file left behind by a failure. */
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
 
 #include <float.h>
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { VERTICES = 5, FRAMES = 4 };
 

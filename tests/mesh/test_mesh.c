@@ -2,14 +2,9 @@
 #include "src/mesh/mesh.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { NONE = -1 };
 

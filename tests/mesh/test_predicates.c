@@ -1,17 +1,12 @@
 /* The orientation predicates against exact integers: grids, mixed magnitudes, points an ulp off a line or
  * plane. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "src/mesh/predicates.h"
 #include "tests/support/ccd/exact_integer.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #define ROUND_COUNT 100000
 

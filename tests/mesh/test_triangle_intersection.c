@@ -4,16 +4,11 @@
  * then, by Caratheodory's theorem, one with positive weights of at most four affinely independent
  * differences. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #define ROUND_COUNT 100000
 

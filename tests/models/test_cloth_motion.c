@@ -4,16 +4,11 @@
 #include "models/cloth/garment.h"
 #include "models/cloth/safe_motion.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { SIDE = 9 };
 

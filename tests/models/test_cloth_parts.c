@@ -5,15 +5,10 @@
 #include "models/cloth/garment.h"
 #include "models/common/vec3.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const fabric_material cotton = {
     .density = 0.15, .stretch = 400.0, .bending = 2e-4, .damping = 2e-3, .drag = 0.0};

@@ -4,18 +4,13 @@
 #include "src/io/mesh_file.h"
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static temp_folder folder;
 

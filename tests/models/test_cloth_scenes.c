@@ -1,15 +1,10 @@
 /* The cloth scenes, whole and small: nothing meets in any step, and yet much happens. */
 #include "models/cloth/cloth_simulation.h"
 #include "models/common/vec3.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
  */

@@ -4,15 +4,10 @@
 #include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES = 60, CONTACTS = 30, FIXED = 5 };
 

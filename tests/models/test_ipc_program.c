@@ -2,17 +2,12 @@
 #include "models/ipc/scenes.h"
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static int use_program(void **state) {
     (void)state;

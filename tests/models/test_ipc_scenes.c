@@ -3,15 +3,10 @@
 #include "models/common/vec3.h"
 #include "models/ipc/solver.h"
 #include "tests/support/random_stream.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* RING_TRIANGLES: of all; STRIDE: of time steps whose lines are checked by the other detectors. */
 #ifdef __SANITIZE_ADDRESS__

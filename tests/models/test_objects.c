@@ -2,15 +2,10 @@
 #include "cscd/cscd.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { OBJECTS = 3, SCENES = 24, OBJECT_TRIANGLES_MAX = 700 };
 

@@ -4,22 +4,17 @@
 #include "src/io/mesh_file.h"
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* The cheapest scene, without contacts and without balls. */
 static const char scene_name[] = "dumbbell-stairs-free";

@@ -1,15 +1,10 @@
 /* pawn-drop as a whole is what a recording must be: soft, of moderate speed, in contact at times, healing. */
 #include "models/common/motion.h"
 #include "models/softbody/recorder.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Under the sanitizers as far as the first contacts: the whole takes half a minute there. */
 #ifdef __SANITIZE_ADDRESS__

@@ -1,15 +1,10 @@
 /* The recordings begin embedded, are repeatable bit for bit, gain no energy, and hold what files can hold. */
 #include "models/softbody/recorder.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* How far each scene is run here, and of that a second time. The first contacts with itself come with frame
  * 31 of pawn-drop, 30 of dumbbell-stairs, 71 of figure-balls. */

@@ -2,18 +2,13 @@
 #include "models/shapes/catalogue.h"
 #include "src/io/mesh_file.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static temp_folder folder;
 

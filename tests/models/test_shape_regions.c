@@ -1,13 +1,7 @@
 /* The three bodies are cut into regions as expected by the procedure that a caller gets by default. */
 #include "cscd/cscd.h"
 #include "tests/support/preprocess/region_check.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 /* The density takes time with the cube of the count; with sanitizers its matrix is slow, too. */
 #ifdef __SANITIZE_ADDRESS__

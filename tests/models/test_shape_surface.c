@@ -5,15 +5,10 @@
 #include "tests/support/models/body_of.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static void check_closed(const body *b, int64_t euler) {
     cscd_mesh *mesh = body_mesh(b, 1);

@@ -2,16 +2,11 @@
  */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 

@@ -4,15 +4,10 @@
 #include "models/softbody/soft_body.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* The block hangs `distance` above the slab's top at rest: farther than the response asks for. */
 static const double spacing = 0.4, near = 0.8, distance = 1.1;

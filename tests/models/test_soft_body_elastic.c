@@ -3,15 +3,10 @@
 #include "models/softbody/elastic.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const material rubber = {.density = 1.0, .young = 150.0, .poisson = 0.4, .damping = 4.0};
 static const double no_offset[3] = {0.0, 0.0, 0.0};

@@ -4,15 +4,10 @@
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const struct hung {
     body_kind kind;

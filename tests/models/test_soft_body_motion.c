@@ -4,16 +4,11 @@
 #include "models/common/vec3.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double no_offset[3] = {0.0, 0.0, 0.0};
 

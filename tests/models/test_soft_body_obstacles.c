@@ -2,13 +2,7 @@
 #include "models/common/vec3.h"
 #include "models/softbody/obstacles.h"
 #include "models/softbody/scenery.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 /* Tops at 1.5, 1 and 0.5; they end at x = 3, 5 and 7. */
 static const obstacles stairs = {.step_count = 3, .start = 1.0, .tread = 2.0, .riser = 0.5, .gravity = 10.0};

@@ -4,14 +4,9 @@
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES_MAX = 120, VERTICES_MAX = 130, EDGES_MAX = 3 * TRIANGLES_MAX, FAN = 64 };
 

@@ -8,17 +8,12 @@
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/levels.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { BATCH_MAX = 200, SLACK = 8, BATCHES_A_FAMILY = 48 };
 

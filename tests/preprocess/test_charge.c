@@ -1,16 +1,11 @@
 /* Charge densities against physics: spheres, cubes, ellipsoids, and the laws of scale and place. */
 #include "tests/support/preprocess/charge_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* How often shapes are split: 5,120 and 3,072 triangles. Other configurations than release are too slow for
  * that. */

@@ -1,17 +1,12 @@
 /* Charge densities: repeatability, degenerate triangles, memory, bad input. */
 #include "src/core/sort.h"
 #include "tests/support/preprocess/charge_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 __attribute__((weak)) int openblas_get_num_threads(void);
 

@@ -4,14 +4,9 @@
 #include "preprocess/regions/grow.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES_MAX = SHAPE_TRIANGLES_MAX };
 

@@ -3,15 +3,10 @@
 #include "preprocess/regions/equalize.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static cscd_context *context;
 static size_t bytes_at_start;

@@ -4,15 +4,10 @@
 #include "preprocess/regions/visibility.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { TRIANGLES_MAX = 4000, REGIONS_MAX = 4000 };
 

@@ -1,15 +1,10 @@
 /* Vector quantization: it converges, its distortion falls, and any number of codes will do. */
 #include "preprocess/partition/lbg.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { D = LBG_DIMENSIONS, VECTORS_MAX = 400, TRACE_MAX = 20000 };
 

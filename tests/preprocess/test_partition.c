@@ -3,16 +3,11 @@
 #include "tests/support/preprocess/partition_check.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static cscd_partition_options with_cells(uint32_t cells) {
     cscd_partition_options options = cscd_partition_defaults();

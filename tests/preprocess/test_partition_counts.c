@@ -1,14 +1,9 @@
 /* How many cells a part gets: kissing numbers, two convex objects, the cap; and which parts are convex. */
 #include "preprocess/partition/spheres.h"
 #include "tests/support/preprocess/partition_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static void kissing_numbers(void **state) {
     (void)state;

@@ -1,14 +1,9 @@
 /* Partitions: every allocation fails once; nothing leaks, and a partition that cannot be renewed stays. */
 #include "tests/support/counting_allocator.h"
 #include "tests/support/preprocess/partition_check.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 typedef struct fixture {
     counting_allocator counter;

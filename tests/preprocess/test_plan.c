@@ -1,16 +1,11 @@
 /* Plans through the public API: every method, parts and their errors, the mesh's hash, refusals. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static body shape;
 static cscd_context *context;

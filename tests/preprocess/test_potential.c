@@ -1,15 +1,10 @@
 /* The potential of a triangle: against quadrature, known values, and the laws that it obeys. */
 #include "preprocess/charge/potential.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 typedef long double real;
 

@@ -4,16 +4,11 @@
 #include "preprocess/regions/visibility.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { K = 5 };
 

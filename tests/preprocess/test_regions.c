@@ -6,16 +6,11 @@
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* The bodies up to the sphere: those of docs/regions.md. */
 enum { TRIANGLES_MAX = 6000, REGIONS_MAX = 200, BODIES = BODY_SPHERE + 1 };

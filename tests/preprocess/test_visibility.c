@@ -1,14 +1,9 @@
 /* Detector points are centroids of the surface; the visible share is what faces them from inside. */
 #include "preprocess/regions/visibility.h"
 #include "tests/support/preprocess/region_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 static const double pi = 3.14159265358979323846;
 

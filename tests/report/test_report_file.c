@@ -4,22 +4,19 @@
 #include "src/tool/report/template.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;

@@ -3,15 +3,12 @@
 #include "src/tool/report/frame_stream.h"
 #include "tests/support/random.h"
 #include "tests/support/report/page_reader.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;

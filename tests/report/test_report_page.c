@@ -3,16 +3,13 @@
 #include "src/tool/report/template.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 7, TRIANGLES_MAX = 1000 };
 

@@ -2,14 +2,11 @@
  * frame. */
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 7, FOLD_FRAMES = 13, CONTACTS_MAX = 20000 };
 

@@ -3,14 +3,9 @@
 #include "runtime/sensors/particles.h"
 #include "src/core/vec3.h"
 #include "tests/support/random.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POINTS = 400 };
 

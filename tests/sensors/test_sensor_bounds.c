@@ -4,15 +4,10 @@
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/sensors/hand_partition.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { MESHES = 60, INTERVALS_PER_MESH = 40, TOUCHES = 1000 };

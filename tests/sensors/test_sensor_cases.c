@@ -1,13 +1,8 @@
 /* The cases of the thesis's proofs: two and more, convex and concave, of equal and unequal size. */
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 24, OBJECTS_MAX = 3, ALL_REGIONS_MAX = 12 };
 

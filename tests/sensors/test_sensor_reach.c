@@ -2,16 +2,11 @@
  * smaller bound would do. And how far around particles look. */
 #include "runtime/sensors/sensors.h"
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SEEDS = 2 };

@@ -1,15 +1,10 @@
 /* What sensors find of what the detector finds, on random scenes. A contact that they report is one; that
  * they report all is not promised, and the shares are printed. */
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SEEDS = 20, FRAMES = 10 };

@@ -1,15 +1,10 @@
 /* Particle sensors: options, cells, repetition, mu and R_eff, renewal, and what is found on random scenes. */
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene s; /* large; one test at a time */
 

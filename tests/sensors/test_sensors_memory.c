@@ -4,14 +4,9 @@
 #include "cscd/sensors.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene s; /* large; one test at a time */
 

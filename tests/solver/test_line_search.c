@@ -4,16 +4,11 @@
 #include "tests/support/oracle.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/solver/free_step_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene interval; /* large; one test at a time */
 static free_step_call call;

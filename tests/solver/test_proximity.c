@@ -4,16 +4,11 @@
 #include "tests/support/ccd/feature_distance.h"
 #include "tests/support/oracle.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene interval, still; /* large; one test at a time; still: at x0 throughout */
 

@@ -2,15 +2,10 @@
 #include "cscd/cscd.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static scene interval; /* large; one test at a time */
 

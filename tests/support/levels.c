@@ -1,12 +1,6 @@
 /* A context for each level of vector instructions that this processor has. */
 #include "tests/support/levels.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 cscd_context *contexts[LEVEL_COUNT];
 

@@ -1,12 +1,8 @@
 /* Small meshes without positions, put together from standard pieces. */
 #include "tests/support/mesh_shapes.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 void shape_add_triangle(shape *s, uint32_t a, uint32_t b, uint32_t c) {
     assert_true(s->triangle_count < SHAPE_TRIANGLES_MAX);

@@ -1,12 +1,6 @@
 /* A context, a mesh and a detector for a scene; anything that fails there fails the test. */
 #include "tests/support/rig.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 rig rig_create(const scene *s, uint32_t thread_count, const cscd_detector_options *options) {
     rig r = {NULL, NULL, NULL};

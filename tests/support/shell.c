@@ -1,15 +1,10 @@
 /* Shell commands in tests: what they print, and how they end. */
 #include "tests/support/shell.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
-
-#include <cmocka.h>
 
 enum { COMMAND_MAX = 8192 };
 

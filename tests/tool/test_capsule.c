@@ -1,19 +1,14 @@
 /* The tool on a capsule whose ends meet in a known interval: a formula, brute force and all outputs agree. */
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
+#include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* By default the tool plans by charge, which under the sanitizers takes ten seconds here. */
 #ifdef __SANITIZE_ADDRESS__

@@ -1,18 +1,15 @@
 /* The renderer: known pixels, hidden surfaces, markers, and PNG files that read back or leave nothing. */
 #include "src/tool/picture/colour.h"
 #include "src/tool/picture/scene.h"
+#include "tests/support/test.h"
 
 #include <math.h>
 #include <png.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "tests/support/temp_file.h"
 

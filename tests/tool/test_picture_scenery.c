@@ -2,14 +2,11 @@
  */
 #include "src/tool/picture/scene.h"
 #include "src/tool/picture/sheet.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "tests/support/random_stream.h"
 

@@ -1,17 +1,13 @@
 /* The tool's command line: usage errors, bad input, and outputs that must not overwrite anything. */
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static temp_folder folder;
 static temp_path model, cache, missing;

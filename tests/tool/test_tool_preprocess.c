@@ -1,17 +1,13 @@
 /* `cscd preprocess` from end to end, what is refused, and which plan a replay then takes. */
+#include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 12 };
 

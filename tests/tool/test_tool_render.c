@@ -1,17 +1,13 @@
 /* `cscd render`: single pictures, strips of frames, and scenery beside them. */
+#include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <png.h>
-
-#include <cmocka.h>
 
 enum { FRAMES = 8, WIDTH = 160, HEIGHT = 120, LABEL_WIDTH = 60, LABEL_HEIGHT = 30 };
 

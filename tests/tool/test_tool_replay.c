@@ -1,18 +1,14 @@
 /* What a replay writes: contacts, summary and table, on scenes whose contacts are known. */
+#include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FLIGHT_FRAMES = 8, FOLD_FRAMES = 16 };
 

@@ -1,19 +1,15 @@
 /* The tool's reports: what is in the page, what is refused, what is left when a report cannot be written. */
+#include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 static temp_folder folder;
 static temp_path model, cache, page, csv, summary;

@@ -1,18 +1,14 @@
 /* `replay --min-separation`: what is reported, where it is written, what is refused. */
+#include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static temp_folder folder;
 static recorded flight, fold;

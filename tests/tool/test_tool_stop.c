@@ -1,14 +1,12 @@
 /* Replays that end early keep what they have; replays that last keep their memory. */
+#include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
 #include <math.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +14,6 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -1,13 +1,8 @@
 /* A BVH over a scene's mesh, for tests; anything that fails there fails the test. */
 #include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static void choose_regions(bvh_rig *r, uint32_t region_count) {
     const cscd_mesh *mesh = r->mesh;

@@ -1,16 +1,11 @@
 /* Queries for the elementary tests, built backwards from a contact, and checks of what was found. */
 #include "tests/support/ccd/elementary_cases.h"
+#include "tests/support/test.h"
 
 #include "tests/support/random.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-
-#include <cmocka.h>
 
 #define SIDE_MISS  1e-6
 #define SHORT_MISS 1e-6

@@ -1,13 +1,8 @@
 /* Distances of moving features by dense sampling in long double: shares nothing with the code under test. */
 #include "tests/support/ccd/separation_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 enum { CELLS = 48, DEPTH_MAX = 40, SAMPLES_MAX = 5000, BISECTIONS = 60 };
 

@@ -1,13 +1,10 @@
 /* Recorded animations for tests: point caches built byte by byte, mesh files, and checks of what is read. */
 #include "tests/support/io/frame_fixture.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 temp_folder frame_fixture_folder;
 

@@ -1,16 +1,13 @@
 /* Reads bytes as a mesh file and checks the mesh or the error; used inside cmocka tests. */
 #include "tests/support/io/mesh_check.h"
+#include "tests/support/test.h"
 
 #include "tests/support/temp_file.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error) {
     temp_folder folder = temp_folder_make();

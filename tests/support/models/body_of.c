@@ -1,12 +1,6 @@
 /* The bodies of models/shapes, for tests. */
 #include "tests/support/models/body_of.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 body body_of(body_kind kind, uint32_t triangle_count) {
     body b;

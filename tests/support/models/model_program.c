@@ -1,17 +1,12 @@
 /* Which program run_tool runs: the tool, or one of models/. */
 #include "tests/support/models/model_program.h"
+#include "tests/support/test.h"
 
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const char *variable(const char *name) {
     const char *value = getenv(name);

@@ -1,11 +1,8 @@
 /* A context, a mesh and room for the charges of a surface. */
 #include "tests/support/preprocess/charge_rig.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cscd_allocator *allocator) {
     charge_rig r = {NULL, NULL, NULL, NULL};

@@ -1,15 +1,12 @@
 /* Closed surfaces whose capacitance is known, at any refinement. */
 #include "tests/support/preprocess/charge_shapes.h"
+#include "tests/support/test.h"
 
 #include "cscd/cscd.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static conductor new_conductor(uint32_t vertex_count, uint32_t triangle_count) {
     conductor s = {vertex_count, triangle_count, malloc(vertex_count * 3 * sizeof(double)),

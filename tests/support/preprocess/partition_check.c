@@ -1,14 +1,9 @@
 /* What holds for every partition, and bodies to partition; used inside cmocka tests. */
 #include "tests/support/preprocess/partition_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static uint32_t triangles_in(const cscd_partition *partition, uint32_t vertex, uint32_t part) {
     uint32_t count = 0, in_part = 0;

@@ -1,14 +1,9 @@
 /* What holds for every division into regions; used inside cmocka tests. */
 #include "tests/support/preprocess/region_check.h"
 #include "preprocess/regions/dual_graph.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 void check_regions(const cscd_mesh *mesh, const uint32_t *regions, uint32_t region_count) {
     uint32_t n = mesh->triangle_count, seen = 0;

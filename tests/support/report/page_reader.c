@@ -1,16 +1,13 @@
 /* Reads a report back, so that the tests judge the page's data without sharing the writer's code. */
 #include "tests/support/report/page_reader.h"
+#include "tests/support/test.h"
 
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
-
-#include <cmocka.h>
 
 #define OCTETS "<script type=\"application/pairs_x8-stream\" id=\"cscd-array-"
 #define JSON   "<script type=\"application/json\" id=\"cscd-report\">"

@@ -1,11 +1,6 @@
 /* A recording with a plan and a detector, and the report of its replay. */
 #include "tests/support/report/report_rig.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
+#include "tests/support/test.h"
 
 report_rig report_rig_create(recorded shape, cscd_method method) {
     report_rig rig = {.shape = shape};

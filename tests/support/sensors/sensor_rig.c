@@ -1,15 +1,10 @@
 /* A context, a mesh, a plan, a partition and sensors for a scene; anything that fails there fails the test.
  */
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/test.h"
 
 #include <assert.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup) {
     static const sensor_setup defaults = {0, NULL, NULL};

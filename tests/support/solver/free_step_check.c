@@ -1,14 +1,9 @@
 /* What a step that is certified free of contact must be, by brute force. */
 #include "tests/support/solver/free_step_check.h"
+#include "tests/support/test.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 /* Times are early by less than 1e-9, each by an amount of its own. */
 static const double early = 1e-9;

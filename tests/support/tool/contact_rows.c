@@ -1,17 +1,13 @@
 /* Reads the tool's contact files back, strictly: CSV and JSON Lines. */
 #include "tests/support/tool/contact_rows.h"
+#include "tests/support/test.h"
 
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { FIELDS = 16 };
 

@@ -1,15 +1,11 @@
 /* A strict JSON reader (RFC 8259), so that the tests judge what the tool writes without sharing its code. */
 #include "tests/support/tool/json_reader.h"
+#include "tests/support/test.h"
 
 #include "tests/support/tool/run_tool.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { DEPTH_MAX = 64 };
 

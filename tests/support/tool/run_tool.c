@@ -1,18 +1,14 @@
 /* Runs the built tool as a user would: arguments in; exit code, both outputs and peak memory out. */
 #include "tests/support/tool/run_tool.h"
+#include "tests/support/test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 enum { ARGUMENTS_MAX = 64, NOT_STARTED = 127 };
 
