@@ -3,10 +3,10 @@
 #include "src/tool/common/frame_list.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
 #include "src/tool/common/terminal.h"
-#include "src/tool/replay/replay_options.h"
 
 #include <errno.h>
 #include <getopt.h>

@@ -1,7 +1,7 @@
 /* `cscd info`: counts, components, holes, bounds of a mesh. */
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/recording.h"
-#include "src/tool/replay/replay_options.h"
 
 #include <getopt.h>
 #include <stdio.h>

@@ -2,12 +2,12 @@
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/common/plan_picture.h"
+#include "src/tool/common/plan_colours.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/plan_report.h"
-#include "src/tool/replay/replay_options.h"
 
 #include <getopt.h>
 #include <stdio.h>

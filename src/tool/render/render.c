@@ -1,9 +1,9 @@
 /* `cscd render`: draws frames to a PNG: plain, with the contacts of their intervals, or with a plan. */
 #include "src/tool/common/command.h"
-#include "src/tool/common/plan_picture.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/common/scenery.h"
 #include "src/tool/render/contact_picture.h"
+#include "src/tool/render/plan_picture.h"
 #include "src/tool/render/render_options.h"
 #include "src/tool/render/strip.h"
 

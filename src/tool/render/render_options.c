@@ -2,8 +2,8 @@
 #include "src/tool/render/render_options.h"
 
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/replay/replay_options.h"
 
 #include <getopt.h>
 #include <stdio.h>
@@ -67,24 +67,6 @@ static bool parse_colour(const char *text, colouring *out) {
         return true;
     }
     return false;
-}
-
-bool parse_picture_size(const char *text, picture_options *picture) {
-    char end = '\0';
-    return sscanf(text, "%5ux%5u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
-           picture->height >= 16 && picture->width <= 8192 && picture->height <= 8192;
-}
-
-bool parse_picture_view(const char *text, picture_options *picture) {
-    char end = '\0';
-    return sscanf(text, "%lf,%lf%c", &picture->azimuth, &picture->elevation, &end) == 2 &&
-           picture->elevation >= -90.0 && picture->elevation <= 90.0 && picture->azimuth >= -1e6 &&
-           picture->azimuth <= 1e6;
-}
-
-bool parse_picture_up(const char *text, picture_options *picture) {
-    picture->y_up = strcmp(text, "y") == 0;
-    return picture->y_up || strcmp(text, "z") == 0;
 }
 
 /* Which options were given where their values do not say it. */

@@ -23,8 +23,3 @@ typedef struct render_options {
 
 /* False: *code is the exit code to end with (0 after --help). */
 bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code);
-
-/* --size WxH, --view AZ,EL and --up y|z, for the commands that draw. */
-bool parse_picture_size(const char *text, picture_options *picture);
-bool parse_picture_view(const char *text, picture_options *picture);
-bool parse_picture_up(const char *text, picture_options *picture);

@@ -2,6 +2,7 @@
 #include "src/tool/replay/replay_options.h"
 
 #include "src/io/contact_file.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 
 #include <getopt.h>
@@ -104,21 +105,6 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-bool parse_weld(const char *text, bool *weld, double *epsilon) {
-    *weld = true;
-    *epsilon = 0.0;
-    return strcmp(text, "exact") == 0 || (parse_double(text, epsilon) && *epsilon > 0.0);
-}
-
-bool parse_method(const char *text, cscd_method *method, uint32_t *k) {
-    uint32_t regions;
-    if (strncmp(text, "kmeans:", 7) != 0) return cscd_method_from_name(text, method);
-    if (!parse_unsigned(text + 7, &regions) || regions == 0) return false;
-    *method = CSCD_METHOD_KMEANS;
-    *k = regions;
-    return true;
-}
-
 static bool parse_start(const char *text, cscd_start *out) {
     static const char *const names[] = {"prove", "vouched", "unknown"};
     for (int i = 0; i < 3; i++) {
@@ -127,14 +113,6 @@ static bool parse_start(const char *text, cscd_start *out) {
         return true;
     }
     return false;
-}
-
-bool parse_length(const char *text, double *out) {
-    double value;
-    if (!parse_double(text, &value) || value < 0.0) return false;
-    if (value != 0.0 && (value < 0x1p-300 || value > 0x1p300)) return false;
-    *out = value;
-    return true;
 }
 
 /* False when the value does not fit. */

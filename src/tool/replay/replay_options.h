@@ -33,12 +33,3 @@ typedef struct replay_options {
 
 /* False: *code is the exit code to end with (0 after --help). */
 bool replay_options_parse(int argument_count, char **arguments, replay_options *out, int *code);
-
-/* --weld exact|EPS, for the commands that have it. */
-bool parse_weld(const char *text, bool *weld, double *epsilon);
-
-/* 0, or a length that the library takes. */
-bool parse_length(const char *text, double *out);
-
-/* --method NAME|kmeans:K; *k stays as it is without a K. */
-bool parse_method(const char *text, cscd_method *method, uint32_t *k);

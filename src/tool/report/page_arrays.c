@@ -1,7 +1,7 @@
 /* The arrays of a page, by name: those collected, and those that follow from the mesh and the plan. */
 #include "src/tool/report/page_arrays.h"
 
-#include "src/tool/common/charge_rank.h"
+#include "src/tool/common/plan_colours.h"
 #include "src/tool/report/collected.h"
 
 #include <assert.h>

@@ -2,9 +2,8 @@
 #include "src/tool/sense/sense_options.h"
 
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
-#include "src/tool/render/render_options.h"
-#include "src/tool/replay/replay_options.h"
 
 #include <getopt.h>
 #include <stdio.h>

@@ -1,26 +1,12 @@
-/* Colours of a plan: charge by rank, regions as hues; per triangle, and as a scene with its legend. */
-#include "src/tool/common/plan_picture.h"
+/* Paints a picture with a plan, its charge by rank or its regions, and says in a legend what the colours mean. */
+#include "src/tool/render/plan_picture.h"
 
-#include "src/tool/common/charge_rank.h"
+#include "src/tool/common/plan_colours.h"
 #include "src/tool/picture/colour.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void plan_colour_regions(const cscd_plan *plan, uint32_t triangle_count, uint8_t *colours) {
-    for (uint32_t t = 0; t < triangle_count; t++)
-        picture_colour_category(cscd_plan_triangle_region(plan, t), colours + (size_t)t * 3);
-}
-
-bool plan_colour_charge(const cscd_plan *plan, const cscd_mesh *mesh, uint8_t *colours, io_error *error) {
-    double *ranks = charge_ranks(plan, mesh);
-    if (ranks == NULL) return io_fail(error, "out of memory");
-    for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++)
-        picture_colour_map(ranks[t], colours + (size_t)t * 3);
-    free(ranks);
-    return true;
-}
 
 /* A white dot and what it stands for. */
 static void add_line(contact_picture *picture, plan_legend *legend, const char *text) {
@@ -68,7 +54,7 @@ bool plan_picture_paint(contact_picture *picture, plan_legend *legend, const rec
                            cscd_method_name(cscd_plan_method(plan)));
         snprintf(picture->caption + used, sizeof picture->caption - used, "%scharge by rank", colon);
         legend_of_charge(picture, legend);
-        return plan_colour_charge(plan, r->mesh, picture->colours, error);
+        return plan_colour_charge(plan, r->mesh, picture->colours) || io_fail(error, "out of memory");
     }
     snprintf(picture->caption + used, sizeof picture->caption - used, "%s%u region%s, %s", colon, regions,
              regions == 1 ? "" : "s", cscd_method_name(cscd_plan_method(plan)));
