@@ -208,7 +208,7 @@ bench-embree:
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
 	@$(BUILD)/benchmarks/embree $(EMBREE)
 
-# The charts of docs/benchmarks.md, from the last make bench.
+# The charts of docs/measurements.md, from the last make bench.
 bench-plot:
 	@.ci/packages plots
 	@benchmarks/plot.sh build/bench.json docs/images
@@ -242,7 +242,7 @@ help:
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
-	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md, docs/performance.md'
+	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'

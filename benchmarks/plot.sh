@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the charts of docs/benchmarks.md from the JSON of benchmarks/methods. usage: plot.sh BENCH.json IMAGES
+# Draws the charts of docs/measurements.md from the JSON of benchmarks/methods. usage: plot.sh BENCH.json IMAGES
 set -eu
 json=$1
 images=$2

@@ -34,7 +34,7 @@ typedef enum cscd_start {
 
 /* Bounding volumes in the trees. They differ in time only. */
 typedef enum cscd_volume {
-    CSCD_VOLUME_BOX,   /* three axes: the faster, by measurement (docs/performance.md) */
+    CSCD_VOLUME_BOX,   /* three axes: the faster, by measurement (docs/measurements.md) */
     CSCD_VOLUME_KDOP14 /* seven axes, 14 planes */
 } cscd_volume;
 

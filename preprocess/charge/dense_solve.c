@@ -15,7 +15,7 @@
 
 _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integers");
 
-/* By measurement (docs/charge.md): narrower panels leave the products thin, wider ones few tasks. */
+/* By measurement (docs/theory/charge.md): narrower panels leave the products thin, wider ones few tasks. */
 enum { PANEL_WIDTH = 256 };
 
 /* ---- OpenBLAS's threads ------------------------------------------------------------------------------- */

@@ -1,4 +1,4 @@
-/* Regions of a mesh, from its charge; or one per component. docs/regions.md explains and justifies. */
+/* Regions of a mesh, from its charge; or one per component. docs/theory/charge.md explains and justifies. */
 #pragma once
 
 #include "src/mesh/mesh.h"

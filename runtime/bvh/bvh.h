@@ -2,7 +2,7 @@
  *
  * Eight triangles are a leaf, eight leaves a block, eight blocks a block of the next level; all trees have
  * the same height, above which blocks of parts join them into one. Bounds are floats in the part's own frame,
- * scaled by a power of two that is common to all; docs/trees.md derives how far they are rounded. */
+ * scaled by a power of two that is common to all; docs/theory/trees.md derives how far they are rounded. */
 #pragma once
 
 #include "runtime/bvh/kernels.h"

@@ -8,7 +8,7 @@
 enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
 
 /* May triangles of one region with these flags, or any of two sets of them, be the first to touch? Not if
- * all are PLUS, and not if all are MINUS: see docs/culling.md. */
+ * all are PLUS, and not if all are MINUS: see docs/theory/culling.md. */
 static inline bool orientations_may_touch(uint8_t a, uint8_t b) {
     return (a | b) == ORIENTATION_ZERO;
 }

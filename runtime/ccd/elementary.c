@@ -1,5 +1,5 @@
 /* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? Three levels, each of
- * which decides only what it is certain of; docs/elementary.md derives every constant. */
+ * which decides only what it is certain of; docs/theory/elementary.md derives every constant. */
 #include "runtime/ccd/elementary.h"
 
 #include "runtime/ccd/contact_frame.h"

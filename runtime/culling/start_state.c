@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* By measurement (docs/culling.md). */
+/* By measurement (docs/theory/culling.md). */
 static const double share_worth_it = 0.9;
 
 enum { PATIENCE_MAX = 16, VERTICES_PER_TASK = 2048 };

@@ -5,7 +5,7 @@
 
 /* Of a triangle at one moment. Free: nothing of its component meets it but its neighbours in shared features,
  * and it has an area. Clean: free, and of those free triangles of its component that, as far as is proven,
- * have one winding number on their outer sides (docs/culling.md). A component is embedded when all are clean.
+ * have one winding number on their outer sides (docs/theory/culling.md). A component is embedded when all are clean.
  */
 typedef enum triangle_state {
     TRIANGLE_UNKNOWN,

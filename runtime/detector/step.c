@@ -101,7 +101,7 @@ static void orient(step_work *work, const orientation_query *view) {
 }
 
 /* Tests the pairs that contacts have uncovered, until these bring no more: then all contacts of the
- * components to be finished are found (docs/culling.md). */
+ * components to be finished are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->search.detector;
     work->search.interval.closing = true;

@@ -10,7 +10,7 @@
  * least 2^-300. */
 static const double shortest = 0x1p-1000;
 
-/* What stands for a time of 0: times are early by less than 1e-9 (docs/elementary.md). */
+/* What stands for a time of 0: times are early by less than 1e-9 (docs/theory/elementary.md). */
 static const double about_0 = 0x1p-33;
 
 static const double least_coordinate = 0x1p-300;

@@ -1,4 +1,4 @@
-/* Method iccd where it is easily wrong: each scene breaks one condition of the theorem in docs/iccd.md, and
+/* Method iccd where it is easily wrong: each scene breaks one condition of the theorem in docs/theory/iccd.md, and
  * has contacts that a test without that condition would lose. */
 #include "tests/support/rig.h"
 #include "tests/support/test.h"

@@ -220,7 +220,7 @@ static void far_from_the_origin(void **state) {
     conductor_free(&s);
 }
 
-/* A row of docs/charge.md. */
+/* A row of docs/theory/charge.md. */
 static void print_row(const char *name, conductor s, uint32_t thread_count) {
     charge_timings timings = {0.0, 0.0, 0.0, 0.0};
     charge_rig r = charge_rig_create(&s, thread_count, NULL);
@@ -246,7 +246,7 @@ static int print_table(uint32_t thread_count) {
     return 0;
 }
 
-/* With a number of threads as its argument it prints the table of docs/charge.md and tests nothing. */
+/* With a number of threads as its argument it prints the table of docs/theory/charge.md and tests nothing. */
 int main(int argc, char **argv) {
     if (argc > 1) return print_table((uint32_t)strtoul(argv[1], NULL, 10));
     const struct CMUnitTest tests[] = {cmocka_unit_test(sphere),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the pictures of docs/report.md.
+"""Draws the pictures of docs/guide.md.
 
 usage: gallery.py REPORT.html PLAN.html COMPARISON.html IMAGES
 """

@@ -30,7 +30,7 @@ cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out);
 void patches_free(cscd_context *context, patches *p);
 
 /* Finds the nodes whose triangles cannot touch each other while the vertices move from x0 to x1, and hides
- * their pairs in the BVH. See docs/iccd.md for the proof.
+ * their pairs in the BVH. See docs/theory/iccd.md for the proof.
  * published: as in the literature, which loses contacts: cones hold the normals of both ends only and may
  * open up to pi, any set of triangles is a patch, contours are taken to be simple at the start, and pairs of
  * edges that the parent's contour has too are not tested again although the axis is another. */

@@ -4,7 +4,7 @@
 #include <stdint.h>
 
 /* More limbs of 64 bits than the exact level of one elementary test ever holds at once, with coordinates from
- * 2^-300 to 2^300 in one query: docs/elementary.md counts them. */
+ * 2^-300 to 2^300 in one query: docs/theory/elementary.md counts them. */
 enum { INTEGER_POOL_LIMBS = 6144 };
 
 /* |size| limbs, least significant first, the last one not 0; a negative size means a negative number. */
