@@ -1,33 +1,18 @@
-/* `cscd check`: where a mesh crosses or touches itself, frame by frame. */
+/* `cscd check`: finds where a mesh intersects or touches itself, frame by frame. */
 #include "src/tool/common/command.h"
 #include "src/tool/common/frame_list.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
 #include "src/tool/common/terminal.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char help[] =
-    "usage: cscd check MODEL [FRAMES...] [options]\n"
-    "\n"
-    "Finds the pairs of triangles that cross or touch, features that share a vertex aside, at each frame.\n"
-    "Exact: the answer is that of the given coordinates, without rounding.\n"
-    "\n"
-    "  --json OUT.json      write the pairs of every frame (triangles as in MODEL, from 0)\n"
-    "  --frames A:B[:STEP]  only the frames A to B, both included, or every STEP-th of them\n"
-    "  --weld exact|EPS     join vertices that coincide, or lie within EPS, in the first frame\n"
-    "  --ignore LIST        leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'\n"
-    "  --ignore-rest        leave out the pairs that meet in the first frame\n"
-    "  --threads N          default 1; 0: one per processor\n"
-    "  --fail-on-contact    exit with 3 when any frame has such a pair\n"
-    "  --quiet              no progress, no warnings, nothing on the standard output\n";
 
 typedef struct check_options {
     recording_options source;
@@ -36,7 +21,35 @@ typedef struct check_options {
     bool ignore_rest, fail_on_contact, quiet;
 } check_options;
 
-typedef struct check {
+static const option_row rows[] = {
+    {"json", "OUT.json", read_text, offsetof(check_options, json_path),
+     "write the pairs of every frame (triangles as in MODEL, from 0)"},
+    {"frames", "A:B[:STEP]", read_frames, offsetof(check_options, frames),
+     "only the frames A to B, both included, or every STEP-th of them"},
+    {"weld", "exact|EPS", read_weld, offsetof(check_options, source),
+     "join vertices that coincide, or lie within EPS, in the first frame"},
+    {"ignore", "LIST", read_text, offsetof(check_options, ignore_path),
+     "leave out the pairs of a file: lines 'A B' (triangles) or 'components A B'"},
+    {"ignore-rest", NULL, read_flag, offsetof(check_options, ignore_rest),
+     "leave out the pairs that intersect or touch in the first frame"},
+    {"threads", "N", read_threads, offsetof(check_options, source.thread_count),
+     "default 1; 0: one per processor"},
+    {"fail-on-contact", NULL, read_flag, offsetof(check_options, fail_on_contact),
+     "exit with 3 when any frame has such a pair"},
+    {"quiet", NULL, read_flag, offsetof(check_options, quiet),
+     "no progress, no warnings, nothing on the standard output"},
+};
+
+static const option_table table = {
+    "check", "MODEL [FRAMES...] [options]",
+    "Finds the pairs of triangles that intersect or touch at each frame, features that share a vertex aside. "
+    "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without "
+    "them "
+    "MODEL itself is checked.",
+    rows, sizeof rows / sizeof *rows};
+
+/* A run of the command. */
+typedef struct check_run {
     const check_options *options;
     recording recording;
     ignore_pairs ignored;
@@ -47,10 +60,10 @@ typedef struct check {
     frame_range frames;
     uint32_t frames_checked;
     frame_list crossing;
-} check;
+} check_run;
 
 /* As in MODEL, the smaller first: welding keeps the order. */
-static void write_frame(check *c, uint32_t frame, const cscd_intersections *found) {
+static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *found) {
     json *out = &c->out;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -69,7 +82,7 @@ static void write_frame(check *c, uint32_t frame, const cscd_intersections *foun
     fflush(out->file);
 }
 
-static bool check_frame(check *c, uint32_t frame, io_error *error) {
+static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     cscd_intersections found;
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
     if (cscd_detector_check(c->detector, c->positions, &found) != CSCD_OK)
@@ -84,7 +97,7 @@ static bool check_frame(check *c, uint32_t frame, io_error *error) {
     return true;
 }
 
-static bool prepare(check *c, io_error *error) {
+static bool prepare_check(check_run *c, io_error *error) {
     const check_options *o = c->options;
     c->frames = o->frames;
     if (!frame_range_close(&c->frames, c->recording.frame_count, error)) return false;
@@ -107,7 +120,7 @@ static bool prepare(check *c, io_error *error) {
     return true;
 }
 
-static bool check_frames(check *c, io_error *error) {
+static bool check_frames(check_run *c, io_error *error) {
     uint32_t count = frame_range_count(&c->frames);
     for (uint32_t i = 0; i < count && !interrupted(); i++) {
         terminal_progress_update(&c->progress, i, count, "check");
@@ -116,7 +129,7 @@ static bool check_frames(check *c, io_error *error) {
     return true;
 }
 
-static bool close_json(check *c, const char *stopped_by, io_error *error) {
+static bool close_json(check_run *c, const char *stopped_by, io_error *error) {
     json *out = &c->out;
     if (out->file == NULL) return true;
     json_end_array(out);
@@ -130,14 +143,14 @@ static bool close_json(check *c, const char *stopped_by, io_error *error) {
     return written || io_fail(error, "%s: cannot write: %s", c->options->json_path, strerror(errno));
 }
 
-static int run(const check_options *options) {
-    check c = {.options = options};
+static int run_check(const check_options *options) {
+    check_run c = {.options = options};
     io_error error = {""}, close_error = {""};
     if (!recording_open(&options->source, &c.recording, &error)) return fail_input("%s", error.text);
     if (!options->quiet) recording_warn(&c.recording);
     interrupt_catch();
     terminal_progress_begin(&c.progress, options->quiet);
-    bool ran = prepare(&c, &error) && check_frames(&c, &error);
+    bool ran = prepare_check(&c, &error) && check_frames(&c, &error);
     terminal_progress_end(&c.progress);
     bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
     if (c.frames_checked > 0 && !options->quiet) {
@@ -158,62 +171,16 @@ static int run(const check_options *options) {
     return code;
 }
 
-static bool set_option(int id, const char *value, check_options *o) {
-    switch (id) {
-    case 'j':
-        o->json_path = value;
-        return true;
-    case 'f':
-        return frame_range_parse(value, &o->frames);
-    case 'w':
-        return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
-    case 'i':
-        o->ignore_path = value;
-        return true;
-    case 'r':
-        return o->ignore_rest = true;
-    case 't':
-        return parse_unsigned(value, &o->source.thread_count) && o->source.thread_count <= 256;
-    case 'c':
-        return o->fail_on_contact = true;
-    case 'q':
-        return o->quiet = true;
-    default:
-        return false;
-    }
-}
-
 int command_check(int argument_count, char **arguments) {
-    static const struct option long_options[] = {{"json", required_argument, NULL, 'j'},
-                                                 {"frames", required_argument, NULL, 'f'},
-                                                 {"weld", required_argument, NULL, 'w'},
-                                                 {"ignore", required_argument, NULL, 'i'},
-                                                 {"ignore-rest", no_argument, NULL, 'r'},
-                                                 {"threads", required_argument, NULL, 't'},
-                                                 {"fail-on-contact", no_argument, NULL, 'c'},
-                                                 {"quiet", no_argument, NULL, 'q'},
-                                                 {"help", no_argument, NULL, 'h'},
-                                                 {NULL, 0, NULL, 0}};
     check_options options = {.source = {.thread_count = 1}, .frames = frame_range_all()};
-    opterr = 0;
-    optind = 1;
-    for (int id, index = 0; (id = getopt_long(argument_count, arguments, ":", long_options, &index)) != -1;) {
-        if (id == 'h') {
-            fputs(help, stdout);
-            return EXIT_RAN;
-        }
-        if (id == ':' || id == '?') return fail_option("check", id, arguments);
-        if (!set_option(id, optarg, &options))
-            return fail_usage("check", "--%s cannot be '%s'", long_options[index].name, optarg);
-    }
-    if (argument_count - optind < 1) return fail_usage("check", "no MODEL given");
-    const char *const *inputs = (const char *const *)(arguments + optind);
+    given_options given;
+    int code;
+    if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
+    if (given.input_count < 1) return fail_usage("check", "no MODEL given");
     io_error error;
-    if (!output_path_is_safe(options.json_path, inputs, (size_t)(argument_count - optind), &error) ||
-        !output_path_is_safe(options.json_path, (const char *const *)&options.ignore_path, 1, &error))
+    if (!output_path_is_safe(options.json_path, given.inputs, given.input_count, &error) ||
+        !output_path_is_safe(options.json_path, &options.ignore_path, 1, &error))
         return fail_usage("check", "--json %s", error.text);
-    options.source.model_path = inputs[0];
-    options.source.frame_paths = inputs + 1;
-    options.source.frame_path_count = (size_t)(argument_count - optind - 1);
-    return run(&options);
+    recording_options_take(&options.source, &given);
+    return run_check(&options);
 }

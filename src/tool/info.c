@@ -1,16 +1,20 @@
-/* `cscd info`: counts, components, holes, bounds of a mesh. */
+/* `cscd info`: prints counts, components, holes and bounds of a mesh. */
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/recording.h"
 
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char help[] =
-    "usage: cscd info MODEL [--weld exact|EPS]\n"
-    "\n"
-    "Counts, components, closedness (open edges, non-manifold places), genus and bounds of a mesh.\n";
+static const option_row rows[] = {
+    {"weld", "exact|EPS", read_weld, 0, "join vertices that coincide, or lie within EPS"},
+};
+
+static const option_table table = {
+    "info", "MODEL [--weld exact|EPS]",
+    "Prints counts, components, closedness (open edges, non-manifold places), genus and bounds of a mesh.",
+    rows, sizeof rows / sizeof *rows};
 
 enum { COMPONENTS_LISTED = 50 };
 
@@ -74,22 +78,12 @@ static bool print_zero_area(recording *r, io_error *error) {
 }
 
 int command_info(int argument_count, char **arguments) {
-    static const struct option long_options[] = {
-        {"weld", required_argument, NULL, 'w'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0}};
     recording_options source = {.thread_count = 1};
-    opterr = 0;
-    optind = 1;
-    for (int id; (id = getopt_long(argument_count, arguments, ":", long_options, NULL)) != -1;) {
-        if (id == 'h') {
-            fputs(help, stdout);
-            return EXIT_RAN;
-        }
-        if (id != 'w') return fail_option("info", id, arguments);
-        if (!parse_weld(optarg, &source.weld, &source.weld_epsilon))
-            return fail_usage("info", "--weld cannot be '%s'", optarg);
-    }
-    if (argument_count - optind != 1) return fail_usage("info", "expected one MODEL");
-    source.model_path = arguments[optind];
+    given_options given;
+    int code;
+    if (!option_table_read(&table, argument_count, arguments, &source, &given, &code)) return code;
+    if (given.input_count != 1) return fail_usage("info", "expected one MODEL");
+    recording_options_take(&source, &given);
     recording r;
     io_error error = {""};
     if (!recording_open(&source, &r, &error)) return fail_input("%s", error.text);

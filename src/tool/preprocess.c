@@ -1,7 +1,8 @@
-/* `cscd preprocess`: makes the plan of a mesh, tells what it found and saves it. */
+/* `cscd preprocess`: makes the plan of a mesh, prints what it found and saves it. */
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_colours.h"
@@ -9,33 +10,10 @@
 #include "src/tool/common/terminal.h"
 #include "src/tool/plan_report.h"
 
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-static const char help[] =
-    "usage: cscd preprocess MODEL [-o PLAN.ply] [options]\n"
-    "\n"
-    "Cuts the mesh MODEL (OBJ, PLY, OFF), at rest as in the file, into regions, each with a point that sees\n"
-    "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs\n"
-    "of triangles that cannot touch. Contacts are the same with any plan and with none.\n"
-    "\n"
-    "  -o PLAN.ply            default: MODEL with .plan.ply for its ending, where replay looks for it\n"
-    "  --report OUT.html      also write a page that shows charge, regions and detector points in any "
-    "browser\n"
-    "  --up y|z               of the report: which axis points up (default z)\n"
-    "  --method charge        cut where little charge gathers on the mesh as a conductor (default): takes\n"
-    "                         4 bytes for each pair of triangles of a component, and time with the cube\n"
-    "  --method kmeans:K      K regions by distance\n"
-    "  --method single        one region per component\n"
-    "  --seed N               of kmeans (default 1)\n"
-    "  --threshold X          charge: the share of the triangles that cuts start from (default 0.1)\n"
-    "  --published            charge: equalize with 256 bins, as published, instead of exact ranks\n"
-    "  --weld exact|EPS       join vertices that coincide, or lie within EPS; replay needs the same\n"
-    "  --threads N            default 0: one per processor\n"
-    "  --quiet                no progress, no warnings, nothing on the standard output\n";
 
 enum { LINES_MAX = 50 };
 
@@ -49,13 +27,58 @@ typedef struct preprocess_options {
     bool quiet;
 } preprocess_options;
 
+static bool read_plan_method(const char *text, void *place) {
+    cscd_plan_options *plan = place;
+    return parse_method(text, &plan->method, &plan->k) &&
+           (plan->method == CSCD_METHOD_CHARGE || plan->method == CSCD_METHOD_KMEANS ||
+            plan->method == CSCD_METHOD_SINGLE);
+}
+
+static bool read_share(const char *text, void *place) {
+    double *share = place;
+    return parse_double(text, share) && *share > 0.0 && *share < 1.0;
+}
+
+static const option_row rows[] = {
+    {"o", "PLAN.ply", read_text, offsetof(preprocess_options, output_path),
+     "default: MODEL with .plan.ply for its ending, where replay looks for it"},
+    {"output", "PLAN.ply", read_text, offsetof(preprocess_options, output_path), NULL},
+    {"report", "OUT.html", read_text, offsetof(preprocess_options, report.path),
+     "also write a page that shows charge, regions and detector points in any browser"},
+    {"up", "y|z", read_report_up, offsetof(preprocess_options, report.up_axis),
+     "of the report: which axis points up (default z)"},
+    {"method", "charge", read_plan_method, offsetof(preprocess_options, plan),
+     "cut where little charge gathers on the mesh as a conductor (default); takes 4 bytes for each pair of "
+     "triangles of a component, and time with the cube"},
+    {"method", "kmeans:K", .help = "K regions by distance"},
+    {"method", "single", .help = "one region per component"},
+    {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed), "of kmeans (default 1)"},
+    {"threshold", "X", read_share, offsetof(preprocess_options, plan.threshold),
+     "charge: the share of the triangles that cuts start from (default 0.1)"},
+    {"published", NULL, read_flag, offsetof(preprocess_options, plan.published),
+     "charge: equalize with 256 bins, as published, instead of exact ranks"},
+    {"weld", "exact|EPS", read_weld, offsetof(preprocess_options, source),
+     "join vertices that coincide, or lie within EPS; replay needs the same"},
+    {"threads", "N", read_threads, offsetof(preprocess_options, source.thread_count),
+     "default 0: one per processor"},
+    {"quiet", NULL, read_flag, offsetof(preprocess_options, quiet),
+     "no progress, no warnings, nothing on the standard output"},
+};
+
+static const option_table table = {
+    "preprocess", "MODEL [-o PLAN.ply] [options]",
+    "Cuts the mesh MODEL (OBJ, PLY, OFF), at rest as in the file, into regions, each with a point that sees "
+    "most of it, and saves this plan as a PLY that any viewer shows. cscd replay uses it to leave out pairs "
+    "of triangles that cannot touch. Contacts are the same with any plan and with none.",
+    rows, sizeof rows / sizeof *rows};
+
 static double total_area(const cscd_plan *plan) {
     double area = 0.0;
     for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) area += cscd_plan_region(plan, i).area;
     return area;
 }
 
-static double percent(double part, double whole) {
+static double percent_of(double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
 }
 
@@ -80,10 +103,10 @@ static void print_regions(const cscd_plan *plan) {
         seen += r.visible_share * r.area;
         if (i < LINES_MAX)
             printf("%6u %9u %9u %11.1f %% %14.1f %%   (%.6g, %.6g, %.6g)\n", i, r.component, r.triangle_count,
-                   percent(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
+                   percent_of(r.area, whole), 100.0 * r.visible_share, p[0], p[1], p[2]);
     }
     if (count > LINES_MAX) printf("and %u more regions\n", count - LINES_MAX);
-    printf("seen in all: %.1f %% of the area\n", percent(seen, whole));
+    printf("seen in all: %.1f %% of the area\n", percent_of(seen, whole));
 }
 
 static void print_plan(const preprocess_options *o, const recording *r, const cscd_plan *plan) {
@@ -98,8 +121,8 @@ static void print_plan(const preprocess_options *o, const recording *r, const cs
            t.solve_ms * 1e-3, t.regions_ms * 1e-3, t.total_ms * 1e-3);
 }
 
-static bool save(const preprocess_options *o, const recording *r, const double *positions,
-                 const cscd_plan *plan, io_error *error) {
+static bool save_plan(const preprocess_options *o, const recording *r, const double *positions,
+                      const cscd_plan *plan, io_error *error) {
     uint32_t count = cscd_mesh_triangle_count(r->mesh);
     uint8_t *colours = malloc((size_t)count * 3);
     if (colours == NULL) return io_fail(error, "out of memory");
@@ -126,7 +149,7 @@ static bool show_progress(void *user, const char *stage, double fraction) {
     return !interrupted();
 }
 
-static bool make(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
+static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
     cscd_status status = cscd_plan_create(r->mesh, positions, &o->plan, &plan);
     terminal_progress_end(o->source.progress.user);
@@ -134,7 +157,7 @@ static bool make(const preprocess_options *o, recording *r, const double *positi
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);
     if (status != CSCD_OK)
         return io_fail(error, "%s: %s", o->source.model_path, cscd_context_detail(r->context));
-    bool saved = save(o, r, positions, plan, error);
+    bool saved = save_plan(o, r, positions, plan, error);
     if (saved && !o->quiet) {
         print_plan(o, r, plan);
         printf("written: %s\n", o->output_path);
@@ -144,7 +167,7 @@ static bool make(const preprocess_options *o, recording *r, const double *positi
     return saved;
 }
 
-static int run(preprocess_options *o) {
+static int run_preprocess(preprocess_options *o) {
     recording r;
     io_error error = {""};
     terminal_progress shown;
@@ -156,74 +179,12 @@ static int run(preprocess_options *o) {
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r.mesh) * 3 * sizeof *positions);
     bool made = positions != NULL || io_fail(&error, "out of memory");
     made = made && output_path_opens(o->output_path, &error) && output_path_opens(o->report.path, &error) &&
-           recording_read(&r, 0, positions, &error) && make(o, &r, positions, &error);
+           recording_read(&r, 0, positions, &error) && make_plan(o, &r, positions, &error);
     free(positions);
     recording_close(&r);
     if (made) return EXIT_RAN;
     fail_input("%s", error.text);
     return interrupted() ? EXIT_INTERRUPTED : EXIT_BAD_INPUT;
-}
-
-static bool parse_share(const char *text, double *out) {
-    return parse_double(text, out) && *out > 0.0 && *out < 1.0;
-}
-
-static bool set_option(int id, const char *value, preprocess_options *o) {
-    switch (id) {
-    case 'o':
-        o->output_path = value;
-        return true;
-    case 'm':
-        return parse_method(value, &o->plan.method, &o->plan.k) &&
-               (o->plan.method == CSCD_METHOD_CHARGE || o->plan.method == CSCD_METHOD_KMEANS ||
-                o->plan.method == CSCD_METHOD_SINGLE);
-    case 's':
-        return parse_unsigned(value, &o->plan.seed);
-    case 'x':
-        return parse_share(value, &o->plan.threshold);
-    case 'p':
-        return o->plan.published = true;
-    case 'r':
-        o->report.path = value;
-        return true;
-    case 'u':
-        return report_request_parse_up(value, &o->report.up_axis);
-    case 'w':
-        return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
-    case 't':
-        return parse_unsigned(value, &o->source.thread_count) && o->source.thread_count <= 256;
-    case 'q':
-        return o->quiet = true;
-    default:
-        return false;
-    }
-}
-
-/* EXIT_RAN to go on; *help_wanted: it has been printed. */
-static int read_options(int argument_count, char **arguments, preprocess_options *o, bool *help_wanted) {
-    static const struct option long_options[] = {
-        {"output", required_argument, NULL, 'o'},  {"method", required_argument, NULL, 'm'},
-        {"seed", required_argument, NULL, 's'},    {"threshold", required_argument, NULL, 'x'},
-        {"published", no_argument, NULL, 'p'},     {"weld", required_argument, NULL, 'w'},
-        {"threads", required_argument, NULL, 't'}, {"quiet", no_argument, NULL, 'q'},
-        {"report", required_argument, NULL, 'r'},  {"up", required_argument, NULL, 'u'},
-        {"help", no_argument, NULL, 'h'},          {NULL, 0, NULL, 0}};
-    opterr = 0;
-    optind = 1;
-    for (int id, index = 0;
-         (id = getopt_long(argument_count, arguments, ":o:", long_options, &index)) != -1;) {
-        if (id == 'h') {
-            fputs(help, stdout);
-            *help_wanted = true;
-            return EXIT_RAN;
-        }
-        if (id == ':' || id == '?') return fail_option("preprocess", id, arguments);
-        if (!set_option(id, optarg, o))
-            return fail_usage("preprocess", "--%s cannot be '%s'", long_options[index].name, optarg);
-    }
-    if (argument_count - optind != 1) return fail_usage("preprocess", "expected one MODEL");
-    o->source.model_path = arguments[optind];
-    return EXIT_RAN;
 }
 
 /* A plan may replace a plan, but no other file. */
@@ -248,16 +209,18 @@ int command_preprocess(int argument_count, char **arguments) {
                                   .report.up_axis = 2,
                                   .argument_count = argument_count,
                                   .arguments = arguments};
-    bool help_wanted = false;
-    int code = read_options(argument_count, arguments, &options, &help_wanted);
-    if (code != EXIT_RAN || help_wanted) return code;
+    given_options given;
+    int code;
+    if (!option_table_read(&table, argument_count, arguments, &options, &given, &code)) return code;
+    if (given.input_count != 1) return fail_usage("preprocess", "expected one MODEL");
+    recording_options_take(&options.source, &given);
     char *model_plan = NULL;
-    if (options.output_path == NULL) options.output_path = model_plan = plan_path_of_model(arguments[optind]);
+    if (options.output_path == NULL) options.output_path = model_plan = plan_path_of_model(given.inputs[0]);
     if (options.output_path == NULL)
         code = fail_input("out of memory");
     else
         code = check_output(&options);
-    if (code == EXIT_RAN) code = run(&options);
+    if (code == EXIT_RAN) code = run_preprocess(&options);
     free(model_plan);
     return code;
 }

@@ -1,32 +1,36 @@
-/* `cscd report`: summaries of replays side by side, as one page. */
+/* `cscd report`: puts summaries of replays side by side on one page. */
 #include "src/tool/report/report.h"
 
 #include "src/tool/common/command.h"
+#include "src/tool/common/option_table.h"
+#include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/provenance.h"
 #include "src/tool/summary_file.h"
 
-#include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const char help[] =
-    "usage: cscd report A.json [B.json ...] -o OUT.html\n"
-    "\n"
-    "Puts the summaries that cscd replay --json wrote side by side on one page for any browser: the thesis'\n"
-    "table, times, contacts and pairs of every interval, and whether the contacts agree. To see the motion\n"
-    "itself, give cscd replay --report.\n"
-    "\n"
-    "  -o OUT.html            the page\n"
-    "  --quiet                nothing on the standard output\n";
 
 typedef struct report_command {
     const char *output_path;
     const char *const *paths;
     size_t count;
-    bool quiet, help_wanted;
+    bool quiet;
 } report_command;
+
+static const option_row rows[] = {
+    {"o", "OUT.html", read_text, offsetof(report_command, output_path), "the page"},
+    {"output", "OUT.html", read_text, offsetof(report_command, output_path), NULL},
+    {"quiet", NULL, read_flag, offsetof(report_command, quiet), "nothing on the standard output"},
+};
+
+static const option_table table = {
+    "report", "A.json [B.json ...] -o OUT.html",
+    "Puts the summaries that cscd replay --json wrote side by side on one page for any browser: the thesis' "
+    "table, times, contacts and pairs of every interval, and whether the contacts agree. To see the motion "
+    "itself, give cscd replay --report.",
+    rows, sizeof rows / sizeof *rows};
 
 static void free_summaries(report_summary *summaries, size_t count) {
     for (size_t i = 0; summaries != NULL && i < count; i++) free((char *)summaries[i].text);
@@ -63,25 +67,10 @@ static bool write_page(const report_command *c, io_error *error) {
     return written;
 }
 
-static int read_options(int argument_count, char **arguments, report_command *c) {
-    static const struct option long_options[] = {{"output", required_argument, NULL, 'o'},
-                                                 {"quiet", no_argument, NULL, 'q'},
-                                                 {"help", no_argument, NULL, 'h'},
-                                                 {NULL, 0, NULL, 0}};
-    opterr = 0;
-    optind = 1;
-    for (int id; (id = getopt_long(argument_count, arguments, ":o:", long_options, NULL)) != -1;) {
-        if (id == ':' || id == '?') return fail_option("report", id, arguments);
-        if (id == 'h') c->help_wanted = true;
-        if (id == 'q') c->quiet = true;
-        if (id == 'o') c->output_path = optarg;
-    }
-    if (c->help_wanted) return EXIT_RAN;
-    c->paths = (const char *const *)(arguments + optind);
-    c->count = (size_t)(argument_count - optind);
+static int check_command(const report_command *c) {
+    io_error error;
     if (c->count == 0) return fail_usage("report", "no summary given: what cscd replay --json wrote");
     if (c->output_path == NULL) return fail_usage("report", "no -o OUT.html given");
-    io_error error;
     if (!output_path_is_safe(c->output_path, c->paths, c->count, &error))
         return fail_usage("report", "-o %s", error.text);
     return EXIT_RAN;
@@ -89,10 +78,14 @@ static int read_options(int argument_count, char **arguments, report_command *c)
 
 int command_report(int argument_count, char **arguments) {
     report_command c = {0};
+    given_options given;
     io_error error = {""};
-    int code = read_options(argument_count, arguments, &c);
-    if (c.help_wanted) fputs(help, stdout);
-    if (code != EXIT_RAN || c.help_wanted) return code;
+    int code;
+    if (!option_table_read(&table, argument_count, arguments, &c, &given, &code)) return code;
+    c.paths = given.inputs;
+    c.count = given.input_count;
+    code = check_command(&c);
+    if (code != EXIT_RAN) return code;
     if (!write_page(&c, &error)) return fail_input("%s", error.text);
     if (!c.quiet) printf("written: %s\n", c.output_path);
     return EXIT_RAN;

@@ -1,15 +1,88 @@
-/* Values of options that more than one command has. */
+/* Readers of option values that more than one command has. */
 #include "src/tool/common/option_values.h"
 
 #include "src/tool/common/command.h"
+#include "src/tool/common/frame_range.h"
+#include "src/tool/common/recording.h"
+#include "src/tool/common/report_request.h"
+#include "src/tool/picture/scene.h"
 
 #include <stdio.h>
 #include <string.h>
 
-bool parse_weld(const char *text, bool *weld, double *epsilon) {
-    *weld = true;
-    *epsilon = 0.0;
-    return strcmp(text, "exact") == 0 || (parse_double(text, epsilon) && *epsilon > 0.0);
+bool read_flag(const char *text, void *place) {
+    (void)text;
+    *(bool *)place = true;
+    return true;
+}
+
+bool read_text(const char *text, void *place) {
+    *(const char **)place = text;
+    return true;
+}
+
+bool read_unsigned(const char *text, void *place) {
+    return parse_unsigned(text, place);
+}
+
+bool read_positive(const char *text, void *place) {
+    uint32_t *out = place;
+    return parse_unsigned(text, out) && *out > 0;
+}
+
+bool read_length(const char *text, void *place) {
+    double value;
+    if (!parse_double(text, &value) || value < 0.0) return false;
+    if (value != 0.0 && (value < 0x1p-300 || value > 0x1p300)) return false;
+    *(double *)place = value;
+    return true;
+}
+
+bool read_threads(const char *text, void *place) {
+    uint32_t *out = place;
+    return parse_unsigned(text, out) && *out <= 256;
+}
+
+bool read_frames(const char *text, void *place) {
+    return frame_range_parse(text, place);
+}
+
+bool read_weld(const char *text, void *place) {
+    recording_options *source = place;
+    source->weld = true;
+    source->weld_epsilon = 0.0;
+    return strcmp(text, "exact") == 0 ||
+           (parse_double(text, &source->weld_epsilon) && source->weld_epsilon > 0.0);
+}
+
+bool read_report_up(const char *text, void *place) {
+    int axis;
+    if (!parse_choice(text, (const char *const[]){"y", "z"}, 2, &axis)) return false;
+    *(int *)place = axis + 1;
+    return true;
+}
+
+bool read_picture_size(const char *text, void *place) {
+    picture_options *picture = place;
+    char end = '\0';
+    return sscanf(text, "%5ux%5u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
+           picture->height >= 16 && picture->width <= 8192 && picture->height <= 8192;
+}
+
+bool read_picture_view(const char *text, void *place) {
+    picture_options *picture = place;
+    char end = '\0';
+    return sscanf(text, "%lf,%lf%c", &picture->azimuth, &picture->elevation, &end) == 2 &&
+           picture->elevation >= -90.0 && picture->elevation <= 90.0 && picture->azimuth >= -1e6 &&
+           picture->azimuth <= 1e6;
+}
+
+bool read_picture_up(const char *text, void *place) {
+    picture_options *picture = place;
+    int axis;
+    if (!parse_choice(text, (const char *const[]){"y", "z"}, 2, &axis)) return false;
+    picture->y_up = axis == 0;
+    return true;
 }
 
 bool parse_method(const char *text, cscd_method *method, uint32_t *k) {
@@ -21,28 +94,11 @@ bool parse_method(const char *text, cscd_method *method, uint32_t *k) {
     return true;
 }
 
-bool parse_length(const char *text, double *out) {
-    double value;
-    if (!parse_double(text, &value) || value < 0.0) return false;
-    if (value != 0.0 && (value < 0x1p-300 || value > 0x1p300)) return false;
-    *out = value;
-    return true;
-}
-
-bool parse_picture_size(const char *text, picture_options *picture) {
-    char end = '\0';
-    return sscanf(text, "%5ux%5u%c", &picture->width, &picture->height, &end) == 2 && picture->width >= 16 &&
-           picture->height >= 16 && picture->width <= 8192 && picture->height <= 8192;
-}
-
-bool parse_picture_view(const char *text, picture_options *picture) {
-    char end = '\0';
-    return sscanf(text, "%lf,%lf%c", &picture->azimuth, &picture->elevation, &end) == 2 &&
-           picture->elevation >= -90.0 && picture->elevation <= 90.0 && picture->azimuth >= -1e6 &&
-           picture->azimuth <= 1e6;
-}
-
-bool parse_picture_up(const char *text, picture_options *picture) {
-    picture->y_up = strcmp(text, "y") == 0;
-    return picture->y_up || strcmp(text, "z") == 0;
+bool parse_choice(const char *text, const char *const *names, int count, int *out) {
+    for (int i = 0; i < count; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        *out = i;
+        return true;
+    }
+    return false;
 }

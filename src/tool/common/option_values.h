@@ -1,19 +1,26 @@
-/* Values of options that more than one command has. */
+/* Readers of option values (option_table.h) that more than one command has. */
 #pragma once
 
 #include "cscd/cscd.h"
-#include "src/tool/picture/scene.h"
 
-/* --weld exact|EPS */
-bool parse_weld(const char *text, bool *weld, double *epsilon);
+#include <stdbool.h>
 
-/* --method NAME|kmeans:K. Without a K, *k stays as it is. */
+/* The comment of each says what `place` points to. */
+bool read_flag(const char *text, void *place);         /* bool, which becomes true; the option has no value */
+bool read_text(const char *text, void *place);         /* const char * */
+bool read_unsigned(const char *text, void *place);     /* uint32_t */
+bool read_positive(const char *text, void *place);     /* uint32_t, 1 or more */
+bool read_length(const char *text, void *place);       /* double: 0, or from 2^-300 to 2^300 */
+bool read_threads(const char *text, void *place);      /* uint32_t, 256 at most */
+bool read_frames(const char *text, void *place);       /* frame_range: A:B[:STEP] */
+bool read_weld(const char *text, void *place);         /* recording_options: exact|EPS */
+bool read_report_up(const char *text, void *place);    /* int, report_request.up_axis: y|z */
+bool read_picture_size(const char *text, void *place); /* picture_options: WxH */
+bool read_picture_view(const char *text, void *place); /* picture_options: AZ,EL */
+bool read_picture_up(const char *text, void *place);   /* picture_options: y|z */
+
+/* NAME|kmeans:K of --method. Without a K, *k stays as it is. */
 bool parse_method(const char *text, cscd_method *method, uint32_t *k);
 
-/* A length that the library takes: 0, or from 2^-300 to 2^300. */
-bool parse_length(const char *text, double *out);
-
-/* --size WxH, --view AZ,EL and --up y|z of a picture. */
-bool parse_picture_size(const char *text, picture_options *picture);
-bool parse_picture_view(const char *text, picture_options *picture);
-bool parse_picture_up(const char *text, picture_options *picture);
+/* The place of a text in a list of names; false, and *out untouched, when it is not there. */
+bool parse_choice(const char *text, const char *const *names, int count, int *out);

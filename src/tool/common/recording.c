@@ -7,6 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+void recording_options_take(recording_options *options, const given_options *given) {
+    options->model_path = given->inputs[0];
+    options->frame_paths = given->inputs + 1;
+    options->frame_path_count = given->input_count - 1;
+}
+
 static bool open_frames(const recording_options *options, recording *r, io_error *error) {
     r->frame_count = 1;
     r->file_positions = malloc((size_t)r->file.vertex_count * 3 * sizeof *r->file_positions);

@@ -6,6 +6,7 @@
 #include "src/io/contact_file.h"
 #include "src/io/mesh_file.h"
 #include "src/io/weld.h"
+#include "src/tool/common/option_table.h"
 
 typedef struct recording_options {
     const char *model_path;
@@ -17,6 +18,9 @@ typedef struct recording_options {
     cscd_simd simd;
     cscd_progress progress; /* of the context; NULL: none */
 } recording_options;
+
+/* MODEL and FRAMES: the first input and the others. There is one at least. */
+void recording_options_take(recording_options *options, const given_options *given);
 
 typedef struct recording {
     cscd_context *context;

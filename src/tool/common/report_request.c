@@ -3,14 +3,6 @@
 
 #include "src/tool/common/output_path.h"
 
-#include <string.h>
-
-bool report_request_parse_up(const char *text, int *up_axis) {
-    if (strcmp(text, "y") != 0 && strcmp(text, "z") != 0) return false;
-    *up_axis = text[0] == 'y' ? 1 : 2;
-    return true;
-}
-
 bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
                             io_error *error) {
     const char *own[] = {r->scenery_path, r->scenery_frames_path};

@@ -12,9 +12,6 @@ typedef struct report_request {
     int up_axis;                                    /* 1: y, 2: z */
 } report_request;
 
-/* --up y|z */
-bool report_request_parse_up(const char *text, int *up_axis);
-
 /* False, with the reason, where the options do not go together, or the report would be written over one of
  * others (NULLs among them are skipped). */
 bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,

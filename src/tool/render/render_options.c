@@ -5,136 +5,61 @@
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
 
-#include <getopt.h>
-#include <stdio.h>
-#include <string.h>
-
-static const char help[] =
-    "usage: cscd render MODEL [FRAMES...] -o OUT.png [options]\n"
-    "\n"
-    "Draws a frame, or several side by side, with perspective and light. FRAMES as for replay; without them\n"
-    "the model itself.\n"
-    "\n"
-    "  --frame K              one frame (default 0)\n"
-    "  --frames A:B[:STEP]    a strip: the frames A to B, both included, or every STEP-th of them (A: and "
-    ":B\n"
-    "                         are open ends), each as a tile with its number in the corner; one camera for\n"
-    "                         all of them that holds the whole motion\n"
-    "  --columns N            tiles in a row (default: as many as there are rows, or one more)\n"
-    "  --follow               move the camera with the body, which stays in the middle of its tile\n"
-    "  --scenery MODEL        another mesh beside the body (ground, stairs, a ball): only drawn, where it "
-    "is\n"
-    "                         in view, and never tested\n"
-    "  --scenery-frames FRAMES  how it moves: a point cache or a pattern, of as many frames, or of one\n"
-    "  --colour plain         one colour (default)\n"
-    "  --colour contacts      the contacts of the interval from frame K to K + 1 on the surface at its "
-    "start:\n"
-    "                         the triangles that contain a touching feature, and a dot at each contact\n"
-    "  --colour charge        charge density by rank, dark the least\n"
-    "  --colour region        the regions of the plan; without FRAMES a dot at each detector point\n"
-    "  --plan PLAN.ply        which plan (default as for replay: MODEL.plan.ply, or made on the way)\n"
-    "  --size WxH             pixels (default 1280x960), of one tile of a strip (default 400x300)\n"
-    "  --view AZ,EL           camera: degrees around the vertical axis, degrees above the horizon\n"
-    "  --zoom                 with contacts: only the neighbourhood of the contacts\n"
-    "  --up y|z               which axis points up (default z)\n"
-    "  --wire                 draw the triangles' edges\n"
-    "  --weld exact|EPS       join vertices that coincide, or lie within EPS, in the first frame\n";
-
-static const struct option long_options[] = {{"output", required_argument, NULL, 'o'},
-                                             {"frame", required_argument, NULL, 'f'},
-                                             {"frames", required_argument, NULL, 'F'},
-                                             {"columns", required_argument, NULL, 'n'},
-                                             {"follow", no_argument, NULL, 'l'},
-                                             {"scenery", required_argument, NULL, 'g'},
-                                             {"scenery-frames", required_argument, NULL, 'G'},
-                                             {"colour", required_argument, NULL, 'c'},
-                                             {"color", required_argument, NULL, 'c'},
-                                             {"plan", required_argument, NULL, 'p'},
-                                             {"size", required_argument, NULL, 's'},
-                                             {"view", required_argument, NULL, 'v'},
-                                             {"zoom", no_argument, NULL, 'z'},
-                                             {"up", required_argument, NULL, 'u'},
-                                             {"wire", no_argument, NULL, 'e'},
-                                             {"weld", required_argument, NULL, 'w'},
-                                             {"help", no_argument, NULL, 'h'},
-                                             {NULL, 0, NULL, 0}};
-
-static bool parse_colour(const char *text, colouring *out) {
-    static const char *const names[] = {"plain", "contacts", "charge", "region"};
-    for (int i = 0; i < 4; i++) {
-        if (strcmp(text, names[i]) != 0) continue;
-        *out = (colouring)i;
-        return true;
-    }
-    return false;
-}
-
-/* Which options were given where their values do not say it. */
-typedef struct given_options {
-    bool frame, size, help;
-} given_options;
-
-static bool set_option(int id, const char *value, render_options *o, given_options *given) {
-    switch (id) {
-    case 'h':
-        return given->help = true;
-    case 'o':
-        o->output_path = value;
-        return true;
-    case 'f':
-        given->frame = true;
-        return parse_unsigned(value, &o->frame);
-    case 'F':
-        o->strip = true;
-        return frame_range_parse(value, &o->frames);
-    case 'n':
-        return parse_unsigned(value, &o->columns) && o->columns > 0;
-    case 'l':
-        return o->follow = true;
-    case 'g':
-        o->scenery_path = value;
-        return true;
-    case 'G':
-        o->scenery_frames_path = value;
-        return true;
-    case 'c':
-        return parse_colour(value, &o->colouring);
-    case 'p':
-        o->plan_path = value;
-        return true;
-    case 's':
-        given->size = true;
-        return parse_picture_size(value, &o->picture);
-    case 'v':
-        return parse_picture_view(value, &o->picture);
-    case 'z':
-        return o->zoom = true;
-    case 'u':
-        return parse_picture_up(value, &o->picture);
-    case 'e':
-        return o->picture.wire = true;
-    case 'w':
-        return parse_weld(value, &o->source.weld, &o->source.weld_epsilon);
-    default:
+static bool read_colour(const char *text, void *place) {
+    int colour;
+    if (!parse_choice(text, (const char *const[]){"plain", "contacts", "charge", "region"}, 4, &colour))
         return false;
-    }
+    *(colouring *)place = (colouring)colour;
+    return true;
 }
 
-static int read_options(int argument_count, char **arguments, render_options *o, given_options *given) {
-    opterr = 0;
-    optind = 1;
-    for (int id, index = 0;
-         !given->help && (id = getopt_long(argument_count, arguments, ":o:", long_options, &index)) != -1;) {
-        if (id == ':' || id == '?') return fail_option("render", id, arguments);
-        if (!set_option(id, optarg, o, given))
-            return fail_usage("render", "--%s cannot be '%s'", long_options[index].name, optarg);
-    }
-    return EXIT_RAN;
-}
+static const option_row rows[] = {
+    {"o", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
+    {"output", "OUT.png", read_text, offsetof(render_options, output_path), NULL},
+    {"frame", "K", read_unsigned, offsetof(render_options, frame), "one frame (default 0)"},
+    {"frames", "A:B[:STEP]", read_frames, offsetof(render_options, frames),
+     "a strip: the frames A to B, both included, or every STEP-th of them (A: and :B are open ends), each as "
+     "a tile with its number in the corner; one camera for all of them that holds the whole motion"},
+    {"columns", "N", read_positive, offsetof(render_options, columns),
+     "tiles in a row (default: as many as there are rows, or one more)"},
+    {"follow", NULL, read_flag, offsetof(render_options, follow),
+     "move the camera with the body, which stays in the middle of its tile"},
+    {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
+     "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never "
+     "tested"},
+    {"scenery-frames", "FRAMES", read_text, offsetof(render_options, scenery_frames_path),
+     "how it moves: a point cache or a pattern, of as many frames, or of one"},
+    {"colour", "plain", read_colour, offsetof(render_options, colouring), "one colour (default)"},
+    {"color", "plain", read_colour, offsetof(render_options, colouring), NULL},
+    {"colour", "contacts",
+     .help =
+         "the contacts of the interval from frame K to K + 1 on the surface at its start: the triangles that "
+         "contain a feature in contact, and a dot at each contact"},
+    {"colour", "charge", .help = "charge density by rank, dark the least"},
+    {"colour", "region", .help = "the regions of the plan; without FRAMES a dot at each detector point"},
+    {"plan", "PLAN.ply", read_text, offsetof(render_options, plan_path),
+     "which plan (default as for replay: MODEL.plan.ply, or made on the way)"},
+    {"size", "WxH", read_picture_size, offsetof(render_options, picture),
+     "pixels (default 1280x960), of one tile of a strip (default 400x300)"},
+    {"view", "AZ,EL", read_picture_view, offsetof(render_options, picture),
+     "camera: degrees around the vertical axis, degrees above the horizon"},
+    {"zoom", NULL, read_flag, offsetof(render_options, zoom),
+     "with contacts: only the neighbourhood of the contacts"},
+    {"up", "y|z", read_picture_up, offsetof(render_options, picture), "which axis points up (default z)"},
+    {"wire", NULL, read_flag, offsetof(render_options, picture.wire), "draw the triangles' edges"},
+    {"weld", "exact|EPS", read_weld, offsetof(render_options, source),
+     "join vertices that coincide, or lie within EPS, in the first frame"},
+};
 
-/* What does not go together. */
+static const option_table table = {
+    "render", "MODEL [FRAMES...] -o OUT.png [options]",
+    "Draws a frame, or several side by side, with perspective and light. FRAMES as for replay; without them "
+    "the model itself.",
+    rows, sizeof rows / sizeof *rows};
+
+/* Options that contradict each other. */
 static int check_options(const render_options *o, const given_options *given) {
-    if (o->strip && given->frame)
+    if (o->strip && option_given(&table, given, "frame"))
         return fail_usage("render", "--frame and --frames: give one of them, a single picture or a strip");
     if (o->columns > 0 && !o->strip)
         return fail_usage("render", "--columns is for a strip; say which frames with --frames A:B[:STEP]");
@@ -157,23 +82,22 @@ static int check_paths(const render_options *o, const char *const *inputs, size_
 }
 
 bool render_options_parse(int argument_count, char **arguments, render_options *out, int *code) {
-    given_options given = {0};
     render_options o = {.source = {.thread_count = 1}, .picture = picture_options_defaults()};
-    *code = read_options(argument_count, arguments, &o, &given);
-    if (given.help) fputs(help, stdout);
-    if (given.help || *code != EXIT_RAN) return false;
-    const char *const *inputs = (const char *const *)(arguments + optind);
-    if (argument_count - optind < 1)
+    given_options given;
+    if (!option_table_read(&table, argument_count, arguments, &o, &given, code)) return false;
+    o.strip = option_given(&table, &given, "frames");
+    if (given.input_count < 1)
         *code = fail_usage("render", "no MODEL given");
     else if (o.output_path == NULL)
         *code = fail_usage("render", "no -o OUT.png given");
     if (*code == EXIT_RAN) *code = check_options(&o, &given);
-    if (*code == EXIT_RAN) *code = check_paths(&o, inputs, (size_t)(argument_count - optind));
+    if (*code == EXIT_RAN) *code = check_paths(&o, given.inputs, given.input_count);
     if (*code != EXIT_RAN) return false;
-    if (o.strip && !given.size) o.picture.width = 400, o.picture.height = 300;
-    o.source.model_path = inputs[0];
-    o.source.frame_paths = inputs + 1;
-    o.source.frame_path_count = (size_t)(argument_count - optind - 1);
+    if (o.strip && !option_given(&table, &given, "size")) {
+        o.picture.width = 400;
+        o.picture.height = 300;
+    }
+    recording_options_take(&o.source, &given);
     *out = o;
     return true;
 }

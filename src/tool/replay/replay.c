@@ -61,7 +61,7 @@ static bool prepare_ignored(replay *r, io_error *error) {
 
 static bool prepare_plan(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    plan_request request = {o->model_path, o->plan_path, o->method, o->k, o->min_separation};
+    plan_request request = {o->source.model_path, o->plan_path, o->method, o->k, o->min_separation};
     terminal_progress_begin(&r->progress, o->quiet);
     terminal_progress_say(&r->progress, "preprocessing");
     bool chosen = plan_choose(&request, &r->recording, &r->plan, error);
@@ -99,22 +99,14 @@ static bool open_outputs(replay *r, io_error *error) {
     if (o->contacts_path != NULL &&
         !contact_file_open(o->contacts_path, o->min_separation > 0.0, &r->contacts, error))
         return false;
-    return replay_report_open(&r->report, &o->report, o->model_path, &r->recording, r->plan.plan, r->detector,
-                              r->first, r->last, error) &&
+    return replay_report_open(&r->report, &o->report, o->source.model_path, &r->recording, r->plan.plan,
+                              r->detector, r->first, r->last, error) &&
            summary_open(o->json_path, o->report.path != NULL, r->recording.mesh, &r->summary, error);
 }
 
 /* Opens everything that can fail before the work begins. */
 static bool begin(replay *r, io_error *error) {
-    const replay_options *o = r->options;
-    recording_options source = {.model_path = o->model_path,
-                                .frame_paths = o->frame_paths,
-                                .frame_path_count = o->frame_path_count,
-                                .weld = o->weld,
-                                .weld_epsilon = o->weld_epsilon,
-                                .thread_count = o->thread_count,
-                                .simd = o->simd};
-    return recording_open(&source, &r->recording, error) && choose_frames(r, error) &&
+    return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
            prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
            prepare_detector(r, error) && open_outputs(r, error);
 }
@@ -218,7 +210,7 @@ static bool run_intervals(replay *r, io_error *error) {
 
 static void print_results(const replay *r) {
     const totals *t = &r->totals;
-    printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->model_path,
+    printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->source.model_path,
            cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", r->first, r->first + t->intervals);
@@ -266,9 +258,9 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
                              .mode = cscd_mode_name(o->mode),
                              .volume = o->volume,
                              .min_separation = o->min_separation,
-                             .model_path = o->model_path,
-                             .frame_paths = o->frame_paths,
-                             .frame_path_count = o->frame_path_count,
+                             .model_path = o->source.model_path,
+                             .frame_paths = o->source.frame_paths,
+                             .frame_path_count = o->source.frame_path_count,
                              .argument_count = o->argument_count,
                              .arguments = o->arguments,
                              .stopped_by = stopped_by};

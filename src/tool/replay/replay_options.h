@@ -1,31 +1,21 @@
 /* The options of `cscd replay`. */
 #pragma once
 
-#include "cscd/cscd.h"
-#include "src/tool/common/command.h"
 #include "src/tool/common/frame_range.h"
+#include "src/tool/common/recording.h"
 #include "src/tool/common/report_request.h"
 
-#include <stddef.h>
-
 typedef struct replay_options {
-    const char *model_path;
-    const char *const *frame_paths;
-    size_t frame_path_count;
+    recording_options source;
     cscd_method method;
     uint32_t k; /* of method KMEANS; 0: not given */
     cscd_mode mode;
     cscd_start start;
     cscd_volume volume;
-    cscd_simd simd;
     frame_range frames;
-    uint32_t thread_count;
-    bool weld;
-    double weld_epsilon;
     double min_separation;
     bool ignore_rest, no_check, quiet, fail_on_contact;
-    const char *plan_path; /* NULL: not given */
-    const char *ignore_path, *contacts_path, *json_path;
+    const char *plan_path, *ignore_path, *contacts_path, *json_path; /* NULL: not given */
     report_request report;
     int argument_count; /* the command line, for the provenance */
     char **arguments;

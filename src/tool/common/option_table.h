@@ -1,0 +1,43 @@
+/* The options of a command as a table: one row says how an option is read, where its value goes and what
+ * --help says of it. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Reads an option's value; false when it does not fit. `place` is that of the row; text is NULL for an option
+ * without a value. The readers of values that more than one command has are in option_values.h. */
+typedef bool option_reader(const char *text, void *place);
+
+typedef struct option_row {
+    const char *name;    /* without its dashes: "weld" is --weld, and "o", of one letter, is -o */
+    const char *value;   /* as --help shows it; NULL: the option has none */
+    option_reader *read; /* NULL: a row for --help only, with other values of the option above */
+    size_t place;        /* offset of the value in the command's struct of options */
+    const char *help;    /* NULL: --help leaves the row out, as for another spelling of an option */
+} option_row;
+
+typedef struct option_table {
+    const char *command;
+    const char *usage;       /* the inputs, behind the name of the command in the first line of --help */
+    const char *description; /* a sentence or two; --help breaks the lines */
+    const option_row *rows;
+    size_t count;
+} option_table;
+
+enum { OPTION_ROWS_MAX = 40 };
+
+typedef struct given_options {
+    bool rows[OPTION_ROWS_MAX]; /* which rows of the table were given */
+    const char *const *inputs;  /* the arguments that are no options, in their order */
+    size_t input_count;
+} given_options;
+
+/* Reads the command line, from the command's name on, into the command's struct of options. False: *code is the
+ * exit code to end with, after --help or an error that was printed. */
+bool option_table_read(const option_table *table, int argument_count, char **arguments, void *options,
+                       given_options *given, int *code);
+
+/* Was the option of that name given? The table must have it. */
+bool option_given(const option_table *table, const given_options *given, const char *name);
