@@ -1,7 +1,6 @@
 /* Culling by orientation on random intervals: mode all equals the method that culls nothing, and mode
- * earliest loses no first contact of an embedded component; the published rule does. */
-#include "cscd/cscd.h"
-#include "tests/support/scenes.h"
+ * earliest loses no first contact of an embedded component; the published rules do (test_published.c). */
+#include "tests/support/culling/first_contacts.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -15,10 +14,7 @@ enum { INTERVALS_PER_FAMILY = 25 };
 enum { INTERVALS_PER_FAMILY = 250 };
 #endif
 
-enum { PUBLISHED_INTERVALS_PER_FAMILY = 150, COMPONENTS_MAX = 2000 };
-
-/* A TOI is early by less than this. */
-#define TOI_EARLY 1e-9
+enum { IGNORING_INTERVALS_PER_FAMILY = 150 };
 
 static scene interval; /* large; one test at a time */
 
@@ -46,27 +42,6 @@ static void reference_destroy(reference *r) {
     cscd_context_destroy(r->context);
 }
 
-/* The component of a feature of a mesh: of the first triangle that holds it. */
-static uint32_t component_of(const cscd_mesh *mesh, const scene *s, cscd_contact_kind kind, uint32_t feature,
-                             bool second) {
-    uint32_t vertices[2] = {feature, 0};
-    if (kind == CSCD_CONTACT_VF && second) return cscd_mesh_triangle_component(mesh, feature);
-    if (kind == CSCD_CONTACT_EE) cscd_mesh_edge(mesh, feature, vertices);
-    for (uint32_t t = 0; t < s->triangle_count; t++) {
-        for (int i = 0; i < 3; i++) {
-            if (s->triangles[t * 3 + (uint32_t)i] == vertices[0])
-                return cscd_mesh_triangle_component(mesh, t);
-        }
-    }
-    return UINT32_MAX;
-}
-
-/* The component whose contact with itself this is; UINT32_MAX: it is one between two. */
-static uint32_t self_component(const cscd_mesh *mesh, const scene *s, const cscd_contact *c) {
-    uint32_t a = component_of(mesh, s, c->kind, c->a, false), b = component_of(mesh, s, c->kind, c->b, true);
-    return a == b ? a : UINT32_MAX;
-}
-
 static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
     return memcmp(a, b, sizeof *a) == 0;
 }
@@ -74,16 +49,6 @@ static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
 static void check_complete(const cscd_contacts *found, const cscd_contacts *truth) {
     assert_int_equal(found->count, truth->count);
     for (size_t i = 0; i < found->count; i++) assert_true(same_contact(&found->items[i], &truth->items[i]));
-}
-
-/* Per component the earliest contact with itself in a list, INFINITY where there is none. */
-static void earliest_times(const reference *r, const scene *s, const cscd_contacts *list,
-                           double times[COMPONENTS_MAX]) {
-    for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) times[c] = INFINITY;
-    for (size_t i = 0; i < list->count; i++) {
-        uint32_t c = self_component(r->mesh, s, &list->items[i]);
-        if (c != UINT32_MAX) times[c] = fmin(times[c], list->items[i].toi);
-    }
 }
 
 /* The list is part of the truth, in the same order; what is missing is of embedded components, and not their
@@ -102,8 +67,8 @@ static size_t check_earliest(const reference *r, const scene *s, const cscd_dete
         assert_false(cscd_detector_guarantee(detector, c).complete);
     }
     assert_int_equal(next, found->count);
-    earliest_times(r, s, &r->contacts, expected);
-    earliest_times(r, s, found, times);
+    find_first_times(r->mesh, s, &r->contacts, expected);
+    find_first_times(r->mesh, s, found, times);
     for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
         assert_true(isinf(expected[c]) == isinf(times[c]));
         if (!isinf(expected[c])) assert_true(fabs(times[c] - expected[c]) <= TOI_EARLY);
@@ -219,7 +184,7 @@ static void ignored_contacts_hide_none(void **state) {
     static const scene_family families[3] = {SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS, SCENE_SPIKE};
     size_t kept = 0;
     (void)state;
-    for (uint32_t seed = 0; seed < 3 * PUBLISHED_INTERVALS_PER_FAMILY; seed++) {
+    for (uint32_t seed = 0; seed < 3 * IGNORING_INTERVALS_PER_FAMILY; seed++) {
         scene_make(families[seed % 3], seed + 5000, &interval);
         reference r = reference_create(&interval);
         cscd_detector_options options = cscd_detector_defaults();
@@ -241,47 +206,10 @@ static void ignored_contacts_hide_none(void **state) {
     assert_true(kept > 0);
 }
 
-/* ---- the published rule ---------------------------------------------------------------------------- */
-
-/* Loses first contacts on the same scenes, or these tests could not fail. */
-static void published_rule_loses_first_contacts(void **state) {
-    uint32_t with_contact = 0, lost = 0;
-    (void)state;
-    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        for (uint32_t seed = 0; seed < PUBLISHED_INTERVALS_PER_FAMILY; seed++) {
-            static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
-            scene_make((scene_family)family, seed + 1000, &interval);
-            reference r = reference_create(&interval);
-            cscd_detector_options options = cscd_detector_defaults();
-            cscd_detector *proven = NULL, *published = NULL;
-            cscd_contacts found;
-            options.method = CSCD_METHOD_SINGLE;
-            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &proven), CSCD_OK);
-            assert_int_equal(cscd_detector_step(proven, interval.x0, interval.x1, &found), CSCD_OK);
-            options.method = CSCD_METHOD_PUBLISHED;
-            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &published), CSCD_OK);
-            assert_int_equal(cscd_detector_step(published, interval.x0, interval.x1, &found), CSCD_OK);
-            earliest_times(&r, &interval, &r.contacts, expected);
-            earliest_times(&r, &interval, &found, times);
-            for (uint32_t c = 0; c < cscd_mesh_component_count(r.mesh); c++) {
-                if (isinf(expected[c]) || !cscd_detector_guarantee(proven, c).start_embedded) continue;
-                with_contact++;
-                lost += times[c] > expected[c] + TOI_EARLY;
-            }
-            cscd_detector_destroy(proven);
-            cscd_detector_destroy(published);
-            reference_destroy(&r);
-        }
-    }
-    print_message("  the published rule: %u of %u first contacts lost\n", lost, with_contact);
-    assert_true(lost > 0);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(culling_loses_no_first_contact),
         cmocka_unit_test(ignored_contacts_hide_none),
-        cmocka_unit_test(published_rule_loses_first_contacts),
     };
     return cmocka_run_group_tests_name("culling", tests, NULL, NULL);
 }

@@ -1,0 +1,80 @@
+/* The published culling loses first contacts, which the detector's own rules do not (test_culling.c), says so,
+ * and culls nothing with a minimum separation. */
+#include "tests/support/culling/first_contacts.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { INTERVALS_PER_FAMILY = 150, SEPARATED_INTERVALS_PER_FAMILY = 12 };
+
+static scene interval; /* large; one test at a time */
+
+static rig step_by(cscd_method method, double min_separation, cscd_contacts *found) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
+    options.min_separation = min_separation;
+    rig r = rig_create(&interval, 1, &options);
+    *found = rig_step(&r, &interval);
+    return r;
+}
+
+static void first_contacts_are_lost(void **state) {
+    uint32_t with_contact = 0, lost = 0;
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
+            static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
+            cscd_contacts truth, found;
+            scene_make((scene_family)family, seed + 1000, &interval);
+            rig proven = step_by(CSCD_METHOD_SINGLE, 0.0, &truth);
+            rig published = step_by(CSCD_METHOD_PUBLISHED, 0.0, &found);
+            find_first_times(proven.mesh, &interval, &truth, expected);
+            find_first_times(published.mesh, &interval, &found, times);
+            for (uint32_t c = 0; c < cscd_mesh_component_count(proven.mesh); c++) {
+                cscd_guarantee g = cscd_detector_guarantee(published.detector, c);
+                assert_true(!g.complete && g.reason == CSCD_REASON_PUBLISHED);
+                if (isinf(expected[c]) || !cscd_detector_guarantee(proven.detector, c).start_embedded)
+                    continue;
+                with_contact++;
+                lost += times[c] > expected[c] + TOI_EARLY;
+            }
+            rig_destroy(&proven);
+            rig_destroy(&published);
+        }
+    }
+    print_message("  %u of %u first contacts lost\n", lost, with_contact);
+    assert_true(lost > 0);
+}
+
+/* Where nothing is culled every contact is found, which the guarantee says, too. */
+static void nothing_is_culled_with_a_separation(void **state) {
+    size_t contacts = 0;
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint32_t seed = 0; seed < SEPARATED_INTERVALS_PER_FAMILY; seed++) {
+            cscd_contacts truth, found;
+            scene_make((scene_family)family, seed, &interval);
+            rig none = step_by(CSCD_METHOD_NONE, 0.03, &truth);
+            rig published = step_by(CSCD_METHOD_PUBLISHED, 0.03, &found);
+            assert_int_equal(found.count, truth.count);
+            if (found.count > 0)
+                assert_memory_equal(found.items, truth.items, found.count * sizeof *found.items);
+            contacts += found.count;
+            for (uint32_t c = 0; c < cscd_mesh_component_count(none.mesh); c++) {
+                cscd_guarantee g = cscd_detector_guarantee(published.detector, c);
+                assert_true(g.complete && g.reason == CSCD_REASON_METHOD);
+            }
+            rig_destroy(&none);
+            rig_destroy(&published);
+        }
+    }
+    assert_true(contacts > 1000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(first_contacts_are_lost),
+                                       cmocka_unit_test(nothing_is_culled_with_a_separation)};
+    return cmocka_run_group_tests_name("published", tests, NULL, NULL);
+}
