@@ -5,6 +5,7 @@
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
+#include "src/core/methods.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/surface.h"
@@ -32,7 +33,8 @@ typedef struct draft {
 } draft;
 
 static bool makes_plans(cscd_method method) {
-    return method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_KMEANS || method == CSCD_METHOD_SINGLE;
+    const method_traits *traits = method_traits_of(method);
+    return traits != NULL && traits->makes_plan;
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_plan_options *options) {

@@ -2,6 +2,7 @@
 #include "runtime/detector/detector.h"
 
 #include "runtime/narrow_phase/representatives.h"
+#include "src/core/methods.h"
 
 #include <string.h>
 
@@ -42,7 +43,7 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
             context, CSCD_INVALID_ARGUMENT,
             "detector options were not made by cscd_detector_defaults (struct_size %u, expected %zu)",
             options->struct_size, sizeof *options);
-    if ((unsigned)options->method > CSCD_METHOD_ICCD_PUBLISHED)
+    if (method_traits_of(options->method) == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown method %d", (int)options->method);
     if ((unsigned)options->mode > CSCD_MODE_EARLIEST)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown mode %d", (int)options->mode);
@@ -67,8 +68,7 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
     cscd_method method = options->method;
     if (method == CSCD_METHOD_AUTO) method = plan != NULL ? plan->method : CSCD_METHOD_NONE;
     options->method = method;
-    bool of_plan = method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_KMEANS;
-    if (of_plan && (plan == NULL || plan->method != method))
+    if (method_traits_of(method)->needs_plan && (plan == NULL || plan->method != method))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s wants a plan of that method%s%s",
                             cscd_method_name(method), plan != NULL ? ", not " : "",
                             plan != NULL ? cscd_method_name(plan->method) : "");

@@ -72,8 +72,7 @@ static void choose_culled(step_work *work) {
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
         bool pays = start_states_pay(&d->starts, clean, component->triangle_count);
-        d->culled[c] =
-            detector_culls(d) && (published ? embedded || follows(d, PUBLISHED_UNPROVEN) : pays);
+        d->culled[c] = detector_culls(d) && (published ? embedded || follows(d, PUBLISHED_UNPROVEN) : pays);
         d->finished[c] = d->culled[c] && !published && (finishes(work) || !embedded);
         work->any_culled |= d->culled[c];
         work->any_not_culled |= !d->culled[c];

@@ -1,6 +1,7 @@
 /* The longest step towards x1 that is certified free of contact, by the stages of a step. */
 #include "runtime/detector/step.h"
 #include "runtime/solver/free_step.h"
+#include "src/core/methods.h"
 #include "src/core/timer.h"
 
 #include <string.h>
@@ -52,7 +53,7 @@ static cscd_status check_arguments(cscd_detector *d, const double *x0, const dou
     cscd_method method = d->options.method;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
-    if (method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED)
+    if (method_traits_of(method)->loses_contacts)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_detector_max_step: method %s loses contacts and certifies nothing",
                             cscd_method_name(method));

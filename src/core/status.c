@@ -40,15 +40,6 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
     return "unknown kind";
 }
 
-static const char *const method_names[] = {[CSCD_METHOD_AUTO] = "auto",
-                                           [CSCD_METHOD_NONE] = "none",
-                                           [CSCD_METHOD_BRUTE] = "brute",
-                                           [CSCD_METHOD_SINGLE] = "single",
-                                           [CSCD_METHOD_KMEANS] = "kmeans",
-                                           [CSCD_METHOD_CHARGE] = "charge",
-                                           [CSCD_METHOD_PUBLISHED] = "published",
-                                           [CSCD_METHOD_ICCD] = "iccd",
-                                           [CSCD_METHOD_ICCD_PUBLISHED] = "iccd-published"};
 static const char *const volume_names[] = {[CSCD_VOLUME_BOX] = "box", [CSCD_VOLUME_KDOP14] = "kdop14"};
 static const char *const mode_names[] = {[CSCD_MODE_ALL] = "all", [CSCD_MODE_EARLIEST] = "earliest"};
 static const char *const reasons[] = {
@@ -75,17 +66,6 @@ static size_t find_name(const char *const *names, size_t count, const char *name
 }
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-const char *cscd_method_name(cscd_method method) {
-    return name_at(method_names, COUNT(method_names), (size_t)method);
-}
-
-bool cscd_method_from_name(const char *name, cscd_method *out) {
-    size_t i = find_name(method_names, COUNT(method_names), name);
-    if (i == COUNT(method_names)) return false;
-    *out = (cscd_method)i;
-    return true;
-}
 
 const char *cscd_volume_name(cscd_volume volume) {
     return name_at(volume_names, COUNT(volume_names), (size_t)volume);

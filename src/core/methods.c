@@ -1,0 +1,36 @@
+/* What is known of each method without running it. */
+#include "src/core/methods.h"
+
+#include <string.h>
+
+static const method_traits traits[] = {
+    [CSCD_METHOD_AUTO] = {.name = "auto"},
+    [CSCD_METHOD_NONE] = {.name = "none"},
+    [CSCD_METHOD_BRUTE] = {.name = "brute"},
+    [CSCD_METHOD_SINGLE] = {.name = "single", .makes_plan = true},
+    [CSCD_METHOD_KMEANS] = {.name = "kmeans", .makes_plan = true, .needs_plan = true},
+    [CSCD_METHOD_CHARGE] = {.name = "charge", .makes_plan = true, .needs_plan = true},
+    [CSCD_METHOD_PUBLISHED] = {.name = "published", .loses_contacts = true},
+    [CSCD_METHOD_ICCD] = {.name = "iccd"},
+    [CSCD_METHOD_ICCD_PUBLISHED] = {.name = "iccd-published", .loses_contacts = true},
+};
+
+enum { METHOD_COUNT = sizeof traits / sizeof *traits };
+
+const method_traits *method_traits_of(cscd_method method) {
+    return (unsigned)method < METHOD_COUNT ? &traits[method] : NULL;
+}
+
+const char *cscd_method_name(cscd_method method) {
+    const method_traits *found = method_traits_of(method);
+    return found != NULL ? found->name : "unknown";
+}
+
+bool cscd_method_from_name(const char *name, cscd_method *out) {
+    for (int i = 0; name != NULL && i < METHOD_COUNT; i++) {
+        if (strcmp(traits[i].name, name) != 0) continue;
+        *out = (cscd_method)i;
+        return true;
+    }
+    return false;
+}

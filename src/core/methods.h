@@ -1,0 +1,14 @@
+/* What is known of each method without running it. */
+#pragma once
+
+#include "cscd/cscd.h"
+
+typedef struct method_traits {
+    const char *name;
+    bool makes_plan;     /* preprocessing makes plans by this method */
+    bool needs_plan;     /* a detector needs a plan that was made by this method */
+    bool loses_contacts; /* it follows published rules that lose contacts, so it certifies nothing */
+} method_traits;
+
+/* NULL: there is no such method. */
+const method_traits *method_traits_of(cscd_method method);
