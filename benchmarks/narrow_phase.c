@@ -2,6 +2,7 @@
  * level of vector instructions, and one by one. */
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/detector.h"
+#include "runtime/narrow_phase/feature_queue.h"
 #include "src/io/mesh_file.h"
 
 #include <stdio.h>
@@ -73,7 +74,7 @@ static uint32_t triangle_chunk(const recording *r, size_t i) {
     return (uint32_t)(r->triangles.count - i < TRIANGLE_CHUNK ? r->triangles.count - i : TRIANGLE_CHUNK);
 }
 
-/* As a step does where nothing is culled, but for orphans. Takes the pairs out of the queue before it is
+/* As a step does where nothing is culled, except for orphan pairs. Takes the pairs out of the queue before it is
  * full.
  */
 static bool record_pairs(recording *r) {
@@ -87,8 +88,8 @@ static bool record_pairs(recording *r) {
     }
     for (size_t i = 0; good && i < r->triangles.count; i += TRIANGLE_CHUNK) {
         narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
-        good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue.vf) &&
-               record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue.ee);
+        good = record_list(&r->of_kind[CSCD_CONTACT_VF], &r->lane->queue[CSCD_CONTACT_VF]) &&
+               record_list(&r->of_kind[CSCD_CONTACT_EE], &r->lane->queue[CSCD_CONTACT_EE]);
     }
     return good;
 }
@@ -109,7 +110,7 @@ static bool open_recording(recording *r, io_error *error) {
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
                                    .bvh = &r->detector->bvh,
-                                   .strangers = true,
+                                   .skip_adjacent = true,
                                    .representatives = &r->detector->representatives,
                                    .limit = r->detector->limit};
     contact_lane_reset(r->lane);
@@ -136,7 +137,7 @@ static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
     for (size_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_hit hit;
-        narrow_phase_load(&r->interval, kind, pairs->a[i], pairs->b[i], &query);
+        swept_interval_load(&r->interval, kind, pairs->a[i], pairs->b[i], &query);
         elementary_verdict verdict = (kind == CSCD_CONTACT_VF ? elementary_vf : elementary_ee)(&query, &hit);
         r->lane->decided[verdict.level]++;
         if (verdict.touching)
@@ -151,17 +152,17 @@ static void feature_filter(recording *r, cscd_contact_kind kind) {
     (void)kind;
     for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
         narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
-        r->lane->queue.vf.count = r->lane->queue.ee.count = 0;
+        for (int k = 0; k < 2; k++) r->lane->queue[k].count = 0;
     }
 }
 
 static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, bool signs_only) {
     const kernels *table = kernels_of(r->context);
-    feature_source source = feature_queue_source(&r->interval);
+    feature_source source = swept_interval_source(&r->interval);
     feature_pairs pairs = {list->a, list->b, list->count};
     bool vf = kind == CSCD_CONTACT_VF;
     if (!signs_only) {
-        (vf ? feature_queue_decide_vf : feature_queue_decide_ee)(&r->interval, r->lane);
+        feature_queue_decide(&r->interval, kind, r->lane);
         return;
     }
     (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &pairs);
@@ -170,7 +171,7 @@ static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list
 
 static void decide_in_batches(recording *r, cscd_contact_kind kind, bool signs_only) {
     const recorded_pairs *pairs = &r->of_kind[kind];
-    feature_list *list = kind == CSCD_CONTACT_VF ? &r->lane->queue.vf : &r->lane->queue.ee;
+    feature_list *list = &r->lane->queue[kind];
     r->left = 0;
     for (size_t i = 0; i < pairs->count; i += CHUNK) {
         size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;

@@ -161,7 +161,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     bvh_free(&d->bvh);
     exclusions_free(context, &d->exclusions);
     representatives_free(context, &d->representatives);
-    orphan_sets_free(context, &d->orphans);
+    orphan_pairs_free(context, &d->orphans);
     patches_free(context, &d->patches);
     void *blocks[] = {d->contacts.items,
                       d->contacts.scratch,

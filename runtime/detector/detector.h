@@ -9,6 +9,7 @@
 #include "runtime/intersections/static_check.h"
 #include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
+#include "runtime/narrow_phase/representatives.h"
 
 /* What a call returns, and as much room again for sorting it. */
 typedef struct result_buffer {
@@ -55,7 +56,7 @@ struct cscd_detector {
     bool rebuilt; /* in the interval at hand */
     call_memory before;
     representatives representatives;
-    orphan_sets orphans; /* once an interval without culling has come, unless there are too many */
+    orphan_pairs orphans; /* once an interval without culling has come, unless there are too many */
     bool orphans_known, orphans_usable;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */

@@ -73,11 +73,11 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
 
 /* ---- without pairs of adjacent triangles --------------------------------------------------------------- */
 
-static void test_orphans(void *data, uint32_t index) {
+static void test_orphan_pairs(void *data, uint32_t index) {
     interval_search *search = data;
     cscd_detector *d = search->detector;
     contact_lane *lane = &d->contact_lanes[index];
-    narrow_phase_test_orphans(&search->interval, &d->orphans, index, d->traversal.busy_lanes, lane);
+    narrow_phase_test_orphan_pairs(&search->interval, &d->orphans, index, d->traversal.busy_lanes, lane);
     narrow_phase_finish(&search->interval, lane);
 }
 
@@ -95,12 +95,12 @@ static cscd_status leave_out_adjacent(interval_search *search) {
     cscd_detector *d = search->detector;
     if (!d->orphans_known) {
         bool too_many;
-        cscd_status status = orphan_sets_create(d->mesh, &d->orphans, &too_many);
+        cscd_status status = orphan_pairs_create(d->mesh, &d->orphans, &too_many);
         if (status != CSCD_OK) return status;
         d->orphans_known = true;
         d->orphans_usable = !too_many;
     }
-    search->interval.strangers = d->orphans_usable;
+    search->interval.skip_adjacent = d->orphans_usable;
     skip_adjacent(d, d->orphans_usable, search->interval.culling != NULL ? d->culled : NULL);
     return CSCD_OK;
 }
@@ -109,9 +109,9 @@ cscd_status interval_search_everything(interval_search *search) {
     cscd_detector *d = search->detector;
     cscd_status status = leave_out_adjacent(search);
     if (status == CSCD_OK) status = interval_search_traverse(search, TRAVERSAL_KEPT);
-    if (status != CSCD_OK || !search->interval.strangers) return status;
+    if (status != CSCD_OK || !search->interval.skip_adjacent) return status;
     double since = timer_now_ms();
-    parallel_run(d->context->threads, d->traversal.busy_lanes, test_orphans, search);
+    parallel_run(d->context->threads, d->traversal.busy_lanes, test_orphan_pairs, search);
     timer_lap(&since, &search->timings.contact_ms);
     return interval_search_lanes_status(d);
 }

@@ -104,7 +104,7 @@ static void orient(step_work *work, const orientation_query *view) {
  * components to be finished are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->search.detector;
-    work->search.interval.closing = true;
+    work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
         culling_pass_done(&d->culling);

@@ -1,13 +1,5 @@
-/* Pairs of features that wait for their elementary test: eight at a time through the kernels, and what these
- * leave open one by one. */
+/* Queue of feature pairs. SIMD kernels decide them in batches of eight; the scalar test decides the rest. */
 #include "runtime/narrow_phase/feature_queue.h"
-
-#include "runtime/narrow_phase/narrow_phase.h"
-
-feature_source feature_queue_source(const swept_interval *interval) {
-    return (feature_source){interval->x0, interval->x1, (const uint32_t(*)[3])interval->mesh->triangles,
-                            (const uint32_t(*)[2])interval->mesh->edges};
-}
 
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                         uint32_t i, const elementary_hit *hit, bool bounded, contact_lane *lane) {
@@ -43,7 +35,7 @@ static void describe_hits(const swept_interval *interval, cscd_contact_kind kind
         uint32_t at = (uint32_t)__builtin_ctz(lanes);
         elementary_query query;
         elementary_hit hit;
-        narrow_phase_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
+        swept_interval_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
         elementary_describe(&query, kind == CSCD_CONTACT_VF ? 1 : 2, roots->begin[at], &hit);
         add_contact(interval, kind, pairs, i + at, &hit, false, lane);
     }
@@ -52,7 +44,7 @@ static void describe_hits(const swept_interval *interval, cscd_contact_kind kind
 /* Eight at a time; keeps the pairs that a kernel leaves open. */
 static void decide_by_roots(const swept_interval *interval, cscd_contact_kind kind, root_kernel *kernel,
                             feature_pairs *pairs, contact_lane *lane) {
-    feature_source source = feature_queue_source(interval);
+    feature_source source = swept_interval_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
@@ -71,7 +63,7 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
         elementary_hit hit;
-        narrow_phase_load(interval, kind, pairs->a[i], pairs->b[i], &query);
+        swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
         elementary_verdict verdict = elementary_after_signs(&query, kind == CSCD_CONTACT_VF ? 1 : 2, &hit);
         lane->decided[verdict.level]++;
         if (verdict.touching) add_contact(interval, kind, pairs, i, &hit, false, lane);
@@ -81,7 +73,7 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
 static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_lane *lane) {
     const kernels *table = kernels_of(interval->mesh->context);
-    feature_source source = feature_queue_source(interval);
+    feature_source source = swept_interval_source(interval);
     uint32_t tests = pairs->count;
     (kind == CSCD_CONTACT_VF ? table->keep_open_vf : table->keep_open_ee)(&source, pairs);
     lane->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
@@ -110,7 +102,7 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
                              contact_lane *lane) {
     const kernels *table = kernels_of(interval->mesh->context);
     proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
-    feature_source source = feature_queue_source(interval);
+    feature_source source = swept_interval_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
@@ -135,47 +127,21 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
         elementary_query query;
         elementary_hit hit;
         bool bounded = false;
-        narrow_phase_load(interval, kind, pairs->a[i], pairs->b[i], &query);
+        swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
         if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &hit,
                                                                       &bounded))
             add_contact(interval, kind, pairs, i, &hit, bounded, lane);
     }
 }
 
-static void collect(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
-                    contact_lane *lane) {
-    candidate_list *list = &lane->candidates[kind];
-    if (list->count + pairs->count > list->capacity) {
-        size_t capacity = 2 * list->capacity + FEATURE_QUEUE_CAPACITY;
-        uint32_t(*grown)[2] =
-            context_grow(interval->mesh->context, list->pairs, list->count, capacity, sizeof *list->pairs);
-        lane->out_of_memory |= grown == NULL;
-        if (grown == NULL) return;
-        list->pairs = grown;
-        list->capacity = capacity;
-    }
-    for (uint32_t i = 0; i < pairs->count; i++) {
-        list->pairs[list->count][0] = pairs->a[i];
-        list->pairs[list->count++][1] = pairs->b[i];
-    }
-}
-
-static void decide(const swept_interval *interval, cscd_contact_kind kind, feature_list *list,
-                   contact_lane *lane) {
+void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane) {
+    feature_list *list = &lane->queue[kind];
     feature_pairs pairs = {list->a, list->b, list->count};
     if (interval->collecting)
-        collect(interval, kind, &pairs, lane);
+        contact_lane_add_candidates(interval->mesh->context, lane, kind, list);
     else if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else
         decide_by_levels(interval, kind, &pairs, lane);
     list->count = 0;
-}
-
-void feature_queue_decide_vf(const swept_interval *interval, contact_lane *lane) {
-    decide(interval, CSCD_CONTACT_VF, &lane->queue.vf, lane);
-}
-
-void feature_queue_decide_ee(const swept_interval *interval, contact_lane *lane) {
-    decide(interval, CSCD_CONTACT_EE, &lane->queue.ee, lane);
 }

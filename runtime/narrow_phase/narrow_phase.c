@@ -2,73 +2,15 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 
 #include "runtime/ccd/kdop_directions.h"
-#include "runtime/narrow_phase/answering.h"
+#include "runtime/narrow_phase/feature_queue.h"
 #include "runtime/narrow_phase/representatives.h"
-
-#include <string.h>
 
 enum { PAIRS_AT_ONCE = 256 };
 
-void contact_lane_reset(contact_lane *lane) {
-    lane->count = 0;
-    lane->feature_pairs = 0;
-    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
-    lane->separations = 0;
-    lane->out_of_memory = false;
-    lane->queue.vf.count = lane->queue.ee.count = 0;
-    lane->candidates[CSCD_CONTACT_VF].count = lane->candidates[CSCD_CONTACT_EE].count = 0;
-}
-
-static bool make_room(cscd_context *context, contact_lane *lane) {
-    if (lane->count < lane->capacity) return true;
-    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
-    cscd_contact *grown =
-        context_grow(context, lane->contacts, lane->count, capacity, sizeof *lane->contacts);
-    if (grown == NULL) {
-        lane->out_of_memory = true;
-        return false;
-    }
-    lane->contacts = grown;
-    lane->capacity = capacity;
-    return true;
-}
-
-void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
-                      uint32_t b, const elementary_hit *hit, bool bounded) {
-    if (!make_room(context, lane)) return;
-    cscd_contact *contact = &lane->contacts[lane->count++];
-    memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
-    contact->kind = kind;
-    contact->a = a;
-    contact->b = b;
-    contact->toi = hit->toi;
-    contact->u = hit->u;
-    contact->v = hit->v;
-    memcpy(contact->point, hit->point, sizeof contact->point);
-    memcpy(contact->normal, hit->normal, sizeof contact->normal);
-    contact->bounded = bounded;
-}
-
-static void load_point(const swept_interval *interval, uint32_t vertex, elementary_query *query, int i) {
-    memcpy(query->x0[i], interval->x0 + (size_t)vertex * 3, sizeof query->x0[i]);
-    memcpy(query->x1[i], interval->x1 + (size_t)vertex * 3, sizeof query->x1[i]);
-}
-
-void narrow_phase_load(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                       elementary_query *query) {
-    const cscd_mesh *mesh = interval->mesh;
-    if (kind == CSCD_CONTACT_VF) {
-        load_point(interval, a, query, 0);
-        for (int i = 0; i < 3; i++) load_point(interval, mesh->triangles[b][i], query, 1 + i);
-    } else {
-        for (int i = 0; i < 4; i++) load_point(interval, mesh->edges[i < 2 ? a : b][i % 2], query, i);
-    }
-}
-
 void narrow_phase_test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle,
                           contact_lane *lane) {
-    feature_list *list = &lane->queue.vf;
-    if (feature_list_full(list)) feature_queue_decide_vf(interval, lane);
+    feature_list *list = &lane->queue[CSCD_CONTACT_VF];
+    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
     list->count = feature_list_put(list, list->count, vertex, triangle, 1);
 }
 
@@ -83,23 +25,24 @@ static uint32_t larger_of(uint32_t a, uint32_t b) {
 /* Feature a is the edge of the smaller number, whichever way the pair was found: the test's rounding, and so
  * its result, never depends on the traversal. */
 void narrow_phase_test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    feature_list *list = &lane->queue.ee;
-    if (feature_list_full(list)) feature_queue_decide_ee(interval, lane);
+    feature_list *list = &lane->queue[CSCD_CONTACT_EE];
+    if (feature_list_full(list)) feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
     list->count = feature_list_put(list, list->count, smaller_of(a, b), larger_of(a, b), 1);
 }
 
 void narrow_phase_finish(const swept_interval *interval, contact_lane *lane) {
-    feature_queue_decide_vf(interval, lane);
-    feature_queue_decide_ee(interval, lane);
+    feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
+    feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
 }
 
 /* ---- from pairs of triangles to the queue ------------------------------------------------------------ */
 
-static void put(const swept_interval *interval, triangle_pair pair, uint32_t features, contact_lane *lane) {
+static void queue_features(const swept_interval *interval, triangle_pair pair, uint32_t features,
+                           contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
-    feature_list *vf = &lane->queue.vf, *ee = &lane->queue.ee;
-    if (feature_list_full(vf)) feature_queue_decide_vf(interval, lane);
-    if (feature_list_full(ee)) feature_queue_decide_ee(interval, lane);
+    feature_list *vf = &lane->queue[CSCD_CONTACT_VF], *ee = &lane->queue[CSCD_CONTACT_EE];
+    if (feature_list_full(vf)) feature_queue_decide(interval, CSCD_CONTACT_VF, lane);
+    if (feature_list_full(ee)) feature_queue_decide(interval, CSCD_CONTACT_EE, lane);
     for (; features != 0; features &= features - 1) {
         lane->feature_pairs++;
         int bit = __builtin_ctz(features), edges = bit - FEATURE_EDGES;
@@ -127,8 +70,8 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
         pairs[kept] = (triangle_pair){bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
         features[kept++] = features[i];
     }
-    answering_select(interval, pairs, kept, features);
-    for (uint32_t i = 0; i < kept; i++) put(interval, pairs[i], features[i], lane);
+    representatives_select(interval, pairs, kept, features);
+    for (uint32_t i = 0; i < kept; i++) queue_features(interval, pairs[i], features[i], lane);
 }
 
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
@@ -137,11 +80,12 @@ void narrow_phase_test(const swept_interval *interval, const triangle_pair *pair
         test_some(interval, pairs + i, count - i < PAIRS_AT_ONCE ? count - i : PAIRS_AT_ONCE, lane);
 }
 
-/* ---- orphans ----------------------------------------------------------------------------------------- */
+/* ---- orphan pairs ----------------------------------------------------------------------------------------- */
 
-static bool parted(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+static bool parted_by_directions(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                 uint32_t b) {
     elementary_query query;
-    narrow_phase_load(interval, kind, a, b, &query);
+    swept_interval_load(interval, kind, a, b, &query);
     return directions_part(&query, kind == CSCD_CONTACT_VF ? 1 : 2, interval->limit.distance);
 }
 
@@ -150,20 +94,20 @@ static bool reached_by_flags(const swept_interval *interval, uint32_t triangle) 
     return interval->culling != NULL && interval->culled[interval->mesh->triangle_components[triangle]];
 }
 
-void narrow_phase_test_orphans(const swept_interval *interval, const orphan_sets *orphans, uint32_t index,
-                               uint32_t stride, contact_lane *lane) {
+void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
+                                    uint32_t index, uint32_t stride, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     for (size_t i = index; i < orphans->vf_count; i += stride) {
         uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
         if (reached_by_flags(interval, triangle)) continue;
-        if (parted(interval, CSCD_CONTACT_VF, vertex, triangle)) continue;
+        if (parted_by_directions(interval, CSCD_CONTACT_VF, vertex, triangle)) continue;
         lane->feature_pairs++;
         narrow_phase_test_vf(interval, vertex, triangle, lane);
     }
     for (size_t i = index; i < orphans->ee_count; i += stride) {
         uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
         if (reached_by_flags(interval, mesh->edge_stars[mesh->edge_star_offsets[a]])) continue;
-        if (parted(interval, CSCD_CONTACT_EE, a, b)) continue;
+        if (parted_by_directions(interval, CSCD_CONTACT_EE, a, b)) continue;
         lane->feature_pairs++;
         narrow_phase_test_ee(interval, a, b, lane);
     }

@@ -1,21 +1,21 @@
 /* Pairs of features that only triangles with a common vertex contain. */
 #include "runtime/narrow_phase/orphan_pairs.h"
 
-enum { ORPHANS_PER_TRIANGLE = 8 };
+enum { PAIRS_PER_TRIANGLE = 8 };
 
-typedef struct pair_list {
+typedef struct growing_list {
     uint32_t (*items)[2];
     size_t count, capacity;
-} pair_list;
+} growing_list;
 
-typedef struct finder {
+typedef struct orphan_search {
     const cscd_mesh *mesh;
-    pair_list vf, ee;
+    growing_list vf, ee;
     size_t most;
     bool out_of_memory;
-} finder;
+} orphan_search;
 
-/* Has every triangle at vertex v a vertex in common with triangle f? */
+/* Does every triangle at vertex v share a vertex with triangle f? */
 static bool is_orphan_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t f) {
     for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
         if (!triangles_share_vertex(mesh->triangles[mesh->vertex_stars[i]], mesh->triangles[f])) return false;
@@ -34,7 +34,7 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return true;
 }
 
-static void add(finder *f, pair_list *list, uint32_t a, uint32_t b) {
+static void add_pair(orphan_search *f, growing_list *list, uint32_t a, uint32_t b) {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity * 2 + 64;
         uint32_t(*grown)[2] =
@@ -48,15 +48,15 @@ static void add(finder *f, pair_list *list, uint32_t a, uint32_t b) {
     list->items[list->count++][1] = b;
 }
 
-/* Features that t is the first triangle of, with features of triangle u, for edges also the first: so that
- * each pair is looked at once. */
-static void find_between(finder *f, uint32_t t, uint32_t u) {
+/* Pairs a feature whose star begins with t with a feature of triangle u; for edges u is the first of the
+ * other star, too. So each pair is looked at once. */
+static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
     const cscd_mesh *mesh = f->mesh;
     for (int i = 0; i < 3; i++) {
         uint32_t v = mesh->triangles[t][i];
         bool first = mesh->vertex_stars[mesh->vertex_star_offsets[v]] == t;
         if (first && !triangle_contains(mesh->triangles[u], v) && is_orphan_vertex(mesh, v, u))
-            add(f, &f->vf, v, u);
+            add_pair(f, &f->vf, v, u);
     }
     for (int i = 0; t < u && i < 3; i++) {
         uint32_t a = mesh->triangle_edges[t][i];
@@ -65,13 +65,13 @@ static void find_between(finder *f, uint32_t t, uint32_t u) {
             uint32_t b = mesh->triangle_edges[u][j];
             if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u) continue;
             if (!edges_share_vertex(mesh->edges[a], mesh->edges[b]) && are_orphan_edges(mesh, a, b))
-                add(f, &f->ee, a < b ? a : b, a < b ? b : a);
+                add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
         }
     }
 }
 
-/* False: there are too many, or no memory. */
-static bool find(finder *f) {
+/* Returns false when there are too many, or memory runs out. */
+static bool find_all(orphan_search *f) {
     const cscd_mesh *mesh = f->mesh;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles[t];
@@ -92,17 +92,17 @@ static bool find(finder *f) {
     return true;
 }
 
-cscd_status orphan_sets_create(const cscd_mesh *mesh, orphan_sets *out, bool *too_many) {
-    finder f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * ORPHANS_PER_TRIANGLE};
-    bool all = find(&f);
-    *out = (orphan_sets){f.vf.items, f.ee.items, f.vf.count, f.ee.count};
+cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
+    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
+    bool all = find_all(&f);
+    *out = (orphan_pairs){f.vf.items, f.ee.items, f.vf.count, f.ee.count};
     *too_many = !all && !f.out_of_memory;
-    if (!all) orphan_sets_free(mesh->context, out);
+    if (!all) orphan_pairs_free(mesh->context, out);
     return f.out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
 }
 
-void orphan_sets_free(cscd_context *context, orphan_sets *sets) {
-    context_free(context, sets->vf);
-    context_free(context, sets->ee);
-    *sets = (orphan_sets){.vf_count = 0};
+void orphan_pairs_free(cscd_context *context, orphan_pairs *pairs) {
+    context_free(context, pairs->vf);
+    context_free(context, pairs->ee);
+    *pairs = (orphan_pairs){.vf_count = 0};
 }

@@ -1,5 +1,10 @@
-/* Which triangle answers for a feature, so that each pair of features is tested once. */
+/* Picks the one triangle pair that tests a feature pair, so that no feature pair is tested twice. */
 #include "runtime/narrow_phase/representatives.h"
+
+#include "runtime/narrow_phase/orphan_pairs.h"
+
+/* The kernel marks the undecided features of so many pairs at a time. */
+enum { PAIRS_AT_ONCE = 256 };
 
 cscd_status representatives_create(const cscd_mesh *mesh, representatives *out) {
     cscd_context *context = mesh->context;
@@ -30,4 +35,157 @@ void representatives_free(cscd_context *context, representatives *r) {
     context_free(context, r->others);
     context_free(context, r->opposite);
     *r = (representatives){.owned = NULL};
+}
+
+/* ---- without culling ----------------------------------------------------------------------------------- */
+
+/* Pairs of adjacent triangles may not be reached. So the first pair in the order of the stars that shares no
+ * vertex tests the features: the pair of the representatives, or, where these are adjacent, a later one. */
+
+/* Does every triangle before `of` in the star share a vertex with the face? */
+static bool first_at_vertex(const cscd_mesh *mesh, uint32_t of, uint32_t vertex, const uint32_t face[3]) {
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (s == of) return true;
+        if (!triangles_share_vertex(mesh->triangles[s], face)) return false;
+    }
+    return false;
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_at_edges(const cscd_mesh *mesh, triangle_pair pair, uint32_t a, uint32_t b) {
+    for (uint32_t i = mesh->edge_star_offsets[a]; i < mesh->edge_star_offsets[a + 1]; i++) {
+        for (uint32_t j = mesh->edge_star_offsets[b]; j < mesh->edge_star_offsets[b + 1]; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (s == pair.a && t == pair.b) return true;
+            if (!triangles_share_vertex(mesh->triangles[s], mesh->triangles[t])) return false;
+        }
+    }
+    return false;
+}
+
+/* Does the pair test a pair of features whose representatives are adjacent? */
+static bool first_without_shared_vertex(const cscd_mesh *mesh, triangle_pair pair, int bit) {
+    const uint32_t *a = mesh->triangles[pair.a], *b = mesh->triangles[pair.b];
+    if (bit < FEATURE_VERTEX_B) return first_at_vertex(mesh, pair.a, a[bit], b);
+    if (bit < FEATURE_EDGES) return first_at_vertex(mesh, pair.b, b[bit - FEATURE_VERTEX_B], a);
+    int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+    uint32_t edge_a = mesh->triangle_edges[pair.a][i], edge_b = mesh->triangle_edges[pair.b][j];
+    if (edge_a < edge_b) return first_at_edges(mesh, pair, edge_a, edge_b);
+    return first_at_edges(mesh, (triangle_pair){pair.b, pair.a}, edge_b, edge_a);
+}
+
+static void select_represented(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                               uint16_t *features) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint16_t undecided[PAIRS_AT_ONCE];
+    kernels_of(mesh->context)->represent(mesh, interval->representatives, pairs, count, features, undecided);
+    if (!interval->skip_adjacent) return;
+    for (uint32_t p = 0; p < count; p++) {
+        for (uint32_t rest = undecided[p]; rest != 0; rest &= rest - 1) {
+            int bit = __builtin_ctz(rest);
+            features[p] |= (uint16_t)(first_without_shared_vertex(mesh, pairs[p], bit) << bit);
+        }
+    }
+}
+
+/* ---- with culling -------------------------------------------------------------------------------------- */
+
+/* The first pair in the order of the stars that the flags keep tests the features. It is reached, because its
+ * volumes contain those of the features. In a closing pass no pair tests them if the earlier flags kept one:
+ * then they have been tested already. */
+static bool first_kept_vertex(const swept_interval *interval, uint32_t of, int corner, uint32_t against) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t vertex = mesh->triangles[of][corner], first = UINT32_MAX;
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t s = mesh->vertex_stars[i];
+        if (first == UINT32_MAX && culling_keeps(interval->culling, s, against)) {
+            first = s;
+            if (first != of || !interval->closing_pass) break;
+        }
+        if (interval->closing_pass && culling_kept(interval->culling, s, against)) return false;
+    }
+    return first == of;
+}
+
+/* pair.a contains the edge of the smaller number. */
+static bool first_kept_edges(const swept_interval *interval, triangle_pair pair, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    uint32_t begin_a = mesh->edge_star_offsets[a], end_a = mesh->edge_star_offsets[a + 1];
+    uint32_t begin_b = mesh->edge_star_offsets[b], end_b = mesh->edge_star_offsets[b + 1];
+    bool found = false;
+    for (uint32_t i = begin_a; i < end_a; i++) {
+        for (uint32_t j = begin_b; j < end_b; j++) {
+            uint32_t s = mesh->edge_stars[i], t = mesh->edge_stars[j];
+            if (!found && culling_keeps(interval->culling, s, t)) {
+                if (s != pair.a || t != pair.b) return false;
+                if (!interval->closing_pass) return true;
+                found = true;
+            }
+            if (interval->closing_pass && culling_kept(interval->culling, s, t)) return false;
+        }
+    }
+    return found;
+}
+
+static bool first_kept(const swept_interval *interval, triangle_pair pair, int bit) {
+    if (bit < FEATURE_VERTEX_B) return first_kept_vertex(interval, pair.a, bit, pair.b);
+    if (bit < FEATURE_EDGES) return first_kept_vertex(interval, pair.b, bit - FEATURE_VERTEX_B, pair.a);
+    int i = (bit - FEATURE_EDGES) / 3, j = (bit - FEATURE_EDGES) % 3;
+    uint32_t a = interval->mesh->triangle_edges[pair.a][i], b = interval->mesh->triangle_edges[pair.b][j];
+    if (a < b) return first_kept_edges(interval, pair, a, b);
+    return first_kept_edges(interval, (triangle_pair){pair.b, pair.a}, b, a);
+}
+
+static uint32_t select_kept(const swept_interval *interval, triangle_pair pair, uint32_t features) {
+    uint32_t kept = 0;
+    for (uint32_t rest = features; rest != 0; rest &= rest - 1) {
+        int bit = __builtin_ctz(rest);
+        kept |= (uint32_t)first_kept(interval, pair, bit) << bit;
+    }
+    return kept;
+}
+
+/* ---- either -------------------------------------------------------------------------------------------- */
+
+/* Pairs that the flags do not choose among, and the places that their features go to. */
+typedef struct other_pairs {
+    triangle_pair pairs[PAIRS_AT_ONCE];
+    uint16_t features[PAIRS_AT_ONCE], *places[PAIRS_AT_ONCE];
+    uint32_t count;
+} other_pairs;
+
+static void select_others(const swept_interval *interval, other_pairs *others) {
+    select_represented(interval, others->pairs, others->count, others->features);
+    for (uint32_t i = 0; i < others->count; i++) *others->places[i] = others->features[i];
+    others->count = 0;
+}
+
+/* Two triangles of one component that is culled. */
+static bool flags_choose(const swept_interval *interval, triangle_pair pair) {
+    const uint32_t *components = interval->mesh->triangle_components;
+    return !interval->skip_adjacent ||
+           (components[pair.a] == components[pair.b] && interval->culled[components[pair.a]]);
+}
+
+void representatives_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                            uint16_t *features) {
+    if (interval->culling == NULL) {
+        for (uint32_t p = 0; p < count; p += PAIRS_AT_ONCE)
+            select_represented(interval, pairs + p, count - p < PAIRS_AT_ONCE ? count - p : PAIRS_AT_ONCE,
+                               features + p);
+        return;
+    }
+    other_pairs others = {.count = 0};
+    for (uint32_t p = 0; p < count; p++) {
+        if (flags_choose(interval, pairs[p])) {
+            features[p] = (uint16_t)select_kept(interval, pairs[p], features[p]);
+            continue;
+        }
+        others.pairs[others.count] = pairs[p];
+        others.features[others.count] = features[p];
+        others.places[others.count++] = &features[p];
+        if (others.count == PAIRS_AT_ONCE) select_others(interval, &others);
+    }
+    select_others(interval, &others);
 }

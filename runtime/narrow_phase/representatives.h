@@ -1,11 +1,10 @@
-/* Which triangle answers for a feature, so that each pair of features is tested once. */
+/* Picks the one triangle pair that tests a feature pair, so that no feature pair is tested twice. */
 #pragma once
 
-#include "src/mesh/mesh.h"
+#include "runtime/narrow_phase/swept_interval.h"
 
 /* A feature's representative is the first triangle of its star (Tang et al. 2009). The pair of the
- * representatives answers for a pair of features, unless it is one of adjacent triangles that are left out.
- */
+ * representatives tests a pair of features, unless the two are adjacent and such pairs are skipped. */
 typedef struct representatives {
     uint8_t *owned; /* per triangle: bit i says that it represents its vertex i, bit 3 + i its edge i */
     uint32_t (*others)[2]; /* per vertex: the other vertices of its representative */
@@ -15,3 +14,8 @@ typedef struct representatives {
 /* On failure *out holds nothing. */
 cscd_status representatives_create(const cscd_mesh *mesh, representatives *out);
 void representatives_free(cscd_context *context, representatives *r);
+
+/* Keeps, of the pairs of features of pairs of triangles, bits as in FEATURE_VERTEX_B and FEATURE_EDGES, those
+ * that these triangle pairs test. */
+void representatives_select(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
+                            uint16_t *features);

@@ -1,17 +1,20 @@
-/* Which features of pairs of triangles these represent, and of which the representatives are neighbours:
- * eight pairs at a time, for branches cost more here than what they would save. */
+/* Finds which features each of many triangle pairs represents, and which ones have adjacent representatives.
+ * Takes eight pairs at a time: branches would cost more than they save. */
 #include "runtime/bvh/this_level.h"
 
-/* Corners of a and b, and of their representatives what is not theirs; edge i joins corners i and i + 1. */
-typedef struct pairs_x8 {
-    uint32_t corners[2][3][LANES], others[2][3][2][LANES], opposite[2][3][LANES], represented[LANES];
-} pairs_x8;
+/* Triangles a ([0]) and b ([1]) of eight pairs. Edge i joins corners i and i + 1. */
+typedef struct represented_x8 {
+    uint32_t corners[2][3][LANES];
+    uint32_t others[2][3][2][LANES]; /* the other two corners of the representative of each corner */
+    uint32_t opposite[2][3][LANES];  /* the corner opposite each edge in the edge's representative */
+    uint32_t represented[LANES];     /* features that the pair represents */
+} represented_x8;
 
-/* A set of corners, or edges: all bits of a lane. */
+/* One vertex, or one mask of all bits, for each of three corners or edges. */
 typedef i32x8 lane_set[3];
 
 static inline void load_triangle(const cscd_mesh *mesh, const representatives *r, uint32_t triangle, int t,
-                                 uint32_t lane, pairs_x8 *out) {
+                                 uint32_t lane, represented_x8 *out) {
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = mesh->triangles[triangle][i];
         out->corners[t][i][lane] = vertex;
@@ -26,7 +29,7 @@ static inline i32x8 is_corner(const lane_set corners, i32x8 vertex) {
 }
 
 /* The corners of t whose representatives share a vertex with the other triangle. */
-static inline i32x8 adjacent_corners(const pairs_x8 *o, int t, int first_bit) {
+static inline i32x8 adjacent_corners(const represented_x8 *o, int t, int first_bit) {
     i32x8 features = {0};
     lane_set face;
     for (int i = 0; i < 3; i++) face[i] = i32x8_load(o->corners[1 - t][i]);
@@ -39,10 +42,10 @@ static inline i32x8 adjacent_corners(const pairs_x8 *o, int t, int first_bit) {
 }
 
 /* Pairs of edges whose representatives share a vertex, if the edges share none. */
-static inline i32x8 adjacent_edges(const pairs_x8 *o) {
+static inline i32x8 adjacent_edges(const represented_x8 *o) {
     i32x8 features = {0};
-    lane_set corners[2], over[2],
-        at[2][3]; /* at[t][i]: of t's corners, what is opposite edge i of the other */
+    lane_set corners[2], over[2];
+    lane_set at[2][3]; /* at[t][i]: which corners of t are opposite edge i of the other triangle */
     for (int i = 0; i < 6; i++) {
         corners[i / 3][i % 3] = i32x8_load(o->corners[i / 3][i % 3]);
         over[i / 3][i % 3] = i32x8_load(o->opposite[i / 3][i % 3]);
@@ -60,30 +63,30 @@ static inline i32x8 adjacent_edges(const pairs_x8 *o) {
     return features;
 }
 
-/* Bits 0 to 2 of edges, one for every three of the result. */
-static inline uint32_t spread(uint32_t edges) {
+/* Bits 0, 1 and 2 go to places 0, 3 and 6. */
+static inline uint32_t spread_by_three(uint32_t edges) {
     return (edges & 1u) | (edges & 2u) << 2 | (edges & 4u) << 4;
 }
 
 void SIMD_NAME(represent)(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
-                          uint32_t count, uint16_t *features, uint16_t *open) {
+                          uint32_t count, uint16_t *features, uint16_t *undecided) {
     for (uint32_t p = 0; p < count; p += LANES) {
-        pairs_x8 o;
+        represented_x8 o;
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         for (uint32_t i = 0; i < LANES; i++) {
             triangle_pair pair = pairs[i < lanes ? p + i : p];
             uint32_t a = r->owned[pair.a], b = r->owned[pair.b];
             load_triangle(mesh, r, pair.a, 0, i, &o);
             load_triangle(mesh, r, pair.b, 1, i, &o);
-            o.represented[i] =
-                (a & 7u) | (b & 7u) << FEATURE_VERTEX_B | (spread(a >> 3) * (b >> 3)) << FEATURE_EDGES;
+            o.represented[i] = (a & 7u) | (b & 7u) << FEATURE_VERTEX_B |
+                               (spread_by_three(a >> 3) * (b >> 3)) << FEATURE_EDGES;
         }
         i32x8 adjacent =
             adjacent_corners(&o, 0, 0) | adjacent_corners(&o, 1, FEATURE_VERTEX_B) | adjacent_edges(&o);
         for (uint32_t i = 0; i < lanes; i++) {
             uint32_t all = features[p + i], own = all & o.represented[i];
             features[p + i] = (uint16_t)own;
-            open[p + i] = (uint16_t)(all & ~own & (uint32_t)adjacent[i]);
+            undecided[p + i] = (uint16_t)(all & ~own & (uint32_t)adjacent[i]);
         }
     }
 }

@@ -1,7 +1,7 @@
 /* Axis-aligned boxes of moving features, in double. */
 #pragma once
 
-#include "runtime/narrow_phase/narrow_phase.h"
+#include "runtime/narrow_phase/swept_interval.h"
 
 #include <math.h>
 

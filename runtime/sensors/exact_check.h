@@ -1,6 +1,7 @@
 /* The exact check of particle sensors: do the areas of cells of two parts touch, and when first? */
 #pragma once
 
+#include "runtime/narrow_phase/narrow_phase.h"
 #include "runtime/narrow_phase/swept_box.h"
 #include "src/mesh/partition.h"
 

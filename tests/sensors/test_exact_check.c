@@ -60,7 +60,7 @@ static void test_pair(const swept_interval *moving, cscd_contact_kind kind, uint
     swept_box box_b = swept_box_of(moving, vf ? mesh->triangles[b] : mesh->edges[b], vf ? 3 : 2);
     elementary_query query;
     elementary_hit hit;
-    narrow_phase_load(moving, kind, a, b, &query);
+    swept_interval_load(moving, kind, a, b, &query);
     out->tests += swept_boxes_within(&box_a, &box_b, 0.0);
     if (!(vf ? elementary_vf : elementary_ee)(&query, &hit).touching) return;
     if (!out->contact || hit.toi < out->toi) out->toi = hit.toi;

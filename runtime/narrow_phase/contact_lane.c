@@ -1,0 +1,68 @@
+/* What one thread finds in an interval, and the pairs of features that it still has to test. */
+#include "runtime/narrow_phase/contact_lane.h"
+
+#include <string.h>
+
+void contact_lane_reset(contact_lane *lane) {
+    lane->count = 0;
+    lane->feature_pairs = 0;
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
+    lane->separations = 0;
+    lane->out_of_memory = false;
+    for (int kind = 0; kind < 2; kind++) lane->queue[kind].count = 0;
+    for (int kind = 0; kind < 2; kind++) lane->candidates[kind].count = 0;
+}
+
+static bool make_contact_room(cscd_context *context, contact_lane *lane) {
+    if (lane->count < lane->capacity) return true;
+    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
+    cscd_contact *grown =
+        context_grow(context, lane->contacts, lane->count, capacity, sizeof *lane->contacts);
+    if (grown == NULL) {
+        lane->out_of_memory = true;
+        return false;
+    }
+    lane->contacts = grown;
+    lane->capacity = capacity;
+    return true;
+}
+
+void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
+                      uint32_t b, const elementary_hit *hit, bool bounded) {
+    if (!make_contact_room(context, lane)) return;
+    cscd_contact *contact = &lane->contacts[lane->count++];
+    memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
+    contact->kind = kind;
+    contact->a = a;
+    contact->b = b;
+    contact->toi = hit->toi;
+    contact->u = hit->u;
+    contact->v = hit->v;
+    memcpy(contact->point, hit->point, sizeof contact->point);
+    memcpy(contact->normal, hit->normal, sizeof contact->normal);
+    contact->bounded = bounded;
+}
+
+static bool make_candidate_room(cscd_context *context, contact_lane *lane, candidate_list *list,
+                                size_t count) {
+    if (list->count + count <= list->capacity) return true;
+    size_t capacity = 2 * list->capacity + FEATURE_LIST_CAPACITY;
+    uint32_t(*grown)[2] = context_grow(context, list->pairs, list->count, capacity, sizeof *list->pairs);
+    if (grown == NULL) {
+        lane->out_of_memory = true;
+        return false;
+    }
+    list->pairs = grown;
+    list->capacity = capacity;
+    return true;
+}
+
+void contact_lane_add_candidates(cscd_context *context, contact_lane *lane, cscd_contact_kind kind,
+                                 const feature_list *pairs) {
+    candidate_list *list = &lane->candidates[kind];
+    if (!make_candidate_room(context, lane, list, pairs->count)) return;
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        list->pairs[list->count][0] = pairs->a[i];
+        list->pairs[list->count++][1] = pairs->b[i];
+    }
+}

@@ -1,0 +1,52 @@
+/* What one thread finds in an interval, and the pairs of features that it still has to test. */
+#pragma once
+
+#include "runtime/ccd/elementary.h"
+#include "src/core/context.h"
+
+/* Whoever adds up to FEATURE_LIST_BURST pairs asks once whether there is room for them. */
+enum { FEATURE_LIST_CAPACITY = 512, FEATURE_LIST_BURST = 16 };
+
+/* Vertex a[i] and triangle b[i], or edges a[i] < b[i]. Kernels fill up their last eight behind the last pair. */
+typedef struct feature_list {
+    uint32_t count;
+    uint32_t a[FEATURE_LIST_CAPACITY + FEATURE_LIST_BURST], b[FEATURE_LIST_CAPACITY + FEATURE_LIST_BURST];
+} feature_list;
+
+/* Writes a pair to place count and returns the count with it if `kept` is 1, without it if 0: no branch. */
+static inline uint32_t feature_list_put(feature_list *list, uint32_t count, uint32_t a, uint32_t b,
+                                        uint32_t kept) {
+    list->a[count] = a;
+    list->b[count] = b;
+    return count + kept;
+}
+
+static inline bool feature_list_full(const feature_list *list) {
+    return list->count + FEATURE_LIST_BURST > FEATURE_LIST_CAPACITY;
+}
+
+/* Pairs of features, as in a feature_list. */
+typedef struct candidate_list {
+    uint32_t (*pairs)[2];
+    size_t count, capacity;
+} candidate_list;
+
+typedef struct contact_lane {
+    _Alignas(CACHE_LINE_SIZE) cscd_contact *contacts;
+    size_t count, capacity;
+    uint64_t feature_pairs;
+    uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by the level that decided them */
+    uint64_t separations;                     /* tests for minimum separation */
+    bool out_of_memory;
+    feature_list queue[2];        /* by cscd_contact_kind; see feature_queue.h */
+    candidate_list candidates[2]; /* by cscd_contact_kind */
+} contact_lane;
+
+/* Empties the lane; it keeps its memory. */
+void contact_lane_reset(contact_lane *lane);
+
+/* Both set lane->out_of_memory when there is no room. */
+void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
+                      uint32_t b, const elementary_hit *hit, bool bounded);
+void contact_lane_add_candidates(cscd_context *context, contact_lane *lane, cscd_contact_kind kind,
+                                 const feature_list *pairs);
