@@ -10,6 +10,8 @@
  */
 #include "preprocess/charge/potential.h"
 
+#include "src/core/vec3.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -20,10 +22,6 @@
 
 /* Below any length that counts; its ninth power is no underflow. */
 static const double TINY = 0x1p-100;
-
-INLINED double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 INLINED uint64_t bits_of(double x) {
     uint64_t bits;
@@ -128,18 +126,18 @@ INLINED double potential(const potential_source *source, double x, double y, dou
         to[i][0] = source->corners[i][0] - x;
         to[i][1] = source->corners[i][1] - y;
         to[i][2] = source->corners[i][2] - z;
-        double squared = dot(to[i], to[i]);
+        double squared = vec3_dot(to[i], to[i]);
         distances[i] = sqrt(squared > TINY * TINY ? squared : TINY * TINY);
         lengths2[i] = source->lengths[i] * source->lengths[i];
     }
-    double height = fabs(dot(source->normal, to[0]));
+    double height = fabs(vec3_dot(source->normal, to[0]));
     double sum = 0.0;
     UNROLLED
     for (int i = 0; i < 3; i++) {
-        double t = dot(source->outward[i], to[i]);
+        double t = vec3_dot(source->outward[i], to[i]);
         lines2[i] = t * t + height * height;
         double line2 = lines2[i] > TINY * TINY ? lines2[i] : TINY * TINY;
-        double logarithm = edge_logarithm(dot(source->along[i], to[i]), source->lengths[i], distances[i],
+        double logarithm = edge_logarithm(vec3_dot(source->along[i], to[i]), source->lengths[i], distances[i],
                                           distances[(i + 1) % 3], line2);
         sum += t * logarithm; /* t = 0 gives 0: the logarithm is finite */
     }
@@ -180,12 +178,6 @@ void potential_at(const potential_source *source, const double *x, const double 
     potentials_of(source, x, y, z, count, potentials);
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Corners, edge lengths, directions and the normal; returns twice the area, or 0 when it is lost in rounding.
  * The normal is the product of the two shorter edges, and then turned square to the longest: in a sliver its
  * error along that edge would be large. */
@@ -194,11 +186,11 @@ static double measure(potential_source *s, const double corners[3][3]) {
     memcpy(s->corners, corners, sizeof s->corners);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) s->along[i][k] = corners[(i + 1) % 3][k] - corners[i][k];
-        s->lengths[i] = sqrt(dot(s->along[i], s->along[i]));
+        s->lengths[i] = sqrt(vec3_dot(s->along[i], s->along[i]));
         longest = s->lengths[i] > s->lengths[longest] ? i : longest;
     }
-    cross(s->along[(longest + 1) % 3], s->along[(longest + 2) % 3], s->normal);
-    double doubled = sqrt(dot(s->normal, s->normal));
+    vec3_cross(s->along[(longest + 1) % 3], s->along[(longest + 2) % 3], s->normal);
+    double doubled = sqrt(vec3_dot(s->normal, s->normal));
     if (doubled <= 0x1p-40 * s->lengths[longest] * s->lengths[longest]) return 0.0;
 
     for (int i = 0; i < 3; i++) {
@@ -206,9 +198,9 @@ static double measure(potential_source *s, const double corners[3][3]) {
     }
     const double *axis = s->along[longest];
     for (int k = 0; k < 3; k++) s->normal[k] /= doubled;
-    double slant = dot(s->normal, axis);
+    double slant = vec3_dot(s->normal, axis);
     for (int k = 0; k < 3; k++) s->normal[k] -= slant * axis[k];
-    double length = sqrt(dot(s->normal, s->normal));
+    double length = sqrt(vec3_dot(s->normal, s->normal));
     for (int k = 0; k < 3; k++) s->normal[k] /= length;
     return doubled;
 }
@@ -218,7 +210,7 @@ bool potential_source_set(potential_source *source, const double corners[3][3]) 
     double doubled = measure(&s, corners);
     if (doubled == 0.0) return false;
     s.area = 0.5 * doubled;
-    for (int i = 0; i < 3; i++) cross(s.along[i], s.normal, s.outward[i]);
+    for (int i = 0; i < 3; i++) vec3_cross(s.along[i], s.normal, s.outward[i]);
     *source = s;
     return true;
 }

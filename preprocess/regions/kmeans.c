@@ -2,6 +2,7 @@
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/dual_graph.h"
 #include "preprocess/regions/lloyd.h"
+#include "src/core/vec3.h"
 
 #include <string.h>
 
@@ -121,11 +122,6 @@ static cscd_status find_centroids(work *w, uint32_t seed) {
     return CSCD_OK;
 }
 
-static double squared_distance(const double a[3], const double b[3]) {
-    double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return x * x + y * y + z * z;
-}
-
 /* best[i] = the vertex of cluster i that is nearest to its centroid; NONE in an empty cluster. */
 static void find_anchors(work *w) {
     uint32_t used_count = w->used_offsets[w->mesh->component_count];
@@ -133,8 +129,8 @@ static void find_anchors(work *w) {
     for (uint32_t i = 0; i < used_count; i++) {
         uint32_t v = w->used[i], label = w->labels[v], best = w->best[label];
         const double *centroid = w->centroids + (size_t)label * 3;
-        if (best == NONE || squared_distance(w->positions + (size_t)v * 3, centroid) <
-                                squared_distance(w->positions + (size_t)best * 3, centroid))
+        if (best == NONE || vec3_squared_distance(w->positions + (size_t)v * 3, centroid) <
+                                vec3_squared_distance(w->positions + (size_t)best * 3, centroid))
             w->best[label] = v;
     }
 }

@@ -12,10 +12,10 @@ static double clamp01(double x) {
 /* Parameter of the point of segment a b nearest to p; 0 where the segment is a point. */
 static double nearest_on_segment(const double p[3], const double a[3], const double b[3]) {
     double direction[3], offset[3];
-    vector_subtract(b, a, direction);
-    vector_subtract(p, a, offset);
-    double length = vector_dot(direction, direction);
-    return length > 0.0 ? clamp01(vector_dot(offset, direction) / length) : 0.0;
+    vec3_subtract(b, a, direction);
+    vec3_subtract(p, a, offset);
+    double length = vec3_dot(direction, direction);
+    return length > 0.0 ? clamp01(vec3_dot(offset, direction) / length) : 0.0;
 }
 
 static double squared_distance_at(const double p[3], const double a[3], const double b[3], const double c[3],
@@ -54,10 +54,10 @@ static bool project(const double p[3], const double a[3], const double ab[3], co
                     const double normal[3], double area, double *u, double *v) {
     double residual[3], side[3];
     for (int k = 0; k < 3; k++) residual[k] = (p[k] - a[k]) - *u * ab[k] - *v * ac[k];
-    vector_cross(residual, ac, side);
-    double step_u = vector_dot(side, normal) / area;
-    vector_cross(ab, residual, side);
-    double step_v = vector_dot(side, normal) / area, old_u = *u, old_v = *v;
+    vec3_cross(residual, ac, side);
+    double step_u = vec3_dot(side, normal) / area;
+    vec3_cross(ab, residual, side);
+    double step_v = vec3_dot(side, normal) / area, old_u = *u, old_v = *v;
     *u += step_u;
     *v += step_v;
     return *u != old_u || *v != old_v;
@@ -70,11 +70,11 @@ static const double touching = 0x1p-90;
 static double closest_in_plane(const double p[3], const double a[3], const double b[3], const double c[3],
                                double *u, double *v, double *size) {
     double ab[3], ac[3], normal[3], inside_u = 0.0, inside_v = 0.0;
-    vector_subtract(b, a, ab);
-    vector_subtract(c, a, ac);
-    vector_cross(ab, ac, normal);
-    double area = vector_dot(normal, normal);
-    *size = vector_dot(ab, ab) + vector_dot(ac, ac);
+    vec3_subtract(b, a, ab);
+    vec3_subtract(c, a, ac);
+    vec3_cross(ab, ac, normal);
+    double area = vec3_dot(normal, normal);
+    *size = vec3_dot(ab, ab) + vec3_dot(ac, ac);
     if (!(area > 0.0)) return INFINITY;
     for (int i = 0; i < PROJECTIONS_MAX; i++) {
         if (!project(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
@@ -112,18 +112,18 @@ static double segment_distance_at(const double a0[3], const double a1[3], const 
 static double crossing(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                        double *u, double *v, double *size) {
     double along_a[3], along_b[3], offset[3], normal[3], side[3], point[3];
-    vector_subtract(a1, a0, along_a);
-    vector_subtract(b1, b0, along_b);
-    vector_subtract(b0, a0, offset);
-    vector_cross(along_a, along_b, normal);
-    double area = vector_dot(normal, normal);
-    *size = vector_dot(along_a, along_a) + vector_dot(along_b, along_b);
+    vec3_subtract(a1, a0, along_a);
+    vec3_subtract(b1, b0, along_b);
+    vec3_subtract(b0, a0, offset);
+    vec3_cross(along_a, along_b, normal);
+    double area = vec3_dot(normal, normal);
+    *size = vec3_dot(along_a, along_a) + vec3_dot(along_b, along_b);
     if (!(area > 0.0)) return INFINITY;
-    vector_cross(offset, along_b, side);
-    *u = clamp01(vector_dot(side, normal) / area);
-    vector_add_scaled(a0, *u, along_a, point);
+    vec3_cross(offset, along_b, side);
+    *u = clamp01(vec3_dot(side, normal) / area);
+    vec3_add_scaled(a0, *u, along_a, point);
     *v = nearest_on_segment(point, b0, b1);
-    vector_add_scaled(b0, *v, along_b, point);
+    vec3_add_scaled(b0, *v, along_b, point);
     *u = nearest_on_segment(point, a0, a1);
     return segment_distance_at(a0, a1, b0, b1, *u, *v);
 }

@@ -21,7 +21,7 @@ typedef struct moment_vectors {
 static double largest_coordinate(const elementary_query *query) {
     double largest = 0.0;
     for (int i = 0; i < 4; i++)
-        largest = larger(largest, larger(vector_largest(query->x0[i]), vector_largest(query->x1[i])));
+        largest = max_of(largest, max_of(vec3_largest(query->x0[i]), vec3_largest(query->x1[i])));
     return largest;
 }
 
@@ -42,7 +42,7 @@ static moment_vectors vectors_at(const point_vectors *v, double t) {
 /* The power of two that brings the largest component to [1/2, 1), so that squares neither over- nor
  * underflow; returns the exponent that is taken out. */
 static int scale_to_one(const double v[3], double out[3]) {
-    int exponent = exponent_of(vector_largest(v));
+    int exponent = exponent_of(vec3_largest(v));
     double factor = power_of_two(-exponent);
     for (int k = 0; k < 3; k++) out[k] = factor * v[k];
     return exponent;
@@ -52,7 +52,7 @@ static int scale_to_one(const double v[3], double out[3]) {
 static void scaled_cross(const moment_vectors *m, double out[3], int *exponent) {
     double a[3], b[3];
     *exponent = scale_to_one(m->a, a) + scale_to_one(m->b, b);
-    vector_cross(a, b, out);
+    vec3_cross(a, b, out);
 }
 
 /* The gap is the volume over the area of the features' parallelogram, and closes at the rate of its slope;
@@ -63,8 +63,8 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
     if (!(slope > 8.0 * f->error)) return toi;
     moment_vectors m = vectors_at(vectors, toi);
     scaled_cross(&m, cross, &exponent);
-    double speed = slope * power_of_two(-exponent) / sqrt(vector_dot(cross, cross));
-    return larger(toi - smaller(gap_left * coordinate / speed, earlier_at_most), 0.0);
+    double speed = slope * power_of_two(-exponent) / sqrt(vec3_dot(cross, cross));
+    return max_of(toi - min_of(gap_left * coordinate / speed, earlier_at_most), 0.0);
 }
 
 /* The nearest points at one moment, scaled, relative to the face's first corner (VF) or to the start of the
@@ -72,7 +72,7 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
 static void find_parameters(const moment_vectors *m, int first_count, elementary_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     double a[3], b[3], c[3], end[3];
-    double largest = larger(vector_largest(m->a), larger(vector_largest(m->b), vector_largest(m->c)));
+    double largest = max_of(vec3_largest(m->a), max_of(vec3_largest(m->b), vec3_largest(m->c)));
     double factor = power_of_two(-exponent_of(largest));
     for (int k = 0; k < 3; k++) {
         a[k] = factor * m->a[k];
@@ -81,12 +81,12 @@ static void find_parameters(const moment_vectors *m, int first_count, elementary
     }
     if (first_count == 1) {
         closest_point_triangle(c, origin, a, b, &hit->u, &hit->v);
-    } else if (vector_largest(a) < vector_largest(b)) {
-        vector_add_scaled(c, 1.0, b, end);
+    } else if (vec3_largest(a) < vec3_largest(b)) {
+        vec3_add_scaled(c, 1.0, b, end);
         closest_segments(origin, a, c, end, &hit->u, &hit->v);
     } else {
         for (int k = 0; k < 3; k++) c[k] = -c[k];
-        vector_add_scaled(c, 1.0, a, end);
+        vec3_add_scaled(c, 1.0, a, end);
         closest_segments(c, end, origin, b, &hit->u, &hit->v);
     }
 }
@@ -105,11 +105,11 @@ static void contact_normal(const point_vectors *v, const moment_vectors *m, int 
     int exponent;
     scaled_cross(m, cross, &exponent);
     scale_to_one(cross, normal);
-    double length = sqrt(vector_dot(normal, normal));
+    double length = sqrt(vec3_dot(normal, normal));
     connection(v->a[0], v->b[0], v->c[0], first_count, hit, start);
     connection(v->a[1], v->b[1], v->c[1], first_count, hit, end);
-    vector_subtract(end, start, motion);
-    double sign = vector_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
+    vec3_subtract(end, start, motion);
+    double sign = vec3_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 

@@ -5,9 +5,9 @@
 
 static void subtract_at_ends(const elementary_query *query, int to, int from, double out[2][3],
                              double size[3]) {
-    vector_subtract(query->x0[to], query->x0[from], out[0]);
-    vector_subtract(query->x1[to], query->x1[from], out[1]);
-    for (int k = 0; k < 3; k++) size[k] = larger(fabs(out[0][k]), fabs(out[1][k]));
+    vec3_subtract(query->x0[to], query->x0[from], out[0]);
+    vec3_subtract(query->x1[to], query->x1[from], out[1]);
+    for (int k = 0; k < 3; k++) size[k] = max_of(fabs(out[0][k]), fabs(out[1][k]));
 }
 
 void point_vectors_from(const elementary_query *query, int first_count, point_vectors *out) {
@@ -31,15 +31,15 @@ void point_vectors_from(const elementary_query *query, int first_count, point_ve
 coplanarity coplanarity_cubic(const point_vectors *v) {
     coplanarity f;
     double start[3], end[3], one[3], other[3], mixed[3];
-    vector_cross(v->a[0], v->b[0], start);
-    vector_cross(v->a[1], v->b[1], end);
-    vector_cross(v->a[1], v->b[0], one);
-    vector_cross(v->a[0], v->b[1], other);
+    vec3_cross(v->a[0], v->b[0], start);
+    vec3_cross(v->a[1], v->b[1], end);
+    vec3_cross(v->a[1], v->b[0], one);
+    vec3_cross(v->a[0], v->b[1], other);
     for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
-    f.b[0] = vector_dot(start, v->c[0]);
-    f.b[1] = (vector_dot(mixed, v->c[0]) + vector_dot(start, v->c[1])) / 3.0;
-    f.b[2] = (vector_dot(mixed, v->c[1]) + vector_dot(end, v->c[0])) / 3.0;
-    f.b[3] = vector_dot(end, v->c[1]);
+    f.b[0] = vec3_dot(start, v->c[0]);
+    f.b[1] = (vec3_dot(mixed, v->c[0]) + vec3_dot(start, v->c[1])) / 3.0;
+    f.b[2] = (vec3_dot(mixed, v->c[1]) + vec3_dot(end, v->c[0])) / 3.0;
+    f.b[3] = vec3_dot(end, v->c[1]);
     double permanent = 0.0;
     for (int k = 0; k < 3; k++) {
         int y = (k + 1) % 3, z = (k + 2) % 3;

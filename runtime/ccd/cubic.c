@@ -39,8 +39,8 @@ double cubic_slope(const coplanarity *f, double t) {
 static void to_monomials(const double coefficients[4], double c[4]) {
     int exponent = 0;
     double b[4];
-    frexp(larger(larger(fabs(coefficients[0]), fabs(coefficients[1])),
-                 larger(fabs(coefficients[2]), fabs(coefficients[3]))),
+    frexp(max_of(max_of(fabs(coefficients[0]), fabs(coefficients[1])),
+                 max_of(fabs(coefficients[2]), fabs(coefficients[3]))),
           &exponent);
     for (int i = 0; i < 4; i++) b[i] = ldexp(coefficients[i], -exponent);
     c[0] = b[0];
@@ -83,7 +83,7 @@ static bool polish(const double b[4], double low, double high, double change, do
  * multiple, or nearly. */
 static bool interval_about(const coplanarity *f, double root, root_interval *out) {
     double radius = 1.25 * (f->error / fabs(cubic_slope(f, root))) + root_rounding;
-    *out = (root_interval){larger(root - radius, 0.0), smaller(root + radius, 1.0), true};
+    *out = (root_interval){max_of(root - radius, 0.0), min_of(root + radius, 1.0), true};
     return radius <= widest_radius;
 }
 
@@ -133,8 +133,8 @@ static int single_change(const coplanarity *f) {
 static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
                             root_interval *out) {
     if (!polish(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
-    out->begin = larger(out->begin, low);
-    out->end = smaller(out->end, high);
+    out->begin = max_of(out->begin, low);
+    out->end = min_of(out->end, high);
     polar begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
     return change * blend(begin.low, begin.high, out->begin) > f->error &&
            change * blend(end.low, end.high, out->end) < -f->error;

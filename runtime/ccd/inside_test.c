@@ -54,13 +54,13 @@ static int certain_sign(bounded_value x, double sign) {
 
 static int largest_axis(const double a[3], const double b[3]) {
     double w[3];
-    vector_cross(a, b, w);
+    vec3_cross(a, b, w);
     double x = fabs(w[0]), y = fabs(w[1]), z = fabs(w[2]);
     return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
 inside_verdict inside_test(const point_vectors *vectors, int first_count, const root_interval *interval) {
-    double t = 0.5 * (interval->begin + interval->end), h = larger(interval->end - t, t - interval->begin);
+    double t = 0.5 * (interval->begin + interval->end), h = max_of(interval->end - t, t - interval->begin);
     double relative_error = 16.0 * 0x1p-53 + 5.0 * h;
     blended a = blend(vectors->a, vectors->size_a, t), b = blend(vectors->b, vectors->size_b, t),
             c = blend(vectors->c, vectors->size_c, t);

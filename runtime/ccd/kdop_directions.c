@@ -11,8 +11,8 @@ typedef struct span {
 static span span_along_axis(const double (*points)[3], int count, int axis) {
     span s = {points[0][axis], points[0][axis]};
     for (int i = 1; i < count; i++) {
-        s.low = smaller(s.low, points[i][axis]);
-        s.high = larger(s.high, points[i][axis]);
+        s.low = min_of(s.low, points[i][axis]);
+        s.high = max_of(s.high, points[i][axis]);
     }
     return s;
 }
@@ -30,8 +30,8 @@ static span span_along_diagonal(const double (*points)[3], int count, int diagon
             sum += signs[diagonal][k] * offset;
             size += fabs(offset);
         }
-        s.low = smaller(s.low, sum - 0x1p-50 * size);
-        s.high = larger(s.high, sum + 0x1p-50 * size);
+        s.low = min_of(s.low, sum - 0x1p-50 * size);
+        s.high = max_of(s.high, sum + 0x1p-50 * size);
     }
     return s;
 }

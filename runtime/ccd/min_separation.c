@@ -39,8 +39,8 @@ static double query_extent(const elementary_query *query) {
     double largest = 0.0;
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
-            largest = larger(largest, fabs(query->x0[i][k] - query->x0[0][k]));
-            largest = larger(largest, fabs(query->x1[i][k] - query->x0[0][k]));
+            largest = max_of(largest, fabs(query->x0[i][k] - query->x0[0][k]));
+            largest = max_of(largest, fabs(query->x1[i][k] - query->x0[0][k]));
         }
     }
     return largest;
@@ -109,12 +109,12 @@ static void move_to(const local_query *local, double t, moment *m) {
         connect_vf(m);
     else
         connect_ee(m);
-    m->distance = sqrt(vector_dot(m->shortest.offset, m->shortest.offset));
+    m->distance = sqrt(vec3_dot(m->shortest.offset, m->shortest.offset));
 }
 
 static moment start(const local_query *local) {
     moment m = {.features.first_count = local->first_count};
-    for (int i = 0; i < 4; i++) vector_subtract(local->at.x1[i], local->at.x0[i], m.features.velocity[i]);
+    for (int i = 0; i < 4; i++) vec3_subtract(local->at.x1[i], local->at.x0[i], m.features.velocity[i]);
     move_to(local, 0.0, &m);
     return m;
 }
@@ -162,11 +162,11 @@ static void touching_normal(const moment *m, double normal[3]) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     double a[3], b[3];
     bool vf = m->features.first_count == 1;
-    vector_subtract(x[vf ? 2 : 1], x[vf ? 1 : 0], a);
-    vector_subtract(x[3], x[vf ? 1 : 2], b);
-    vector_cross(a, b, normal);
-    double length = sqrt(vector_dot(normal, normal));
-    double sign = vector_dot(normal, m->shortest.change) > 0.0 ? -1.0 : 1.0;
+    vec3_subtract(x[vf ? 2 : 1], x[vf ? 1 : 0], a);
+    vec3_subtract(x[3], x[vf ? 1 : 2], b);
+    vec3_cross(a, b, normal);
+    double length = sqrt(vec3_dot(normal, normal));
+    double sign = vec3_dot(normal, m->shortest.change) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 

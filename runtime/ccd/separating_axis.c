@@ -96,7 +96,7 @@ static bool separated_along(const elementary_query *query, int first_count, cons
 static bool separated_along_scaled(const elementary_query *query, int first_count, double times,
                                    const double n[3]) {
     int exponent;
-    double scaled[3], largest = vector_largest(n);
+    double scaled[3], largest = vec3_largest(n);
     if (!(largest > 0.0)) return false;
     frexp(largest, &exponent);
     for (int k = 0; k < 3; k++) scaled[k] = ldexp(times * n[k], -exponent);
@@ -113,12 +113,12 @@ static void between_at_middle(const elementary_query *query, int from, int to, d
 static bool vertex_outside_face(const elementary_query *query) {
     double sides[3][3], normal[3];
     for (int i = 0; i < 3; i++) between_at_middle(query, 1 + i, 1 + (i + 1) % 3, sides[i]);
-    vector_cross(sides[0], sides[1], normal);
+    vec3_cross(sides[0], sides[1], normal);
     for (int i = 0; i < 3; i++) {
         double outwards[3], to_vertex[3];
-        vector_cross(sides[i], normal, outwards);
+        vec3_cross(sides[i], normal, outwards);
         between_at_middle(query, 1 + i, 0, to_vertex);
-        if (vector_dot(outwards, to_vertex) > 0.0 && separated_along_scaled(query, 1, 1.0, outwards))
+        if (vec3_dot(outwards, to_vertex) > 0.0 && separated_along_scaled(query, 1, 1.0, outwards))
             return true;
     }
     return false;
@@ -129,13 +129,13 @@ static bool edges_beside(const elementary_query *query) {
     double a[3], b[3], normal[3];
     between_at_middle(query, 0, 1, a);
     between_at_middle(query, 2, 3, b);
-    vector_cross(a, b, normal);
+    vec3_cross(a, b, normal);
     for (int i = 0; i < 2; i++) {
         double across[3], to_first[3], to_second[3];
-        vector_cross(normal, i == 0 ? b : a, across);
+        vec3_cross(normal, i == 0 ? b : a, across);
         between_at_middle(query, i == 0 ? 2 : 0, i == 0 ? 0 : 2, to_first);
         between_at_middle(query, i == 0 ? 2 : 0, i == 0 ? 1 : 3, to_second);
-        double first = vector_dot(across, to_first), second = vector_dot(across, to_second);
+        double first = vec3_dot(across, to_first), second = vec3_dot(across, to_second);
         if (!(first > 0.0 && second > 0.0) && !(first < 0.0 && second < 0.0)) continue;
         double turn = (first > 0.0) == (i == 0) ? 1.0 : -1.0;
         if (separated_along_scaled(query, 2, turn, across)) return true;

@@ -16,8 +16,8 @@ static const double shortest_normal = 0x1p-400;
 
 /* Removes from v what lies along axis; returns what multiple of axis that was. */
 static double remove_along(const double axis[3], double v[3]) {
-    double share = vector_dot(v, axis) / vector_dot(axis, axis);
-    vector_add_scaled(v, -share, axis, v);
+    double share = vec3_dot(v, axis) / vec3_dot(axis, axis);
+    vec3_add_scaled(v, -share, axis, v);
     return share;
 }
 
@@ -35,8 +35,8 @@ static void add_axis(axis_list *axes, const double axis[3], const double change[
     }
     if (axes->count == 1) {
         double share = remove_along(axes->axis[0], own);
-        vector_add_scaled(own_change, -share, axes->change[0], own_change);
-        if (vector_dot(own, own) <= parallel * parallel * vector_dot(axis, axis)) return;
+        vec3_add_scaled(own_change, -share, axes->change[0], own_change);
+        if (vec3_dot(own, own) <= parallel * parallel * vec3_dot(axis, axis)) return;
     }
     axes->count++;
 }
@@ -48,9 +48,9 @@ static axis_list find_axes(const moving_features *f, const shortest_connection *
     for (int i = 0; i < (f->first_count == 1 ? 3 : 2) && axes.count < axes_max; i++) {
         const int *edge = ends[f->first_count - 1][i];
         double axis[3], change[3];
-        vector_subtract(f->x[edge[1]], f->x[edge[0]], axis);
-        vector_subtract(f->velocity[edge[1]], f->velocity[edge[0]], change);
-        double dot = vector_dot(axis, shortest->offset), squared = vector_dot(axis, axis);
+        vec3_subtract(f->x[edge[1]], f->x[edge[0]], axis);
+        vec3_subtract(f->velocity[edge[1]], f->velocity[edge[0]], change);
+        double dot = vec3_dot(axis, shortest->offset), squared = vec3_dot(axis, axis);
         bool by_chance = dot * dot <= offset_error * offset_error * squared;
         if (squared > 0.0 && (shortest->inside[i] || by_chance)) add_axis(&axes, axis, change);
     }
@@ -72,7 +72,7 @@ separating_plane separating_plane_find(const moving_features *f, const shortest_
         remove_along(axes.axis[i], plane.normal);
         remove_along(axes.axis[i], plane.turn);
     }
-    double length = sqrt(vector_dot(plane.normal, plane.normal));
+    double length = sqrt(vec3_dot(plane.normal, plane.normal));
     if (!(length > shortest_normal)) return (separating_plane){.axis_count = axes.count};
     remove_along(plane.normal, plane.turn);
     for (int k = 0; k < 3; k++) {
@@ -80,8 +80,8 @@ separating_plane separating_plane_find(const moving_features *f, const shortest_
         plane.turn[k] /= length;
     }
     for (int i = 0; i < axes.count; i++) {
-        double rate = vector_dot(plane.normal, axes.change[i]) / vector_dot(axes.axis[i], axes.axis[i]);
-        vector_add_scaled(plane.turn, -rate, axes.axis[i], plane.turn);
+        double rate = vec3_dot(plane.normal, axes.change[i]) / vec3_dot(axes.axis[i], axes.axis[i]);
+        vec3_add_scaled(plane.turn, -rate, axes.axis[i], plane.turn);
     }
     return plane;
 }
@@ -108,10 +108,10 @@ typedef struct projection {
 static projection project(const moving_features *f, const separating_plane *plane) {
     projection p;
     for (int i = 0; i < 4; i++) {
-        p.x_normal[i] = vector_dot(f->x[i], plane->normal);
-        p.v_normal[i] = vector_dot(f->velocity[i], plane->normal);
-        p.x_turn[i] = vector_dot(f->x[i], plane->turn);
-        p.v_turn[i] = vector_dot(f->velocity[i], plane->turn);
+        p.x_normal[i] = vec3_dot(f->x[i], plane->normal);
+        p.v_normal[i] = vec3_dot(f->velocity[i], plane->normal);
+        p.x_turn[i] = vec3_dot(f->x[i], plane->turn);
+        p.v_turn[i] = vec3_dot(f->velocity[i], plane->turn);
     }
     return p;
 }
@@ -154,7 +154,7 @@ double separating_plane_holds(const moving_features *f, const separating_plane *
     }
     double without_turn = holds(f, &fixed, distance, 0.0, 0.0);
     if (without_turn >= 1.0) return without_turn;
-    double lean = fabs(vector_dot(plane->normal, plane->turn));
-    double size = sqrt(vector_dot(plane->turn, plane->turn));
+    double lean = fabs(vec3_dot(plane->normal, plane->turn));
+    double size = sqrt(vec3_dot(plane->turn, plane->turn));
     return fmax(without_turn, holds(f, &p, distance, lean, size));
 }

@@ -2,17 +2,13 @@
 #include "runtime/detector/detector.h"
 
 #include "runtime/narrow_phase/representatives.h"
+#include "src/core/check.h"
 #include "src/core/methods.h"
 
 #include <string.h>
 
 cscd_detector_options cscd_detector_defaults(void) {
     return (cscd_detector_options){.struct_size = sizeof(cscd_detector_options), .step_factor = 0.8};
-}
-
-/* Lengths are 0 or in the range of positions. */
-static bool is_length(double x) {
-    return x == 0.0 || (x >= 0x1p-300 && x <= 0x1p300); /* false for NaN */
 }
 
 static cscd_status check_separation(cscd_context *context, const cscd_detector_options *options) {

@@ -1,6 +1,7 @@
 /* Pairs that the caller wants to be left out: by callback, by list, and by seams. */
 #include "runtime/narrow_phase/exclusions.h"
 
+#include "src/core/disjoint_sets.h"
 #include "src/core/sort.h"
 #include "src/mesh/triangle_intersection.h"
 
@@ -39,25 +40,15 @@ static cscd_status list_pairs(exclusions *e, const cscd_detector_options *option
     return allocated ? CSCD_OK : context_out_of_memory(context);
 }
 
-static uint32_t name_of(uint32_t *names, uint32_t vertex) {
-    while (names[vertex] != vertex) {
-        names[vertex] = names[names[vertex]];
-        vertex = names[vertex];
-    }
-    return vertex;
-}
-
 static cscd_status name_seams(exclusions *e, const cscd_detector_options *options) {
     uint32_t count = e->mesh->vertex_count;
     if (options->seam_count == 0) return CSCD_OK;
     uint32_t *names = e->names = context_allocate(e->mesh->context, count, sizeof *names);
     if (names == NULL) return context_out_of_memory(e->mesh->context);
-    for (uint32_t v = 0; v < count; v++) names[v] = v;
-    for (size_t i = 0; i < options->seam_count; i++) {
-        uint32_t a = name_of(names, options->seams[2 * i]), b = name_of(names, options->seams[2 * i + 1]);
-        *(a < b ? &names[b] : &names[a]) = a < b ? a : b;
-    }
-    for (uint32_t v = 0; v < count; v++) names[v] = name_of(names, v);
+    sets_begin(names, count);
+    for (size_t i = 0; i < options->seam_count; i++)
+        set_unite(names, options->seams[2 * i], options->seams[2 * i + 1]);
+    for (uint32_t v = 0; v < count; v++) names[v] = set_root(names, v);
     return CSCD_OK;
 }
 

@@ -121,23 +121,16 @@ static void drop_repeated(sensor_bounds *bounds, uint32_t cell_count) {
     bounds->offsets[cell_count] = kept;
 }
 
-static double squared_distance(const double a[3], const double b[3]) {
-    double way[3];
-    vector_subtract(a, b, way);
-    return vector_dot(way, way);
-}
-
 /* The cell's vertex next to the mean of them all. */
 static uint32_t middle_of(const cscd_partition *partition, const double *positions, uint32_t cell) {
     uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
     uint32_t middle = partition->cell_vertices[begin];
     double mean[3] = {0.0, 0.0, 0.0}, nearest = INFINITY;
     for (uint32_t i = begin; i < end; i++)
-        vector_add_scaled(mean, 1.0 / (end - begin), positions + (size_t)partition->cell_vertices[i] * 3,
-                          mean);
+        vec3_add_scaled(mean, 1.0 / (end - begin), positions + (size_t)partition->cell_vertices[i] * 3, mean);
     for (uint32_t i = begin; i < end; i++) {
         uint32_t vertex = partition->cell_vertices[i];
-        double squared = squared_distance(positions + (size_t)vertex * 3, mean);
+        double squared = vec3_squared_distance(positions + (size_t)vertex * 3, mean);
         if (!(squared < nearest)) continue;
         nearest = squared;
         middle = vertex;
@@ -176,8 +169,8 @@ static double radius_of(const sensor_bounds *bounds, uint32_t cell, uint32_t cen
     double largest = 0.0;
     for (uint32_t i = bounds->offsets[cell]; i < bounds->offsets[cell + 1]; i++) {
         size_t corner = (size_t)bounds->corners[i] * 3;
-        largest = larger(squared_distance(start + corner, start + (size_t)centre * 3), largest);
-        largest = larger(squared_distance(end + corner, end + (size_t)centre * 3), largest);
+        largest = max_of(vec3_squared_distance(start + corner, start + (size_t)centre * 3), largest);
+        largest = max_of(vec3_squared_distance(end + corner, end + (size_t)centre * 3), largest);
     }
     return length_at_most(largest);
 }
@@ -202,16 +195,16 @@ void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition
  * is not answered. */
 static bool balls_apart(const cell_ball *a, const cell_ball *b) {
     double d0[3], d1[3], change[3], m[3];
-    vector_subtract(b->start, a->start, d0);
-    vector_subtract(b->end, a->end, d1);
-    vector_subtract(d1, d0, change);
-    double along = -vector_dot(d0, change), whole = vector_dot(change, change);
+    vec3_subtract(b->start, a->start, d0);
+    vec3_subtract(b->end, a->end, d1);
+    vec3_subtract(d1, d0, change);
+    double along = -vec3_dot(d0, change), whole = vec3_dot(change, change);
     double t = !(along > 0.0) ? 0.0 : along < whole ? along / whole : 1.0;
-    vector_add_scaled(d0, t, change, m);
-    double length = length_at_most(vector_dot(m, m));
-    double longest = length_at_most(larger(vector_dot(d0, d0), vector_dot(d1, d1)));
+    vec3_add_scaled(d0, t, change, m);
+    double length = length_at_most(vec3_dot(m, m));
+    double longest = length_at_most(max_of(vec3_dot(d0, d0), vec3_dot(d1, d1)));
     double reach = (a->radius + b->radius) * LENGTH_SLACK + 4.0 * DBL_EPSILON * longest;
-    double gap = smaller(vector_dot(m, d0), vector_dot(m, d1));
+    double gap = min_of(vec3_dot(m, d0), vec3_dot(m, d1));
     return length > 1e-140 && isfinite(gap) && gap > length * reach * LENGTH_SLACK;
 }
 
@@ -237,8 +230,8 @@ bool sensor_bounds_apart(const sensor_bounds *bounds, const cscd_partition *part
 
 static void add_to_box(const double *point, part_box *box) {
     for (int k = 0; k < 3; k++) {
-        box->low[k] = smaller(box->low[k], point[k]);
-        box->high[k] = larger(box->high[k], point[k]);
+        box->low[k] = min_of(box->low[k], point[k]);
+        box->high[k] = max_of(box->high[k], point[k]);
     }
 }
 

@@ -15,15 +15,15 @@ static uint32_t middle_of(const uint32_t *vertices, uint32_t count, const double
     double mean[3] = {0.0, 0.0, 0.0}, least = INFINITY;
     for (uint32_t i = 0; i < count; i++) {
         double d[3];
-        vector_subtract(x + (size_t)vertices[i] * 3, first, d);
-        vector_add_scaled(mean, 1.0 / count, d, mean);
+        vec3_subtract(x + (size_t)vertices[i] * 3, first, d);
+        vec3_add_scaled(mean, 1.0 / count, d, mean);
     }
     uint32_t nearest = vertices[0];
     for (uint32_t i = 0; i < count; i++) {
         double d[3];
-        vector_subtract(x + (size_t)vertices[i] * 3, first, d);
-        vector_subtract(d, mean, d);
-        double squared = vector_dot(d, d);
+        vec3_subtract(x + (size_t)vertices[i] * 3, first, d);
+        vec3_subtract(d, mean, d);
+        double squared = vec3_dot(d, d);
         if (!(squared < least)) continue;
         least = squared;
         nearest = vertices[i];

@@ -46,7 +46,7 @@ void particle_grid_free(cscd_context *context, particle_grid *grid) {
 /* The number of the cell along one axis; -2 is before all and cells_most + 2 behind. */
 static uint32_t cell_along(const particle_grid *grid, const double x[3], int axis) {
     double cell = floor((x[axis] - grid->origin[axis]) * grid->cells_per_length);
-    return (uint32_t)(int64_t)smaller(larger(cell, -2.0), cells_most + 2.0);
+    return (uint32_t)(int64_t)min_of(max_of(cell, -2.0), cells_most + 2.0);
 }
 
 /* Two particles nearer than radius lie in the same or in adjoining cells: cells are wider than the radius by
@@ -57,13 +57,13 @@ static void lay(particle_grid *grid, const double *x, const uint32_t *vertices, 
     for (uint32_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) {
             double c = x[(size_t)vertices[i] * 3 + (size_t)k];
-            low[k] = i == 0 ? c : smaller(low[k], c);
-            high[k] = i == 0 ? c : larger(high[k], c);
+            low[k] = i == 0 ? c : min_of(low[k], c);
+            high[k] = i == 0 ? c : max_of(high[k], c);
         }
     }
-    for (int k = 0; k < 3; k++) extent = larger(extent, high[k] - low[k]);
+    for (int k = 0; k < 3; k++) extent = max_of(extent, high[k] - low[k]);
     memcpy(grid->origin, low, sizeof low);
-    grid->cells_per_length = 1.0 / larger(radius * (1.0 + 0x1p-10), extent / cells_most);
+    grid->cells_per_length = 1.0 / max_of(radius * (1.0 + 0x1p-10), extent / cells_most);
 }
 
 void particle_grid_build(particle_grid *grid, const double *x, const uint32_t *vertices,

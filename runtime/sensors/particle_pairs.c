@@ -50,11 +50,11 @@ cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const csc
         for (const grid_entry *e; (e = grid_search_next(&search)) != NULL;) {
             if (e->particle <= i || e->group == p->groups[i]) continue;
             double d[3];
-            vector_subtract(e->x, at, d);
-            double distance = sqrt(vector_dot(d, d));
+            vec3_subtract(e->x, at, d);
+            double distance = sqrt(vec3_dot(d, d));
             p->counters.distances++;
             if (!(distance < limit)) continue;
-            nearest = smaller(nearest, distance);
+            nearest = min_of(nearest, distance);
             near_particles pair = pair_of(partition, p->vertices[i], p->vertices[e->particle]);
             if (!(distance < sensor_reach_mu(reach, pair.part_a, pair.part_b))) continue;
             if (make_room(p->context, pairs) != CSCD_OK) return CSCD_OUT_OF_MEMORY;

@@ -33,12 +33,6 @@ void particles_free(particles *p) {
 
 /* ---- forces ------------------------------------------------------------------------------------------ */
 
-static double squared_between(const double a[3], const double b[3]) {
-    double d[3];
-    vector_subtract(a, b, d);
-    return vector_dot(d, d);
-}
-
 /* Finds all that i can feel where it is or where it can go next, none farther from it than reach. */
 static void find_near(particles *p, uint32_t i, const double x[3], double reach) {
     bool repels = p->rule == PARTICLE_POTENTIAL;
@@ -48,7 +42,7 @@ static void find_near(particles *p, uint32_t i, const double x[3], double reach)
     for (const grid_entry *e; (e = grid_search_next(&search)) != NULL;) {
         bool attracts = e->group != p->groups[i];
         if (!attracts && (!repels || e->particle == i || p->objects[e->particle] != p->objects[i])) continue;
-        double squared = squared_between(e->x, x);
+        double squared = vec3_squared_distance(e->x, x);
         p->counters.distances++;
         if (!(squared < farthest)) continue;
         if (attracts && squared < felt && i < e->particle) p->counters.pairs++;
@@ -60,11 +54,11 @@ static void find_near(particles *p, uint32_t i, const double x[3], double reach)
  * nowhere nearer than that one. */
 static void drop_far(particles *p, const double x[3]) {
     double least = INFINITY;
-    for (uint32_t j = 0; j < p->attracting; j++) least = smaller(least, squared_between(p->near[j], x));
+    for (uint32_t j = 0; j < p->attracting; j++) least = min_of(least, vec3_squared_distance(p->near[j], x));
     double farthest = (sqrt(least) + 2.0 * p->longest_way) * (1.0 + 0x1p-40);
     uint32_t kept = 0;
     for (uint32_t j = 0; j < p->attracting; j++) {
-        if (squared_between(p->near[j], x) > farthest * farthest) continue;
+        if (vec3_squared_distance(p->near[j], x) > farthest * farthest) continue;
         memmove(p->near[kept++], p->near[j], sizeof *p->near);
     }
     p->attracting = kept;
@@ -76,23 +70,23 @@ static double vector_force(const particles *p, const double x[3]) {
     double reach = p->radius * p->radius, sum[3] = {0.0, 0.0, 0.0};
     for (uint32_t j = 0; j < p->attracting; j++) {
         double d[3];
-        vector_subtract(p->near[j], x, d);
-        double squared = vector_dot(d, d);
+        vec3_subtract(p->near[j], x, d);
+        double squared = vec3_dot(d, d);
         if (!(squared < reach)) continue;
-        double r = sqrt(squared), s = p->radius / larger(r, p->closest);
+        double r = sqrt(squared), s = p->radius / max_of(r, p->closest);
         if (r > 0.0)
-            vector_add_scaled(sum, s * s / r, d, sum);
+            vec3_add_scaled(sum, s * s / r, d, sum);
         else
             sum[0] += s * s;
     }
-    return vector_dot(sum, sum);
+    return vec3_dot(sum, sum);
 }
 
 static double scalar_force(const particles *p, const double x[3]) {
     double reach = p->radius * p->radius, closest = p->closest * p->closest, sum = 0.0;
     for (uint32_t j = 0; j < p->attracting; j++) {
-        double squared = squared_between(p->near[j], x);
-        if (squared < reach) sum += reach / larger(squared, closest);
+        double squared = vec3_squared_distance(p->near[j], x);
+        if (squared < reach) sum += reach / max_of(squared, closest);
     }
     return sum;
 }
@@ -100,7 +94,7 @@ static double scalar_force(const particles *p, const double x[3]) {
 /* It falls with the distance, so the nearest says all. */
 static double strongest_force(const particles *p, const double x[3]) {
     double least = p->radius * p->radius;
-    for (uint32_t j = 0; j < p->attracting; j++) least = smaller(least, squared_between(p->near[j], x));
+    for (uint32_t j = 0; j < p->attracting; j++) least = min_of(least, vec3_squared_distance(p->near[j], x));
     return -least;
 }
 
@@ -108,8 +102,8 @@ static double strongest_force(const particles *p, const double x[3]) {
 static double potential(const particles *p, const double (*others)[3], uint32_t count, const double x[3]) {
     double reach = p->radius * p->radius, sum = 0.0;
     for (uint32_t j = 0; j < count; j++) {
-        double squared = squared_between(others[j], x);
-        if (squared < reach) sum += p->radius / larger(sqrt(squared), p->closest) - 1.0;
+        double squared = vec3_squared_distance(others[j], x);
+        if (squared < reach) sum += p->radius / max_of(sqrt(squared), p->closest) - 1.0;
     }
     return sum;
 }

@@ -12,6 +12,7 @@
  */
 #include "runtime/sensors/reach.h"
 
+#include "src/core/check.h"
 #include "src/core/vec3.h"
 
 /* Sums and roots above lose less than this. */
@@ -28,9 +29,7 @@ void sensor_reach_free(cscd_context *context, sensor_reach *reach) {
 }
 
 static double squared_distance(const double *x, uint32_t a, uint32_t b) {
-    double d[3];
-    vector_subtract(x + (size_t)a * 3, x + (size_t)b * 3, d);
-    return vector_dot(d, d);
+    return vec3_squared_distance(x + (size_t)a * 3, x + (size_t)b * 3);
 }
 
 /* Longest sides, squared for now. */
@@ -44,15 +43,15 @@ static void measure_edges(sensor_reach *reach, const cscd_partition *partition, 
         for (int k = 0; k < 3; k++) {
             uint32_t a = corners[k], b = corners[(k + 1) % 3];
             double at_start = squared_distance(x0, a, b);
-            double side = larger(at_start, squared_distance(x1, a, b));
-            longest = larger(longest, side);
+            double side = max_of(at_start, squared_distance(x1, a, b));
+            longest = max_of(longest, side);
             if (partition->vertex_cells[a] == partition->vertex_cells[b])
-                reach->longest_inside = larger(reach->longest_inside, side);
+                reach->longest_inside = max_of(reach->longest_inside, side);
             sum += at_start;
         }
         for (int k = 0; k < 3; k++) {
             double *of_part = &reach->parts[partition->vertex_parts[corners[k]]].longest_edge;
-            *of_part = larger(*of_part, longest);
+            *of_part = max_of(*of_part, longest);
         }
     }
     reach->typical_edge = sqrt(sum / (3.0 * mesh->triangle_count));
@@ -64,10 +63,10 @@ static void measure_motion(part_reach *part, const cscd_partition *partition, ui
     for (uint32_t i = begin; i < end; i++) {
         size_t v = (size_t)partition->part_vertices[i] * 3;
         double d[3];
-        vector_subtract(x1 + v, x0 + v, d);
+        vec3_subtract(x1 + v, x0 + v, d);
         for (int k = 0; k < 3; k++) {
-            part->low[k] = i == begin ? d[k] : smaller(part->low[k], d[k]);
-            part->high[k] = i == begin ? d[k] : larger(part->high[k], d[k]);
+            part->low[k] = i == begin ? d[k] : min_of(part->low[k], d[k]);
+            part->high[k] = i == begin ? d[k] : max_of(part->high[k], d[k]);
         }
     }
 }
@@ -75,12 +74,12 @@ static void measure_motion(part_reach *part, const cscd_partition *partition, ui
 /* What it takes for edges up to a and b, and displacements in two boxes. */
 static double mu_of(const part_reach *a, const part_reach *b) {
     double squares = a->longest_edge * a->longest_edge + b->longest_edge * b->longest_edge;
-    double longest = larger(a->longest_edge, b->longest_edge), relative = 0.0;
+    double longest = max_of(a->longest_edge, b->longest_edge), relative = 0.0;
     for (int k = 0; k < 3; k++) {
-        double most = larger(a->high[k] - b->low[k], b->high[k] - a->low[k]);
+        double most = max_of(a->high[k] - b->low[k], b->high[k] - a->low[k]);
         relative += most * most;
     }
-    double nearest = larger(sqrt(squares) / 2.0, longest / sqrt(3.0));
+    double nearest = max_of(sqrt(squares) / 2.0, longest / sqrt(3.0));
     return (nearest + sqrt(relative) / 2.0) * rounding;
 }
 
@@ -97,14 +96,14 @@ static double largest_mu(const sensor_reach *reach, const cscd_partition *partit
     for (uint32_t p = 0; p < partition->part_count; p++) {
         if (partition->part_vertex_offsets[p] == partition->part_vertex_offsets[p + 1]) continue;
         const part_reach *part = &reach->parts[p];
-        all.longest_edge = larger(all.longest_edge, part->longest_edge);
+        all.longest_edge = max_of(all.longest_edge, part->longest_edge);
         for (int k = 0; k < 3; k++) {
-            all.low[k] = first ? part->low[k] : smaller(all.low[k], part->low[k]);
-            all.high[k] = first ? part->high[k] : larger(all.high[k], part->high[k]);
+            all.low[k] = first ? part->low[k] : min_of(all.low[k], part->low[k]);
+            all.high[k] = first ? part->high[k] : max_of(all.high[k], part->high[k]);
         }
         first = false;
     }
-    return larger(mu_of(&all, &all), 0x1p-300);
+    return max_of(mu_of(&all, &all), LENGTH_MIN);
 }
 
 /* ---- R_eff -------------------------------------------------------------------------------------------- */
@@ -115,15 +114,15 @@ static double diameter_bound(const uint32_t *vertices, uint32_t count, const dou
     for (uint32_t i = 0; i < count; i++) {
         const double *at = x + (size_t)vertices[i] * 3;
         for (int k = 0; k < 3; k++) {
-            low[k] = i == 0 ? at[k] : smaller(low[k], at[k]);
-            high[k] = i == 0 ? at[k] : larger(high[k], at[k]);
+            low[k] = i == 0 ? at[k] : min_of(low[k], at[k]);
+            high[k] = i == 0 ? at[k] : max_of(high[k], at[k]);
         }
     }
     for (int k = 0; k < 3; k++) centre[k] = low[k] + (high[k] - low[k]) / 2.0;
     for (uint32_t i = 0; i < count; i++) {
         double d[3];
-        vector_subtract(x + (size_t)vertices[i] * 3, centre, d);
-        farthest = larger(farthest, vector_dot(d, d));
+        vec3_subtract(x + (size_t)vertices[i] * 3, centre, d);
+        farthest = max_of(farthest, vec3_dot(d, d));
     }
     return 2.0 * sqrt(farthest);
 }
@@ -134,9 +133,9 @@ static double largest_two_diameters(const walk_areas *areas, const double *x0, c
     for (uint32_t i = 0; i < areas->count; i++) {
         const uint32_t *vertices = areas->vertices + areas->offsets[i];
         uint32_t count = areas->offsets[i + 1] - areas->offsets[i];
-        double diameter = larger(diameter_bound(vertices, count, x0), diameter_bound(vertices, count, x1));
-        second = larger(second, smaller(first, diameter));
-        first = larger(first, diameter);
+        double diameter = max_of(diameter_bound(vertices, count, x0), diameter_bound(vertices, count, x1));
+        second = max_of(second, min_of(first, diameter));
+        first = max_of(first, diameter);
     }
     return first + second;
 }
@@ -149,10 +148,10 @@ void sensor_reach_measure(sensor_reach *reach, const cscd_partition *partition, 
     reach->longest_inside = sqrt(reach->longest_inside) * rounding;
     for (uint32_t p = 0; p < partition->part_count; p++) {
         reach->parts[p].longest_edge = sqrt(reach->parts[p].longest_edge) * rounding;
-        reach->longest_edge = larger(reach->longest_edge, reach->parts[p].longest_edge);
+        reach->longest_edge = max_of(reach->longest_edge, reach->parts[p].longest_edge);
         measure_motion(&reach->parts[p], partition, p, x0, x1);
     }
     reach->mu_most = largest_mu(reach, partition);
     double automatic = radius_given > 0.0 ? 0.0 : largest_two_diameters(areas, x0, x1);
-    reach->radius = radius_given > 0.0 ? larger(radius_given, reach->mu_most) : reach->mu_most + automatic;
+    reach->radius = radius_given > 0.0 ? max_of(radius_given, reach->mu_most) : reach->mu_most + automatic;
 }

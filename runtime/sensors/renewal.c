@@ -66,8 +66,8 @@ static const double *position_of(const double *positions, uint32_t vertex) {
 /* How far a vertex lies along the walk. */
 static double progress_at(const walk *w, uint32_t vertex) {
     double way[3];
-    vector_subtract(position_of(w->positions, vertex), position_of(w->positions, w->from), way);
-    return vector_dot(way, w->direction);
+    vec3_subtract(position_of(w->positions, vertex), position_of(w->positions, w->from), way);
+    return vec3_dot(way, w->direction);
 }
 
 /* The neighbour of `at`, in the cell or not, at the smallest angle to the direction (3.19-3.21), of those
@@ -81,8 +81,8 @@ static uint32_t next_vertex(const walk *w, uint32_t at) {
         for (int k = 0; k < 3; k++) {
             uint32_t vertex = mesh->triangles[mesh->vertex_stars[s]][k];
             double way[3];
-            vector_subtract(position_of(w->positions, vertex), position_of(w->positions, at), way);
-            double along = vector_dot(way, w->direction), squared = vector_dot(way, way);
+            vec3_subtract(position_of(w->positions, vertex), position_of(w->positions, at), way);
+            double along = vec3_dot(way, w->direction), squared = vec3_dot(way, way);
             if (!(along > 0.0 && along * along * best_squared > best_along * best_along * squared)) continue;
             if (!(progress_at(w, vertex) > here)) continue;
             best_along = along;
@@ -103,8 +103,8 @@ static double walk_out(const walk *w) {
         uint32_t next = next_vertex(w, at);
         if (next == at) break;
         double way[3];
-        vector_subtract(position_of(w->positions, next), position_of(w->positions, at), way);
-        total += sqrt(vector_dot(way, way));
+        vec3_subtract(position_of(w->positions, next), position_of(w->positions, at), way);
+        total += sqrt(vec3_dot(way, way));
         at = next;
     }
     return total;
@@ -112,10 +112,10 @@ static double walk_out(const walk *w) {
 
 /* Scales to length 1; false where there is none. */
 static bool normalise(double v[3]) {
-    double size = vector_largest(v);
+    double size = vec3_largest(v);
     if (!(size > 0.0) || !isfinite(size)) return false;
     for (int k = 0; k < 3; k++) v[k] /= size;
-    double length = sqrt(vector_dot(v, v));
+    double length = sqrt(vec3_dot(v, v));
     for (int k = 0; k < 3; k++) v[k] /= length;
     return true;
 }
@@ -127,9 +127,9 @@ static bool normal_at(const cscd_mesh *mesh, const double *positions, uint32_t v
         const uint32_t *corners = mesh->triangles[mesh->vertex_stars[s]];
         double side_a[3], side_b[3], cross[3];
         const double *p = position_of(positions, corners[0]);
-        vector_subtract(position_of(positions, corners[1]), p, side_a);
-        vector_subtract(position_of(positions, corners[2]), p, side_b);
-        vector_cross(side_a, side_b, cross);
+        vec3_subtract(position_of(positions, corners[1]), p, side_a);
+        vec3_subtract(position_of(positions, corners[2]), p, side_b);
+        vec3_cross(side_a, side_b, cross);
         for (int k = 0; k < 3; k++) sum[k] += cross[k];
     }
     memcpy(out, sum, sizeof sum);
@@ -143,10 +143,10 @@ static bool axes_at(const cscd_mesh *mesh, const double *positions, uint32_t ver
     if (!normal_at(mesh, positions, vertex, normal)) return false;
     const uint32_t *corners = mesh->triangles[mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]];
     for (int k = 0; k < 3; k++) {
-        vector_subtract(position_of(positions, corners[k]), position_of(positions, vertex), edge);
-        vector_add_scaled(edge, -vector_dot(edge, normal), normal, x);
+        vec3_subtract(position_of(positions, corners[k]), position_of(positions, vertex), edge);
+        vec3_add_scaled(edge, -vec3_dot(edge, normal), normal, x);
         if (!normalise(x)) continue;
-        vector_cross(normal, x, y);
+        vec3_cross(normal, x, y);
         return true;
     }
     return false;
@@ -175,10 +175,10 @@ static void measure_triangles(sensor_upkeep *upkeep, const cscd_partition *parti
         double side_a[3], side_b[3];
         facing *f = &upkeep->facings[t];
         const double *p = position_of(positions, corners[0]);
-        vector_subtract(position_of(positions, corners[1]), p, side_a);
-        vector_subtract(position_of(positions, corners[2]), p, side_b);
-        vector_cross(side_a, side_b, f->normal);
-        f->length = sqrt(vector_dot(f->normal, f->normal));
+        vec3_subtract(position_of(positions, corners[1]), p, side_a);
+        vec3_subtract(position_of(positions, corners[2]), p, side_b);
+        vec3_cross(side_a, side_b, f->normal);
+        f->length = sqrt(vec3_dot(f->normal, f->normal));
         for (int k = 0; k < 3; k++)
             upkeep->cell_areas[partition->vertex_cells[corners[k]]] += f->length / 6.0;
     }
@@ -191,8 +191,8 @@ static void find_inside_out(sensor_upkeep *upkeep, const double *positions) {
     for (uint32_t c = 0; c < mesh->component_count; c++) volumes[c] = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         double from_origin[3];
-        vector_subtract(position_of(positions, mesh->triangles[t][0]), positions, from_origin);
-        volumes[mesh->triangle_components[t]] += vector_dot(from_origin, upkeep->facings[t].normal);
+        vec3_subtract(position_of(positions, mesh->triangles[t][0]), positions, from_origin);
+        volumes[mesh->triangle_components[t]] += vec3_dot(from_origin, upkeep->facings[t].normal);
     }
     for (uint32_t c = 0; c < mesh->component_count; c++)
         upkeep->inside_out[c] = mesh->components[c].closed_manifold && volumes[c] < 0.0;
@@ -223,9 +223,9 @@ static bool edge_is_concave(const sensor_upkeep *upkeep, const double *positions
     if (goes_along(one, ends) == goes_along(other, ends)) return false;
     const facing *f = &upkeep->facings[star[0]];
     double to_corner[3];
-    vector_subtract(position_of(positions, corner_opposite(other, ends)), position_of(positions, ends[0]),
-                    to_corner);
-    double height = vector_dot(to_corner, f->normal);
+    vec3_subtract(position_of(positions, corner_opposite(other, ends)), position_of(positions, ends[0]),
+                  to_corner);
+    double height = vec3_dot(to_corner, f->normal);
     if (upkeep->inside_out[mesh->triangle_components[star[0]]]) height = -height;
     return height * length > SINE_OF_FLAT * f->length * upkeep->facings[star[1]].length;
 }
@@ -242,11 +242,11 @@ static void measure_edges(sensor_upkeep *upkeep, const cscd_partition *partition
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         const uint32_t *ends = mesh->edges[e];
         double way[3];
-        vector_subtract(position_of(positions, ends[1]), position_of(positions, ends[0]), way);
-        double squared = vector_dot(way, way), length = sqrt(squared);
+        vec3_subtract(position_of(positions, ends[1]), position_of(positions, ends[0]), way);
+        double squared = vec3_dot(way, way), length = sqrt(squared);
         for (int k = 0; k < 2; k++) {
             part_measures *now = &upkeep->now[partition->vertex_parts[ends[k]]];
-            now->edge_squared = larger(now->edge_squared, squared);
+            now->edge_squared = max_of(now->edge_squared, squared);
         }
         if (!edge_is_inner(mesh, partition, e)) continue;
         uint32_t part = partition->triangle_parts[mesh->edge_stars[mesh->edge_star_offsets[e]]];
@@ -263,7 +263,7 @@ static void measure(sensor_upkeep *upkeep, const cscd_partition *partition, cons
     measure_triangles(upkeep, partition, positions);
     for (uint32_t c = 0; c < partition->cell_count; c++) {
         part_measures *now = &upkeep->now[partition->cell_parts[c]];
-        now->area = larger(now->area, upkeep->cell_areas[c]);
+        now->area = max_of(now->area, upkeep->cell_areas[c]);
     }
     measure_edges(upkeep, partition, positions);
 }
@@ -276,7 +276,7 @@ static double largest_estimate(const cscd_partition *partition, const double *po
     uint32_t stride = (end - begin + ESTIMATES_OF_CELL - 1) / ESTIMATES_OF_CELL;
     double largest = 0.0;
     for (uint32_t i = begin; i < end; i += stride)
-        largest = larger(largest, sensor_upkeep_estimate(partition, positions, partition->cell_vertices[i]));
+        largest = max_of(largest, sensor_upkeep_estimate(partition, positions, partition->cell_vertices[i]));
     return largest;
 }
 
@@ -287,7 +287,7 @@ static void take_measure(sensor_upkeep *upkeep, const cscd_partition *partition,
     *first = upkeep->now[part];
     for (uint32_t i = 0; i < cells->cell_count; i++)
         first->estimate =
-            larger(first->estimate, largest_estimate(partition, positions, cells->first_cell + i));
+            max_of(first->estimate, largest_estimate(partition, positions, cells->first_cell + i));
 }
 
 void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions) {
@@ -319,7 +319,7 @@ uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partit
     measure(upkeep, partition, positions);
     for (uint32_t c = 0; particles != NULL && c < partition->cell_count; c++) {
         part_measures *now = &upkeep->now[partition->cell_parts[c]];
-        now->estimate = larger(now->estimate, sensor_upkeep_estimate(partition, positions, particles[c]));
+        now->estimate = max_of(now->estimate, sensor_upkeep_estimate(partition, positions, particles[c]));
     }
     for (uint32_t p = 0; p < partition->part_count; p++) {
         renewals[p] = reason_of(&upkeep->first[p], &upkeep->now[p], limits);

@@ -2,6 +2,7 @@
 #include "runtime/sensors/sensors.h"
 
 #include "runtime/sensors/cell_particles.h"
+#include "src/core/check.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 
@@ -21,10 +22,6 @@ cscd_sensor_options cscd_sensor_defaults(void) {
 }
 
 /* ---- options ------------------------------------------------------------------------------------------ */
-
-static bool is_length(double x) {
-    return x == 0.0 || (x >= 0x1p-300 && x <= 0x1p300); /* false for NaN */
-}
 
 static cscd_status check_length(cscd_context *context, const char *name, double x) {
     if (is_length(x)) return CSCD_OK;
@@ -54,7 +51,7 @@ static cscd_status check_options(cscd_context *context, const cscd_sensor_option
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown sensor method %d", (int)options->method);
     if (options->step_limit == 0)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "step_limit is 0, expected 1 or more");
-    if (!(options->area_factor >= 1.0 && options->area_factor <= 0x1p300))
+    if (!(options->area_factor >= 1.0 && options->area_factor <= LENGTH_MAX))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "area_factor is %g, expected a number from 1 to 2^300", options->area_factor);
     if (options->particles == 0)

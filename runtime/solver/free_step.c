@@ -90,7 +90,7 @@ static cscd_status shorten(cscd_detector *d, trial *t, double *reached, double *
         motion_at(t->of, *length, reached);
         status = try_step(d, t, reached);
         if (status != CSCD_OK || !t->touches) return status;
-        *length = larger(*length * smaller(cut_for(d, t->first.toi), shrink), shortest);
+        *length = max_of(*length * min_of(cut_for(d, t->first.toi), shrink), shortest);
         shrink *= shrink;
         at_once = true;
     }
@@ -108,7 +108,7 @@ cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, mo
         step.limit.toi *= longest;
         double cut = longest * cut_for(d, 0.0);
         if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* no more, by any rounding */
-        step.length = larger(cut, shortest);
+        step.length = max_of(cut, shortest);
         status = shorten(d, &t, reached, &step.length);
     }
     if (status == CSCD_OK) *out = step;

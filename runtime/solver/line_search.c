@@ -3,6 +3,7 @@
 #include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
+#include "src/core/check.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
 
@@ -64,7 +65,7 @@ static double rounding_on(const cscd_line *line) {
     size_t count = (size_t)line->detector->mesh->vertex_count * 3;
     double largest = 0.0;
     for (size_t i = 0; i < count; i++)
-        largest = larger(largest, larger(fabs(line->x0[i]), fabs(line->x1[i])));
+        largest = max_of(largest, max_of(fabs(line->x0[i]), fabs(line->x1[i])));
     return largest * 0x1p-48 + 0x1p-297;
 }
 
@@ -77,7 +78,7 @@ static void remember_states(cscd_line *line) {
 }
 
 static cscd_status check_reach(cscd_context *context, double reach) {
-    if (reach == 0.0 || (reach >= 0x1p-300 && reach <= 0x1p300)) return CSCD_OK;
+    if (is_length(reach)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
                         "cscd_line_begin: reach is %g, expected 0 or a length from 2^-300 to 2^300", reach);
 }
@@ -95,7 +96,7 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     memcpy(line->x0, x0, vertices * sizeof(double[3]));
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
-    line->covered = larger(d->limit.distance, reach);
+    line->covered = max_of(d->limit.distance, reach);
     call_begin(d);
     status = candidates_collect(d, line->x0, line->x1, line->covered + rounding_on(line), &line->candidates);
     if (status != CSCD_OK) return call_fail(d, status);

@@ -3,6 +3,7 @@
 
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/contact_list.h"
+#include "src/core/check.h"
 #include "src/core/sort.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
@@ -24,7 +25,7 @@ _Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
 cscd_status proximity_check_distance(cscd_context *context, double distance) {
-    if (distance >= 0x1p-300 && distance <= 0x1p300) return CSCD_OK;
+    if (is_positive_length(distance)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
                         "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
@@ -36,16 +37,16 @@ static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, co
     int base = at->kind == CSCD_CONTACT_VF ? 1 : 2;
     const double *from = x + (size_t)s.vertices[base] * 3, *first = x + (size_t)s.vertices[0] * 3;
     double apart[3];
-    vector_subtract(first, from, apart);
+    vec3_subtract(first, from, apart);
     for (int i = 1; i < 4; i++) {
         const double *corner = x + (size_t)s.vertices[i] * 3, *origin = i < base ? first : from;
         if (i == base) continue;
         for (int k = 0; k < 3; k++) apart[k] += s.weights[i] * (corner[k] - origin[k]);
     }
-    double largest = vector_largest(apart), scaled[3];
+    double largest = vec3_largest(apart), scaled[3];
     if (!(largest > 0.0)) return 0.0;
     for (int k = 0; k < 3; k++) scaled[k] = apart[k] / largest;
-    return largest * sqrt(vector_dot(scaled, scaled));
+    return largest * sqrt(vec3_dot(scaled, scaled));
 }
 
 /* In place, for a copy need not keep the padding. */

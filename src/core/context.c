@@ -121,6 +121,35 @@ void context_free(cscd_context *context, void *block) {
     pthread_mutex_unlock(&context->allocator_lock);
 }
 
+/* Pointers of different types are written as bytes. */
+static void set_pointer(void *pointer, void *value) {
+    memcpy(pointer, &value, sizeof value);
+}
+
+void context_free_all(cscd_context *context, array_list list) {
+    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
+        void *memory;
+        memcpy(&memory, block->pointer, sizeof memory);
+        context_free(context, memory);
+        set_pointer(block->pointer, NULL);
+    }
+}
+
+bool context_allocate_all(cscd_context *context, array_list list) {
+    for (const array_block *block = list.blocks; block->pointer != NULL; block++)
+        set_pointer(block->pointer, NULL);
+    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
+        if (block->size == 0) continue;
+        void *memory = context_allocate(context, block->count, block->size);
+        if (memory == NULL) {
+            context_free_all(context, list);
+            return false;
+        }
+        set_pointer(block->pointer, memory);
+    }
+    return true;
+}
+
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

@@ -28,6 +28,35 @@ void *context_grow(cscd_context *context, void *block, size_t old_count, size_t 
 /* NULL does nothing. */
 void context_free(cscd_context *context, void *block);
 
+/* One array of a structure: the address of the pointer to it, and its size. An element size of 0 is an array that
+ * this structure does without; its pointer stays NULL. */
+typedef struct array_block {
+    void *pointer; /* NULL ends a list */
+    size_t count, size;
+} array_block;
+
+/* The arrays of a structure, named once, for allocation and for release:
+ *
+ *     static array_list list_arrays(grid *g) {
+ *         return (array_list){{ARRAY(g->cells, g->cell_count), ARRAY(g->names, g->name_count)}};
+ *     }
+ */
+typedef struct array_list {
+    array_block blocks[32]; /* at most 31 arrays and the end */
+} array_list;
+
+#define ARRAY(pointer, count)                                                                                \
+    { &(pointer), count, sizeof *(pointer) }
+#define ARRAY_IF(condition, pointer, count)                                                                  \
+    { &(pointer), count, (condition) ? sizeof *(pointer) : 0 }
+
+/* Allocates all arrays of a list, or none: on failure every pointer is NULL. What the pointers were before does not
+ * matter. */
+bool context_allocate_all(cscd_context *context, array_list list);
+
+/* Frees all arrays of a list, whatever their counts say, and sets their pointers to NULL. */
+void context_free_all(cscd_context *context, array_list list);
+
 /* Sets the detail and returns status, so that a function can end with it. */
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -1,9 +1,14 @@
-/* Union-find over numbers 0, 1, 2, ...: a set's root is its smallest member. */
+/* Union-find over the numbers 0, 1, 2, ...: the root of a set is its smallest member. */
 #pragma once
 
 #include <stdint.h>
 
-/* With path halving. */
+/* Makes each number a set of its own. */
+static inline void sets_begin(uint32_t *parents, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) parents[i] = i;
+}
+
+/* Returns the root of x's set, and halves the path to it. */
 static inline uint32_t set_root(uint32_t *parents, uint32_t x) {
     while (parents[x] != x) {
         parents[x] = parents[parents[x]];
@@ -12,7 +17,7 @@ static inline uint32_t set_root(uint32_t *parents, uint32_t x) {
     return x;
 }
 
-/* The root of the union. */
+/* Unites the sets of x and y, and returns the root of the union. */
 static inline uint32_t set_unite(uint32_t *parents, uint32_t x, uint32_t y) {
     uint32_t a = set_root(parents, x), b = set_root(parents, y);
     uint32_t root = a < b ? a : b;

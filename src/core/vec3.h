@@ -1,55 +1,36 @@
-/* Vectors of three doubles. */
+/* Vectors of three doubles. Every sum is formed from left to right, x + y + z: results depend on that order. */
 #pragma once
 
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
+#include "src/core/floating.h"
 
-static inline void vector_subtract(const double a[3], const double b[3], double out[3]) {
+#include <math.h>
+
+static inline void vec3_subtract(const double a[3], const double b[3], double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
 /* a + s b */
-static inline void vector_add_scaled(const double a[3], double s, const double b[3], double out[3]) {
+static inline void vec3_add_scaled(const double a[3], double s, const double b[3], double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[k] + s * b[k];
 }
 
-static inline double vector_dot(const double a[3], const double b[3]) {
+static inline double vec3_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static inline void vector_cross(const double a[3], const double b[3], double out[3]) {
+static inline void vec3_cross(const double a[3], const double b[3], double out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Without the care for NaN that makes fmax a function call. */
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
+static inline double vec3_squared_distance(const double a[3], const double b[3]) {
+    double difference[3];
+    vec3_subtract(a, b, difference);
+    return vec3_dot(difference, difference);
 }
 
-static inline double smaller(double a, double b) {
-    return a < b ? a : b;
-}
-
-/* e, where x = m 2^e with m in [1/2, 1), as by frexp, which is a function call; 0 for numbers below the
- * normal range. */
-static inline int exponent_of(double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    int biased = (int)(bits >> 52 & 0x7ff);
-    return biased == 0 ? 0 : biased - 1022;
-}
-
-/* 2^e, e from -1022 to 1023. */
-static inline double power_of_two(int e) {
-    uint64_t bits = (uint64_t)(e + 1023) << 52;
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static inline double vector_largest(const double a[3]) {
-    return larger(fabs(a[0]), larger(fabs(a[1]), fabs(a[2])));
+/* The largest magnitude of the three coordinates. */
+static inline double vec3_largest(const double a[3]) {
+    return max_of(fabs(a[0]), max_of(fabs(a[1]), fabs(a[2])));
 }

@@ -1,26 +1,11 @@
 /* Connected components of a mesh and what is wrong with each: holes, fins, bow-ties, flipped triangles. */
 #include "src/mesh/mesh.h"
 
-/* Union-find with path halving; the smaller root wins, so that a set's root is its first member. */
-static uint32_t find_root(uint32_t *parents, uint32_t x) {
-    while (parents[x] != x) {
-        parents[x] = parents[parents[x]];
-        x = parents[x];
-    }
-    return x;
-}
-
-static void unite(uint32_t *parents, uint32_t x, uint32_t y) {
-    uint32_t a = find_root(parents, x), b = find_root(parents, y);
-    if (a < b)
-        parents[b] = a;
-    else
-        parents[a] = b;
-}
+#include "src/core/disjoint_sets.h"
 
 static uint32_t *singletons(cscd_context *context, uint32_t count) {
     uint32_t *parents = context_allocate(context, count, sizeof *parents);
-    for (uint32_t i = 0; parents != NULL && i < count; i++) parents[i] = i;
+    if (parents != NULL) sets_begin(parents, count);
     return parents;
 }
 
@@ -34,10 +19,10 @@ static cscd_status number_components(cscd_mesh *mesh) {
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         for (uint32_t i = mesh->vertex_star_offsets[v] + 1; i < mesh->vertex_star_offsets[v + 1]; i++)
-            unite(parents, mesh->vertex_stars[i - 1], mesh->vertex_stars[i]);
+            set_unite(parents, mesh->vertex_stars[i - 1], mesh->vertex_stars[i]);
     }
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        uint32_t root = find_root(parents, t);
+        uint32_t root = set_root(parents, t);
         mesh->triangle_components[t] = root == t ? mesh->component_count++ : mesh->triangle_components[root];
     }
     context_free(mesh->context, parents);
@@ -78,7 +63,7 @@ static void unite_fans(const cscd_mesh *mesh, uint32_t *parents) {
         for (uint32_t i = 1; i < edge_star_size(mesh, edge); i++) {
             for (int end = 0; end < 2; end++) {
                 uint32_t vertex = mesh->edges[edge][end];
-                unite(parents, corner_at(mesh, star[i - 1], vertex), corner_at(mesh, star[i], vertex));
+                set_unite(parents, corner_at(mesh, star[i - 1], vertex), corner_at(mesh, star[i], vertex));
             }
         }
     }
@@ -90,9 +75,9 @@ static void count_vertex(const cscd_mesh *mesh, uint32_t vertex, uint32_t *paren
     if (size == 0) return;
     cscd_component *component = &mesh->components[mesh->triangle_components[star[0]]];
     component->vertex_count++;
-    uint32_t fan = find_root(parents, corner_at(mesh, star[0], vertex));
+    uint32_t fan = set_root(parents, corner_at(mesh, star[0], vertex));
     for (uint32_t i = 1; i < size; i++) {
-        if (find_root(parents, corner_at(mesh, star[i], vertex)) == fan) continue;
+        if (set_root(parents, corner_at(mesh, star[i], vertex)) == fan) continue;
         count_one(&component->non_manifold_vertices, &component->first_non_manifold_vertex, vertex);
         return;
     }

@@ -1,6 +1,7 @@
 /* What positions may hold, and in which layouts they may come. */
 #include "src/mesh/positions.h"
 
+#include "src/core/check.h"
 #include "src/mesh/mesh.h"
 
 #include <math.h>
@@ -9,14 +10,7 @@
 
 enum { COORDINATES_PER_TASK = 6144 };
 
-static const double least = 0x1p-300, greatest = 0x1p300;
-
-static bool acceptable(double x) {
-    double magnitude = fabs(x);
-    return (magnitude <= greatest && magnitude >= least) || x == 0.0; /* false for NaN */
-}
-
-/* The bits of a double, but for its sign, are in the order of magnitudes. */
+/* The bits of doubles, without the sign, are ordered as their magnitudes. */
 static uint64_t magnitude_bits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -25,7 +19,7 @@ static uint64_t magnitude_bits(double x) {
 
 /* Without a branch per coordinate. */
 static bool all_acceptable(const double *x, size_t count) {
-    uint64_t low = magnitude_bits(least), range = magnitude_bits(greatest) - low;
+    uint64_t low = magnitude_bits(LENGTH_MIN), range = magnitude_bits(LENGTH_MAX) - low;
     unsigned refused = 0;
     for (size_t i = 0; i < count; i++) {
         uint64_t bits = magnitude_bits(x[i]);
@@ -54,7 +48,7 @@ cscd_status positions_check(cscd_context *context, const double *positions, uint
     size_t tasks = (c.count + COORDINATES_PER_TASK - 1) / COORDINATES_PER_TASK;
     parallel_run(context->threads, (uint32_t)tasks, check_task, &c);
     for (size_t i = 0; atomic_load(&c.refused) && i < c.count; i++) {
-        if (acceptable(positions[i])) continue;
+        if (is_length(fabs(positions[i]))) continue;
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "%s: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
                             name, i / 3, "xyz"[i % 3], positions[i]);

@@ -1,11 +1,10 @@
 /* Areas, normals and lengths on the mesh, for any coordinates that positions may hold. */
 #pragma once
 
+#include "src/core/vec3.h"
 #include "src/mesh/mesh.h"
 
-#include <math.h>
-
-/* Squares of lengths would overflow; the largest part is taken out. */
+/* The length of v. Its squares could overflow, so they are formed of v over its largest coordinate. */
 static inline double surface_norm(const double v[3]) {
     double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     if (largest == 0.0) return 0.0;
@@ -18,20 +17,16 @@ static inline const double *surface_corner(const cscd_mesh *mesh, const double *
     return positions + (size_t)mesh->triangles[triangle][corner] * 3;
 }
 
-/* Twice the area long, outwards. */
+/* The outward normal, as long as twice the area. */
 static inline void surface_normal(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
                                   double out[3]) {
     const double *a = surface_corner(mesh, positions, triangle, 0);
     const double *b = surface_corner(mesh, positions, triangle, 1);
     const double *c = surface_corner(mesh, positions, triangle, 2);
     double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-    }
-    out[0] = u[1] * v[2] - u[2] * v[1];
-    out[1] = u[2] * v[0] - u[0] * v[2];
-    out[2] = u[0] * v[1] - u[1] * v[0];
+    vec3_subtract(b, a, u);
+    vec3_subtract(c, a, v);
+    vec3_cross(u, v, out);
 }
 
 static inline double surface_area(const cscd_mesh *mesh, const double *positions, uint32_t triangle) {

@@ -34,8 +34,8 @@ static void scatter(const double centre[3], double spread) {
 
 static double distance(const double a[3], const double b[3]) {
     double d[3];
-    vector_subtract(a, b, d);
-    return sqrt(vector_dot(d, d));
+    vec3_subtract(a, b, d);
+    return sqrt(vec3_dot(d, d));
 }
 
 /* ---- the grid ----------------------------------------------------------------------------------------- */
@@ -115,21 +115,21 @@ static double plain_worth(const particles *p, const uint32_t *vertices, uint32_t
     for (uint32_t j = 0; j < p->count; j++) {
         double d[3], r = distance(points[vertices[j]], points[at]);
         if (j == i || r >= p->radius) continue;
-        vector_subtract(points[vertices[j]], points[at], d);
+        vec3_subtract(points[vertices[j]], points[at], d);
         double s = fmax(r, p->closest), own = p->objects[j] == p->objects[i];
         potential += (own > 0 ? 1 : -1) * (1 / s - 1 / p->radius);
         if (own > 0) continue;
         scalar += 1 / (s * s);
         strongest = fmax(strongest, 1 / (s * s));
         if (r > 0)
-            vector_add_scaled(vector, 1 / (s * s * r), d, vector);
+            vec3_add_scaled(vector, 1 / (s * s * r), d, vector);
         else
             vector[0] += 1 / (s * s);
     }
     return p->rule == PARTICLE_POTENTIAL   ? -potential
            : p->rule == PARTICLE_SCALAR    ? scalar
            : p->rule == PARTICLE_STRONGEST ? strongest
-                                           : sqrt(vector_dot(vector, vector));
+                                           : sqrt(vec3_dot(vector, vector));
 }
 
 static void expect_best(const particles *p, const uint32_t *before, uint32_t i) {

@@ -2,6 +2,8 @@
  * vertex-edge tests), or when they cross from the start. */
 #include "runtime/baselines/iccd/contour.h"
 
+#include "src/core/vec3.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -19,10 +21,6 @@ typedef struct quadratic {
     double b[3];
 } quadratic;
 
-static void cross3(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* right and up are perpendicular to the axis up to rounding: the exact projection, along right x up, is along
  * an axis that is off by 1e-14 or so, which normal_cone_limit allows for. */
 static plane make_plane(const float axis[3], const double *start, const double *end) {
@@ -39,10 +37,10 @@ static plane make_plane(const float axis[3], const double *start, const double *
         }
     }
     helper[smallest] = 1.0;
-    cross3(direction, helper, p.right);
+    vec3_cross(direction, helper, p.right);
     for (int k = 0; k < 3; k++) length += p.right[k] * p.right[k];
     for (int k = 0; k < 3; k++) p.right[k] /= sqrt(length);
-    cross3(direction, p.right, p.up);
+    vec3_cross(direction, p.right, p.up);
     return p;
 }
 

@@ -1,6 +1,8 @@
 /* Continuous normal cones of triangles and of their unions. */
 #include "runtime/baselines/iccd/normal_cone.h"
 
+#include "src/core/vec3.h"
+
 #include <math.h>
 
 static const normal_cone none = {{0.0f, 0.0f, 0.0f}, INFINITY};
@@ -25,10 +27,6 @@ static bool normalize(const float sum[3], float out[3]) {
     return true;
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The two edges of a triangle from its first corner. */
 typedef struct edge_pair {
     double first[3], second[3];
@@ -47,13 +45,13 @@ static edge_pair edges_at(const uint32_t corners[3], const double *x) {
 /* Adds a x b; the greatest error of a component is below 2^-50 |a| |b|. */
 static double add_cross(const double a[3], const double b[3], double sum[3]) {
     for (int k = 0; k < 3; k++) sum[k] += a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-    return sqrt(dot(a, a) * dot(b, b));
+    return sqrt(vec3_dot(a, a) * vec3_dot(b, b));
 }
 
 /* The direction of a vector that is off by 2^-48 size at most; false where that turns it by 4e-7 or more, or
  * its squares leave the range of doubles. */
 static bool direction(const double normal[3], double size, float out[3]) {
-    double length = sqrt(dot(normal, normal));
+    double length = sqrt(vec3_dot(normal, normal));
     if (!(length > 1e-8 * size && length > 1e-150 && length < 1e150)) return false;
     for (int k = 0; k < 3; k++) out[k] = (float)(normal[k] / length);
     return true;

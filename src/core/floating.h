@@ -1,0 +1,30 @@
+/* Doubles: minimum, maximum, exponent and powers of two without a function call. */
+#pragma once
+
+#include <stdint.h>
+#include <string.h>
+
+/* These two leave out the treatment of NaN that makes fmax and fmin function calls. */
+static inline double max_of(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double min_of(double a, double b) {
+    return a < b ? a : b;
+}
+
+/* Returns the e of x = m 2^e with m in [1/2, 1), as frexp does; 0 for numbers below the normal range. */
+static inline int exponent_of(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int biased = (int)(bits >> 52 & 0x7ff);
+    return biased == 0 ? 0 : biased - 1022;
+}
+
+/* 2^e, for e from -1022 to 1023. */
+static inline double power_of_two(int e) {
+    uint64_t bits = (uint64_t)(e + 1023) << 52;
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
