@@ -28,7 +28,7 @@ static void count_kinds(const cscd_contacts *found, size_t *vf, size_t *ee) {
 static void print_row(const char *name, const deforming_body *b, const subject *s, size_t vf, size_t ee,
                       json *out) {
     printf("  %-14s %9u", name, b->triangle_count);
-    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8.2f", stage_median(&s->samples, (stage)i));
+    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8.2f", stage_median(&s->samples, i));
     printf(" %10.0f %10.0f %8zu %8zu\n", s->samples.pcp / s->samples.count,
            s->samples.tests / s->samples.count, vf, ee);
     fflush(stdout);
@@ -38,8 +38,7 @@ static void print_row(const char *name, const deforming_body *b, const subject *
     json_string(out, "frames", name);
     json_integer(out, "triangles", b->triangle_count);
     json_begin_object(out, "ms");
-    for (int i = 0; i < STAGE_COUNT; i++)
-        json_number(out, stage_names[i], stage_median(&s->samples, (stage)i));
+    for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), stage_median(&s->samples, i));
     json_end_object(out);
     json_number(out, "pcp", s->samples.pcp / s->samples.count);
     json_number(out, "tests", s->samples.tests / s->samples.count);
@@ -73,7 +72,7 @@ static bool run(const bench_options *o, json *out, io_error *error) {
     static const cloth_pair pairs[] = {{"cloth_ball", 92, 93}, {"cloth_funnel", 227, 228}};
     printf("mode all, %u thread%s, simd %s; milliseconds\n  %-14s %9s", o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "frames", "triangles");
-    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_names[i]);
+    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_name(i));
     printf(" %10s %10s %8s %8s\n", "#PCPs", "tests", "VF", "EE");
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
         char paths[2][PATH_LENGTH];

@@ -198,8 +198,8 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
                   median(scenes[i].collide, scenes[i].count), (double)scenes[i].reported,
                   (double)scenes[i].pairs, out);
     if (good)
-        print_row(&b, "cscd, none", stage_median(&s->samples, STAGE_UPDATE),
-                  stage_median(&s->samples, STAGE_TRAVERSAL), s->samples.pcp / s->samples.count,
+        print_row(&b, "cscd, none", stage_median(&s->samples, stage_named("update")),
+                  stage_median(&s->samples, stage_named("travers")), s->samples.pcp / s->samples.count,
                   s->samples.pcp / s->samples.count, out);
     for (int i = 0; i < opened; i++) close_scene(&scenes[i]);
     subject_destroy(s);

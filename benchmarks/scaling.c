@@ -63,7 +63,7 @@ static bool measure(const deforming_body *b, const subject_options *options, uin
              .features = s->samples.features / intervals,
              .tests = s->samples.tests / intervals,
              .contacts = s->samples.contacts / intervals};
-    for (int i = 0; i < STAGE_COUNT; i++) r.ms[i] = stage_median(&s->samples, (stage)i);
+    for (int i = 0; i < STAGE_COUNT; i++) r.ms[i] = stage_median(&s->samples, i);
     subject_destroy(s);
     *out = r;
     return good;
@@ -73,7 +73,7 @@ static bool measure(const deforming_body *b, const subject_options *options, uin
 
 static void print_title(const char *unit) {
     printf("\n%s\n  %9s %-7s %-8s", unit, "triangles", "method", "mode");
-    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_names[i]);
+    for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_name(i));
 }
 
 static void print_stages(const row *r, double scale) {
@@ -122,8 +122,8 @@ static void print_growth(const table *t) {
         double scale = (double)small->triangles / r->triangles;
         printf("  %-7s %-8s", cscd_method_name(r->method), cscd_mode_name(r->mode));
         for (int k = 0; k < STAGE_COUNT; k++) {
-            if (k != STAGE_PROOF && small->ms[k] > 0.0)
-                printf(" %s %.2f", stage_names[k], r->ms[k] / small->ms[k] * scale);
+            if (k != stage_named("proof") && small->ms[k] > 0.0)
+                printf(" %s %.2f", stage_name(k), r->ms[k] / small->ms[k] * scale);
         }
         printf(" (loop %.2f)\n", r->loop / small->loop);
     }
@@ -141,7 +141,7 @@ static void write_row(json *out, const row *r, const bench_options *o) {
     json_string(out, "volume", cscd_volume_name(o->volume));
     json_integer(out, "threads", o->thread_count);
     json_begin_object(out, "ms");
-    for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_names[i], r->ms[i]);
+    for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), r->ms[i]);
     json_end_object(out);
     json_number(out, "ns_per_triangle", r->ms[STAGE_TOTAL] * 1e6 / r->triangles);
     json_number(out, "boxes", r->boxes);

@@ -91,9 +91,9 @@ static bool run_interval(const deforming_body *b, duel *d, uint32_t i, double *e
     return good;
 }
 
-static double mean(const duel *d, int which, stage s) {
+static double mean(const duel *d, int which, int stage) {
     double sum = 0.0;
-    for (uint32_t i = 1; i <= d->intervals; i++) sum += d->least[which][s][i];
+    for (uint32_t i = 1; i <= d->intervals; i++) sum += d->least[which][stage][i];
     return sum / d->intervals;
 }
 
@@ -102,10 +102,10 @@ static void print_row(const deforming_body *b, const subject_options *options, c
     double speedup = mean(d, 0, STAGE_TOTAL) / mean(d, 1, STAGE_TOTAL);
     printf("  %9u %-7s", b->triangle_count, cscd_method_name(options->method));
     for (int i = 0; i < STAGE_COUNT; i++) {
-        double ms = mean(d, 0, (stage)i);
-        if (i == STAGE_PROOF) continue;
+        double ms = mean(d, 0, i);
+        if (i == stage_named("proof")) continue;
         if (ms >= 0.001)
-            printf(" %8.2f", ms / mean(d, 1, (stage)i));
+            printf(" %8.2f", ms / mean(d, 1, i));
         else
             printf(" %8s", "-");
     }
@@ -119,7 +119,7 @@ static void print_row(const deforming_body *b, const subject_options *options, c
     json_string(out, "method", cscd_method_name(options->method));
     for (int k = 0; k < 2; k++) {
         json_begin_object(out, k == 0 ? "one_ms" : "two_ms");
-        for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_names[i], mean(d, k, (stage)i));
+        for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), mean(d, k, i));
         json_end_object(out);
     }
     json_number(out, "machine", machine);
@@ -154,7 +154,7 @@ static bool run(const bench_options *o, json *out, io_error *error) {
     printf("%s, mode all, simd %s; speedup by a second thread\n  %9s %-7s", body_kind_name(o->kind),
            cscd_simd_name(o->simd), "triangles", "method");
     for (int i = 0; i < STAGE_COUNT; i++) {
-        if (i != STAGE_PROOF) printf(" %8s", stage_names[i]);
+        if (i != stage_named("proof")) printf(" %8s", stage_name(i));
     }
     printf(" %9s %9s %8s %10s\n", "ms on 1", "ms on 2", "machine", "efficiency");
     bool good = true;

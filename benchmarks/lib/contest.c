@@ -1,6 +1,8 @@
 /* One method on one recording, held against the method that leaves out no pair. */
 #include "benchmarks/lib/contest.h"
 
+#include "src/tool/common/stages.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,16 +141,10 @@ static bool compare(const truth *t, uint32_t interval, const cscd_detector *dete
 }
 
 static void add_step(score *s, const cscd_detector *detector, size_t contacts) {
-    cscd_timings ms = cscd_detector_timings(detector);
+    cscd_timings ms = cscd_detector_timings(detector), most = {0};
     cscd_counters n = cscd_detector_counters(detector);
     s->intervals++;
-    s->update += ms.update_ms;
-    s->orientation += ms.orientation_ms;
-    s->contour += ms.contour_ms;
-    s->traversal += ms.traversal_ms;
-    s->contact += ms.contact_ms;
-    s->proof += ms.proof_ms;
-    s->total += ms.total_ms;
+    timings_add(&s->ms, &most, &ms);
     s->pcp += (double)n.pcp;
     s->tests += (double)n.tests;
     s->contacts += (double)contacts;
@@ -202,14 +198,14 @@ bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out
     uint32_t intervals = t->recording->frame_count - 1;
     for (uint32_t repeat = 0; repeat < repeats; repeat++) {
         cscd_detector *detector = NULL;
-        double before = made.classes[0].total + made.classes[1].total;
+        double before = made.classes[0].ms.total_ms + made.classes[1].ms.total_ms;
         entrant run = *e;
         run.seed += repeat;
         bool good =
             make_detector(t, &run, &detector, error) && replay(t, &run, detector, made.classes, error);
         cscd_detector_destroy(detector);
         if (!good) return false;
-        double ms = (made.classes[0].total + made.classes[1].total - before) / intervals;
+        double ms = (made.classes[0].ms.total_ms + made.classes[1].ms.total_ms - before) / intervals;
         made.least_ms = fmin(made.least_ms, ms);
         made.most_ms = fmax(made.most_ms, ms);
     }
@@ -223,21 +219,22 @@ bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out
 
 score score_mean(const score classes[CLASS_COUNT], int only) {
     score sum = {.intervals = 0};
+    cscd_timings most = {0};
     for (int i = 0; i < CLASS_COUNT; i++) {
         const score *s = &classes[i];
         if (only < CLASS_COUNT && i != only) continue;
         sum.intervals += s->intervals;
-        double *into[10] = {&sum.update, &sum.orientation, &sum.contour, &sum.traversal, &sum.contact,
-                            &sum.proof,  &sum.total,       &sum.pcp,     &sum.tests,     &sum.contacts};
-        const double from[10] = {s->update, s->orientation, s->contour, s->traversal, s->contact,
-                                 s->proof,  s->total,       s->pcp,     s->tests,     s->contacts};
-        for (int k = 0; k < 10; k++) *into[k] += from[k];
+        timings_add(&sum.ms, &most, &s->ms);
+        sum.pcp += s->pcp;
+        sum.tests += s->tests;
+        sum.contacts += s->contacts;
         sum.lost += s->lost;
         sum.earliest_lost += s->earliest_lost;
     }
     double n = sum.intervals > 0 ? sum.intervals : 1.0;
-    double *values[10] = {&sum.update, &sum.orientation, &sum.contour, &sum.traversal, &sum.contact,
-                          &sum.proof,  &sum.total,       &sum.pcp,     &sum.tests,     &sum.contacts};
-    for (int k = 0; k < 10; k++) *values[k] /= n;
+    timings_divide(&sum.ms, n);
+    sum.pcp /= n;
+    sum.tests /= n;
+    sum.contacts /= n;
     return sum;
 }

@@ -24,10 +24,10 @@ typedef struct entrant {
     cscd_volume volume;
 } entrant;
 
-/* Sums over intervals; ms. */
+/* Sums over intervals. */
 typedef struct score {
     uint32_t intervals;
-    double update, orientation, contour, traversal, contact, proof, total;
+    cscd_timings ms;
     double pcp, tests, contacts;
     double lost;          /* per run: contacts of method none that are not reported, */
     double earliest_lost; /* and intervals and components whose first contact is not reported in time */

@@ -1,6 +1,8 @@
 /* The table and the JSON of benchmarks/methods. */
 #include "benchmarks/lib/methods_report.h"
 
+#include "src/tool/common/stages.h"
+
 #include <stdio.h>
 
 /* A stage of a method that may not have it. */
@@ -14,19 +16,15 @@ static void print_stage(double ms) {
 /* What the reference costs more, and what it would if the method's own stages cost nothing: then what is left
  * is the update and the elementary tests. */
 static void print_ratio(const score *reference, const score *s) {
-    printf(" %5.2f (%5.2f)", reference->total / s->total, reference->total / (s->update + s->contact));
+    printf(" %5.2f (%5.2f)", reference->ms.total_ms / s->ms.total_ms,
+           reference->ms.total_ms / (s->ms.update_ms + s->ms.contact_ms));
 }
 
 static void print_row(const result *r, const score *s, const score *none, const score *iccd) {
     printf("  %-16s", r->entrant.name);
-    print_stage(s->update);
-    print_stage(s->orientation);
-    print_stage(s->contour);
-    print_stage(s->traversal);
-    print_stage(s->contact);
-    print_stage(s->proof);
+    for (int i = 0; i < TIMING_STAGES; i++) print_stage(timing_ms(&s->ms, &timing_rows[i]));
     printf(" %8.0f %8.0f %8.1f %6.1f %6.1f %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
-           s->earliest_lost, s->lost, s->total, r->least_ms, r->most_ms);
+           s->earliest_lost, s->lost, s->ms.total_ms, r->least_ms, r->most_ms);
     print_ratio(none, s);
     print_ratio(iccd, s);
     putchar('\n');
@@ -35,9 +33,10 @@ static void print_row(const result *r, const score *s, const score *none, const 
 static void print_class(const report *r, int only, const char *title) {
     score none = score_mean(r->results[0].classes, only), iccd = score_mean(r->results[1].classes, only);
     if (none.intervals == 0) return;
-    printf("\n  %s\n  %-16s %7s %7s %7s %7s %7s %7s %8s %8s %8s %6s %6s %7s %13s %13s %13s\n", title,
-           "method", "BVHUP", "ORIENT", "CNC&CT", "TRA", "contact", "proof", "#PCPs", "tests", "contacts",
-           "e.lost", "lost", "TTCD", "all: min-max", "none/ (bound)", "ICCD/ (bound)");
+    printf("\n  %s\n  %-16s", title, "method");
+    for (int i = 0; i < TIMING_STAGES; i++) printf(" %7s", timing_rows[i].label);
+    printf(" %8s %8s %8s %6s %6s %7s %13s %13s %13s\n", "#PCPs", "tests", "contacts", "e.lost", "lost",
+           "total", "all: min-max", "none/ (bound)", "ICCD/ (bound)");
     for (uint32_t i = 0; i < r->count; i++) {
         score s = score_mean(r->results[i].classes, only);
         print_row(&r->results[i], &s, &none, &iccd);
@@ -61,6 +60,14 @@ void report_print(const report *r) {
     print_class(r, CLASS_OTHER, title);
 }
 
+static void write_stages(json *out, const cscd_timings *ms) {
+    for (int i = 0; i < TIMING_STAGES; i++) {
+        char key[32];
+        snprintf(key, sizeof key, "%s_ms", timing_rows[i].key);
+        json_number(out, key, timing_ms(ms, &timing_rows[i]));
+    }
+}
+
 void report_write(const report *r, json *out, uint32_t thread_count) {
     for (uint32_t i = 0; i < r->count; i++) {
         const entrant *e = &r->results[i].entrant;
@@ -73,15 +80,10 @@ void report_write(const report *r, json *out, uint32_t thread_count) {
         json_string(out, "volume", cscd_volume_name(e->volume));
         json_integer(out, "threads", thread_count);
         json_integer(out, "triangles", r->truth->recording->model.triangle_count);
-        json_number(out, "ttcd_ms", s.total);
+        json_number(out, "ttcd_ms", s.ms.total_ms);
         json_number(out, "ttcd_min_ms", r->results[i].least_ms);
         json_number(out, "ttcd_max_ms", r->results[i].most_ms);
-        json_number(out, "bvh_ms", s.update);
-        json_number(out, "orient_ms", s.orientation);
-        json_number(out, "cnc_ms", s.contour);
-        json_number(out, "traverse_ms", s.traversal);
-        json_number(out, "contact_ms", s.contact);
-        json_number(out, "proof_ms", s.proof);
+        write_stages(out, &s.ms);
         json_number(out, "pcp", s.pcp);
         json_number(out, "tests", s.tests);
         json_number(out, "contacts", s.contacts);

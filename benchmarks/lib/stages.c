@@ -1,11 +1,23 @@
 /* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
 #include "benchmarks/lib/stages.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const stage_names[STAGE_COUNT] = {"update",  "orient", "contour", "travers",
-                                              "contact", "proof",  "other",   "total"};
+const char *stage_name(int stage) {
+    if (stage < TIMING_STAGES) return timing_rows[stage].label;
+    return stage == STAGE_OTHER ? "other" : "total";
+}
+
+int stage_named(const char *name) {
+    int stage = 0;
+    while (strcmp(stage_name(stage), name) != 0) {
+        stage++;
+        assert(stage < STAGE_COUNT);
+    }
+    return stage;
+}
 
 static int compare_values(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
@@ -20,8 +32,8 @@ double median(const double *values, uint32_t count) {
     return 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
 }
 
-double stage_median(const stage_samples *s, stage which) {
-    return median(s->ms[which], s->count);
+double stage_median(const stage_samples *s, int stage) {
+    return median(s->ms[stage], s->count);
 }
 
 /* ---- memory ------------------------------------------------------------------------------------------ */
@@ -93,14 +105,14 @@ void subject_destroy(subject *s) {
 static void add_sample(stage_samples *s, const cscd_detector *detector, size_t contacts) {
     cscd_timings ms = cscd_detector_timings(detector);
     cscd_counters n = cscd_detector_counters(detector);
-    double known = ms.update_ms + ms.orientation_ms + ms.contour_ms + ms.traversal_ms + ms.contact_ms;
-    const double values[STAGE_COUNT] = {
-        [STAGE_UPDATE] = ms.update_ms,   [STAGE_ORIENTATION] = ms.orientation_ms,
-        [STAGE_CONTOUR] = ms.contour_ms, [STAGE_TRAVERSAL] = ms.traversal_ms,
-        [STAGE_CONTACT] = ms.contact_ms, [STAGE_PROOF] = ms.proof_ms,
-        [STAGE_TOTAL] = ms.total_ms,     [STAGE_OTHER] = ms.total_ms - known - ms.proof_ms};
     if (s->count == SAMPLES_MAX) return;
-    for (int i = 0; i < STAGE_COUNT; i++) s->ms[i][s->count] = values[i];
+    double known = 0.0;
+    for (int i = 0; i < TIMING_STAGES; i++) {
+        s->ms[i][s->count] = timing_ms(&ms, &timing_rows[i]);
+        known += s->ms[i][s->count];
+    }
+    s->ms[STAGE_OTHER][s->count] = ms.total_ms - known;
+    s->ms[STAGE_TOTAL][s->count] = ms.total_ms;
     s->count++;
     s->boxes += (double)n.boxes_tested;
     s->pcp += (double)n.pcp;

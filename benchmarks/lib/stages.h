@@ -3,21 +3,17 @@
 
 #include "benchmarks/lib/deforming_body.h"
 #include "cscd/cscd.h"
+#include "src/tool/common/stages.h"
 
-typedef enum stage {
-    STAGE_UPDATE,
-    STAGE_ORIENTATION,
-    STAGE_CONTOUR,
-    STAGE_TRAVERSAL,
-    STAGE_CONTACT,
-    STAGE_PROOF,
-    STAGE_OTHER, /* of the total, what belongs to no stage: checks of the input */
-    STAGE_TOTAL,
-    STAGE_COUNT
-} stage;
+/* The columns of the tables: the stages of a step, in the order of timing_rows; then what of the total belongs to no
+ * stage, as checks of the input; then the total. */
+enum { STAGE_OTHER = TIMING_STAGES, STAGE_TOTAL, STAGE_COUNT };
 
-/* Of the tables. */
-extern const char *const stage_names[STAGE_COUNT];
+/* "update", "travers", ..., "other", "total". */
+const char *stage_name(int stage);
+
+/* The column of that name, which there must be. */
+int stage_named(const char *name);
 
 enum { SAMPLES_MAX = 64 };
 
@@ -28,7 +24,7 @@ typedef struct stage_samples {
     double boxes, pcp, features, tests, contacts;
 } stage_samples;
 
-double stage_median(const stage_samples *s, stage which);
+double stage_median(const stage_samples *s, int stage);
 double median(const double *values, uint32_t count);
 
 typedef struct subject_options {

@@ -1,7 +1,7 @@
 /* Reads back what `cscd replay --json` wrote. */
 #include "src/tool/summary_file.h"
 
-#include "src/tool/common/summary.h"
+#include "src/tool/common/stages.h"
 
 #include <errno.h>
 #include <json-c/json.h>
@@ -22,9 +22,6 @@ typedef struct member {
 static const member of_interval[] = {{"frame", 'i'}, {"vf", 'n'},        {"ee", 'n'},   {"earliest_toi", 'N'},
                                      {"pcp", 'n'},   {"tests", 'n'},     {"plus", 'n'}, {"minus", 'n'},
                                      {"state", 's'}, {"guarantee", 'a'}, {"ms", 'o'},   {NULL, 0}};
-static const member of_times[] = {{"update", 'n'},    {"orientation", 'n'}, {"contour", 'n'},
-                                  {"traversal", 'n'}, {"contact", 'n'},     {"proof", 'n'},
-                                  {"check", 'n'},     {"total", 'n'},       {NULL, 0}};
 static const member of_guarantee[] = {{"component", 'n'}, {"mode", 's'}, {"reason", 's'}, {NULL, 0}};
 static const member of_frame[] = {{"frame", 'n'}, {NULL, 0}};
 static const member of_summary[] = {{"complete", 'b'},
@@ -56,9 +53,8 @@ static const member of_provenance[] = {
 static const member of_machine[] = {{"system", 's'},    {"release", 's'},    {"architecture", 's'},
                                     {"processor", 's'}, {"processors", 'n'}, {NULL, 0}};
 static const member of_input[] = {{"name", 's'}, {"fnv1a64", 's'}, {NULL, 0}};
-static const char *const columns[] = {"update_ms",  "orientation_ms", "contour_ms", "traversal_ms",
-                                      "contact_ms", "proof_ms",       "check_ms",   "total_ms",
-                                      "pcp",        "tests"};
+/* The counters whose mean and maximum the page shows, beside those of all stages. */
+static const char *const counted_columns[] = {"pcp", "tests"};
 
 static bool is_of_kind(json_object *value, char kind) {
     enum json_type type = json_object_get_type(value);
@@ -81,7 +77,7 @@ static bool is_of_kind(json_object *value, char kind) {
 }
 
 /* NULL: not there, or null. */
-static json_object *get(json_object *object, const char *name) {
+static json_object *find_member(json_object *object, const char *name) {
     return json_object_is_type(object, json_type_object) ? json_object_object_get(object, name) : NULL;
 }
 
@@ -104,8 +100,16 @@ static bool elements_have(json_object *array, const member *members, const char 
     return true;
 }
 
+static bool has_times(json_object *times, const char *where, io_error *error) {
+    for (int i = 0; i < TIMING_COUNT; i++) {
+        const member of_stage[] = {{timing_rows[i].name, 'n'}, {NULL, 0}};
+        if (!has_members(times, of_stage, where, error)) return false;
+    }
+    return true;
+}
+
 static bool is_state(const char *name) {
-    for (interval_state state = INTERVAL_CLEAN; state <= INTERVAL_UNKNOWN; state++)
+    for (interval_state state = INTERVAL_CLEAN; state < INTERVAL_STATES; state++)
         if (strcmp(name, interval_state_name(state)) == 0) return true;
     return false;
 }
@@ -114,10 +118,10 @@ static bool check_interval(json_object *interval, size_t index, io_error *error)
     char where[48];
     snprintf(where, sizeof where, "interval %zu of the file", index);
     if (!has_members(interval, of_interval, where, error)) return false;
-    if (!is_state(json_object_get_string(get(interval, "state"))))
+    if (!is_state(json_object_get_string(find_member(interval, "state"))))
         return io_fail(error, "%s: 'state' is not what cscd writes there", where);
-    return has_members(get(interval, "ms"), of_times, where, error) &&
-           elements_have(get(interval, "guarantee"), of_guarantee, where, error);
+    return has_times(find_member(interval, "ms"), where, error) &&
+           elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
 }
 
 /* One after the other: the page has a place for each frame between the first and the last. */
@@ -126,7 +130,7 @@ static bool check_intervals(json_object *intervals, io_error *error) {
     for (size_t i = 0; i < json_object_array_length(intervals); i++) {
         json_object *interval = json_object_array_get_idx(intervals, i);
         if (!check_interval(interval, i, error)) return false;
-        int64_t frame = json_object_get_int64(get(interval, "frame"));
+        int64_t frame = json_object_get_int64(find_member(interval, "frame"));
         if (i == 0) first = frame;
         if (frame < 0 || frame >= UINT32_MAX || frame - first != (int64_t)i)
             return io_fail(error, "interval %zu of the file: 'frame' is not what cscd writes there", i);
@@ -134,12 +138,20 @@ static bool check_intervals(json_object *intervals, io_error *error) {
     return true;
 }
 
+static bool check_column(json_object *summary, const char *name, io_error *error) {
+    char where[64];
+    snprintf(where, sizeof where, "'%s' of the summary", name);
+    return has_members(find_member(summary, name), of_column, where, error);
+}
+
 static bool check_columns(json_object *summary, io_error *error) {
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-        char where[48];
-        snprintf(where, sizeof where, "'%s' of the summary", columns[i]);
-        if (!has_members(get(summary, columns[i]), of_column, where, error)) return false;
+    for (int i = 0; i < TIMING_COUNT; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%s_ms", timing_rows[i].name);
+        if (!check_column(summary, name, error)) return false;
     }
+    for (size_t i = 0; i < sizeof counted_columns / sizeof *counted_columns; i++)
+        if (!check_column(summary, counted_columns[i], error)) return false;
     return true;
 }
 
@@ -154,17 +166,17 @@ static bool check_summary(json_object *root, io_error *error) {
     static const member parts[] = {
         {"intervals", 'a'}, {"frames", 'a'}, {"summary", 'o'}, {"provenance", 'o'}, {NULL, 0}};
     if (!has_members(root, parts, "the file", error)) return false;
-    json_object *summary = get(root, "summary"), *provenance = get(root, "provenance");
-    return check_intervals(get(root, "intervals"), error) &&
-           elements_have(get(root, "frames"), of_frame, "a frame", error) &&
+    json_object *summary = find_member(root, "summary"), *provenance = find_member(root, "provenance");
+    return check_intervals(find_member(root, "intervals"), error) &&
+           elements_have(find_member(root, "frames"), of_frame, "a frame", error) &&
            has_members(summary, of_summary, "the summary", error) && check_columns(summary, error) &&
-           has_members(get(summary, "plan"), of_plan, "the plan", error) &&
-           (json_object_get_boolean(get(summary, "complete")) ||
+           has_members(find_member(summary, "plan"), of_plan, "the plan", error) &&
+           (json_object_get_boolean(find_member(summary, "complete")) ||
             has_members(summary, of_incomplete, "the summary", error)) &&
            has_members(provenance, of_provenance, "the provenance", error) &&
-           has_members(get(provenance, "machine"), of_machine, "the machine", error) &&
-           elements_have(get(provenance, "inputs"), of_input, "an input", error) &&
-           strings_only(get(provenance, "arguments"), "the arguments", error);
+           has_members(find_member(provenance, "machine"), of_machine, "the machine", error) &&
+           elements_have(find_member(provenance, "inputs"), of_input, "an input", error) &&
+           strings_only(find_member(provenance, "arguments"), "the arguments", error);
 }
 
 /* The whole file and a 0, *size without it; NULL with the reason. */
@@ -196,7 +208,7 @@ static int line_of(const char *text, size_t place) {
 }
 
 /* NULL with the reason. */
-static json_object *parse(const char *path, const char *text, size_t size, io_error *error) {
+static json_object *parse_text(const char *path, const char *text, size_t size, io_error *error) {
     static const char expected[] = "expected what cscd replay --json wrote, to its end";
     struct json_tokener *tokener = size <= INT_MAX ? json_tokener_new() : NULL;
     if (tokener == NULL) {
@@ -259,7 +271,7 @@ static char *checked_text(const char *path, json_object *root, io_error *error) 
 char *summary_file_read(const char *path, io_error *error) {
     size_t size = 0;
     char *text = read_text(path, &size, error), *checked = NULL;
-    json_object *root = text != NULL ? parse(path, text, size, error) : NULL;
+    json_object *root = text != NULL ? parse_text(path, text, size, error) : NULL;
     if (root != NULL) checked = checked_text(path, root, error);
     json_object_put(root);
     free(text);

@@ -4,10 +4,10 @@
 #include "src/tool/common/ignore_pairs.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_source.h"
-#include "src/tool/common/summary.h"
 #include "src/tool/common/terminal.h"
 #include "src/tool/replay/replay_options.h"
 #include "src/tool/replay/replay_report.h"
+#include "src/tool/replay/summary.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,7 @@ typedef struct replay {
     contact_file *contacts; /* NULL when not asked for */
     summary_writer *summary;
     replay_report report;
-    totals totals;
+    replay_totals totals;
     frame_list contact_frames, crossing_frames;
     terminal_progress progress;
 } replay;
@@ -209,17 +209,17 @@ static bool run_intervals(replay *r, io_error *error) {
 }
 
 static void print_results(const replay *r) {
-    const totals *t = &r->totals;
+    const replay_totals *t = &r->totals;
     printf("%s: %u vertices, %u triangles, %u component%s; frames %u to %u\n", r->options->source.model_path,
            cscd_mesh_vertex_count(r->recording.mesh), cscd_mesh_triangle_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh),
            cscd_mesh_component_count(r->recording.mesh) == 1 ? "" : "s", r->first, r->first + t->intervals);
-    printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->vf,
-           (unsigned long long)t->ee, t->intervals_with_contact, t->intervals);
+    printf("contacts: %llu VF and %llu EE in %u of %u intervals", (unsigned long long)t->counter_sum.vf,
+           (unsigned long long)t->counter_sum.ee, t->intervals_with_contact, t->intervals);
     frame_list_print(&r->contact_frames, "; from frame ");
     if (r->options->min_separation > 0.0)
         printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
-               r->options->min_separation, (unsigned long long)t->bounded);
+               r->options->min_separation, (unsigned long long)t->counter_sum.bounded);
     if (t->frames_checked > 0) {
         printf("crossing: %u of %u frames", t->frames_crossing, t->frames_checked);
         frame_list_print(&r->crossing_frames, "; ");

@@ -59,8 +59,6 @@ static void write_pairs(json *out, const pair_counts *p, bool compare) {
 }
 
 static void write_interval(json *out, const sense_options *o, const sense_interval *interval) {
-    const cscd_sensor_timings *ms = &interval->timings;
-    const cscd_sensor_counters *c = &interval->counters;
     json_break_line(out);
     json_begin_object(out, NULL);
     json_integer(out, "frame", interval->frame);
@@ -68,17 +66,13 @@ static void write_interval(json *out, const sense_options *o, const sense_interv
     json_integer(out, "confirmed", interval->confirmed);
     json_integer(out, "renewed", interval->renewed);
     write_pairs(out, &interval->pairs, o->compare);
-    json_integer(out, "rounds", c->rounds);
-    json_integer(out, "cycles", c->cycles);
-    json_integer(out, "vertices", c->vertices);
-    json_integer(out, "particle_pairs", c->particle_pairs);
-    json_integer(out, "tests", c->tests);
+    for (int i = 0; i < SENSE_COUNTERS; i++)
+        json_integer(out, sense_counter_rows[i].name,
+                     sense_counter_value(&interval->counters, &sense_counter_rows[i]));
     json_begin_object(out, "ms");
-    json_number(out, "walk", ms->walk_ms);
-    json_number(out, "verdict", ms->verdict_ms);
-    json_number(out, "exact", ms->exact_ms);
-    json_number(out, "renewal", ms->renewal_ms);
-    json_number(out, "total", ms->total_ms);
+    for (int i = 0; i < SENSE_TIMINGS; i++)
+        json_number(out, sense_timing_rows[i].name,
+                    sense_timing_ms(&interval->timings, &sense_timing_rows[i]));
     if (o->compare) json_number(out, "trees", interval->trees_ms);
     json_end_object(out);
     json_end_object(out);
@@ -137,12 +131,10 @@ static void write_summary(json *out, const sense_subject *s, const sense_totals 
     json_integer(out, "renewals", t->renewals);
     json_integer(out, "warned_pairs", t->warned_pairs);
     json_integer(out, "confirmed_pairs", t->confirmed_pairs);
-    json_integer(out, "walk_rounds", t->rounds);
-    json_integer(out, "cycles", t->cycles);
-    json_integer(out, "walk_vertices", t->vertices);
-    json_integer(out, "particle_pairs", t->particle_pairs);
-    json_integer(out, "tests", t->tests);
-    json_number(out, "mean_ms", t->intervals > 0 ? t->sense_ms / t->intervals : 0.0);
+    for (int i = 0; i < SENSE_COUNTERS; i++)
+        json_integer(out, sense_counter_rows[i].sum_name,
+                     sense_counter_value(&t->counters, &sense_counter_rows[i]));
+    json_number(out, "mean_ms", t->intervals > 0 ? t->timings.total_ms / t->intervals : 0.0);
     json_number(out, "max_ms", t->sense_max_ms);
     if (s->options->compare) write_recall(out, t);
     json_end_object(out);

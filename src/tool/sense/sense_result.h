@@ -23,13 +23,35 @@ typedef struct sense_interval {
     double trees_ms; /* of the detector; 0 without --compare */
 } sense_interval;
 
+/* The stages and counters of a step of the sensors, a row each, as the files name them. */
+typedef struct sense_timing_row {
+    const char *name;
+    size_t place; /* of the double in cscd_sensor_timings */
+} sense_timing_row;
+
+typedef struct sense_counter_row {
+    const char *name, *sum_name; /* in an interval, and of the sum over all intervals */
+    size_t place;                /* of the uint64_t in cscd_sensor_counters */
+} sense_counter_row;
+
+/* All members of the structs; the total is the last of the timings. */
+enum {
+    SENSE_TIMINGS = sizeof(cscd_sensor_timings) / sizeof(double),
+    SENSE_COUNTERS = sizeof(cscd_sensor_counters) / sizeof(uint64_t)
+};
+extern const sense_timing_row sense_timing_rows[SENSE_TIMINGS];
+extern const sense_counter_row sense_counter_rows[SENSE_COUNTERS];
+
+double sense_timing_ms(const cscd_sensor_timings *timings, const sense_timing_row *row);
+uint64_t sense_counter_value(const cscd_sensor_counters *counters, const sense_counter_row *row);
+
 typedef struct sense_totals {
     uint32_t intervals, intervals_warned, intervals_touching, renewals;
     uint64_t warnings, confirmed;
     uint64_t warned_pairs, confirmed_pairs, touching_pairs, found_pairs, confirmed_found_pairs;
-    uint64_t rounds, cycles, vertices, particle_pairs, tests;
-    double sense_ms, sense_max_ms, trees_ms, trees_max_ms;
-    double walk_ms, verdict_ms, exact_ms, renewal_ms;
+    cscd_sensor_counters counters; /* sums */
+    cscd_sensor_timings timings;   /* sums */
+    double sense_max_ms, trees_ms, trees_max_ms;
 } sense_totals;
 
 void sense_totals_add(sense_totals *t, const sense_interval *interval);

@@ -3,6 +3,48 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+#define TIME_OF(member)  offsetof(cscd_sensor_timings, member)
+#define COUNT_OF(member) offsetof(cscd_sensor_counters, member)
+
+const sense_timing_row sense_timing_rows[SENSE_TIMINGS] = {
+    {"walk", TIME_OF(walk_ms)},       {"verdict", TIME_OF(verdict_ms)}, {"exact", TIME_OF(exact_ms)},
+    {"renewal", TIME_OF(renewal_ms)}, {"total", TIME_OF(total_ms)},
+};
+
+const sense_counter_row sense_counter_rows[SENSE_COUNTERS] = {
+    {"rounds", "walk_rounds", COUNT_OF(rounds)},
+    {"cycles", "cycles", COUNT_OF(cycles)},
+    {"vertices", "walk_vertices", COUNT_OF(vertices)},
+    {"particle_pairs", "particle_pairs", COUNT_OF(particle_pairs)},
+    {"tests", "tests", COUNT_OF(tests)},
+};
+
+double sense_timing_ms(const cscd_sensor_timings *timings, const sense_timing_row *row) {
+    double value;
+    memcpy(&value, (const char *)timings + row->place, sizeof value);
+    return value;
+}
+
+uint64_t sense_counter_value(const cscd_sensor_counters *counters, const sense_counter_row *row) {
+    uint64_t value;
+    memcpy(&value, (const char *)counters + row->place, sizeof value);
+    return value;
+}
+
+static void add_step(sense_totals *t, const sense_interval *i) {
+    for (int k = 0; k < SENSE_TIMINGS; k++) {
+        const sense_timing_row *row = &sense_timing_rows[k];
+        double sum = sense_timing_ms(&t->timings, row) + sense_timing_ms(&i->timings, row);
+        memcpy((char *)&t->timings + row->place, &sum, sizeof sum);
+    }
+    for (int k = 0; k < SENSE_COUNTERS; k++) {
+        const sense_counter_row *row = &sense_counter_rows[k];
+        uint64_t sum = sense_counter_value(&t->counters, row) + sense_counter_value(&i->counters, row);
+        memcpy((char *)&t->counters + row->place, &sum, sizeof sum);
+    }
+}
 
 void sense_totals_add(sense_totals *t, const sense_interval *i) {
     t->intervals++;
@@ -16,35 +58,26 @@ void sense_totals_add(sense_totals *t, const sense_interval *i) {
     t->touching_pairs += i->pairs.touching;
     t->found_pairs += i->pairs.found;
     t->confirmed_found_pairs += i->pairs.confirmed_found;
-    t->rounds += i->counters.rounds;
-    t->cycles += i->counters.cycles;
-    t->vertices += i->counters.vertices;
-    t->particle_pairs += i->counters.particle_pairs;
-    t->tests += i->counters.tests;
-    t->walk_ms += i->timings.walk_ms;
-    t->verdict_ms += i->timings.verdict_ms;
-    t->exact_ms += i->timings.exact_ms;
-    t->renewal_ms += i->timings.renewal_ms;
-    t->sense_ms += i->timings.total_ms;
+    add_step(t, i);
     t->trees_ms += i->trees_ms;
     t->sense_max_ms = fmax(t->sense_max_ms, i->timings.total_ms);
     t->trees_max_ms = fmax(t->trees_max_ms, i->trees_ms);
 }
 
-static double share(uint64_t part, uint64_t whole) {
+static double share_of(uint64_t part, uint64_t whole) {
     return whole > 0 ? (double)part / (double)whole : 1.0;
 }
 
 double sense_recall(const sense_totals *t) {
-    return share(t->found_pairs, t->touching_pairs);
+    return share_of(t->found_pairs, t->touching_pairs);
 }
 
 double sense_precision(const sense_totals *t) {
-    return share(t->found_pairs, t->warned_pairs);
+    return share_of(t->found_pairs, t->warned_pairs);
 }
 
 double sense_confirmed_recall(const sense_totals *t) {
-    return share(t->confirmed_found_pairs, t->touching_pairs);
+    return share_of(t->confirmed_found_pairs, t->touching_pairs);
 }
 
 const char *sense_method_name(cscd_sensor_method method) {
@@ -83,7 +116,7 @@ static void print_comparison(const sense_totals *t) {
            sense_confirmed_recall(t));
     printf("trees: %.3f ms mean, %.3f ms most; sensors take %.2f of that\n",
            t->intervals > 0 ? t->trees_ms / t->intervals : 0.0, t->trees_max_ms,
-           t->trees_ms > 0.0 ? t->sense_ms / t->trees_ms : 0.0);
+           t->trees_ms > 0.0 ? t->timings.total_ms / t->trees_ms : 0.0);
 }
 
 void sense_print_totals(const sense_subject *subject, const sense_totals *t) {
@@ -99,12 +132,15 @@ void sense_print_totals(const sense_subject *subject, const sense_totals *t) {
            t->intervals);
     if (subject->options->sensors.exact)
         printf("; confirmed %llu; tests %llu", (unsigned long long)t->confirmed,
-               (unsigned long long)t->tests);
+               (unsigned long long)t->counters.tests);
     printf("\nwalks: %llu rounds, %llu cycles, %llu vertices, %llu pairs within R_eff; cells renewed: %u\n",
-           (unsigned long long)t->rounds, (unsigned long long)t->cycles, (unsigned long long)t->vertices,
-           (unsigned long long)t->particle_pairs, t->renewals);
-    printf("sensors: %.3f ms mean, %.3f ms most (walk %.3f, verdict %.3f, exact %.3f, renewal %.3f)\n",
-           t->sense_ms / count, t->sense_max_ms, t->walk_ms / count, t->verdict_ms / count,
-           t->exact_ms / count, t->renewal_ms / count);
+           (unsigned long long)t->counters.rounds, (unsigned long long)t->counters.cycles,
+           (unsigned long long)t->counters.vertices, (unsigned long long)t->counters.particle_pairs,
+           t->renewals);
+    printf("sensors: %.3f ms mean, %.3f ms most (", t->timings.total_ms / count, t->sense_max_ms);
+    for (int k = 0; k < SENSE_TIMINGS - 1; k++)
+        printf("%s%s %.3f", k > 0 ? ", " : "", sense_timing_rows[k].name,
+               sense_timing_ms(&t->timings, &sense_timing_rows[k]) / count);
+    printf(")\n");
     if (subject->options->compare) print_comparison(t);
 }

@@ -1,5 +1,5 @@
 /* The JSON summary of a replay, written interval by interval. */
-#include "src/tool/common/summary.h"
+#include "src/tool/replay/summary.h"
 
 #include "src/tool/common/provenance.h"
 
@@ -20,11 +20,6 @@ struct summary_writer {
     uint32_t first_frame, frame_count, frame_capacity;
     unsigned char *frames; /* frame_state, one byte each: the list comes after the intervals */
 };
-
-const char *interval_state_name(interval_state state) {
-    static const char *const names[] = {"clean", "contact", "penetrating", "unknown"};
-    return names[state];
-}
 
 static bool write_failed(const summary_writer *w, io_error *error) {
     return io_fail(error, "%s: cannot write: %s", w->path, strerror(errno));
@@ -91,15 +86,17 @@ static void write_guarantees(summary_writer *w, const cscd_detector *detector) {
 
 static void write_times(json *out, const cscd_timings *t) {
     json_begin_object(out, "ms");
-    json_number(out, "update", t->update_ms);
-    json_number(out, "orientation", t->orientation_ms);
-    json_number(out, "contour", t->contour_ms);
-    json_number(out, "traversal", t->traversal_ms);
-    json_number(out, "contact", t->contact_ms);
-    json_number(out, "proof", t->proof_ms);
-    json_number(out, "check", t->check_ms);
-    json_number(out, "total", t->total_ms);
+    for (int i = 0; i < TIMING_COUNT; i++)
+        json_number(out, timing_rows[i].name, timing_ms(t, &timing_rows[i]));
     json_end_object(out);
+}
+
+static void write_counters(json *out, const cscd_counters *counters, bool of_contacts) {
+    for (int i = 0; i < COUNTER_COUNT; i++) {
+        const counter_row *row = &counter_rows[i];
+        if ((row->kind == COUNTER_OF_CONTACTS) == of_contacts)
+            json_integer(out, row->name, counter_value(counters, row));
+    }
 }
 
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error) {
@@ -107,21 +104,12 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     json_break_line(out);
     json_begin_object(out, NULL);
     json_integer(out, "frame", result->frame);
-    json_integer(out, "vf", result->counters.vf);
-    json_integer(out, "ee", result->counters.ee);
-    json_integer(out, "bounded", result->counters.bounded);
+    write_counters(out, &result->counters, true);
     if (result->contact_count > 0)
         json_number(out, "earliest_toi", result->earliest_toi);
     else
         json_null(out, "earliest_toi");
-    json_integer(out, "pcp", result->counters.pcp);
-    json_integer(out, "adjacent", result->counters.adjacent);
-    json_integer(out, "tests", result->counters.tests);
-    json_integer(out, "plus", result->counters.plus);
-    json_integer(out, "minus", result->counters.minus);
-    json_integer(out, "static_checks", result->counters.static_checks);
-    json_integer(out, "clean_triangles", result->counters.clean);
-    json_integer(out, "passes", result->counters.passes);
+    write_counters(out, &result->counters, false);
     json_string(out, "state", interval_state_name(result->state));
     write_guarantees(w, result->detector);
     write_times(out, &result->timings);
@@ -157,11 +145,35 @@ static void write_frames(summary_writer *w) {
     json_end_array(&w->out);
 }
 
-static void write_column(json *out, const char *key, const column *c, uint32_t count) {
+static void write_column(json *out, const char *key, double sum, double max, uint32_t count) {
     json_begin_object(out, key);
-    json_number(out, "mean", count > 0 ? c->sum / count : 0.0);
-    json_number(out, "max", c->max);
+    json_number(out, "mean", count > 0 ? sum / count : 0.0);
+    json_number(out, "max", max);
     json_end_object(out);
+}
+
+/* Mean and maximum per interval, of every stage and of the counters that have them. */
+static void write_columns(json *out, const replay_totals *t) {
+    for (int i = 0; i < TIMING_COUNT; i++) {
+        const timing_row *row = &timing_rows[i];
+        char key[32];
+        snprintf(key, sizeof key, "%s_ms", row->name);
+        write_column(out, key, timing_ms(&t->time_sum, row), timing_ms(&t->time_max, row), t->intervals);
+    }
+    for (int i = 0; i < COUNTER_COUNT; i++) {
+        const counter_row *row = &counter_rows[i];
+        if (row->kind != COUNTER_AVERAGED) continue;
+        write_column(out, row->name, (double)counter_value(&t->counter_sum, row),
+                     (double)counter_value(&t->counter_max, row), t->intervals);
+    }
+}
+
+static void write_sums(json *out, const replay_totals *t) {
+    for (int i = 0; i < COUNTER_COUNT; i++) {
+        const counter_row *row = &counter_rows[i];
+        if (row->kind == COUNTER_OF_CONTACTS || row->kind == COUNTER_SUMMED)
+            json_integer(out, row->name, counter_value(&t->counter_sum, row));
+    }
 }
 
 static void write_plan(json *out, const plan_choice *plan) {
@@ -179,7 +191,7 @@ static void write_plan(json *out, const plan_choice *plan) {
 }
 
 static void write_summary(summary_writer *w, const summary_ending *e) {
-    const totals *t = e->totals;
+    const replay_totals *t = e->totals;
     json *out = &w->out;
     json_break_line(out);
     json_begin_object(out, "summary");
@@ -197,7 +209,8 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     json_integer(out, "intervals", t->intervals);
     json_integer(out, "intervals_complete", t->intervals_complete);
     json_integer(out, "intervals_with_contact", t->intervals_with_contact);
-    for (int i = 0; i < 4; i++) json_integer(out, interval_state_name((interval_state)i), t->states[i]);
+    for (int i = 0; i < INTERVAL_STATES; i++)
+        json_integer(out, interval_state_name((interval_state)i), t->states[i]);
     json_integer(out, "frames_checked", t->frames_checked);
     json_integer(out, "frames_crossing", t->frames_crossing);
     if (t->intervals_with_contact > 0)
@@ -205,24 +218,8 @@ static void write_summary(summary_writer *w, const summary_ending *e) {
     else
         json_null(out, "first_contact_frame");
     json_integer(out, "contradictions", t->contradictions);
-    json_integer(out, "vf", t->vf);
-    json_integer(out, "ee", t->ee);
-    json_integer(out, "bounded", t->bounded);
-    json_integer(out, "static_checks", t->static_checks);
-    write_column(out, "update_ms", &t->update, t->intervals);
-    write_column(out, "orientation_ms", &t->orientation, t->intervals);
-    write_column(out, "contour_ms", &t->contour, t->intervals);
-    write_column(out, "traversal_ms", &t->traversal, t->intervals);
-    write_column(out, "contact_ms", &t->contact, t->intervals);
-    write_column(out, "proof_ms", &t->proof, t->intervals);
-    write_column(out, "check_ms", &t->check, t->intervals);
-    write_column(out, "total_ms", &t->total, t->intervals);
-    write_column(out, "pcp", &t->pcp, t->intervals);
-    write_column(out, "tests", &t->tests, t->intervals);
-    write_column(out, "plus", &t->plus, t->intervals);
-    write_column(out, "minus", &t->minus, t->intervals);
-    write_column(out, "clean_triangles", &t->clean, t->intervals);
-    write_column(out, "passes", &t->passes, t->intervals);
+    write_sums(out, t);
+    write_columns(out, t);
     json_end_object(out);
 }
 

@@ -1,0 +1,34 @@
+/* The JSON summary of a replay, written interval by interval. */
+#pragma once
+
+#include "src/tool/replay/table.h"
+
+/* What is known of a frame after its static check. */
+typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
+
+typedef struct summary_writer summary_writer;
+
+/* path NULL: no file. keep_text: summary_close can give all of it. */
+bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
+                  io_error *error);
+/* Each interval reaches the system at once. */
+bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
+bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error);
+
+typedef struct summary_ending {
+    const replay_totals *totals;
+    const recording *recording;
+    const plan_choice *plan;
+    const char *mode, *model_path;
+    cscd_volume volume;
+    const char *const *frame_paths;
+    size_t frame_path_count;
+    int argument_count;
+    char **arguments;
+    double min_separation;
+    const char *stopped_by; /* why not every interval is there; NULL when all are */
+} summary_ending;
+
+/* Writes the frames, the summary and the provenance, and closes. text NULL, or with keep_text: all that was
+ * written, to be freed, also when the file could not be; NULL when there was no memory for it. */
+bool summary_close(summary_writer *w, const summary_ending *ending, char **text, io_error *error);
