@@ -42,7 +42,7 @@ void apart_take(apart *a, const cscd_mesh *mesh, const cscd_proximities *near) {
 
 void apart_sum(const cscd_stencil *s, const double *positions, double sum[3]) {
     sum[0] = sum[1] = sum[2] = 0.0;
-    for (int i = 0; i < 4; i++) add_scaled(sum, s->weights[i], positions + (size_t)s->vertices[i] * 3);
+    for (int i = 0; i < 4; i++) vec3_add_scaled(sum, s->weights[i], positions + (size_t)s->vertices[i] * 3);
 }
 
 void apart_push(const cscd_stencil *s, const double *inverse_masses, const double change[3],
@@ -51,23 +51,23 @@ void apart_push(const cscd_stencil *s, const double *inverse_masses, const doubl
     for (int i = 0; i < 4; i++) squares += inverse_masses[s->vertices[i]] * s->weights[i] * s->weights[i];
     if (squares == 0.0) return;
     for (int i = 0; i < 4; i++)
-        add_scaled(positions + (size_t)s->vertices[i] * 3,
-                   inverse_masses[s->vertices[i]] * s->weights[i] / squares, change);
+        vec3_add_scaled(positions + (size_t)s->vertices[i] * 3,
+                        inverse_masses[s->vertices[i]] * s->weights[i] / squares, change);
 }
 
 static void solve_pair(const apart *a, const apart_pair *pair, const double *inverse_masses, double *previous,
                        double *positions) {
     double between[3], slid[3], change[3] = {0.0, 0.0, 0.0};
     apart_sum(&pair->stencil, positions, between);
-    double depth = a->thickness - dot(between, pair->normal);
+    double depth = a->thickness - vec3_dot(between, pair->normal);
     if (depth <= 0.0) return;
     apart_sum(&pair->stencil, previous, slid);
     for (int k = 0; k < 3; k++) slid[k] = between[k] - slid[k];
-    double approach = -dot(slid, pair->normal), stopped = fmin(depth, fmax(approach, 0.0));
-    add_scaled(slid, approach, pair->normal);
-    double sliding = norm(slid);
-    add_scaled(change, stopped, pair->normal);
-    if (sliding > 0.0) add_scaled(change, -fmin(a->friction * stopped, sliding) / sliding, slid);
+    double approach = -vec3_dot(slid, pair->normal), stopped = fmin(depth, fmax(approach, 0.0));
+    vec3_add_scaled(slid, approach, pair->normal);
+    double sliding = vec3_norm(slid);
+    vec3_add_scaled(change, stopped, pair->normal);
+    if (sliding > 0.0) vec3_add_scaled(change, -fmin(a->friction * stopped, sliding) / sliding, slid);
     apart_push(&pair->stencil, inverse_masses, change, positions);
     double healed = pair->healing * (depth - stopped);
     for (int k = 0; k < 3; k++) change[k] = healed * pair->normal[k];

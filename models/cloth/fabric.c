@@ -30,30 +30,30 @@ static side *sorted_sides(const body *b) {
 
 static double triangle_area(const double *p, const double *q, const double *r) {
     double along[3], across[3], normal[3];
-    difference(q, p, along);
-    difference(r, p, across);
-    cross(along, across, normal);
-    return 0.5 * norm(normal);
+    vec3_subtract(q, p, along);
+    vec3_subtract(r, p, across);
+    vec3_cross(along, across, normal);
+    return 0.5 * vec3_norm(normal);
 }
 
 /* Of the angle at p between q and r. */
 static double cotangent(const double *p, const double *q, const double *r) {
     double to_q[3], to_r[3], normal[3];
-    difference(q, p, to_q);
-    difference(r, p, to_r);
-    cross(to_q, to_r, normal);
-    return dot(to_q, to_r) / norm(normal);
+    vec3_subtract(q, p, to_q);
+    vec3_subtract(r, p, to_r);
+    vec3_cross(to_q, to_r, normal);
+    return vec3_dot(to_q, to_r) / vec3_norm(normal);
 }
 
 static double distance_between(const double *p, const double *q) {
     double between[3];
-    difference(p, q, between);
-    return norm(between);
+    vec3_subtract(p, q, between);
+    return vec3_norm(between);
 }
 
 static void weighted_sum(const fabric_hinge *h, const double *positions, double sum[3]) {
     sum[0] = sum[1] = sum[2] = 0.0;
-    for (int i = 0; i < 4; i++) add_scaled(sum, h->weights[i], positions + h->vertices[i] * 3);
+    for (int i = 0; i < 4; i++) vec3_add_scaled(sum, h->weights[i], positions + h->vertices[i] * 3);
 }
 
 /* Energy 3 / (2 (A0 + A1)) bending |sum|^2. */
@@ -69,7 +69,7 @@ static fabric_hinge make_hinge(const side sides[2], const double *rest, double b
     h.weights[2] = -at_0[0] - at_1[0];
     h.weights[3] = -at_0[1] - at_1[1];
     weighted_sum(&h, rest, sum);
-    h.rest = norm(sum);
+    h.rest = vec3_norm(sum);
     h.compliance = (triangle_area(x[0], x[1], x[2]) + triangle_area(x[0], x[1], x[3])) / (3.0 * bending);
     return h;
 }
@@ -125,16 +125,16 @@ static void solve_spring(const fabric *f, const fabric_spring *s, double step, c
                          double *positions) {
     uint32_t a = s->vertices[0] * 3, b = s->vertices[1] * 3;
     double direction[3], before[3];
-    difference(positions + a, positions + b, direction);
-    difference(previous + a, previous + b, before);
-    double length = norm(direction);
-    if (!normalize(direction)) return;
+    vec3_subtract(positions + a, positions + b, direction);
+    vec3_subtract(previous + a, previous + b, before);
+    double length = vec3_norm(direction);
+    if (!vec3_normalize(direction)) return;
     double wa = f->inverse_masses[s->vertices[0]], wb = f->inverse_masses[s->vertices[1]];
     if (wa + wb == 0.0) return;
-    double change = multiplier(length - s->rest, length - dot(before, direction), wa + wb, s->compliance,
+    double change = multiplier(length - s->rest, length - vec3_dot(before, direction), wa + wb, s->compliance,
                                f->damping, step);
-    add_scaled(positions + a, wa * change, direction);
-    add_scaled(positions + b, -wb * change, direction);
+    vec3_add_scaled(positions + a, wa * change, direction);
+    vec3_add_scaled(positions + b, -wb * change, direction);
 }
 
 static void solve_hinge(const fabric *f, const fabric_hinge *h, double step, const double *previous,
@@ -143,13 +143,13 @@ static void solve_hinge(const fabric *f, const fabric_hinge *h, double step, con
     weighted_sum(h, positions, direction);
     weighted_sum(h, previous, before);
     for (int i = 0; i < 4; i++) squares += f->inverse_masses[h->vertices[i]] * h->weights[i] * h->weights[i];
-    double length = norm(direction);
-    if (squares == 0.0 || !normalize(direction)) return;
-    double change = multiplier(length - h->rest, length - dot(before, direction), squares, h->compliance,
+    double length = vec3_norm(direction);
+    if (squares == 0.0 || !vec3_normalize(direction)) return;
+    double change = multiplier(length - h->rest, length - vec3_dot(before, direction), squares, h->compliance,
                                f->damping, step);
     for (int i = 0; i < 4; i++)
-        add_scaled(positions + h->vertices[i] * 3, f->inverse_masses[h->vertices[i]] * h->weights[i] * change,
-                   direction);
+        vec3_add_scaled(positions + h->vertices[i] * 3,
+                        f->inverse_masses[h->vertices[i]] * h->weights[i] * change, direction);
 }
 
 void fabric_solve(const fabric *f, double step, const double *previous, double *positions) {
@@ -168,12 +168,12 @@ double fabric_energy(const fabric *f, const double *positions, const double *vel
     for (uint32_t i = 0; i < f->hinge_count; i++) {
         double sum[3];
         weighted_sum(&f->hinges[i], positions, sum);
-        double off = norm(sum) - f->hinges[i].rest;
+        double off = vec3_norm(sum) - f->hinges[i].rest;
         energy += 0.5 * off * off / f->hinges[i].compliance;
     }
     for (uint32_t v = 0; v < f->vertex_count; v++) {
         const double *velocity = velocities + v * 3;
-        if (f->inverse_masses[v] > 0.0) energy += 0.5 * dot(velocity, velocity) / f->inverse_masses[v];
+        if (f->inverse_masses[v] > 0.0) energy += 0.5 * vec3_dot(velocity, velocity) / f->inverse_masses[v];
     }
     return energy;
 }

@@ -67,7 +67,7 @@ static double approach_of(const safe_motion_stop *stop, const double *x0, const 
     double from[3], to[3];
     apart_sum(&stop->stencil, x0, from);
     apart_sum(&stop->stencil, x1, to);
-    return dot(from, stop->normal) - dot(to, stop->normal);
+    return vec3_dot(from, stop->normal) - vec3_dot(to, stop->normal);
 }
 
 static void take_stops(safe_motion *s, const cscd_contacts *found, const double *x0, const double *x1) {
@@ -135,8 +135,8 @@ static uint32_t join(safe_motion *s, const cscd_stencil *stencil, const double *
     for (int i = 0; i < 4 && zone != UINT32_MAX; i++) {
         size_t v = stencil->vertices[i];
         if (!is_told(s, stencil->vertices[i])) continue;
-        add_scaled(s->told[zone], 1.0, x1 + v * 3);
-        add_scaled(s->told[zone], -1.0, x0 + v * 3);
+        vec3_add_scaled(s->told[zone], 1.0, x1 + v * 3);
+        vec3_add_scaled(s->told[zone], -1.0, x0 + v * 3);
         s->told[zone][3] += 1.0;
     }
     return zone;
@@ -148,10 +148,10 @@ static void sum_up_zones(safe_motion *s, const double *x0, const double *x1) {
         if (is_told(s, v)) continue;
         safe_motion_zone *zone = &s->zones[zone_of(s, v)];
         double mass = 1.0 / s->inverse_masses[v];
-        add_scaled(zone->motion, mass, x1 + (size_t)v * 3);
-        add_scaled(zone->motion, -mass, x0 + (size_t)v * 3);
+        vec3_add_scaled(zone->motion, mass, x1 + (size_t)v * 3);
+        vec3_add_scaled(zone->motion, -mass, x0 + (size_t)v * 3);
         zone->mass += mass;
-        add_scaled(zone->told, 1.0, s->told[v]);
+        vec3_add_scaled(zone->told, 1.0, s->told[v]);
         zone->tellers += s->told[v][3];
     }
 }

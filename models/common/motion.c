@@ -32,7 +32,7 @@ static double largest_eigenvalue(double m[4][4]) {
 
 static void centroid(const double *points, uint32_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0.0;
-    for (uint32_t i = 0; i < count; i++) add_scaled(out, 1.0 / count, points + i * 3);
+    for (uint32_t i = 0; i < count; i++) vec3_add_scaled(out, 1.0 / count, points + i * 3);
 }
 
 double rigid_residual(const double *from, const double *to, uint32_t point_count) {
@@ -41,10 +41,10 @@ double rigid_residual(const double *from, const double *to, uint32_t point_count
     centroid(to, point_count, to_centre);
     for (uint32_t i = 0; i < point_count; i++) {
         double a[3], b[3];
-        difference(from + i * 3, from_centre, a);
-        difference(to + i * 3, to_centre, b);
-        squares += dot(a, a) + dot(b, b);
-        for (int k = 0; k < 3; k++) add_scaled(s[k], a[k], b);
+        vec3_subtract(from + i * 3, from_centre, a);
+        vec3_subtract(to + i * 3, to_centre, b);
+        squares += vec3_dot(a, a) + vec3_dot(b, b);
+        for (int k = 0; k < 3; k++) vec3_add_scaled(s[k], a[k], b);
     }
     double n[4][4] = {
         {s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
@@ -69,14 +69,14 @@ cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out
         low[i % 3] = fmin(low[i % 3], first[i]);
         high[i % 3] = fmax(high[i % 3], first[i]);
     }
-    difference(high, low, high);
-    m.diagonal = norm(high);
+    vec3_subtract(high, low, high);
+    m.diagonal = vec3_norm(high);
     for (uint32_t e = 0; e < edge_count; e++) {
         uint32_t v[2];
         double along[3];
         cscd_mesh_edge(mesh, e, v);
-        difference(first + (size_t)v[1] * 3, first + (size_t)v[0] * 3, along);
-        m.edge_length += norm(along) / edge_count;
+        vec3_subtract(first + (size_t)v[1] * 3, first + (size_t)v[0] * 3, along);
+        m.edge_length += vec3_norm(along) / edge_count;
     }
     status = motion_add(&m, first);
     if (status == CSCD_OK)
@@ -108,8 +108,8 @@ cscd_status motion_add(motion *m, const double *frame) {
     m->largest_residual = fmax(m->largest_residual, residual);
     for (uint32_t v = 0; m->frame_count > 0 && v < vertex_count; v++) {
         double moved[3];
-        difference(frame + (size_t)v * 3, m->last + (size_t)v * 3, moved);
-        m->largest_motion = fmax(m->largest_motion, norm(moved) / m->edge_length);
+        vec3_subtract(frame + (size_t)v * 3, m->last + (size_t)v * 3, moved);
+        m->largest_motion = fmax(m->largest_motion, vec3_norm(moved) / m->edge_length);
     }
     memcpy(m->last, frame, (size_t)vertex_count * 3 * sizeof *frame);
     m->frame_count++;

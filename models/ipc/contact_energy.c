@@ -11,8 +11,8 @@ static const double parallel_share = 1e-3;
 
 static double squared_length(const double *positions, const uint32_t edge[2]) {
     double along[3];
-    difference(positions + (size_t)edge[1] * 3, positions + (size_t)edge[0] * 3, along);
-    return dot(along, along);
+    vec3_subtract(positions + (size_t)edge[1] * 3, positions + (size_t)edge[0] * 3, along);
+    return vec3_dot(along, along);
 }
 
 /* Energy times mollifier, and the mollifier's part of the gradient: crossing is |a x b|^2, whose derivative
@@ -20,21 +20,21 @@ static double squared_length(const double *positions, const uint32_t edge[2]) {
 static void fade_parallel(ipc_contact *c, const double *rest, const double *positions) {
     const uint32_t *v = c->vertices;
     double a[3], b[3], across[3], by_a[3], by_b[3];
-    difference(positions + (size_t)v[1] * 3, positions + (size_t)v[0] * 3, a);
-    difference(positions + (size_t)v[3] * 3, positions + (size_t)v[2] * 3, b);
-    cross(a, b, across);
+    vec3_subtract(positions + (size_t)v[1] * 3, positions + (size_t)v[0] * 3, a);
+    vec3_subtract(positions + (size_t)v[3] * 3, positions + (size_t)v[2] * 3, b);
+    vec3_cross(a, b, across);
     double threshold = parallel_share * squared_length(rest, v) * squared_length(rest, v + 2);
-    ipc_curve fade = ipc_mollifier(dot(across, across), threshold);
+    ipc_curve fade = ipc_mollifier(vec3_dot(across, across), threshold);
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) c->gradient[i][k] *= fade.value;
     }
-    cross(b, across, by_a);
-    cross(across, a, by_b);
+    vec3_cross(b, across, by_a);
+    vec3_cross(across, a, by_b);
     double factor = 2.0 * fade.slope * c->energy;
-    add_scaled(c->gradient[0], -factor, by_a);
-    add_scaled(c->gradient[1], factor, by_a);
-    add_scaled(c->gradient[2], -factor, by_b);
-    add_scaled(c->gradient[3], factor, by_b);
+    vec3_add_scaled(c->gradient[0], -factor, by_a);
+    vec3_add_scaled(c->gradient[1], factor, by_a);
+    vec3_add_scaled(c->gradient[2], -factor, by_b);
+    vec3_add_scaled(c->gradient[3], factor, by_b);
     c->energy *= fade.value;
     c->curvature *= fade.value;
 }
@@ -49,7 +49,7 @@ static ipc_contact make_contact(const cscd_mesh *mesh, const double *rest, const
     for (int i = 0; i < 4; i++) {
         c.vertices[i] = s.vertices[i];
         c.weights[i] = s.weights[i];
-        add_scaled(c.gradient[i], options->stiffness * barrier.slope * s.weights[i], c.normal);
+        vec3_add_scaled(c.gradient[i], options->stiffness * barrier.slope * s.weights[i], c.normal);
     }
     if (pair->kind == CSCD_CONTACT_EE) fade_parallel(&c, rest, positions);
     return c;
@@ -84,7 +84,8 @@ void ipc_contacts_free(ipc_contacts *contacts) {
 void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient) {
     for (size_t i = 0; i < contacts->count; i++) {
         const ipc_contact *c = &contacts->items[i];
-        for (int k = 0; k < 4; k++) add_scaled(gradient + (size_t)c->vertices[k] * 3, 1.0, c->gradient[k]);
+        for (int k = 0; k < 4; k++)
+            vec3_add_scaled(gradient + (size_t)c->vertices[k] * 3, 1.0, c->gradient[k]);
     }
 }
 
@@ -93,8 +94,9 @@ void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, dou
         const ipc_contact *c = &contacts->items[i];
         double approach = 0.0;
         for (int k = 0; k < 4; k++)
-            approach += c->weights[k] * dot(c->normal, x + (size_t)c->vertices[k] * 3);
+            approach += c->weights[k] * vec3_dot(c->normal, x + (size_t)c->vertices[k] * 3);
         for (int k = 0; k < 4; k++)
-            add_scaled(out + (size_t)c->vertices[k] * 3, c->curvature * approach * c->weights[k], c->normal);
+            vec3_add_scaled(out + (size_t)c->vertices[k] * 3, c->curvature * approach * c->weights[k],
+                            c->normal);
     }
 }

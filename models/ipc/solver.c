@@ -23,8 +23,8 @@ double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc
     double inertia = 0.0;
     for (uint32_t v = 0; v < p->shape.vertex_count; v++) {
         double away[3];
-        difference(positions + (size_t)v * 3, p->predicted + (size_t)v * 3, away);
-        inertia += 0.5 * p->inertia[v] * dot(away, away);
+        vec3_subtract(positions + (size_t)v * 3, p->predicted + (size_t)v * 3, away);
+        inertia += 0.5 * p->inertia[v] * vec3_dot(away, away);
     }
     return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
 }
@@ -126,7 +126,7 @@ static void accept(ipc_solver *p) {
 static double farthest(const ipc_solver *p) {
     double most = 0.0;
     for (uint32_t v = 0; v < p->shape.vertex_count; v++)
-        most = fmax(most, norm(p->direction + (size_t)v * 3));
+        most = fmax(most, vec3_norm(p->direction + (size_t)v * 3));
     return most;
 }
 

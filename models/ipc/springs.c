@@ -17,9 +17,9 @@ static const double *corner_of(const body *b, uint32_t triangle, uint32_t corner
 /* As long as twice the area. */
 static void triangle_normal(const body *b, uint32_t triangle, double out[3]) {
     double along[3], aside[3];
-    difference(corner_of(b, triangle, 1), corner_of(b, triangle, 0), along);
-    difference(corner_of(b, triangle, 2), corner_of(b, triangle, 0), aside);
-    cross(along, aside, out);
+    vec3_subtract(corner_of(b, triangle, 1), corner_of(b, triangle, 0), along);
+    vec3_subtract(corner_of(b, triangle, 2), corner_of(b, triangle, 0), aside);
+    vec3_cross(along, aside, out);
 }
 
 void ipc_vertex_areas(const body *b, double *areas) {
@@ -27,7 +27,7 @@ void ipc_vertex_areas(const body *b, double *areas) {
     for (uint32_t t = 0; t < b->triangle_count; t++) {
         double normal[3];
         triangle_normal(b, t, normal);
-        for (uint32_t k = 0; k < 3; k++) areas[b->triangles[t * 3 + k]] += norm(normal) / 6.0;
+        for (uint32_t k = 0; k < 3; k++) areas[b->triangles[t * 3 + k]] += vec3_norm(normal) / 6.0;
     }
 }
 
@@ -36,13 +36,13 @@ void ipc_vertex_areas(const body *b, double *areas) {
 static double ray_length(const body *b, uint32_t triangle, const double from[3], const double direction[3]) {
     double along[3], aside[3], offset[3], p[3], q[3];
     const double *origin = corner_of(b, triangle, 0);
-    difference(corner_of(b, triangle, 1), origin, along);
-    difference(corner_of(b, triangle, 2), origin, aside);
-    difference(from, origin, offset);
-    cross(direction, aside, p);
-    cross(offset, along, q);
-    double volume = dot(along, p), u = dot(offset, p) / volume, v = dot(direction, q) / volume;
-    double length = dot(aside, q) / volume;
+    vec3_subtract(corner_of(b, triangle, 1), origin, along);
+    vec3_subtract(corner_of(b, triangle, 2), origin, aside);
+    vec3_subtract(from, origin, offset);
+    vec3_cross(direction, aside, p);
+    vec3_cross(offset, along, q);
+    double volume = vec3_dot(along, p), u = vec3_dot(offset, p) / volume, v = vec3_dot(direction, q) / volume;
+    double length = vec3_dot(aside, q) / volume;
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && length > 0.0 ? length : INFINITY;
 }
 
@@ -54,11 +54,11 @@ typedef struct sphere {
 static sphere *triangle_spheres(const body *b) {
     sphere *spheres = body_allocate(b->triangle_count, sizeof *spheres);
     for (uint32_t t = 0; t < b->triangle_count; t++) {
-        for (uint32_t k = 0; k < 3; k++) add_scaled(spheres[t].centre, 1.0 / 3.0, corner_of(b, t, k));
+        for (uint32_t k = 0; k < 3; k++) vec3_add_scaled(spheres[t].centre, 1.0 / 3.0, corner_of(b, t, k));
         for (uint32_t k = 0; k < 3; k++) {
             double away[3];
-            difference(corner_of(b, t, k), spheres[t].centre, away);
-            spheres[t].squared_radius = fmax(spheres[t].squared_radius, 1.0001 * dot(away, away));
+            vec3_subtract(corner_of(b, t, k), spheres[t].centre, away);
+            spheres[t].squared_radius = fmax(spheres[t].squared_radius, 1.0001 * vec3_dot(away, away));
         }
     }
     return spheres;
@@ -66,9 +66,9 @@ static sphere *triangle_spheres(const body *b) {
 
 static bool passes_by(const sphere *s, const double from[3], const double direction[3]) {
     double offset[3];
-    difference(s->centre, from, offset);
-    double along = dot(offset, direction), squared = dot(direction, direction);
-    return (dot(offset, offset) - s->squared_radius) * squared > along * along;
+    vec3_subtract(s->centre, from, offset);
+    double along = vec3_dot(offset, direction), squared = vec3_dot(direction, direction);
+    return (vec3_dot(offset, offset) - s->squared_radius) * squared > along * along;
 }
 
 /* The vertex next to where the ray from a vertex comes to the surface, the vertex itself where it does not.
@@ -88,13 +88,13 @@ static uint32_t opposite_vertex(const body *b, const sphere *spheres, uint32_t v
         hit = t;
     }
     if (hit == UINT32_MAX) return vertex;
-    add_scaled(end, least, direction);
+    vec3_add_scaled(end, least, direction);
     least = INFINITY;
     for (uint32_t k = 0; k < 3; k++) {
         double away[3];
-        difference(corner_of(b, hit, k), end, away);
-        if (!(norm(away) < least)) continue;
-        least = norm(away);
+        vec3_subtract(corner_of(b, hit, k), end, away);
+        if (!(vec3_norm(away) < least)) continue;
+        least = vec3_norm(away);
         nearest = b->triangles[hit * 3 + k];
     }
     return nearest;
@@ -111,8 +111,8 @@ static void add_spring(ipc_springs *springs, const body *b, uint32_t v, uint32_t
         free(springs->items);
         springs->items = grown;
     }
-    difference(b->positions + (size_t)w * 3, b->positions + (size_t)v * 3, along);
-    double rest = norm(along);
+    vec3_subtract(b->positions + (size_t)w * 3, b->positions + (size_t)v * 3, along);
+    double rest = vec3_norm(along);
     springs->items[springs->count++] =
         (ipc_spring){v < w ? v : w, v < w ? w : v, rest, stiffness + per_length / rest};
 }
@@ -126,20 +126,20 @@ static void add_struts(ipc_springs *springs, const body *b, double solid) {
         double normal[3];
         triangle_normal(b, t, normal);
         for (uint32_t k = 0; k < 3; k++)
-            add_scaled(normals + (size_t)b->triangles[t * 3 + k] * 3, 1.0, normal);
+            vec3_add_scaled(normals + (size_t)b->triangles[t * 3 + k] * 3, 1.0, normal);
     }
     for (uint32_t v = 0; v < b->vertex_count; v++) {
         static const double leans[STRUTS][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
         double *normal = normals + (size_t)v * 3, one[3], other[3];
-        if (!normalize(normal)) continue;
+        if (!vec3_normalize(normal)) continue;
         int flat = fabs(normal[0]) < fabs(normal[1]) ? 0 : 1;
-        cross(normal, (double[3]){flat == 0, flat == 1, 0.0}, one);
-        normalize(one);
-        cross(normal, one, other);
+        vec3_cross(normal, (double[3]){flat == 0, flat == 1, 0.0}, one);
+        vec3_normalize(one);
+        vec3_cross(normal, one, other);
         for (int i = 0; i < STRUTS; i++) {
             double inward[3] = {-normal[0], -normal[1], -normal[2]};
-            add_scaled(inward, tilt * leans[i][0], one);
-            add_scaled(inward, tilt * leans[i][1], other);
+            vec3_add_scaled(inward, tilt * leans[i][0], one);
+            vec3_add_scaled(inward, tilt * leans[i][1], other);
             uint32_t w = opposite_vertex(b, spheres, v, inward);
             if (w != v) add_spring(springs, b, v, w, 0.0, solid * areas[v] / STRUTS);
         }
@@ -186,9 +186,9 @@ void ipc_springs_free(ipc_springs *springs) {
 
 /* The length, and the direction from a to b. */
 static double spring_length(const ipc_spring *s, const double *positions, double direction[3]) {
-    difference(positions + (size_t)s->b * 3, positions + (size_t)s->a * 3, direction);
-    double length = norm(direction);
-    normalize(direction);
+    vec3_subtract(positions + (size_t)s->b * 3, positions + (size_t)s->a * 3, direction);
+    double length = vec3_norm(direction);
+    vec3_normalize(direction);
     return length;
 }
 
@@ -206,8 +206,8 @@ void ipc_springs_add_gradient(const ipc_springs *springs, const double *position
     for (uint32_t i = 0; i < springs->count; i++) {
         const ipc_spring *s = &springs->items[i];
         double direction[3], force = s->stiffness * (spring_length(s, positions, direction) - s->rest);
-        add_scaled(gradient + (size_t)s->a * 3, -force, direction);
-        add_scaled(gradient + (size_t)s->b * 3, force, direction);
+        vec3_add_scaled(gradient + (size_t)s->a * 3, -force, direction);
+        vec3_add_scaled(gradient + (size_t)s->b * 3, force, direction);
     }
 }
 
@@ -227,8 +227,8 @@ void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessia
         const ipc_spring_hessian *h = &hessians[i];
         size_t a = (size_t)springs->items[i].a * 3, b = (size_t)springs->items[i].b * 3;
         double apart[3];
-        difference(x + a, x + b, apart);
-        double along = h->along * dot(h->n, apart);
+        vec3_subtract(x + a, x + b, apart);
+        double along = h->along * vec3_dot(h->n, apart);
         for (int k = 0; k < 3; k++) {
             double force = along * h->n[k] + h->aside * apart[k];
             out[a + (size_t)k] += force;

@@ -57,8 +57,8 @@ static double mean_edge(const cscd_mesh *mesh, const double *frame) {
         uint32_t v[2];
         double along[3];
         cscd_mesh_edge(mesh, e, v);
-        difference(frame + (size_t)v[1] * 3, frame + (size_t)v[0] * 3, along);
-        sum += norm(along);
+        vec3_subtract(frame + (size_t)v[1] * 3, frame + (size_t)v[0] * 3, along);
+        sum += vec3_norm(along);
     }
     return sum / count;
 }
@@ -70,8 +70,8 @@ static cscd_status count_interval(census *c, const double *frame) {
     count_contacts(c, &found);
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(c->mesh); v++) {
         double moved[3];
-        difference(frame + (size_t)v * 3, c->last + (size_t)v * 3, moved);
-        c->largest_motion = fmax(c->largest_motion, norm(moved) / c->edge_length);
+        vec3_subtract(frame + (size_t)v * 3, c->last + (size_t)v * 3, moved);
+        c->largest_motion = fmax(c->largest_motion, vec3_norm(moved) / c->edge_length);
     }
     return CSCD_OK;
 }

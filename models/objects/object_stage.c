@@ -60,7 +60,7 @@ static void place_object(const moving_object *o, double time, const double *rest
     for (uint32_t v = 0; v < vertex_count; v++) {
         const double *p = rest + (size_t)v * 3, own[3] = {thinner * p[0], thinner * p[1], longer * p[2]};
         for (int k = 0; k < 3; k++)
-            placed[(size_t)v * 3 + (size_t)k] = o->place[k] + far * o->away[k] + dot(turn[k], own);
+            placed[(size_t)v * 3 + (size_t)k] = o->place[k] + far * o->away[k] + vec3_dot(turn[k], own);
     }
 }
 

@@ -34,12 +34,12 @@ static void add_body(body *all, const struct falling_body *which, const body *b)
     double turn[3][3], middle[3] = {0.0, 0.0, 0.0};
     uint32_t first = all->vertex_count;
     for (uint32_t v = 0; v < b->vertex_count; v++)
-        add_scaled(middle, 1.0 / b->vertex_count, b->positions + (size_t)v * 3);
+        vec3_add_scaled(middle, 1.0 / b->vertex_count, b->positions + (size_t)v * 3);
     turn_matrix(which->axis, which->degrees, turn);
     body_append(all, b, (double[3]){-middle[0], -middle[1], -middle[2]});
     for (uint32_t v = first; v < all->vertex_count; v++) {
         double *p = all->positions + (size_t)v * 3, own[3] = {p[0], p[1], p[2]};
-        for (int k = 0; k < 3; k++) p[k] = which->place[k] + which->scale * dot(turn[k], own);
+        for (int k = 0; k < 3; k++) p[k] = which->place[k] + which->scale * vec3_dot(turn[k], own);
     }
 }
 
@@ -106,7 +106,7 @@ bool tumble_advance(tumble *t, io_error *error) {
     for (int i = 0; i < CHECKS; i++) {
         cscd_contacts found;
         memcpy(t->start, t->soft.vertices, bytes);
-        soft_body_advance(&t->soft, &t->around, &t->contacts, frame_seconds / CHECKS, SMALL_STEPS);
+        simulation_advance(&t->soft, &t->around, &t->contacts, frame_seconds / CHECKS, SMALL_STEPS);
         if (!explain(t, cscd_detector_step(t->detector, t->start, t->soft.vertices, &found), error))
             return false;
         self_contacts_add(&t->contacts, &found, t->start, t->soft.vertices);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/shapes/body.h"
-#include "models/softbody/soft_body.h"
+#include "models/softbody/simulation.h"
 #include "src/io/io_error.h"
 
 enum { TUMBLE_BODIES = 8, TUMBLE_FRAMES = 150 };

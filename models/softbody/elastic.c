@@ -85,15 +85,15 @@ static void correct(const tetrahedron *t, double by_gradient[3][3], double value
     double gradients[4][3] = {{0.0}};
     for (int j = 0; j < 3; j++) {
         for (int i = 0; i < 3; i++) {
-            gradients[j + 1][i] = dot(by_gradient[i], t->to_rest[j]);
+            gradients[j + 1][i] = vec3_dot(by_gradient[i], t->to_rest[j]);
             gradients[0][i] -= gradients[j + 1][i];
         }
     }
     double weight = compliance;
-    for (int i = 0; i < 4; i++) weight += inverse_masses[t->nodes[i]] * dot(gradients[i], gradients[i]);
+    for (int i = 0; i < 4; i++) weight += inverse_masses[t->nodes[i]] * vec3_dot(gradients[i], gradients[i]);
     double multiplier = -value / weight;
     for (int i = 0; i < 4; i++)
-        add_scaled(nodes + t->nodes[i] * 3, inverse_masses[t->nodes[i]] * multiplier, gradients[i]);
+        vec3_add_scaled(nodes + t->nodes[i] * 3, inverse_masses[t->nodes[i]] * multiplier, gradients[i]);
 }
 
 void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const double *inverse_masses,
@@ -102,7 +102,7 @@ void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const doubl
         const tetrahedron *t = &tetrahedra[i];
         double f[3][3], gradient[3][3];
         deformation_gradient(t, nodes, f);
-        double size = sqrt(dot(f[0], f[0]) + dot(f[1], f[1]) + dot(f[2], f[2]));
+        double size = sqrt(vec3_dot(f[0], f[0]) + vec3_dot(f[1], f[1]) + vec3_dot(f[2], f[2]));
         for (int k = 0; k < 9; k++) gradient[k / 3][k % 3] = f[k / 3][k % 3] / size;
         correct(t, gradient, size, 1.0 / (t->shear * t->volume * step * step), inverse_masses, nodes);
 
@@ -119,7 +119,7 @@ double tetrahedra_energy(const tetrahedron *tetrahedra, uint32_t count, const do
         const tetrahedron *t = &tetrahedra[i];
         double f[3][3], rest_growth = t->shear / t->bulk;
         deformation_gradient(t, nodes, f);
-        double squared = dot(f[0], f[0]) + dot(f[1], f[1]) + dot(f[2], f[2]);
+        double squared = vec3_dot(f[0], f[0]) + vec3_dot(f[1], f[1]) + vec3_dot(f[2], f[2]);
         double growth = determinant(f) - 1.0 - rest_growth;
         energy += 0.5 * t->volume *
                   (t->shear * (squared - 3.0) + t->bulk * (growth * growth - rest_growth * rest_growth));

@@ -49,15 +49,15 @@ static void mark_surface(cell_grid *g, const double *positions, uint32_t vertex_
         const double *a = positions + triangles[t * 3] * 3, *b = positions + triangles[t * 3 + 1] * 3,
                      *c = positions + triangles[t * 3 + 2] * 3;
         double ab[3], ac[3];
-        difference(b, a, ab);
-        difference(c, a, ac);
-        int steps = 1 + (int)(4.0 * fmax(norm(ab), norm(ac)) / g->spacing);
+        vec3_subtract(b, a, ab);
+        vec3_subtract(c, a, ac);
+        int steps = 1 + (int)(4.0 * fmax(vec3_norm(ab), vec3_norm(ac)) / g->spacing);
         for (int i = 0; i <= steps; i++) {
             for (int j = 0; i + j <= steps; j++) {
                 double p[3] = {a[0], a[1], a[2]};
                 uint32_t cell[3];
-                add_scaled(p, (double)i / steps, ab);
-                add_scaled(p, (double)j / steps, ac);
+                vec3_add_scaled(p, (double)i / steps, ab);
+                vec3_add_scaled(p, (double)j / steps, ac);
                 find_cell(g, p, cell);
                 g->kinds[cell_at(g, cell[0], cell[1], cell[2])] = SURFACE;
             }
@@ -165,7 +165,8 @@ void lattice_free(lattice *l) {
 void lattice_place_vertex(const lattice *l, const double *nodes, uint32_t vertex, double position[3]) {
     const uint32_t *corners = l->cells[l->vertex_cells[vertex]];
     position[0] = position[1] = position[2] = 0.0;
-    for (int i = 0; i < 8; i++) add_scaled(position, l->vertex_shares[vertex][i], nodes + corners[i] * 3);
+    for (int i = 0; i < 8; i++)
+        vec3_add_scaled(position, l->vertex_shares[vertex][i], nodes + corners[i] * 3);
 }
 
 void lattice_place_vertices(const lattice *l, const double *nodes, double *positions) {

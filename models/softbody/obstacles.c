@@ -38,9 +38,9 @@ bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_h
 bool obstacles_hit_ball(obstacles *o, uint32_t which, const double point[3], obstacle_hit *out) {
     ball *b = &o->balls[which];
     double away[3];
-    difference(point, b->centre, away);
-    double distance = norm(away);
-    if (distance >= b->radius || !normalize(away)) return false;
+    vec3_subtract(point, b->centre, away);
+    double distance = vec3_norm(away);
+    if (distance >= b->radius || !vec3_normalize(away)) return false;
     *out = (obstacle_hit){{away[0], away[1], away[2]}, b->radius - distance, b};
     return true;
 }
@@ -50,18 +50,18 @@ void obstacles_begin(obstacles *o, double step) {
         ball *b = &o->balls[i];
         memcpy(b->previous, b->centre, sizeof b->previous);
         b->velocity[2] -= o->gravity * step;
-        add_scaled(b->centre, step, b->velocity);
+        vec3_add_scaled(b->centre, step, b->velocity);
     }
 }
 
 static void keep_off_ball(ball *a, ball *b) {
     double away[3];
-    difference(a->centre, b->centre, away);
-    double depth = a->radius + b->radius - norm(away);
-    if (depth <= 0.0 || !normalize(away)) return;
+    vec3_subtract(a->centre, b->centre, away);
+    double depth = a->radius + b->radius - vec3_norm(away);
+    if (depth <= 0.0 || !vec3_normalize(away)) return;
     double share = b->mass / (a->mass + b->mass);
-    add_scaled(a->centre, depth * share, away);
-    add_scaled(b->centre, -depth * (1.0 - share), away);
+    vec3_add_scaled(a->centre, depth * share, away);
+    vec3_add_scaled(b->centre, -depth * (1.0 - share), away);
 }
 
 void obstacles_end(obstacles *o, double step) {
@@ -80,7 +80,7 @@ double obstacles_energy(const obstacles *o) {
     double energy = 0.0;
     for (uint32_t i = 0; i < o->ball_count; i++) {
         const ball *b = &o->balls[i];
-        energy += b->mass * (0.5 * dot(b->velocity, b->velocity) + o->gravity * b->centre[2]);
+        energy += b->mass * (0.5 * vec3_dot(b->velocity, b->velocity) + o->gravity * b->centre[2]);
     }
     return energy;
 }

@@ -69,7 +69,7 @@ bool recorder_advance(recorder *r, io_error *error) {
     for (uint32_t i = 0; i < s->checks; i++) {
         cscd_contacts found = {NULL, 0};
         memcpy(r->start, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->start);
-        soft_body_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
+        simulation_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
         cscd_status status = cscd_detector_step(r->detector, r->start, r->soft.vertices, &found);
         if (!explain(r, status, error)) return false;
         r->detect_ms += cscd_detector_timings(r->detector).total_ms;

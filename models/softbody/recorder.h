@@ -3,6 +3,7 @@
 #pragma once
 
 #include "models/softbody/scene.h"
+#include "models/softbody/simulation.h"
 
 typedef struct recorder {
     const scene *scene;

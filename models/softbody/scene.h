@@ -2,6 +2,7 @@
 #pragma once
 
 #include "models/shapes/catalogue.h"
+#include "models/softbody/obstacles.h"
 #include "models/softbody/soft_body.h"
 
 /* Lengths in the bodies' unit, times in seconds. */

@@ -2,7 +2,6 @@
 #include "models/softbody/self_contact.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
-#include "models/softbody/soft_body.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,9 +43,9 @@ static void triangle_normal(const cscd_mesh *mesh, const double *positions, uint
     uint32_t v[3];
     double first[3], second[3];
     cscd_mesh_triangle(mesh, triangle, v);
-    difference(positions + v[1] * 3, positions + v[0] * 3, first);
-    difference(positions + v[2] * 3, positions + v[0] * 3, second);
-    cross(first, second, out);
+    vec3_subtract(positions + v[1] * 3, positions + v[0] * 3, first);
+    vec3_subtract(positions + v[2] * 3, positions + v[0] * 3, second);
+    vec3_cross(first, second, out);
 }
 
 /* From b outwards, across both features; false where they do not face each other clearly. */
@@ -54,22 +53,22 @@ static bool outward_normal(const self_contacts *s, const double *positions, cons
                            double out[3]) {
     if (pair->kind == CSCD_CONTACT_VF) {
         triangle_normal(s->mesh, positions, pair->b, out);
-        return normalize(out);
+        return vec3_normalize(out);
     }
     uint32_t a[2], b[2];
     double along_a[3], along_b[3], facing[3] = {0.0, 0.0, 0.0};
     cscd_mesh_edge(s->mesh, pair->a, a);
     cscd_mesh_edge(s->mesh, pair->b, b);
-    difference(positions + a[1] * 3, positions + a[0] * 3, along_a);
-    difference(positions + b[1] * 3, positions + b[0] * 3, along_b);
-    cross(along_a, along_b, out);
+    vec3_subtract(positions + a[1] * 3, positions + a[0] * 3, along_a);
+    vec3_subtract(positions + b[1] * 3, positions + b[0] * 3, along_b);
+    vec3_cross(along_a, along_b, out);
     for (int i = 0; i < 4; i++) {
         double normal[3];
         triangle_normal(s->mesh, positions, triangles_at(s, i < 2 ? pair->a : pair->b)[i % 2], normal);
-        if (normalize(normal)) add_scaled(facing, i < 2 ? -0.25 : 0.25, normal);
+        if (vec3_normalize(normal)) vec3_add_scaled(facing, i < 2 ? -0.25 : 0.25, normal);
     }
-    if (norm(out) < 0.1 * norm(along_a) * norm(along_b) || !normalize(out)) return false;
-    double side = dot(out, facing);
+    if (vec3_norm(out) < 0.1 * vec3_norm(along_a) * vec3_norm(along_b) || !vec3_normalize(out)) return false;
+    double side = vec3_dot(out, facing);
     for (int k = 0; k < 3; k++) out[k] = side < 0.0 ? -out[k] : out[k];
     return fabs(side) > 0.2;
 }
@@ -86,9 +85,9 @@ static surface_point point_on_triangle(const cscd_mesh *mesh, uint32_t triangle,
     return p;
 }
 
-static void place(const surface_point *p, const double *positions, double out[3]) {
+static void place_point(const surface_point *p, const double *positions, double out[3]) {
     out[0] = out[1] = out[2] = 0.0;
-    for (int i = 0; i < p->count; i++) add_scaled(out, p->weights[i], positions + p->vertices[i] * 3);
+    for (int i = 0; i < p->count; i++) vec3_add_scaled(out, p->weights[i], positions + p->vertices[i] * 3);
 }
 
 /* Whether a comes from another part of the body, and from the outside of b. */
@@ -99,15 +98,16 @@ static bool is_collision(const self_contacts *s, const cscd_contact *c, const do
     surface_point a = vf ? (surface_point){1, {c->a}, {1.0}} : point_on_edge(s->mesh, c->a, c->u);
     surface_point b = vf ? point_on_triangle(s->mesh, c->b, c->u, c->v) : point_on_edge(s->mesh, c->b, c->v);
     double normal[3], a_start[3], a_end[3], b_start[3], b_end[3];
-    place(&a, s->rest, a_start);
-    place(&b, s->rest, b_start);
-    difference(a_start, b_start, normal);
-    if (norm(normal) < s->near || !outward_normal(s, start, &pair, normal)) return false;
-    place(&a, start, a_start);
-    place(&a, end, a_end);
-    place(&b, start, b_start);
-    place(&b, end, b_end);
-    return dot(a_end, normal) - dot(a_start, normal) < dot(b_end, normal) - dot(b_start, normal);
+    place_point(&a, s->rest, a_start);
+    place_point(&b, s->rest, b_start);
+    vec3_subtract(a_start, b_start, normal);
+    if (vec3_norm(normal) < s->near || !outward_normal(s, start, &pair, normal)) return false;
+    place_point(&a, start, a_start);
+    place_point(&a, end, a_end);
+    place_point(&b, start, b_start);
+    place_point(&b, end, b_end);
+    return vec3_dot(a_end, normal) - vec3_dot(a_start, normal) <
+           vec3_dot(b_end, normal) - vec3_dot(b_start, normal);
 }
 
 static int compare_pairs(const void *left, const void *right) {
@@ -149,10 +149,10 @@ static bool find_below(const self_contacts *s, const double *positions, held_pai
     for (int i = 0; i < 3; i++) { /* the part of the triangle that lies opposite corner i */
         const double *from = positions + below->vertices[(i + 1) % 3] * 3;
         double along[3], to_vertex[3], across[3];
-        difference(positions + below->vertices[(i + 2) % 3] * 3, from, along);
-        difference(positions + pair->a * 3, from, to_vertex);
-        cross(along, to_vertex, across);
-        below->weights[i] = dot(across, normal) / dot(normal, normal);
+        vec3_subtract(positions + below->vertices[(i + 2) % 3] * 3, from, along);
+        vec3_subtract(positions + pair->a * 3, from, to_vertex);
+        vec3_cross(along, to_vertex, across);
+        below->weights[i] = vec3_dot(across, normal) / vec3_dot(normal, normal);
         if (below->weights[i] < least) {
             least = below->weights[i];
             over = i;
@@ -177,11 +177,11 @@ static bool find_crossing(const self_contacts *s, const double *positions, const
     double along_a[3], along_b[3], between[3];
     *a = point_on_edge(s->mesh, pair->a, 0.0);
     *b = point_on_edge(s->mesh, pair->b, 0.0);
-    difference(positions + a->vertices[1] * 3, positions + a->vertices[0] * 3, along_a);
-    difference(positions + b->vertices[1] * 3, positions + b->vertices[0] * 3, along_b);
-    difference(positions + b->vertices[0] * 3, positions + a->vertices[0] * 3, between);
-    double aa = dot(along_a, along_a), bb = dot(along_b, along_b), ab = dot(along_a, along_b);
-    double area = aa * bb - ab * ab, da = dot(along_a, between), db = dot(along_b, between);
+    vec3_subtract(positions + a->vertices[1] * 3, positions + a->vertices[0] * 3, along_a);
+    vec3_subtract(positions + b->vertices[1] * 3, positions + b->vertices[0] * 3, along_b);
+    vec3_subtract(positions + b->vertices[0] * 3, positions + a->vertices[0] * 3, between);
+    double aa = vec3_dot(along_a, along_a), bb = vec3_dot(along_b, along_b), ab = vec3_dot(along_a, along_b);
+    double area = aa * bb - ab * ab, da = vec3_dot(along_a, between), db = vec3_dot(along_b, between);
     if (!(area > 0.0)) return false;
     double u = (da * bb - db * ab) / area, v = (da * ab - db * aa) / area;
     *a = point_on_edge(s->mesh, pair->a, u);
@@ -190,7 +190,7 @@ static bool find_crossing(const self_contacts *s, const double *positions, const
 }
 
 /* How far the point moves at most for a momentum that its vertices share by their weights. */
-static double mobility(const soft_body *soft, const surface_point *p) {
+static double point_mobility(const soft_body *soft, const surface_point *p) {
     double sum = 0.0;
     for (int i = 0; i < p->count; i++) sum += p->weights[i] * soft->vertex_mobilities[p->vertices[i]];
     return sum;
@@ -200,7 +200,7 @@ static double mobility(const soft_body *soft, const surface_point *p) {
 static void push_apart(const soft_body *soft, double *nodes, const surface_point *a, const surface_point *b,
                        const double change[3]) {
     const surface_point *const sides[2] = {a, b};
-    double per_change = 1.0 / (mobility(soft, a) + mobility(soft, b));
+    double per_change = 1.0 / (point_mobility(soft, a) + point_mobility(soft, b));
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < sides[side]->count; i++) {
             uint32_t vertex = sides[side]->vertices[i];
@@ -220,14 +220,14 @@ static void relative_motion(const soft_body *soft, const double *positions, cons
         for (int i = 0; i < sides[side]->count; i++) {
             double before[3], weight = (side == 0 ? 1.0 : -1.0) * sides[side]->weights[i];
             lattice_place_vertex(&soft->frame, soft->previous, sides[side]->vertices[i], before);
-            add_scaled(out, weight, positions + sides[side]->vertices[i] * 3);
-            add_scaled(out, -weight, before);
+            vec3_add_scaled(out, weight, positions + sides[side]->vertices[i] * 3);
+            vec3_add_scaled(out, -weight, before);
         }
     }
 }
 
 /* Earlier pairs of the pass have moved the lattice. */
-static void refresh(const self_contacts *s, soft_body *soft, const held_pair *pair) {
+static void refresh_vertices(const self_contacts *s, soft_body *soft, const held_pair *pair) {
     uint32_t vertices[4] = {pair->a};
     if (pair->kind == CSCD_CONTACT_VF) {
         cscd_mesh_triangle(s->mesh, pair->b, vertices + 1);
@@ -245,23 +245,23 @@ static bool solve_pair(self_contacts *s, soft_body *soft, held_pair *pair) {
     const double *positions = soft->vertices;
     surface_point a = {1, {pair->a}, {1.0}}, b;
     double normal[3], place_a[3], place_b[3], slid[3], change[3] = {0.0, 0.0, 0.0};
-    refresh(s, soft, pair);
+    refresh_vertices(s, soft, pair);
     if (!outward_normal(s, positions, pair, normal)) return false;
     if (pair->kind == CSCD_CONTACT_VF ? !find_below(s, positions, pair, &b)
                                       : !find_crossing(s, positions, pair, &a, &b))
         return false;
-    place(&a, positions, place_a);
-    place(&b, positions, place_b);
-    double distance = dot(place_a, normal) - dot(place_b, normal);
+    place_point(&a, positions, place_a);
+    place_point(&b, positions, place_b);
+    double distance = vec3_dot(place_a, normal) - vec3_dot(place_b, normal);
     if (distance > 2.0 * s->gap || distance < -s->depth) return false;
     double depth = s->gap - distance;
     if (depth <= 0.0) return true;
     relative_motion(soft, positions, &a, &b, slid);
-    double approach = -dot(slid, normal), stopped = fmin(depth, fmax(approach, 0.0)), sliding;
-    add_scaled(slid, approach, normal);
-    sliding = norm(slid);
-    add_scaled(change, stopped, normal);
-    if (sliding > 0.0) add_scaled(change, -fmin(s->friction * stopped, sliding) / sliding, slid);
+    double approach = -vec3_dot(slid, normal), stopped = fmin(depth, fmax(approach, 0.0)), sliding;
+    vec3_add_scaled(slid, approach, normal);
+    sliding = vec3_norm(slid);
+    vec3_add_scaled(change, stopped, normal);
+    if (sliding > 0.0) vec3_add_scaled(change, -fmin(s->friction * stopped, sliding) / sliding, slid);
     push_apart(soft, soft->nodes, &a, &b, change);
     double healed = fmin(depth - stopped, s->healing);
     for (int k = 0; k < 3; k++) change[k] = healed * normal[k];

@@ -2,10 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
-
-#include <stdint.h>
-
-struct soft_body;
+#include "models/softbody/soft_body.h"
 
 /* A pair in contact, a on the outside of b. VF: vertex and triangle; EE: two edges. */
 typedef struct held_pair {
@@ -35,4 +32,4 @@ void self_contacts_add(self_contacts *s, const cscd_contacts *found, const doubl
 
 /* One pass in order: pushes the pairs in hold apart, follows vertices that slide from triangle to triangle,
  * and lets go of what has parted. */
-void self_contacts_solve(self_contacts *s, struct soft_body *soft);
+void self_contacts_solve(self_contacts *s, soft_body *soft);

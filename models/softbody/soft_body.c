@@ -1,4 +1,4 @@
-/* A soft body on a lattice: extended position-based dynamics in small steps. */
+/* A soft body: a lattice of masses around a surface, which follows it. */
 #include "models/softbody/soft_body.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
@@ -54,7 +54,7 @@ void soft_body_free(soft_body *b) {
 void soft_body_place(soft_body *b, double turn[3][3], const double offset[3]) {
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
         double *p = b->nodes + n * 3, turned[3];
-        for (int k = 0; k < 3; k++) turned[k] = dot(turn[k], p) + offset[k];
+        for (int k = 0; k < 3; k++) turned[k] = vec3_dot(turn[k], p) + offset[k];
         memcpy(p, turned, sizeof turned);
     }
     lattice_place_vertices(&b->frame, b->nodes, b->vertices);
@@ -64,7 +64,7 @@ static void centre_of_mass(const soft_body *b, double out[3]) {
     double mass = 0.0;
     out[0] = out[1] = out[2] = 0.0;
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
-        add_scaled(out, b->masses[n], b->nodes + n * 3);
+        vec3_add_scaled(out, b->masses[n], b->nodes + n * 3);
         mass += b->masses[n];
     }
     for (int k = 0; k < 3; k++) out[k] /= mass;
@@ -75,9 +75,9 @@ void soft_body_throw(soft_body *b, const double velocity[3], const double spin[3
     centre_of_mass(b, centre);
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
         double arm[3], *v = b->velocities + n * 3;
-        difference(b->nodes + n * 3, centre, arm);
-        cross(spin, arm, v);
-        add_scaled(v, 1.0, velocity);
+        vec3_subtract(b->nodes + n * 3, centre, arm);
+        vec3_cross(spin, arm, v);
+        vec3_add_scaled(v, 1.0, velocity);
     }
 }
 
@@ -85,113 +85,16 @@ void soft_body_push(const soft_body *b, double *nodes, uint32_t vertex, const do
     const uint32_t *corners = b->frame.cells[b->frame.vertex_cells[vertex]];
     for (int i = 0; i < 8; i++) {
         double share = b->frame.vertex_shares[vertex][i];
-        add_scaled(nodes + corners[i] * 3,
-                   share * b->inverse_masses[corners[i]] / b->vertex_mobilities[vertex], change);
+        vec3_add_scaled(nodes + corners[i] * 3,
+                        share * b->inverse_masses[corners[i]] / b->vertex_mobilities[vertex], change);
     }
-}
-
-/* Out of the obstacle, and back along it as far as friction holds. */
-static void resolve_hit(soft_body *b, uint32_t vertex, const double point[3], const obstacle_hit *hit,
-                        double friction) {
-    double before[3], slid[3], change[3] = {0.0, 0.0, 0.0}, own = 1.0;
-    lattice_place_vertex(&b->frame, b->previous, vertex, before);
-    difference(point, before, slid);
-    if (hit->pushed != NULL) {
-        double inverse = 1.0 / hit->pushed->mass, moved[3];
-        own = b->vertex_mobilities[vertex] / (b->vertex_mobilities[vertex] + inverse);
-        difference(hit->pushed->centre, hit->pushed->previous, moved);
-        add_scaled(slid, -1.0, moved);
-    }
-    add_scaled(slid, -dot(slid, hit->normal), hit->normal);
-    double length = norm(slid), held = fmin(friction * hit->depth, length);
-    add_scaled(change, hit->depth, hit->normal);
-    if (length > 0.0) add_scaled(change, -held / length, slid);
-    if (hit->pushed != NULL) add_scaled(hit->pushed->centre, own - 1.0, change);
-    for (int k = 0; k < 3; k++) change[k] *= own;
-    soft_body_push(b, b->nodes, vertex, change);
-}
-
-static void resolve_obstacles(soft_body *b, obstacles *o) {
-    for (uint32_t v = 0; v < b->frame.vertex_count; v++) {
-        for (uint32_t which = 0; which <= o->ball_count; which++) {
-            double point[3];
-            obstacle_hit hit;
-            lattice_place_vertex(&b->frame, b->nodes, v, point);
-            if (which < o->ball_count ? obstacles_hit_ball(o, which, point, &hit)
-                                      : obstacles_hit_terrain(o, point, &hit))
-                resolve_hit(b, v, point, &hit, o->friction);
-        }
-    }
-}
-
-/* A cell's velocities as those of a rigid body with the same momentum: velocity + spin x arm. */
-static void rigid_motion(const soft_body *b, const uint32_t corners[8], double arms[8][3], double velocity[3],
-                         double spin[3]) {
-    double centre[3] = {0.0, 0.0, 0.0}, momentum[3] = {0.0, 0.0, 0.0}, inertia[3][3] = {{0.0}}, mass = 0.0;
-    velocity[0] = velocity[1] = velocity[2] = 0.0;
-    for (int i = 0; i < 8; i++) mass += b->masses[corners[i]];
-    for (int i = 0; i < 8; i++) {
-        double share = b->masses[corners[i]] / mass;
-        add_scaled(centre, share, b->nodes + corners[i] * 3);
-        add_scaled(velocity, share, b->velocities + corners[i] * 3);
-    }
-    for (int i = 0; i < 8; i++) {
-        double turning[3], share = b->masses[corners[i]] / mass;
-        difference(b->nodes + corners[i] * 3, centre, arms[i]);
-        cross(arms[i], b->velocities + corners[i] * 3, turning);
-        add_scaled(momentum, share, turning);
-        for (int j = 0; j < 3; j++) {
-            inertia[j][j] += share * dot(arms[i], arms[i]);
-            add_scaled(inertia[j], -share * arms[i][j], arms[i]);
-        }
-    }
-    double minors[3][3];
-    for (int j = 0; j < 3; j++) cross(inertia[(j + 1) % 3], inertia[(j + 2) % 3], minors[j]);
-    double size = dot(inertia[0], minors[0]);
-    for (int j = 0; j < 3; j++) spin[j] = size > 0.0 ? dot(minors[j], momentum) / size : 0.0;
-}
-
-/* Takes away a share of what is not rigid in each cell's motion. */
-static void damp(soft_body *b, double share) {
-    for (uint32_t cell = 0; cell < b->frame.cell_count; cell++) {
-        const uint32_t *corners = b->frame.cells[cell];
-        double arms[8][3], velocity[3], spin[3];
-        rigid_motion(b, corners, arms, velocity, spin);
-        for (int i = 0; i < 8; i++) {
-            double *v = b->velocities + corners[i] * 3, rigid[3];
-            cross(spin, arms[i], rigid);
-            for (int k = 0; k < 3; k++) v[k] += share * (velocity[k] + rigid[k] - v[k]);
-        }
-    }
-}
-
-static void small_step(soft_body *b, obstacles *o, self_contacts *contacts, double step) {
-    uint32_t node_count = b->frame.node_count;
-    memcpy(b->previous, b->nodes, node_count * 3 * sizeof *b->nodes);
-    for (uint32_t n = 0; n < node_count; n++) {
-        b->velocities[n * 3 + 2] -= o->gravity * step;
-        add_scaled(b->nodes + n * 3, step, b->velocities + n * 3);
-    }
-    obstacles_begin(o, step);
-    tetrahedra_solve(b->tetrahedra, b->frame.cell_count * 5, b->inverse_masses, step, b->nodes);
-    if (contacts != NULL) self_contacts_solve(contacts, b);
-    resolve_obstacles(b, o);
-    obstacles_end(o, step);
-    for (uint32_t i = 0; i < node_count * 3; i++) b->velocities[i] = (b->nodes[i] - b->previous[i]) / step;
-    damp(b, b->damping * step / (1.0 + b->damping * step));
-}
-
-void soft_body_advance(soft_body *b, obstacles *o, self_contacts *contacts, double seconds,
-                       uint32_t step_count) {
-    for (uint32_t i = 0; i < step_count; i++) small_step(b, o, contacts, seconds / step_count);
-    lattice_place_vertices(&b->frame, b->nodes, b->vertices);
 }
 
 double soft_body_energy(const soft_body *b, double gravity) {
     double energy = tetrahedra_energy(b->tetrahedra, b->frame.cell_count * 5, b->nodes);
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
         const double *v = b->velocities + n * 3;
-        energy += b->masses[n] * (0.5 * dot(v, v) + gravity * b->nodes[n * 3 + 2]);
+        energy += b->masses[n] * (0.5 * vec3_dot(v, v) + gravity * b->nodes[n * 3 + 2]);
     }
     return energy;
 }

@@ -1,11 +1,8 @@
-/* A soft body that falls, bends and runs into things and into itself: extended position-based dynamics (XPBD)
- * on a lattice around a closed surface, in small steps (Macklin et al., "Small steps in physics simulation",
- * 2019). Everything runs in a fixed order: the same input gives the same motion, bit for bit. */
+/* A soft body: masses at the nodes of a lattice around a closed surface, elastic tetrahedra between them, and the
+ * vertices of the surface, which the lattice carries along. */
 #pragma once
 
 #include "models/softbody/elastic.h"
-#include "models/softbody/obstacles.h"
-#include "models/softbody/self_contact.h"
 
 typedef struct soft_body {
     lattice frame;
@@ -25,10 +22,6 @@ void soft_body_free(soft_body *b);
 /* Turns the body, then moves it, before the first step. */
 void soft_body_place(soft_body *b, double turn[3][3], const double offset[3]);
 void soft_body_throw(soft_body *b, const double velocity[3], const double spin[3]);
-
-/* `seconds` in `step_count` small steps. contacts: found before, or NULL. The surface's vertices follow. */
-void soft_body_advance(soft_body *b, obstacles *o, self_contacts *contacts, double seconds,
-                       uint32_t step_count);
 
 /* Moves a vertex of the surface with the lattice around it, in nodes: the body's nodes, or its previous ones,
  * so that a move of both leaves the velocity. Used by the contacts. */

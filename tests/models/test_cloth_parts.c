@@ -152,15 +152,15 @@ static void springs_and_hinges_keep_momentum(void **state) {
     fabric_solve(&f, 1e-3, b.positions, x);
     for (uint32_t v = 0; v < b.vertex_count; v++) {
         double change[3], moment[3], mass = 1.0 / f.inverse_masses[v];
-        difference(x + v * 3, before + v * 3, change);
-        cross(before + v * 3, x + v * 3, moment);
-        add_scaled(linear, mass, change);
-        add_scaled(angular, mass, moment);
-        most = fmax(most, mass * norm(change));
+        vec3_subtract(x + v * 3, before + v * 3, change);
+        vec3_cross(before + v * 3, x + v * 3, moment);
+        vec3_add_scaled(linear, mass, change);
+        vec3_add_scaled(angular, mass, moment);
+        most = fmax(most, mass * vec3_norm(change));
     }
     assert_true(most > 1e-10);
-    assert_true(norm(linear) < 1e-10 * most * b.vertex_count);
-    assert_true(norm(angular) < 1e-4 * most * b.vertex_count);
+    assert_true(vec3_norm(linear) < 1e-10 * most * b.vertex_count);
+    assert_true(vec3_norm(angular) < 1e-4 * most * b.vertex_count);
     free(before);
     free(x);
     fabric_free(&f);
@@ -189,8 +189,8 @@ static void a_hanging_sheet_stretches_little(void **state) {
     }
     for (uint32_t i = 0; i < f.spring_count; i++) {
         double between[3];
-        difference(x + f.springs[i].vertices[0] * 3, x + f.springs[i].vertices[1] * 3, between);
-        assert_true(norm(between) < 1.03 * f.springs[i].rest);
+        vec3_subtract(x + f.springs[i].vertices[0] * 3, x + f.springs[i].vertices[1] * 3, between);
+        assert_true(vec3_norm(between) < 1.03 * f.springs[i].rest);
     }
     for (uint32_t k = 0; k < b.vertex_count * 3; k++) assert_true(fabs(velocities[k]) < 1e-4);
     free(x);
@@ -215,7 +215,7 @@ static void solve_one(double from_height, const double motion[3], double x[12], 
     memcpy(previous, triangle, sizeof triangle);
     previous[2] = from_height;
     memcpy(x, previous, sizeof triangle);
-    add_scaled(x, 1.0, motion);
+    vec3_add_scaled(x, 1.0, motion);
     apart_solve(&a, inverse_masses, previous, x);
     assert_memory_equal(x + 3, triangle + 3, 9 * sizeof *x);
 }

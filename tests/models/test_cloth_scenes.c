@@ -115,9 +115,9 @@ static meetings count_meetings(trial *t) {
             m.obstacles[(first > last ? first : last) - 1]++;
             continue;
         }
-        difference(t->run.garment.positions + s.vertices[0] * 3, t->run.garment.positions + s.vertices[3] * 3,
-                   between);
-        m.folds += norm(between) > 6.0 * t->run.spacing;
+        vec3_subtract(t->run.garment.positions + s.vertices[0] * 3,
+                      t->run.garment.positions + s.vertices[3] * 3, between);
+        m.folds += vec3_norm(between) > 6.0 * t->run.spacing;
     }
     return m;
 }
@@ -126,8 +126,8 @@ static meetings count_meetings(trial *t) {
 static double largest_motion(const trial *t) {
     double most = 0.0, between[3];
     for (uint32_t v = 0; v < t->garment_count; v++) {
-        difference(t->run.positions + v * 3, t->run.start + v * 3, between);
-        most = fmax(most, norm(between));
+        vec3_subtract(t->run.positions + v * 3, t->run.start + v * 3, between);
+        most = fmax(most, vec3_norm(between));
     }
     return most;
 }

@@ -33,7 +33,7 @@ static void add_contacts(system_fixture *f, random_stream *random) {
             c->weights[k] = weights[k];
         }
         for (int k = 0; k < 3; k++) c->normal[k] = stream_between(random, -1.0, 1.0);
-        normalize(c->normal);
+        vec3_normalize(c->normal);
         c->curvature = stream_between(random, 0.0, 3000.0);
     }
 }

@@ -136,7 +136,7 @@ static void mean_of(const ipc_solver *p, uint32_t object, double out[3]) {
     cscd_object o = cscd_mesh_object(p->mesh, object);
     out[0] = out[1] = out[2] = 0.0;
     for (uint32_t v = 0; v < o.vertex_count; v++)
-        add_scaled(out, 1.0 / o.vertex_count, p->positions + (size_t)(o.first_vertex + v) * 3);
+        vec3_add_scaled(out, 1.0 / o.vertex_count, p->positions + (size_t)(o.first_vertex + v) * 3);
 }
 
 /* Without contact the links would be 11 below the first by then. Two that hold each other are at most two
@@ -151,8 +151,8 @@ static void links_bear_each_other(void **state) {
     assert_true(fabs(above[0]) < 1e-6 && fabs(above[2]) < 1e-6); /* has not moved */
     for (uint32_t i = 1; i < count; i++) {
         mean_of(&p, i, below);
-        difference(below, above, between);
-        assert_true(norm(between) > 0.5 && norm(between) < 2.1);
+        vec3_subtract(below, above, between);
+        assert_true(vec3_norm(between) > 0.5 && vec3_norm(between) < 2.1);
         for (size_t c = 0; c < p.contacts.count; c++) {
             uint32_t a = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[0]);
             uint32_t b = cscd_mesh_vertex_object(p.mesh, p.contacts.items[c].vertices[3]);

@@ -1,6 +1,6 @@
 /* A soft body keeps the laws of motion: momentum, fall, collisions with ground and balls, energy. */
 #include "models/common/vec3.h"
-#include "models/softbody/soft_body.h"
+#include "models/softbody/simulation.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
@@ -33,7 +33,7 @@ static void assert_same_vector(const double a[3], const double b[3], double tole
 }
 
 static void advance(soft_body *b, obstacles *o, double seconds) {
-    soft_body_advance(b, o, NULL, seconds, (uint32_t)(seconds * 800.0 + 0.5));
+    simulation_advance(b, o, NULL, seconds, (uint32_t)(seconds * 800.0 + 0.5));
 }
 
 /* ---- placing and pushing ---- */
@@ -95,12 +95,12 @@ static void pushes_move_their_vertex(void **state) {
         lattice_place_vertex(&b.frame, b.nodes, v, after);
         for (uint32_t n = 0; n < b.frame.node_count; n++) {
             double moved[3];
-            difference(b.nodes + n * 3, b.previous + n * 3, moved);
-            add_scaled(sum, b.masses[n], moved);
+            vec3_subtract(b.nodes + n * 3, b.previous + n * 3, moved);
+            vec3_add_scaled(sum, b.masses[n], moved);
         }
         for (int k = 0; k < 3; k++) expected[k] = change[k] / b.vertex_mobilities[v];
         assert_same_vector(sum, expected, 1e-12);
-        add_scaled(before, 1.0, change);
+        vec3_add_scaled(before, 1.0, change);
         assert_same_vector(after, before, 1e-13);
     }
     soft_body_free(&b);
@@ -121,18 +121,18 @@ static double angular_drift(double damping, uint32_t steps_per_second) {
     soft_momentum before = soft_momentum_of(&b);
     double energy = soft_body_energy(&b, 0.0), last = energy;
     for (int i = 0; i < 20; i++) {
-        soft_body_advance(&b, &nothing, NULL, 0.1, steps_per_second / 10);
+        simulation_advance(&b, &nothing, NULL, 0.1, steps_per_second / 10);
         assert_true(soft_body_energy(&b, 0.0) < last);
         last = soft_body_energy(&b, 0.0);
     }
     soft_momentum after = soft_momentum_of(&b);
     assert_same_vector(after.linear, before.linear, 1e-9);
-    add_scaled(before.centre, 2.0 / before.mass, before.linear);
+    vec3_add_scaled(before.centre, 2.0 / before.mass, before.linear);
     assert_same_vector(after.centre, before.centre, 1e-9);
     assert_true(last > 0.9 * energy);
-    difference(after.angular, before.angular, lost);
+    vec3_subtract(after.angular, before.angular, lost);
     soft_body_free(&b);
-    return norm(lost) / norm(before.angular);
+    return vec3_norm(lost) / vec3_norm(before.angular);
 }
 
 /* Linear momentum to rounding. Angular momentum as far as small steps go: steps that are implicit in the

@@ -1,7 +1,7 @@
 /* The response to self-contacts, on a body of two parts: a slab and a block that comes down onto it. */
 #include "models/common/vec3.h"
 #include "models/softbody/self_contact.h"
-#include "models/softbody/soft_body.h"
+#include "models/softbody/simulation.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
@@ -90,7 +90,7 @@ static void place_block(two_parts *p, double above, double x, double y) {
         double *node = p->soft.nodes + n * 3;
         memcpy(node, l->rest + n * 3, 3 * sizeof *node);
         node[2] += soft_fixture_height;
-        if (is_of_block(p, n)) add_scaled(node, 1.0, (double[3]){x, y, above - distance});
+        if (is_of_block(p, n)) vec3_add_scaled(node, 1.0, (double[3]){x, y, above - distance});
     }
     memcpy(p->soft.previous, p->soft.nodes, l->node_count * 3 * sizeof *p->soft.previous);
     lattice_place_vertices(l, p->soft.nodes, p->soft.vertices);
@@ -284,7 +284,7 @@ static uint32_t crossings(two_parts *p) {
 static void run_interval(two_parts *p, bool responds) {
     obstacles nothing = {0};
     memcpy(p->start, p->soft.vertices, (size_t)p->surface.vertex_count * 3 * sizeof *p->start);
-    soft_body_advance(&p->soft, &nothing, responds ? &p->contacts : NULL, 1.0 / 80.0, 10);
+    simulation_advance(&p->soft, &nothing, responds ? &p->contacts : NULL, 1.0 / 80.0, 10);
     cscd_contacts found = find_contacts(p, p->start, p->soft.vertices);
     if (responds) self_contacts_add(&p->contacts, &found, p->start, p->soft.vertices);
 }
@@ -306,10 +306,10 @@ static void check_bounce(two_parts *p) {
     }
     soft_momentum after = soft_momentum_of(&p->soft);
     double lost[3];
-    difference(after.linear, before.linear, lost);
+    vec3_subtract(after.linear, before.linear, lost);
     print_message("up to %zu pairs; energy at most %.3f of the start's, %.3f in the end\n", most_pairs,
                   most_energy / start, soft_body_energy(&p->soft, 0.0) / start);
-    assert_true(norm(lost) < 1e-9 * norm(before.linear));
+    assert_true(vec3_norm(lost) < 1e-9 * vec3_norm(before.linear));
     assert_true(most_pairs > 0 && p->contacts.count == 0);
     assert_true(most_energy < 1.08 * start && soft_body_energy(&p->soft, 0.0) < start);
     assert_int_equal(crossing_at_end, 0);

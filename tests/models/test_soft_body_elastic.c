@@ -1,6 +1,7 @@
 /* Elastic tetrahedra: no energy at rest or turned, the formula's energy deformed, and momentum kept. */
 #include "models/common/vec3.h"
 #include "models/softbody/elastic.h"
+#include "models/softbody/simulation.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
 #include "tests/support/test.h"
@@ -44,8 +45,8 @@ static double volume(void) {
 
 static double determinant_of(double f[3][3]) {
     double minors[3];
-    cross(f[1], f[2], minors);
-    return dot(f[0], minors);
+    vec3_cross(f[1], f[2], minors);
+    return vec3_dot(f[0], minors);
 }
 
 /* Macklin and Mueller's energy per volume above that of the rest shape, from Young's modulus and Poisson's
@@ -53,7 +54,7 @@ static double determinant_of(double f[3][3]) {
 static double energy_density(double f[3][3]) {
     double shear = rubber.young / (2.0 * (1.0 + rubber.poisson));
     double bulk = rubber.young * rubber.poisson / ((1.0 + rubber.poisson) * (1.0 - 2.0 * rubber.poisson));
-    double squares = dot(f[0], f[0]) + dot(f[1], f[1]) + dot(f[2], f[2]);
+    double squares = vec3_dot(f[0], f[0]) + vec3_dot(f[1], f[1]) + vec3_dot(f[2], f[2]);
     double growth = determinant_of(f) - 1.0;
     return 0.5 * shear * (squares - 3.0) + 0.5 * bulk * growth * growth - shear * growth;
 }
@@ -137,10 +138,10 @@ static void solving_keeps_the_centre_and_relaxes(void **state) {
     tetrahedra_solve(soft.tetrahedra, tetrahedron_count, soft.inverse_masses, 1.0 / 800.0, moved);
     assert_true(tetrahedra_energy(soft.tetrahedra, tetrahedron_count, moved) < energy);
     for (uint32_t n = 0; n < soft.frame.node_count; n++) {
-        add_scaled(sum, soft.masses[n], moved + n * 3);
-        add_scaled(sum, -soft.masses[n], before + n * 3);
+        vec3_add_scaled(sum, soft.masses[n], moved + n * 3);
+        vec3_add_scaled(sum, -soft.masses[n], before + n * 3);
     }
-    assert_true(norm(sum) < 1e-13);
+    assert_true(vec3_norm(sum) < 1e-13);
     assert_true(largest_distance(before, moved, soft.frame.node_count) > 1e-5);
     free(before);
 }
@@ -167,15 +168,15 @@ static void what_is_turned_inside_out_comes_back(void **state) {
     soft_body b = soft_body_of(&box, 0.5, &rubber);
     obstacles nothing = {0};
     double wrong = 0.0;
-    add_scaled(b.nodes, 1.5 * soft.frame.spacing / 0.4, (double[3]){1.0, 1.0, 1.0});
+    vec3_add_scaled(b.nodes, 1.5 * soft.frame.spacing / 0.4, (double[3]){1.0, 1.0, 1.0});
     for (uint32_t i = 0; i < b.frame.cell_count * 5; i++) {
         double edges[3][3];
         const uint32_t *n = b.tetrahedra[i].nodes;
-        for (int k = 0; k < 3; k++) difference(b.nodes + n[k + 1] * 3, b.nodes + n[0] * 3, edges[k]);
+        for (int k = 0; k < 3; k++) vec3_subtract(b.nodes + n[k + 1] * 3, b.nodes + n[0] * 3, edges[k]);
         wrong += determinant_of(edges) < 0.0;
     }
     assert_true(wrong > 0.0);
-    soft_body_advance(&b, &nothing, NULL, 5.0, 4000);
+    simulation_advance(&b, &nothing, NULL, 5.0, 4000);
     assert_true(soft_body_energy(&b, 0.0) < 1e-3);
     soft_body_free(&b);
     body_free(&box);

@@ -69,8 +69,8 @@ static void cells_are_cubes_of_the_grid(void **state) {
             assert_true(used[n]);
             for (uint32_t m = 0; m < n; m++) {
                 double apart[3];
-                difference(l->rest + n * 3, l->rest + m * 3, apart);
-                assert_true(norm(apart) > 0.99 * l->spacing);
+                vec3_subtract(l->rest + n * 3, l->rest + m * 3, apart);
+                assert_true(vec3_norm(apart) > 0.99 * l->spacing);
             }
         }
         free(used);
@@ -101,7 +101,7 @@ static void cells_cover_the_surface(void **state) {
                                  random_between(0.0, 1.0)};
             double sum = weights[0] + weights[1] + weights[2], p[3] = {0.0, 0.0, 0.0};
             for (int k = 0; k < 3; k++)
-                add_scaled(p, weights[k] / sum, b->positions + b->triangles[t * 3 + (uint32_t)k] * 3);
+                vec3_add_scaled(p, weights[k] / sum, b->positions + b->triangles[t * 3 + (uint32_t)k] * 3);
             assert_true(distance_to_cells(&lattices[i], p) <= 0.25 * cases[i].spacing);
         }
     }
@@ -111,8 +111,8 @@ static void cells_fill_the_inside_only(void **state) {
     (void)state;
     for (int i = 0; i < 500; i++) { /* the sphere has radius 1, the torus 1 and 0.35 */
         double p[3] = {random_unit(), random_unit(), random_unit()}, turn = 3.2 * random_unit();
-        if (norm(p) > 1.0) continue;
-        assert_true(distance_to_cells(&lattices[0], p) <= 0.0 || norm(p) > 0.9);
+        if (vec3_norm(p) > 1.0) continue;
+        assert_true(distance_to_cells(&lattices[0], p) <= 0.0 || vec3_norm(p) > 0.9);
         double across = 1.0 + 0.3 * p[0];
         assert_true(
             distance_to_cells(&lattices[1], (double[3]){across * cos(turn), across * sin(turn), 0.0}) <= 0.0);

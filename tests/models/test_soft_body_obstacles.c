@@ -75,7 +75,7 @@ static void way_out_leads_out(void **state) {
             bool hits = obstacles_hit_terrain(&stairs, point, &hit);
             assert_true(hits == (point[2] < obstacles_height(&stairs, point[0])));
             if (!hits) continue;
-            add_scaled(out, hit.depth + 1e-12, hit.normal);
+            vec3_add_scaled(out, hit.depth + 1e-12, hit.normal);
             assert_false(obstacles_hit_terrain(&stairs, out, &hit));
             inside++;
             forwards += out[0] > point[0];
@@ -148,8 +148,8 @@ static void colliding_balls_keep_their_momentum(void **state) {
     double energy = obstacles_energy(&o), apart[3], nearest = INFINITY;
     for (int i = 0; i < 1600; i++) {
         run(&o, 1);
-        difference(o.balls[0].centre, o.balls[1].centre, apart);
-        nearest = fmin(nearest, norm(apart));
+        vec3_subtract(o.balls[0].centre, o.balls[1].centre, apart);
+        nearest = fmin(nearest, vec3_norm(apart));
         assert_true(obstacles_energy(&o) <= energy + 1e-12);
     }
     double expected[3] = {11.0, 0.0, 0.5};
@@ -159,8 +159,8 @@ static void colliding_balls_keep_their_momentum(void **state) {
     }
     assert_true(nearest > 1.2 - 1e-12 && nearest < 1.21);
     double leaving[3];
-    difference(o.balls[0].velocity, o.balls[1].velocity, leaving);
-    assert_true(dot(leaving, apart) > -1e-10 && norm(apart) > 1.2 - 1e-12);
+    vec3_subtract(o.balls[0].velocity, o.balls[1].velocity, leaving);
+    assert_true(vec3_dot(leaving, apart) > -1e-10 && vec3_norm(apart) > 1.2 - 1e-12);
     assert_true(obstacles_energy(&o) < 0.99 * energy);
 }
 
@@ -184,8 +184,8 @@ static void scenery_shows_them(void **state) {
         for (uint32_t v = first; v < scenery.vertex_count; v++) {
             const ball *b = &o.balls[(v - first) / each];
             double arm[3];
-            difference(scenery.positions + v * 3, b->centre, arm);
-            assert_true(fabs(norm(arm) - b->radius) < 1e-6);
+            vec3_subtract(scenery.positions + v * 3, b->centre, arm);
+            assert_true(fabs(vec3_norm(arm) - b->radius) < 1e-6);
         }
         o.balls[turn].centre[0] += 1.5;
         assert_true(scenery_follow(&o, &scenery, &error));

@@ -11,17 +11,17 @@ void affine_map(double matrix[3][3], const double offset[3], const double *from,
                 double *to) {
     for (uint32_t i = 0; i < point_count; i++) {
         double moved[3];
-        for (int k = 0; k < 3; k++) moved[k] = dot(matrix[k], from + i * 3) + offset[k];
+        for (int k = 0; k < 3; k++) moved[k] = vec3_dot(matrix[k], from + i * 3) + offset[k];
         memcpy(to + i * 3, moved, sizeof moved);
     }
 }
 
 void rotation_matrix(const double axis[3], double angle, double out[3][3]) {
     double unit[3] = {axis[0], axis[1], axis[2]};
-    normalize(unit);
+    vec3_normalize(unit);
     for (int column = 0; column < 3; column++) {
         double base[3] = {column == 0, column == 1, column == 2}, turned[3];
-        cross(unit, base, turned);
+        vec3_cross(unit, base, turned);
         for (int k = 0; k < 3; k++)
             out[k][column] =
                 cos(angle) * base[k] + sin(angle) * turned[k] + (1.0 - cos(angle)) * unit[column] * unit[k];
@@ -57,15 +57,15 @@ soft_momentum soft_momentum_of(const soft_body *b) {
     soft_momentum m = {0};
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
         m.mass += b->masses[n];
-        add_scaled(m.centre, b->masses[n], b->nodes + n * 3);
-        add_scaled(m.linear, b->masses[n], b->velocities + n * 3);
+        vec3_add_scaled(m.centre, b->masses[n], b->nodes + n * 3);
+        vec3_add_scaled(m.linear, b->masses[n], b->velocities + n * 3);
     }
     for (int k = 0; k < 3; k++) m.centre[k] /= m.mass;
     for (uint32_t n = 0; n < b->frame.node_count; n++) {
         double arm[3], turning[3];
-        difference(b->nodes + n * 3, m.centre, arm);
-        cross(arm, b->velocities + n * 3, turning);
-        add_scaled(m.angular, b->masses[n], turning);
+        vec3_subtract(b->nodes + n * 3, m.centre, arm);
+        vec3_cross(arm, b->velocities + n * 3, turning);
+        vec3_add_scaled(m.angular, b->masses[n], turning);
     }
     return m;
 }
@@ -74,8 +74,8 @@ double largest_distance(const double *a, const double *b, uint32_t point_count) 
     double largest = 0.0;
     for (uint32_t i = 0; i < point_count; i++) {
         double apart[3];
-        difference(a + i * 3, b + i * 3, apart);
-        largest = fmax(largest, norm(apart));
+        vec3_subtract(a + i * 3, b + i * 3, apart);
+        largest = fmax(largest, vec3_norm(apart));
     }
     return largest;
 }
