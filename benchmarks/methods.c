@@ -1,5 +1,6 @@
 /* The methods side by side on recordings: the thesis's tables, with what each method loses. */
 #include "benchmarks/lib/methods_report.h"
+#include "benchmarks/lib/options.h"
 #include "benchmarks/lib/thesis_numbers.h"
 #include "src/core/timer.h"
 #include "src/tool/common/provenance.h"
@@ -24,8 +25,8 @@ static const char help[] =
     "  --json OUT.json  all rows, and where they come from\n"
     "  --threads N      default 1\n"
     "  --cache FOLDER   recordings and plans (default build/models)\n"
-    "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default ../shared/data/sequences, if it is "
-    "there)\n";
+    "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default: sequences/ in\n"
+    "                   CSCD_DATA, if that is set)\n";
 
 typedef struct options {
     bool quick;
@@ -37,6 +38,11 @@ typedef struct options {
 
 static bool fail(const char *text) {
     fprintf(stderr, "methods: %s\n", text);
+    return false;
+}
+
+static bool refuse(const char *argument, const char *why) {
+    fprintf(stderr, "methods: %s %s\n", argument, why);
     return false;
 }
 
@@ -105,9 +111,13 @@ static int compare_names(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* The recordings in the data folder, by name. */
-static void list_data(options *o) {
+/* Adds the recordings in the data folder, sorted by name. A folder that is given must have some. */
+static bool list_data(options *o) {
     uint32_t first = o->scene_count;
+    if (o->data == NULL) {
+        printf("neither --data nor CSCD_DATA names a folder with recordings, so only our own\n");
+        return true;
+    }
     DIR *folder = opendir(o->data);
     for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
         char *ending = strrchr(entry->d_name, '.');
@@ -120,17 +130,16 @@ static void list_data(options *o) {
         if (name != NULL) o->scenes[o->scene_count++] = name;
     }
     if (folder != NULL) closedir(folder);
-    if (o->scene_count > first)
-        qsort(o->scenes + first, o->scene_count - first, sizeof *o->scenes, compare_names);
-    else
-        printf("%s: no recordings there, so only our own\n", o->data);
+    if (o->scene_count == first) return refuse(o->data, "has no recordings");
+    qsort(o->scenes + first, o->scene_count - first, sizeof *o->scenes, compare_names);
+    return true;
 }
 
-static void choose_scenes(options *o) {
-    if (o->scene_count > 0) return;
+static bool choose_scenes(options *o) {
+    if (o->scene_count > 0) return true;
     for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i += o->quick ? 2 : 1)
         o->scenes[o->scene_count++] = own_scenes[i];
-    if (!o->quick) list_data(o);
+    return o->quick || list_data(o);
 }
 
 static bool run_scene(const options *o, const char *scene, json *out, io_error *error) {
@@ -138,6 +147,8 @@ static bool run_scene(const options *o, const char *scene, json *out, io_error *
     truth known;
     report r = {.count = 0};
     bool own = is_own(scene);
+    if (!own && o->data == NULL)
+        return io_fail(error, "%s: neither --data nor CSCD_DATA names a folder with this recording", scene);
     if (!recording_data_open(own ? o->cache : o->data, scene, o->cache, o->thread_count, &data, error))
         return false;
     if (data.made_ms > 1000.0)
@@ -190,11 +201,6 @@ static bool run(const options *o, int argument_count, char **arguments) {
     return (written || fail("the JSON could not be written")) && good;
 }
 
-static bool refuse(const char *argument, const char *why) {
-    fprintf(stderr, "methods: %s %s\n", argument, why);
-    return false;
-}
-
 /* A whole number from 1 to 999. */
 static bool parse_threads(const char *text, uint32_t *out) {
     size_t digits = strspn(text, "0123456789");
@@ -232,7 +238,7 @@ static bool parse(int count, char **arguments, options *o) {
 }
 
 int main(int argument_count, char **arguments) {
-    options o = {.cache = "build/models", .data = "../shared/data/sequences", .thread_count = 1};
+    options o = {.cache = "build/models", .thread_count = 1};
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
         fputs(help, stdout);
         return 0;
@@ -243,6 +249,9 @@ int main(int argument_count, char **arguments) {
     }
     mkdir("build", 0777);
     mkdir(o.cache, 0777);
-    choose_scenes(&o);
-    return run(&o, argument_count, arguments) ? 0 : 1;
+    char *data = bench_data_folder("sequences");
+    if (o.data == NULL) o.data = data;
+    bool good = choose_scenes(&o) && run(&o, argument_count, arguments);
+    free(data);
+    return good ? 0 : 1;
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LENGTH_COUNT = 4, PATH_LENGTH = 4096 };
+enum { LENGTH_COUNT = 4 };
 
 static const double lengths[LENGTH_COUNT] = {0.0, 1.0, 10.0, 100.0};
 
@@ -148,13 +148,9 @@ static bool run_made(const bench_options *o, deformation motion, uint32_t size, 
 
 /* Open surfaces are culled by no method but iccd, so none will do. */
 static bool run_cloth(const bench_options *o, json *out, io_error *error) {
-    char paths[2][PATH_LENGTH];
     deforming_body b;
-    for (int i = 0; i < 2; i++) snprintf(paths[i], PATH_LENGTH, "%s/cloth_funnel%d.ply", o->data, 227 + i);
-    if (!deforming_body_read(paths[0], paths[1], &b, error)) {
-        printf("  cloth funnel: left out, %s\n", error->text);
-        return true;
-    }
+    if (!bench_has_data(o, "cloth funnel")) return true;
+    if (!deforming_body_read(o->data, "cloth_funnel", 227, &b, error)) return false;
     bool good = run_method("cloth funnel", &b, o, CSCD_METHOD_NONE, out, error);
     deforming_body_free(&b);
     return good;

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PATH_LENGTH = 4096, REPEATS = 5, INTERVALS = 10, FIRST_FRAME = 80 };
+enum { REPEATS = 5, INTERVALS = 10, FIRST_FRAME = 80 };
 
 static const double budget_ms = 2000.0, crowded = 10.0; /* pairs per triangle */
 
@@ -259,13 +259,9 @@ static bool run_recording(const char *name, const bench_options *o, json *out, i
 }
 
 static bool run_cloth(const char *name, int first, const bench_options *o, json *out, io_error *error) {
-    char paths[2][PATH_LENGTH];
     deforming_body b;
-    for (int i = 0; i < 2; i++) snprintf(paths[i], PATH_LENGTH, "%s/%s%d.ply", o->data, name, first + i);
-    if (!deforming_body_read(paths[0], paths[1], &b, error)) {
-        printf("\n%s: left out, %s\n", name, error->text);
-        return true;
-    }
+    if (!bench_has_data(o, name)) return true;
+    if (!deforming_body_read(o->data, name, first, &b, error)) return false;
     subject_options options = {CSCD_METHOD_NONE, CSCD_MODE_ALL, o->thread_count, o->simd, o->volume};
     subject *s = subject_make(&b, &options, error);
     if (s == NULL) {

@@ -2,8 +2,11 @@
 #include "benchmarks/lib/deforming_body.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { PATH_LENGTH = 4096 };
 
 static const double turn = 6.283185307179586;
 
@@ -78,10 +81,13 @@ bool deforming_body_make(body_kind kind, uint32_t triangle_count, deformation mo
     return true;
 }
 
-bool deforming_body_read(const char *first, const char *last, deforming_body *out, io_error *error) {
+bool deforming_body_read(const char *folder, const char *name, int first, deforming_body *out,
+                         io_error *error) {
+    char paths[2][PATH_LENGTH];
     mesh_file a, z;
-    if (!mesh_file_read(first, &a, error)) return false;
-    if (!mesh_file_read(last, &z, error)) {
+    for (int i = 0; i < 2; i++) snprintf(paths[i], PATH_LENGTH, "%s/%s%d.ply", folder, name, first + i);
+    if (!mesh_file_read(paths[0], &a, error)) return false;
+    if (!mesh_file_read(paths[1], &z, error)) {
         mesh_file_free(&a);
         return false;
     }
@@ -90,7 +96,7 @@ bool deforming_body_read(const char *first, const char *last, deforming_body *ou
     if (!same) {
         mesh_file_free(&a);
         mesh_file_free(&z);
-        return io_fail(error, "%s and %s: their triangles are not the same", first, last);
+        return io_fail(error, "%s and %s: their triangles are not the same", paths[0], paths[1]);
     }
     deforming_body b = {.vertex_count = a.vertex_count,
                         .triangle_count = a.triangle_count,

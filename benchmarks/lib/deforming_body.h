@@ -24,8 +24,9 @@ typedef struct deforming_body {
 bool deforming_body_make(body_kind kind, uint32_t triangle_count, deformation motion, bool shuffled,
                          deforming_body *out, io_error *error);
 
-/* From two mesh files of the same triangles. */
-bool deforming_body_read(const char *first, const char *last, deforming_body *out, io_error *error);
+/* Reads two successive frames of the same triangles: folder/name<first>.ply and the one after it. */
+bool deforming_body_read(const char *folder, const char *name, int first, deforming_body *out,
+                         io_error *error);
 void deforming_body_free(deforming_body *b);
 
 /* Both ends of interval i, each of which moves everything by `shift` along x: it starts at i * shift, ends

@@ -16,7 +16,7 @@ static const char options_help[] =
     "  --threads N      default 1\n"
     "  --simd LEVEL     auto (default), scalar, avx2, avx512\n"
     "  --volume NAME    box (default), kdop14\n"
-    "  --data FOLDER    with cloth_ball92.ply and so on (default ../shared/data/frames)\n"
+    "  --data FOLDER    with cloth_ball92.ply and so on (default: frames/ in CSCD_DATA, if that is set)\n"
     "  --json OUT.json  the rows, and where they come from\n";
 
 static bool refuse(const char *program, const char *argument, const char *why) {
@@ -79,6 +79,20 @@ static bool parse(const char *program, int count, char **arguments, bench_option
     return true;
 }
 
+char *bench_data_folder(const char *name) {
+    const char *parent = getenv("CSCD_DATA");
+    if (parent == NULL || parent[0] == '\0') return NULL;
+    size_t size = strlen(parent) + strlen(name) + 2;
+    char *path = body_allocate(size, 1);
+    snprintf(path, size, "%s/%s", parent, name);
+    return path;
+}
+
+bool bench_has_data(const bench_options *o, const char *what) {
+    if (o->data == NULL) printf("  %s: left out, neither --data nor CSCD_DATA names a folder\n", what);
+    return o->data != NULL;
+}
+
 uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count) {
     if (o->interval_count > 0) return o->interval_count;
     if (o->quick) return 5;
@@ -111,7 +125,7 @@ static bool close_rows(const bench_options *o, int argument_count, char **argume
 }
 
 int bench_main(const bench_program *program, int argument_count, char **arguments) {
-    bench_options o = {.thread_count = 1, .kind = BODY_PAWN, .data = "../shared/data/frames"};
+    bench_options o = {.thread_count = 1, .kind = BODY_PAWN};
     json out;
     io_error error;
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
@@ -119,6 +133,8 @@ int bench_main(const bench_program *program, int argument_count, char **argument
         return 0;
     }
     if (!parse(program->name, argument_count, arguments, &o)) return 2;
+    char *data = bench_data_folder("frames");
+    if (o.data == NULL) o.data = data;
     if (o.size_count == 0) {
         o.size_count = o.quick ? program->quick_size_count : program->size_count;
         for (uint32_t i = 0; i < o.size_count; i++) o.sizes[i] = program->sizes[i];
@@ -126,5 +142,6 @@ int bench_main(const bench_program *program, int argument_count, char **argument
     bool good = open_rows(&o, &out, &error) && program->run(&o, &out, &error) &&
                 close_rows(&o, argument_count, arguments, &out, &error);
     if (!good) fprintf(stderr, "%s: %s\n", program->name, error.text);
+    free(data);
     return good ? 0 : 1;
 }

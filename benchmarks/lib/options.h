@@ -16,8 +16,16 @@ typedef struct bench_options {
     cscd_volume volume;
     body_kind kind;
     bool quick, shuffled;
-    const char *data, *json_path;
+    const char *data; /* NULL: none is given */
+    const char *json_path;
 } bench_options;
+
+/* A folder of the data to compare with, below the one that the environment variable CSCD_DATA names; NULL when
+ * that is not set. To be freed. */
+char *bench_data_folder(const char *name);
+
+/* Whether a folder with data is given; when it is not, says that `what` is left out. */
+bool bench_has_data(const bench_options *o, const char *what);
 
 /* Measured intervals of a size. */
 uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count);

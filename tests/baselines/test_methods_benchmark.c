@@ -108,6 +108,21 @@ static void what_is_wrong_is_said(void **state) {
     tool_run_free(&run);
 }
 
+/* A folder that is named must have recordings; without one, a scene that is not our own is nowhere. */
+static void data_comes_from_the_environment(void **state) {
+    (void)state;
+    assert_int_equal(setenv("CSCD_DATA", folder.path, 1), 0);
+    tool_run run = RUN_TOOL("--cache", folder.path);
+    assert_int_equal(run.code, 1);
+    assert_non_null(strstr(run.error, "/sequences has no recordings"));
+    tool_run_free(&run);
+    assert_int_equal(unsetenv("CSCD_DATA"), 0);
+    run = RUN_TOOL("tiny", "--cache", folder.path);
+    assert_int_equal(run.code, 1);
+    assert_non_null(strstr(run.error, "neither --data nor CSCD_DATA names a folder"));
+    tool_run_free(&run);
+}
+
 static void wrong_arguments_are_named(void **state) {
     (void)state;
     static const char *const wrong[][3] = {{"--no-such-option", NULL, "--no-such-option is no option"},
@@ -146,7 +161,9 @@ static void kmeans_runs_have_seeds_of_their_own(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_have_all_columns), cmocka_unit_test(kmeans_runs_have_seeds_of_their_own),
-        cmocka_unit_test(what_is_wrong_is_said), cmocka_unit_test(wrong_arguments_are_named)};
+        cmocka_unit_test(rows_have_all_columns),     cmocka_unit_test(kmeans_runs_have_seeds_of_their_own),
+        cmocka_unit_test(what_is_wrong_is_said),     cmocka_unit_test(data_comes_from_the_environment),
+        cmocka_unit_test(wrong_arguments_are_named),
+    };
     return cmocka_run_group_tests_name("methods", tests, make_folder, remove_folder);
 }

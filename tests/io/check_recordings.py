@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares the product with the data to develop against: every sequence, two pairs of simulation frames, query sets.
 
-usage: CSCD_TOOL=path/to/cscd CSCD_QUERIES=path/to/benchmarks/queries check_shared.py DATA
+usage: CSCD_TOOL=path/to/cscd CSCD_QUERIES=path/to/benchmarks/queries check_recordings.py DATA
 
 Each sequence has a JSON file by independent programs: `static_pairs` per frame (properly crossing triangle pairs) and
 `ccd_hits` per interval (feature pairs that come within 1e-7 of the diagonal: an upper estimate of the contacts).
