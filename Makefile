@@ -55,9 +55,10 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
-# The browser's tests look at pages, which no other configuration writes differently.
+# The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c)
+                   $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
+                   $(if $(filter release,$(CONFIG)),,tests/install/test_install.c)
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c))
 # ONLY="bvh line_search": the tests with one of these words in their names, or of these rooms.
 ONLY ?=
@@ -93,12 +94,18 @@ LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/libcscd.so.$(VERSION)
 TOOL    := $(BUILD)/cscd
 TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
+# Tests that take more than a second of processor time in the release: `make test` runs them, `make check` does not.
+# tests/run.sh lists the slowest programs of each run, in seconds; who slows one down adds it here.
+SLOW_TESTS := ccd/test_elementary_oracle culling/test_culling culling/test_local_culling models/test_recordings \
+              models/test_shape_regions models/test_shapes preprocess/test_charge report/test_report_browser \
+              sensors/test_sensor_scenes tool/test_capsule tool/test_tool_stop
+FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
 MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -161,6 +168,13 @@ test-programs: $(TESTS)
 test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
+
+# The inner loop: what takes less than a second each.
+check: packages
+	@$(MAKE) --no-print-directory check-run
+
+check-run: tool library $(FAST_TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
+	@BUILD=$(BUILD) tests/run.sh $(FAST_TESTS)
 
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
@@ -235,6 +249,7 @@ help:
 	@echo 'make demo      a soft pawn falls and bows: simulate it, find where it hits itself, draw it'
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
+	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined; ONLY="near line": those of these names)'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'

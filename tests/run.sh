@@ -1,6 +1,8 @@
 #!/bin/sh
 # Runs the test programs that are its arguments and adds up their totals; `make test` calls it.
-# BUILD is the build folder. Ends non-zero when anything failed; its last line is `N passed, M failed`.
+# BUILD is the build folder. CSCD_DATA names a folder with recordings to compare with (tests/io/check_recordings.py);
+# when it is not set, nothing is compared. Ends non-zero when anything failed; its last line is `N passed, M failed`,
+# and before it stand the ten programs that took most processor time.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 : "${BUILD:?BUILD must name the build folder}"
@@ -17,6 +19,10 @@ passed=0
 failed=0
 failures=''
 
+# A program is called by its room and its name, and its log by its whole path.
+name_of() { echo "$1" | sed 's:.*/\([^/]*/[^/]*\)$:\1:'; }
+log_of() { echo "$logs/$(echo "$1" | tr / :)"; }
+
 # total WORD LOG: the N of cmocka's line `[  WORD  ] N test(s)`, empty when there is none.
 total() {
     sed -n "s/^\[  $1  \] \(.*: \)\{0,1\}\([0-9][0-9]*\) test(s).*/\2/p" "$2" | tail -1
@@ -24,8 +30,8 @@ total() {
 
 # add_up PROGRAM: shows what it printed, and counts it.
 add_up() {
-    name=$(basename "$1")
-    log=$logs/$name
+    name=$(name_of "$1")
+    log=$(log_of "$1")
     cat "$log"
     status=$(cat "$log.status")
     good=$(total PASSED "$log")
@@ -46,14 +52,15 @@ add_up() {
 {
     printf '%s\n' "$@" | xargs -P "${JOBS:-$(nproc)}" -I PROGRAM sh -c '
     case $1 in /*) program=$1 ;; *) program=./$1 ;; esac
-    log=$2/$(basename "$1")
+    log=$2/$(echo "$1" | tr / :)
     "$program" >"$log" 2>&1
     echo "$?" >"$log.part"
+    times >"$log.seconds"
     mv "$log.part" "$log.status"' sh PROGRAM "$logs"
     : >"$logs/.all"
 } &
 for program in "$@"; do
-    log=$logs/$(basename "$program")
+    log=$(log_of "$program")
     while [ ! -e "$log.status" ] && [ ! -e "$logs/.all" ]; do sleep 0.1; done
     [ -e "$log.status" ] || { echo unknown >"$log.status" && : >>"$log"; }
     add_up "$program"
@@ -61,17 +68,22 @@ done
 wait
 
 configuration=$(basename "$BUILD")
-if [ "$configuration" = sanitize ] || [ "$configuration" = tsan ]; then
-    echo 'data to develop against: compared by the other configurations, too slow in this one'
-elif [ -d ../shared/data ] && [ -f tests/io/check_recordings.py ]; then
-    echo 'data to develop against: found, comparing'
-    if ! python3 tests/io/check_recordings.py ../shared/data; then
-        failed=$((failed + 1))
-        failures="$failures check_recordings.py"
-    fi
-else
-    echo 'data to develop against: absent, nothing to compare'
+if [ -z "${CSCD_DATA:-}" ]; then
+    echo 'recordings to compare with: CSCD_DATA is not set, nothing to compare'
+elif [ "$configuration" = sanitize ] || [ "$configuration" = tsan ]; then
+    echo 'recordings to compare with: left to the other configurations, too slow in this one'
+elif ! python3 tests/io/check_recordings.py "$CSCD_DATA"; then
+    failed=$((failed + 1))
+    failures="$failures check_recordings.py"
 fi
+
+# The second line of `times` is of the program and all that it started: user and system, as `0m1.23s 0m0.05s`.
+echo 'slowest, in seconds of processor time:'
+for program in "$@"; do
+    seconds=$(log_of "$program").seconds
+    [ ! -s "$seconds" ] || awk -v name="$(name_of "$program")" -F '[ms ]+' \
+        'NR == 2 {printf "%8.1f  %s\n", 60 * ($1 + $3) + $2 + $4, name}' "$seconds"
+done | sort -rn | head -10
 
 [ -z "$failures" ] || echo "failed:$failures"
 echo "$passed passed, $failed failed"
