@@ -157,7 +157,7 @@ static void feature_filter(recording *r, cscd_contact_kind kind) {
 }
 
 static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, bool signs_only) {
-    const kernels *table = kernels_of(r->context);
+    const ccd_kernels *table = ccd_kernels_of(r->context);
     feature_source source = swept_interval_source(&r->interval);
     feature_pairs pairs = {list->a, list->b, list->count};
     bool vf = kind == CSCD_CONTACT_VF;
@@ -165,7 +165,7 @@ static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list
         feature_queue_decide(&r->interval, kind, r->lane);
         return;
     }
-    (vf ? table->keep_open_vf : table->keep_open_ee)(&source, &pairs);
+    (vf ? table->reject_by_signs_vf : table->reject_by_signs_ee)(&source, &pairs);
     r->left += pairs.count;
 }
 
@@ -218,7 +218,6 @@ static double percent(uint64_t part, size_t whole) {
 
 static void use_level(recording *r, cscd_simd level) {
     r->context->simd = level;
-    r->detector->bvh.kernels = kernels_of(r->context);
 }
 
 static void print_triangles(recording *r) {

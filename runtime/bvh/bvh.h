@@ -5,18 +5,18 @@
  * scaled by a power of two that is common to all; docs/theory/trees.md derives how far they are rounded. */
 #pragma once
 
-#include "runtime/bvh/kernels.h"
+#include "runtime/bvh/bvh_kernels.h"
 #include "runtime/bvh/orientation.h"
 #include "src/mesh/mesh.h"
 
 /* 8^10 leaves hold more triangles than there may be, and 8^11 more parts. */
 enum { PART_LEVEL_MAX = 10, BVH_LEVEL_MAX = PART_LEVEL_MAX + 11 };
-enum { BOX_AXES = 3, KDOP_AXES = 7, BVH_LANES = 8, BVH_ALL_LANES = 255 };
+enum { BOX_AXES = 3, KDOP_AXES = 7 };
 
 /* Corners are records; empty lanes, at the end of a part's last leaf, repeat the first triangle's. */
 typedef struct bvh_leaf {
-    uint32_t corners[3][BVH_LANES];
-    uint32_t triangles[BVH_LANES]; /* UINT32_MAX: empty */
+    uint32_t corners[3][LANES];
+    uint32_t triangles[LANES]; /* UINT32_MAX: empty */
 } bvh_leaf;
 
 /* Sets of lanes: of a leaf's triangles, or of a block's children, that hold triangles at all, triangles that
@@ -59,7 +59,7 @@ typedef struct record_chunk {
 
 typedef struct bvh {
     const cscd_mesh *mesh;
-    const kernels *kernels;
+    const bvh_kernels *kernels;
     int axis_count; /* of the volumes of blocks' children: BOX_AXES or KDOP_AXES */
     uint32_t part_count, leaf_count, record_count;
     bvh_tree *parts;
@@ -97,7 +97,7 @@ void bvh_free(bvh *f);
 bool bvh_mark_obstacles(bvh *f);
 
 static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
-    return f->leaves[slot / BVH_LANES].triangles[slot % BVH_LANES];
+    return f->leaves[slot / LANES].triangles[slot % LANES];
 }
 
 /* Moves frames, records and bounds on to the interval from x0 to x1; the same array twice: to a moment. All

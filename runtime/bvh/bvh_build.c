@@ -133,7 +133,7 @@ static void list_triangles(builder *b) {
 /* ---- parts, leaves, records ---------------------------------------------------------------------------- */
 
 static uint32_t rounded_up(uint32_t count) {
-    return (count + BVH_LANES - 1) / BVH_LANES * BVH_LANES;
+    return (count + LANES - 1) / LANES * LANES;
 }
 
 static uint32_t record_of(builder *b, bvh *f, const bvh_tree *p, uint32_t vertex) {
@@ -148,7 +148,7 @@ static void fill_leaf(builder *b, bvh *f, const bvh_tree *p, const uint32_t *tri
     bvh_leaf *out = &f->leaves[index];
     f->leaf_parts[index] = (uint32_t)(p - f->parts);
     f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
-    for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
+    for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = triangles[lane < count ? lane : 0];
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
@@ -156,7 +156,7 @@ static void fill_leaf(builder *b, bvh *f, const bvh_tree *p, const uint32_t *tri
             out->corners[i][lane] = record;
             if (lane < count) f->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
         }
-        if (lane < count) f->slots[t] = index * BVH_LANES + lane;
+        if (lane < count) f->slots[t] = index * LANES + lane;
     }
 }
 
@@ -176,10 +176,10 @@ static void fill_part(builder *b, bvh *f, uint32_t index) {
     uint32_t begin = b->region_offsets[region], end = b->region_offsets[region + 1];
     order_run(&b->triangles, begin, end);
     *p = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
-    for (uint32_t i = begin; i < end; i += BVH_LANES)
-        fill_leaf(b, f, p, b->triangles.items + i, end - i < BVH_LANES ? end - i : BVH_LANES);
+    for (uint32_t i = begin; i < end; i += LANES)
+        fill_leaf(b, f, p, b->triangles.items + i, end - i < LANES ? end - i : LANES);
     p->leaf_count = f->leaf_count - p->first_leaf;
-    while (f->record_count % BVH_LANES != 0)
+    while (f->record_count % LANES != 0)
         f->record_vertices[f->record_count++] = f->record_vertices[p->first_record];
     p->record_count = f->record_count - p->first_record;
     add_chunks(f, index);
@@ -188,11 +188,11 @@ static void fill_part(builder *b, bvh *f, uint32_t index) {
 /* ---- levels -------------------------------------------------------------------------------------------- */
 
 static uint32_t blocks_over(uint32_t children) {
-    return (children + BVH_LANES - 1) / BVH_LANES;
+    return (children + LANES - 1) / LANES;
 }
 
 static bool allocate_level(cscd_context *context, bvh_level *level, uint32_t block_count, int axis_count) {
-    size_t floats = (size_t)axis_count * 2 * BVH_LANES;
+    size_t floats = (size_t)axis_count * 2 * LANES;
     level->block_count = block_count;
     level->first_children = context_allocate(context, block_count, sizeof *level->first_children);
     level->bounds = context_allocate(context, block_count * floats, sizeof *level->bounds);
@@ -201,8 +201,8 @@ static bool allocate_level(cscd_context *context, bvh_level *level, uint32_t blo
 }
 
 static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
-    for (uint32_t i = 0; i < child_count; i += BVH_LANES, at++) {
-        uint32_t count = child_count - i < BVH_LANES ? child_count - i : BVH_LANES;
+    for (uint32_t i = 0; i < child_count; i += LANES, at++) {
+        uint32_t count = child_count - i < LANES ? child_count - i : LANES;
         level->first_children[at] = first_child + i;
         level->flags[at].used = (uint8_t)((1u << count) - 1);
     }
@@ -292,13 +292,13 @@ static uint32_t most_records(const builder *b) {
         }
         sum += several;
     }
-    return (uint32_t)sum + b->given.count * BVH_LANES;
+    return (uint32_t)sum + b->given.count * LANES;
 }
 
 static uint32_t all_leaves(const builder *b) {
     uint32_t sum = 0;
     for (uint32_t r = 0; r < b->given.count; r++)
-        sum += rounded_up(b->region_offsets[r + 1] - b->region_offsets[r]) / BVH_LANES;
+        sum += rounded_up(b->region_offsets[r + 1] - b->region_offsets[r]) / LANES;
     return sum;
 }
 
@@ -340,7 +340,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
                       bvh *out) {
     builder b = {.context = mesh->context, .mesh = mesh, .given = regions};
     bvh f = {.mesh = mesh,
-             .kernels = kernels_of(mesh->context),
+             .kernels = bvh_kernels_of(mesh->context),
              .axis_count = axis_count,
              .part_count = regions.count,
              .scale = scale_for(mesh, positions)};

@@ -9,7 +9,7 @@ static bool part_is_passive(const bvh *f, uint32_t part) {
 static uint8_t passive_children(const bvh *f, int level, uint32_t block) {
     const bvh_level *at = &f->levels[level], *below = at - 1;
     uint8_t passive = 0;
-    for (uint32_t i = 0; i < BVH_LANES && (at->flags[block].used >> i & 1) != 0; i++) {
+    for (uint32_t i = 0; i < LANES && (at->flags[block].used >> i & 1) != 0; i++) {
         uint32_t child = at->first_children[block] + i;
         bool all = level == f->part_level ? part_is_passive(f, child)
                                           : below->passive[child] == below->flags[child].used;

@@ -77,7 +77,7 @@ static void mark_block(const bvh *f, int index, uint32_t block) {
     uint32_t plus = 0, minus = 0, fresh = 0;
     const lane_flags *children =
         (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[block];
-    for (uint32_t i = 0; i < BVH_LANES && (flags->used >> i & 1) != 0; i++) {
+    for (uint32_t i = 0; i < LANES && (flags->used >> i & 1) != 0; i++) {
         plus |= (uint32_t)(children[i].plus == children[i].used) << i;
         minus |= (uint32_t)(children[i].minus == children[i].used) << i;
         fresh |= (uint32_t)(children[i].fresh != 0) << i;
@@ -107,7 +107,7 @@ static void mark_blocks(const bvh *f) {
 
 static lane_flags flags_of(const bvh *f, uint32_t index, const uint8_t *orientations) {
     lane_flags flags = {.used = f->leaf_flags[index].used};
-    for (uint32_t lane = 0; lane < BVH_LANES && (flags.used >> lane & 1) != 0; lane++) {
+    for (uint32_t lane = 0; lane < LANES && (flags.used >> lane & 1) != 0; lane++) {
         uint8_t flag = orientations[f->leaves[index].triangles[lane]];
         flags.plus |= (uint8_t)((flag == ORIENTATION_PLUS) << lane);
         flags.minus |= (uint8_t)((flag == ORIENTATION_MINUS) << lane);
@@ -146,7 +146,7 @@ void bvh_mark_fresh(bvh *f, const uint8_t *before, const uint8_t *now) {
 void bvh_mark_suspects(bvh *f, const bool *suspects) {
     for (uint32_t i = 0; i < f->leaf_count; i++) {
         lane_flags flags = {.used = f->leaf_flags[i].used};
-        for (uint32_t lane = 0; lane < BVH_LANES && (flags.used >> lane & 1) != 0; lane++)
+        for (uint32_t lane = 0; lane < LANES && (flags.used >> lane & 1) != 0; lane++)
             flags.fresh |= (uint8_t)(suspects[f->leaves[i].triangles[lane]] << lane);
         f->leaf_flags[i] = flags;
     }

@@ -31,13 +31,13 @@ static cscd_status build(const cscd_detector *d, const double *positions, bvh *o
 /* How far blocks of parts extend, as a multiple of their parts; 0: there is one block. */
 static double spread_of_parts(const bvh *f) {
     const bvh_level *level = &f->levels[f->part_level];
-    const size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
+    const size_t stride = (size_t)f->axis_count * 2 * LANES;
     double whole = 0.0, of_parts = 0.0;
     for (uint32_t block = 0; level->block_count > 1 && block < level->block_count; block++) {
         for (int k = 0; k < BOX_AXES; k++) {
-            const float *low = level->bounds + block * stride + 2 * k * BVH_LANES, *high = low + BVH_LANES;
+            const float *low = level->bounds + block * stride + 2 * k * LANES, *high = low + LANES;
             float least = INFINITY, greatest = -INFINITY;
-            for (int i = 0; i < BVH_LANES && (level->flags[block].used >> i & 1) != 0; i++) {
+            for (int i = 0; i < LANES && (level->flags[block].used >> i & 1) != 0; i++) {
                 least = fminf(least, low[i]);
                 greatest = fmaxf(greatest, high[i]);
                 of_parts += (double)(high[i] - low[i]);

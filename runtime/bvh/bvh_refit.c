@@ -140,29 +140,29 @@ static void place_part(const bvh *f, const bvh_tree *p, const float *own, const 
     for (int k = 0; k < f->axis_count; k++) {
         double low = INFINITY, high = -INFINITY;
         double start = along(from[0], k), end = along(from[1], k);
-        for (int i = 0; i < BVH_LANES; i++) {
-            low = fmin(low, (double)own[2 * k * BVH_LANES + i]);
-            high = fmax(high, (double)own[(2 * k + 1) * BVH_LANES + i]);
+        for (int i = 0; i < LANES; i++) {
+            low = fmin(low, (double)own[2 * k * LANES + i]);
+            high = fmax(high, (double)own[(2 * k + 1) * LANES + i]);
         }
-        bounds[2 * k * BVH_LANES] = (float)(low + fmin(start, end) - 0x1p-20 * size);
-        bounds[(2 * k + 1) * BVH_LANES] = (float)(high + fmax(start, end) + 0x1p-20 * size);
+        bounds[2 * k * LANES] = (float)(low + fmin(start, end) - 0x1p-20 * size);
+        bounds[(2 * k + 1) * LANES] = (float)(high + fmax(start, end) + 0x1p-20 * size);
     }
 }
 
 static void place_nothing(const bvh *f, float *bounds) {
     for (int k = 0; k < f->axis_count; k++) {
-        bounds[2 * k * BVH_LANES] = INFINITY;
-        bounds[(2 * k + 1) * BVH_LANES] = -INFINITY;
+        bounds[2 * k * LANES] = INFINITY;
+        bounds[(2 * k + 1) * LANES] = -INFINITY;
     }
 }
 
 /* The part level: each part has one block on the level below, of its own number. */
 static void place_parts(const bvh *f) {
     const bvh_level *level = &f->levels[f->part_level];
-    size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
     const float *roots = f->levels[f->part_level - 1].bounds;
-    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * BVH_LANES; i++) {
-        float *bounds = level->bounds + i / BVH_LANES * stride + i % BVH_LANES;
+    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * LANES; i++) {
+        float *bounds = level->bounds + i / LANES * stride + i % LANES;
         if (i < f->part_count)
             place_part(f, &f->parts[i], roots + i * stride, &f->parts[0], bounds);
         else

@@ -13,7 +13,7 @@
  * u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B), computed with room in
  * 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B); nothing of this underflows by more than
  * the 2^-100 that is added. */
-#include "runtime/bvh/this_level.h"
+#include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
 #include "runtime/culling/start_state.h"

@@ -1,5 +1,5 @@
 /* Copy-in: the caller's positions at both ends become records of floats in the order of the leaves. */
-#include "runtime/bvh/this_level.h"
+#include "runtime/bvh/bvh_kernels_simd.h"
 
 static void load(const double *x, const uint32_t *vertices, const double origin[3], double scale,
                  f64x8 out[3]) {

@@ -1,5 +1,5 @@
 /* Refit: bounds of leaves and blocks over an interval. */
-#include "runtime/bvh/this_level.h"
+#include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
 

@@ -24,7 +24,7 @@ typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECT
 
 /* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
  * They are the kernels' own (leaf_volumes); here is only how large they are. */
-enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * BVH_LANES };
+enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * LANES };
 
 typedef struct leaf_cache {
     uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */

@@ -1,5 +1,5 @@
 /* The visit of the traversal: eight children against eight, then the triangles of leaves that overlap. */
-#include "runtime/bvh/this_level.h"
+#include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
 
@@ -94,7 +94,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
     if ((c->passive_a >> i & 1) != 0) lanes &= ~c->passive_b;
-    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)BVH_ALL_LANES << (i + 1));
+    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
     if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
     if (c->pass == TRAVERSAL_FRESH) {
         if (!c->one_part) return 0;
@@ -213,7 +213,7 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
                                                             parts ? child_b : at->part_b, at->level - 1};
             continue;
         }
-        leaf_pair pair = {child_a, child_b, NULL, NULL, BVH_ALL_LANES, BVH_ALL_LANES};
+        leaf_pair pair = {child_a, child_b, NULL, NULL, ALL_LANES, ALL_LANES};
         pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
             leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;

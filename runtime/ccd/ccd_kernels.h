@@ -1,20 +1,61 @@
-/* The kernels of this level for pairs of features, for the table. */
+/* The kernels that decide pairs of features, eight at a time. */
 #pragma once
 
-#include "runtime/bvh/kernels.h"
-#include "src/core/simd.h"
+#include "runtime/ccd/min_separation.h"
+#include "src/core/context.h"
+#include "src/core/kernels.h"
 
-void SIMD_NAME(keep_open_vf)(const feature_source *source, feature_pairs *pairs);
-void SIMD_NAME(keep_open_ee)(const feature_source *source, feature_pairs *pairs);
-void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
+/* Where pairs of features and their points are found. */
+typedef struct feature_source {
+    const double *x0, *x1; /* three per vertex */
+    const uint32_t (*triangles)[3], (*edges)[2];
+} feature_source;
+
+/* Pairs of features: vertex a[i] and triangle b[i], or edges a[i] and b[i]. Kernels take eight at a time, so
+ * the arrays go on for seven more readable and writable places after the last pair. */
+typedef struct feature_pairs {
+    uint32_t *a, *b;
+    uint32_t count;
+} feature_pairs;
+
+/* For eight pairs: what the roots say, and for hits the begin of the interval of the first that touches. */
+typedef struct root_outcomes {
+    uint32_t misses, hits; /* sets of lanes */
+    double begin[LANES];
+} root_outcomes;
+
+typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
-void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                         root_outcomes *out);
-void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             root_outcomes *out);
-void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             root_outcomes *out);
-void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             const struct separation *limit, proximity_outcomes *out);
-void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             const struct separation *limit, proximity_outcomes *out);
+
+/* For eight pairs: those that certainly stay farther apart than a limit's distance and tolerance, those
+ * certainly within its distance at the start, and, for these, the nearest points there, as parameters and as
+ * the way from b's to a's, and its length. */
+typedef struct proximity_outcomes {
+    uint32_t misses, hits; /* sets of lanes */
+    double u[LANES], v[LANES], offset[3][LANES], distance[LANES];
+} proximity_outcomes;
+
+typedef void proximity_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                              const separation *limit, proximity_outcomes *out);
+
+typedef struct ccd_kernels {
+    /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
+     * coplanarity_excluded, so the same verdicts. */
+    void (*reject_by_signs_vf)(const feature_source *source, feature_pairs *pairs);
+    void (*reject_by_signs_ee)(const feature_source *source, feature_pairs *pairs);
+
+    /* Level two for pairs from a[0], b[0] to a[7], b[7]: where the cubic has one root for certain, */
+    root_kernel *roots_vf, *roots_ee;
+
+    /* and where it has two, or none. */
+    root_kernel *two_roots_vf, *two_roots_ee;
+
+    /* Pairs from a[0], b[0] to a[7], b[7]. */
+    proximity_kernel *proximity_vf, *proximity_ee;
+} ccd_kernels;
+
+DECLARE_KERNELS(ccd_kernels);
+
+static inline const ccd_kernels *ccd_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, ccd_kernels);
+}

@@ -149,7 +149,7 @@ typedef void decide_some(const points_x8 *points, int first_count, int i, root_o
 static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
                                 int first_count, decide_some *decide, root_outcomes *out) {
     out->misses = out->hits = 0;
-    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
+    for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
         decide(&points, first_count, i, out);

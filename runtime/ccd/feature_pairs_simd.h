@@ -3,7 +3,7 @@
  * therefore hold. */
 #pragma once
 
-#include "runtime/bvh/kernels.h"
+#include "runtime/ccd/ccd_kernels.h"
 #include "src/core/simd.h"
 
 typedef struct points_x8 {

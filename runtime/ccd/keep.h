@@ -1,7 +1,7 @@
 /* Leaving pairs out of a list, in place. */
 #pragma once
 
-#include "runtime/bvh/kernels.h"
+#include "runtime/ccd/ccd_kernels.h"
 
 /* Pair i moves up to place kept, and stays if kept_now is 1: without branches, for which stay is anyone's
  * guess. */

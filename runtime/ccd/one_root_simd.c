@@ -1,6 +1,6 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic certainly has one root: the
  * same intervals and verdicts as cubic.c and inside.c have. */
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd_kernels_simd.h"
 #include "runtime/ccd/cubic_simd.h"
 
 /* Lanes in which the coefficients certainly change sign once: from positive to negative, and back. */

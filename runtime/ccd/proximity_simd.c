@@ -1,6 +1,6 @@
 /* Distances of features at rest, many pairs at a time, each with a proof: a plane across the nearest points.
  */
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd_kernels_simd.h"
 #include "runtime/ccd/feature_pairs_simd.h"
 #include "runtime/ccd/min_separation.h"
 #include "src/core/vec3.h"
@@ -199,7 +199,7 @@ static inline void decide(points_x8 *p, int first_count, int i, const separation
 static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
                               int first_count, const separation *limit, proximity_outcomes *out) {
     out->misses = out->hits = 0;
-    for (int i = 0; i < KERNEL_LANES; i += WIDTH) {
+    for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
         decide(&points, first_count, i, limit, out);

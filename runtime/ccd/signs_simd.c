@@ -1,5 +1,5 @@
 /* Level one of the elementary tests on many pairs at a time: separating axes, signs of the cubic. */
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd_kernels_simd.h"
 #include "runtime/ccd/feature_pairs_simd.h"
 #include "runtime/ccd/keep.h"
 
@@ -70,10 +70,10 @@ static inline void keep_open(const feature_source *source, feature_pairs *pairs,
     pairs->count = kept;
 }
 
-void SIMD_NAME(keep_open_vf)(const feature_source *source, feature_pairs *pairs) {
+void SIMD_NAME(reject_by_signs_vf)(const feature_source *source, feature_pairs *pairs) {
     keep_open(source, pairs, 1);
 }
 
-void SIMD_NAME(keep_open_ee)(const feature_source *source, feature_pairs *pairs) {
+void SIMD_NAME(reject_by_signs_ee)(const feature_source *source, feature_pairs *pairs) {
     keep_open(source, pairs, 2);
 }

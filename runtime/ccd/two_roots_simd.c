@@ -1,6 +1,6 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic has the same sign at both ends:
  * no root, or two. The same intervals and verdicts as cubic.c and inside.c have. */
-#include "runtime/ccd/ccd_kernels.h"
+#include "runtime/ccd/ccd_kernels_simd.h"
 #include "runtime/ccd/cubic_simd.h"
 
 /* A cubic that is above its error at both ends, cut at t: Bernstein coefficients of its two parts are

@@ -3,6 +3,7 @@
 
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/detector.h"
+#include "runtime/intersections/intersection_kernels.h"
 #include "src/core/sort.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
@@ -54,7 +55,8 @@ static void test_batch(void *data, uint32_t index) {
     traversal_lane *batch = &d->traversal.lanes[index];
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])d->mesh->triangles;
     name_triangles(now, batch);
-    uint32_t open = d->bvh.kernels->keep_meeting(triangles, now->positions, batch->pairs, batch->pair_count);
+    uint32_t open = intersection_kernels_of(d->context)
+                        ->reject_disjoint(triangles, now->positions, batch->pairs, batch->pair_count);
     for (uint32_t i = 0; i < open; i++) {
         triangle_pair pair = batch->pairs[i];
         if (triangles_intersect(triangles[pair.a], triangles[pair.b], now->positions))
@@ -80,7 +82,8 @@ static void mark_zero_area(const moment *now, intersection_lane *lane, uint32_t 
         count += d->suspects[t];
     }
     memset(d->crossing + begin, false, (end - begin) * sizeof *d->crossing);
-    count = d->bvh.kernels->keep_thin((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
+    count = intersection_kernels_of(d->context)
+                ->reject_with_area((const uint32_t(*)[3])d->mesh->triangles, now->positions, list, count);
     for (uint32_t i = 0; i < count; i++) {
         if (!has_no_area(now, list[i])) continue;
         d->crossing[list[i]] = true;

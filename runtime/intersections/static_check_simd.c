@@ -1,7 +1,6 @@
 /* Which of many pairs of triangles certainly do not meet, and which triangles certainly have an area: sorted
  * by what they share, as many at a time as the processor takes. */
-#include "runtime/bvh/this_level.h"
-
+#include "runtime/intersections/intersection_kernels.h"
 #include "runtime/intersections/triangle_intersection_simd.h"
 
 enum { CHUNK = 256, LIST_SIZE = CHUNK + LANES };
@@ -97,8 +96,8 @@ static inline void keep_open(pair_list *list, const uint32_t (*triangles)[3], co
 /* Of each list, which corners are looked at. */
 enum { FREE_CORNERS = 63, FAN_CORNERS = 1 + 2 + 4 + 16 + 32, HINGE_CORNERS = 1 + 2 + 4 + 8 };
 
-uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *positions,
-                                 triangle_pair *pairs, uint32_t count) {
+static uint32_t reject_disjoint(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
+                                uint32_t count) {
     pair_list lists[4];
     uint32_t kept = 0;
     for (uint32_t begin = 0; begin < count; begin += CHUNK) {
@@ -121,8 +120,8 @@ uint32_t SIMD_NAME(keep_meeting)(const uint32_t (*triangles)[3], const double *p
 
 /* ---- single triangles -------------------------------------------------------------------------------- */
 
-uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
-                              uint32_t count) {
+static uint32_t reject_with_area(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
+                                 uint32_t count) {
     uint32_t kept = 0;
     for (uint32_t first = 0; first < count; first += WIDTH) {
         uint32_t rest = count - first, real = rest < WIDTH ? (1u << rest) - 1 : ALL_WIDTH, clear = 0;
@@ -146,3 +145,5 @@ uint32_t SIMD_NAME(keep_thin)(const uint32_t (*triangles)[3], const double *posi
     }
     return kept;
 }
+
+const intersection_kernels SIMD_NAME(intersection_kernels) = {reject_disjoint, reject_with_area};

@@ -9,9 +9,7 @@
  * such, rounded once more: off by less than 6 u M. A sum of three coordinates carries their errors and two
  * roundings of numbers below 3 M, 9 u M + 6 u M, and a gap of such sums less than 36 u M. Gaps count from
  * 8 u M and 48 u M on. */
-#include "runtime/bvh/this_level.h"
-
-#include "src/core/simd.h"
+#include "runtime/narrow_phase/narrow_phase_kernels_simd.h"
 
 enum { FEATURE_COUNT = 15 };
 

@@ -8,7 +8,7 @@ static void add_contact(const swept_interval *interval, cscd_contact_kind kind, 
 
 /* What fills up the last eight. */
 static void repeat_last(feature_pairs *pairs) {
-    for (uint32_t i = 0; i < KERNEL_LANES - 1; i++) {
+    for (uint32_t i = 0; i < LANES - 1; i++) {
         pairs->a[pairs->count + i] = pairs->a[pairs->count - 1];
         pairs->b[pairs->count + i] = pairs->b[pairs->count - 1];
     }
@@ -26,7 +26,7 @@ static uint32_t keep_lanes(feature_pairs *pairs, uint32_t i, uint32_t lanes, uin
 
 static uint32_t lanes_from(const feature_pairs *pairs, uint32_t i) {
     uint32_t rest = pairs->count - i;
-    return rest < KERNEL_LANES ? (1u << rest) - 1 : (1u << KERNEL_LANES) - 1;
+    return rest < LANES ? (1u << rest) - 1 : (1u << LANES) - 1;
 }
 
 static void describe_hits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
@@ -47,7 +47,7 @@ static void decide_by_roots(const swept_interval *interval, cscd_contact_kind ki
     feature_source source = swept_interval_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
-    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
+    for (uint32_t i = 0; i < pairs->count; i += LANES) {
         root_outcomes roots;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &roots);
@@ -72,10 +72,10 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
 
 static void decide_by_levels(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
+    const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     feature_source source = swept_interval_source(interval);
     uint32_t tests = pairs->count;
-    (kind == CSCD_CONTACT_VF ? table->keep_open_vf : table->keep_open_ee)(&source, pairs);
+    (kind == CSCD_CONTACT_VF ? table->reject_by_signs_vf : table->reject_by_signs_ee)(&source, pairs);
     lane->decided[ELEMENTARY_SIGNS] += tests - pairs->count;
     bool vf = kind == CSCD_CONTACT_VF;
     decide_by_roots(interval, kind, vf ? table->roots_vf : table->roots_ee, pairs, lane);
@@ -100,12 +100,12 @@ static elementary_hit nearest_points(const swept_interval *interval, cscd_contac
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
 static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_lane *lane) {
-    const kernels *table = kernels_of(interval->mesh->context);
+    const ccd_kernels *table = ccd_kernels_of(interval->mesh->context);
     proximity_kernel *kernel = kind == CSCD_CONTACT_VF ? table->proximity_vf : table->proximity_ee;
     feature_source source = swept_interval_source(interval);
     uint32_t kept = 0;
     if (pairs->count > 0) repeat_last(pairs);
-    for (uint32_t i = 0; i < pairs->count; i += KERNEL_LANES) {
+    for (uint32_t i = 0; i < pairs->count; i += LANES) {
         proximity_outcomes near;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);

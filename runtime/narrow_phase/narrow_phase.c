@@ -3,6 +3,7 @@
 
 #include "runtime/ccd/kdop_directions.h"
 #include "runtime/narrow_phase/feature_queue.h"
+#include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "runtime/narrow_phase/representatives.h"
 
 enum { PAIRS_AT_ONCE = 256 };
@@ -61,10 +62,11 @@ static void queue_features(const swept_interval *interval, triangle_pair pair, u
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
     const bvh *f = interval->bvh;
+    const narrow_phase_kernels *kernels = narrow_phase_kernels_of(interval->mesh->context);
     uint16_t features[PAIRS_AT_ONCE];
     triangle_pair pairs[PAIRS_AT_ONCE];
     uint32_t kept = 0;
-    f->kernels->feature_filter(f, slots, count, interval->limit.distance, features);
+    kernels->feature_filter(f, slots, count, interval->limit.distance, features);
     for (uint32_t i = 0; i < count; i++) {
         if (features[i] == 0) continue;
         pairs[kept] = (triangle_pair){bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};

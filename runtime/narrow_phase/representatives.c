@@ -1,6 +1,7 @@
 /* Picks the one triangle pair that tests a feature pair, so that no feature pair is tested twice. */
 #include "runtime/narrow_phase/representatives.h"
 
+#include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "runtime/narrow_phase/orphan_pairs.h"
 
 /* The kernel marks the undecided features of so many pairs at a time. */
@@ -79,7 +80,8 @@ static void select_represented(const swept_interval *interval, const triangle_pa
                                uint16_t *features) {
     const cscd_mesh *mesh = interval->mesh;
     uint16_t undecided[PAIRS_AT_ONCE];
-    kernels_of(mesh->context)->represent(mesh, interval->representatives, pairs, count, features, undecided);
+    narrow_phase_kernels_of(mesh->context)
+        ->represent(mesh, interval->representatives, pairs, count, features, undecided);
     if (!interval->skip_adjacent) return;
     for (uint32_t p = 0; p < count; p++) {
         for (uint32_t rest = undecided[p]; rest != 0; rest &= rest - 1) {

@@ -1,6 +1,6 @@
 /* Finds which features each of many triangle pairs represents, and which ones have adjacent representatives.
  * Takes eight pairs at a time: branches would cost more than they save. */
-#include "runtime/bvh/this_level.h"
+#include "runtime/narrow_phase/narrow_phase_kernels_simd.h"
 
 /* Triangles a ([0]) and b ([1]) of eight pairs. Edge i joins corners i and i + 1. */
 typedef struct represented_x8 {

@@ -1,8 +1,8 @@
 /* The interval that is searched: the mesh, its positions at both ends, and which pairs count. */
 #pragma once
 
-#include "runtime/bvh/kernels.h"
 #include "runtime/bvh/traversal.h"
+#include "runtime/ccd/ccd_kernels.h"
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
 #include "runtime/culling/culling.h"

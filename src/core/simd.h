@@ -6,12 +6,12 @@
  * of a uint32_t, bit i for lane i; what is not a number is neither below nor above anything. */
 #pragma once
 
+#include "src/core/kernels.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-
-enum { LANES = 8, ALL_LANES = 255 };
 
 #define SIMD_SCALAR 0
 #define SIMD_AVX2   1

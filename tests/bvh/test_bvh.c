@@ -30,7 +30,7 @@ static void find_places(const bvh *f) {
         const bvh_level *l = &f->levels[level];
         memset(places[level], 0xff, sizeof places[level]);
         for (uint32_t b = 0; b < l->block_count; b++) {
-            for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
+            for (uint32_t lane = 0; lane < LANES; lane++) {
                 uint32_t child = l->first_children[b] + lane;
                 if ((l->flags[b].used >> lane & 1) == 0) continue;
                 assert_true(child < child_count(f, level));
@@ -51,7 +51,7 @@ static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint
     const bvh *f = &r->bvh;
     const bvh_leaf *l = &f->leaves[index];
     assert_ptr_equal(&f->parts[f->leaf_parts[index]], p);
-    for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
+    for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = l->triangles[lane], from = t != UINT32_MAX ? t : l->triangles[0];
         assert_int_equal(f->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
         for (int i = 0; i < 3; i++) {
@@ -61,7 +61,7 @@ static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint
         }
         if (t == UINT32_MAX) continue;
         assert_int_equal(r->regions[t], p->region);
-        assert_int_equal(f->slots[t], index * BVH_LANES + lane);
+        assert_int_equal(f->slots[t], index * LANES + lane);
         assert_int_equal(bvh_triangle(f, f->slots[t]), t);
         seen[t]++;
     }
@@ -76,7 +76,7 @@ static void check_layout(const bvh_rig *r) {
         const bvh_tree *p = &f->parts[i];
         assert_int_equal(p->first_leaf, leaf);
         assert_int_equal(p->first_record, record);
-        assert_int_equal(p->record_count % BVH_LANES, 0);
+        assert_int_equal(p->record_count % LANES, 0);
         for (; leaf < p->first_leaf + p->leaf_count; leaf++) {
             check_leaf(r, leaf, p, seen);
             assert_int_equal(f->block_parts[places[0][leaf].block], i);
@@ -106,8 +106,8 @@ static void every_triangle_has_one_slot(void **state) {
 /* ---- bounds -------------------------------------------------------------------------------------------- */
 
 static const float *bounds_of(const bvh *f, int level, child_place at, int axis) {
-    size_t stride = (size_t)f->axis_count * 2 * BVH_LANES;
-    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * BVH_LANES + at.lane;
+    size_t stride = (size_t)f->axis_count * 2 * LANES;
+    return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * LANES + at.lane;
 }
 
 /* Part level and above have no bounds where there is nothing to tell apart. */
@@ -130,7 +130,7 @@ static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, d
                 long double value = along_direction(level < f->part_level ? own : common, axis);
                 const float *low = bounds_of(f, level, at, axis);
                 assert_true((long double)low[0] <= value - wide);
-                assert_true((long double)low[BVH_LANES] >= value + wide);
+                assert_true((long double)low[LANES] >= value + wide);
             }
             child = at.block;
         }
@@ -142,7 +142,7 @@ static void check_leaf_tight(const bvh *f, uint32_t leaf, motion m) {
     const bvh_tree *p = &f->parts[f->leaf_parts[leaf]];
     for (int axis = 0; axis < f->axis_count; axis++) {
         long double least = INFINITY, greatest = -INFINITY;
-        for (int i = 0; i < 6 * BVH_LANES; i++) {
+        for (int i = 0; i < 6 * LANES; i++) {
             long double own[3];
             uint32_t record = f->leaves[leaf].corners[i % 3][i / 6];
             in_frame(f, p, m, f->record_vertices[record], i % 6 < 3 ? 0 : 2, own);
@@ -152,7 +152,7 @@ static void check_leaf_tight(const bvh *f, uint32_t leaf, motion m) {
         const float *low = bounds_of(f, 0, places[0][leaf], axis);
         long double slack = 2.0L * p->slack[axis < BOX_AXES ? 0 : 1];
         assert_true((long double)low[0] >= least - slack);
-        assert_true((long double)low[BVH_LANES] <= greatest + slack);
+        assert_true((long double)low[LANES] <= greatest + slack);
     }
 }
 
@@ -161,22 +161,22 @@ static void check_union(const bvh *f, int level, uint32_t child) {
     const lane_flags flags = f->levels[level - 1].flags[child];
     for (int axis = 0; axis < f->axis_count; axis++) {
         float least = INFINITY, greatest = -INFINITY;
-        for (uint32_t lane = 0; lane < BVH_LANES; lane++) {
+        for (uint32_t lane = 0; lane < LANES; lane++) {
             const float *low = bounds_of(f, level - 1, (child_place){child, lane}, axis);
             bool used = (flags.used >> lane & 1) != 0;
-            if (!used) assert_true(low[0] > low[BVH_LANES]);
+            if (!used) assert_true(low[0] > low[LANES]);
             least = used ? fminf(least, low[0]) : least;
-            greatest = used ? fmaxf(greatest, low[BVH_LANES]) : greatest;
+            greatest = used ? fmaxf(greatest, low[LANES]) : greatest;
         }
         if (level == f->part_level) continue;
         const float *low = bounds_of(f, level, places[level][child], axis);
-        assert_true(low[0] == least && low[BVH_LANES] == greatest);
+        assert_true(low[0] == least && low[LANES] == greatest);
     }
 }
 
 static void check_bounds(const bvh *f, motion m, double distance) {
     for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
-        for (int i = 0; i < 3 * BVH_LANES; i++) {
+        for (int i = 0; i < 3 * LANES; i++) {
             uint32_t record = f->leaves[leaf].corners[i % 3][i / 3];
             check_held(f, leaf, m, f->record_vertices[record], distance);
         }
@@ -269,7 +269,7 @@ static void assert_same_bvh(const bvh *a, const bvh *b) {
     assert_memory_equal(a->records, b->records, a->record_count * sizeof *a->records);
     assert_memory_equal(a->leaves, b->leaves, a->leaf_count * sizeof *a->leaves);
     for (int level = 0; level < bounded_levels(a); level++) {
-        size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * BVH_LANES;
+        size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * LANES;
         assert_memory_equal(a->levels[level].bounds, b->levels[level].bounds, floats * sizeof(float));
     }
     for (uint32_t i = 0; i < a->part_count; i++) {

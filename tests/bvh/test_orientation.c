@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BATCH_COUNT = 12500, BATCH_SIZE = BVH_LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
+enum { BATCH_COUNT = 12500, BATCH_SIZE = LANES, TRIANGLE_COUNT = BATCH_COUNT * BATCH_SIZE };
 enum { UNIT_EXPONENT = -200 };
 
 static scene shape; /* large; one test at a time */

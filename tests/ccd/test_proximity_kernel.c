@@ -1,6 +1,6 @@
 /* The kernel that decides by the start of a motion which features are near and which stay apart: never
  * against the test of one pair, whose verdicts it anticipates; the same bits on every level. */
-#include "runtime/bvh/kernels.h"
+#include "runtime/ccd/ccd_kernels.h"
 #include "runtime/ccd/min_separation.h"
 #include "tests/support/levels.h"
 #include "tests/support/random.h"
@@ -10,13 +10,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCHES = 4000, POINTS = 4 * KERNEL_LANES };
+enum { BATCHES = 4000, POINTS = 4 * LANES };
 
 /* Eight pairs of features of their own. */
 typedef struct batch {
     double x0[POINTS][3], x1[POINTS][3];
-    uint32_t triangles[KERNEL_LANES][3], edges[2 * KERNEL_LANES][2];
-    uint32_t vf_a[KERNEL_LANES], faces[KERNEL_LANES], ee_a[KERNEL_LANES], ee_b[KERNEL_LANES];
+    uint32_t triangles[LANES][3], edges[2 * LANES][2];
+    uint32_t vf_a[LANES], faces[LANES], ee_a[LANES], ee_b[LANES];
 } batch;
 
 /* Small integers, at times the same ones again; or any numbers, at times far away, or moved far. */
@@ -29,7 +29,7 @@ static void make_batch(batch *b, bool integers) {
         }
         if (random_integer(0, 3) == 0) memcpy(b->x1[i], b->x0[i], sizeof b->x1[i]);
     }
-    for (uint32_t i = 0; i < KERNEL_LANES; i++) {
+    for (uint32_t i = 0; i < LANES; i++) {
         for (uint32_t k = 0; k < 3; k++) b->triangles[i][k] = 4 * i + 1 + k;
         for (uint32_t k = 0; k < 4; k++) b->edges[2 * i + k / 2][k % 2] = 4 * i + k;
         b->vf_a[i] = 4 * i;
@@ -53,7 +53,7 @@ typedef struct tally {
 
 static void compare(const batch *b, const separation *limit, bool vf, const proximity_outcomes *found,
                     tally *sum) {
-    for (uint32_t i = 0; i < KERNEL_LANES; i++) {
+    for (uint32_t i = 0; i < LANES; i++) {
         elementary_query query = query_of(b, i);
         elementary_hit hit;
         bool bounded, hits = (found->hits >> i & 1) != 0, misses = (found->misses >> i & 1) != 0;
@@ -86,12 +86,12 @@ static void never_against_the_test_of_one_pair(void **state) {
             limit.tolerance = (round % 2 == 0 ? 1e-6 : 0.5) * limit.distance;
             for (int level = 0; level < LEVEL_COUNT; level++) {
                 if (contexts[level] == NULL) continue;
-                const kernels *table = kernels_of(contexts[level]);
+                const ccd_kernels *table = ccd_kernels_of(contexts[level]);
                 proximity_outcomes found;
                 (vf ? table->proximity_vf : table->proximity_ee)(&source, vf ? b.vf_a : b.ee_a,
                                                                  vf ? b.faces : b.ee_b, &limit, &found);
                 compare(&b, &limit, vf, &found, &sum);
-                double own = found.distance[random_integer(0, KERNEL_LANES - 1)];
+                double own = found.distance[random_integer(0, LANES - 1)];
                 if (level == 0 && own > 1e-9 && own < 1e9)
                     limit.distance = own * (1.0 + random_integer(-2, 2) * 0x1p-46);
                 limit.tolerance = (round % 2 == 0 ? 1e-6 : 0.5) * limit.distance;

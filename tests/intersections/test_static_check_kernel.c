@@ -1,7 +1,6 @@
 /* The kernels of the static check: what they leave out never meets, or has an area, by the exact predicates;
  * they leave the same on every level that this machine has, and little of what does not meet. */
-#include "runtime/bvh/kernels.h"
-#include "runtime/bvh/traversal.h"
+#include "runtime/intersections/intersection_kernels.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/levels.h"
@@ -79,16 +78,17 @@ static bool meets(uint32_t i) {
 }
 
 /* By the kernel of a level, in pairs; how many. */
-static uint32_t keep_meeting(int level, triangle_pair *pairs) {
+static uint32_t reject_disjoint(int level, triangle_pair *pairs) {
     for (uint32_t i = 0; i < work.count; i++) pairs[i] = (triangle_pair){2 * i, 2 * i + 1};
-    return kernels_of(contexts[level])->keep_meeting(triangles_of_work(), work.positions, pairs, work.count);
+    return intersection_kernels_of(contexts[level])
+        ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count);
 }
 
 /* Adds to how many pairs are apart, and to how many of these are left open. */
 static void check_batch(uint64_t *apart, uint64_t *open) {
     triangle_pair first[BATCH_MAX], other[BATCH_MAX];
     bool kept[BATCH_MAX] = {false};
-    uint32_t count = keep_meeting(0, first);
+    uint32_t count = reject_disjoint(0, first);
     for (uint32_t i = 0; i < count; i++) {
         assert_int_equal(first[i].a + 1, first[i].b);
         assert_false(kept[first[i].a / 2]);
@@ -102,7 +102,7 @@ static void check_batch(uint64_t *apart, uint64_t *open) {
     }
     for (int level = 1; level < LEVEL_COUNT; level++) {
         if (contexts[level] == NULL) continue;
-        assert_int_equal(keep_meeting(level, other), count);
+        assert_int_equal(reject_disjoint(level, other), count);
         assert_memory_equal(first, other, count * sizeof *first);
     }
 }
@@ -153,16 +153,17 @@ static void overflow_certifies_nothing(void **state) {
         assert_true(meeting > 10);
         for (size_t k = 0; k < BATCH_MAX * 18; k++) work.positions[k] *= scale;
         for (int level = 0; level < LEVEL_COUNT; level++) {
-            if (contexts[level] != NULL) assert_int_equal(keep_meeting(level, pairs), meeting);
+            if (contexts[level] != NULL) assert_int_equal(reject_disjoint(level, pairs), meeting);
         }
     }
 }
 
 /* ---- single triangles -------------------------------------------------------------------------------- */
 
-static uint32_t keep_thin(int level, uint32_t *list) {
+static uint32_t reject_with_area(int level, uint32_t *list) {
     for (uint32_t i = 0; i < 2 * work.count; i++) list[i] = i;
-    return kernels_of(contexts[level])->keep_thin(triangles_of_work(), work.positions, list, 2 * work.count);
+    return intersection_kernels_of(contexts[level])
+        ->reject_with_area(triangles_of_work(), work.positions, list, 2 * work.count);
 }
 
 static bool has_no_area(uint32_t triangle) {
@@ -177,7 +178,7 @@ static void thin_triangles(void **state) {
     for (int i = 0; i < BATCHES; i++) {
         uint32_t first[2 * BATCH_MAX], other[2 * BATCH_MAX], next = 0;
         make_batch((family)(i % FAMILY_COUNT), -1);
-        uint32_t count = keep_thin(0, first);
+        uint32_t count = reject_with_area(0, first);
         for (uint32_t t = 0; t < 2 * work.count; t++) {
             bool kept = next < count && first[next] == t, flat = has_no_area(t);
             assert_true(kept || !flat);
@@ -189,7 +190,7 @@ static void thin_triangles(void **state) {
         all += 2 * work.count;
         for (int level = 1; level < LEVEL_COUNT; level++) {
             if (contexts[level] == NULL) continue;
-            assert_int_equal(keep_thin(level, other), count);
+            assert_int_equal(reject_with_area(level, other), count);
             assert_memory_equal(first, other, count * sizeof *first);
         }
     }

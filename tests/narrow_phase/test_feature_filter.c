@@ -1,5 +1,5 @@
 /* The feature_filter against exact gaps: which pairs of features of two triangles it keeps. */
-#include "runtime/bvh/traversal.h"
+#include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/bvh/touching.h"
 #include "tests/support/test.h"
@@ -31,7 +31,7 @@ static void close_levels(void) {
     for (uint32_t i = 0; i < level_count; i++) bvh_rig_destroy(&levels[i]);
 }
 
-/* Bit of a feature pair (runtime/bvh/kernels.h) to the vertices of its two features. */
+/* Bit of a feature pair (runtime/narrow_phase/narrow_phase_kernels.h) to the vertices of its two features. */
 typedef struct feature_points {
     uint32_t a[3], b[3];
     int count_a, count_b;
@@ -59,8 +59,8 @@ static bool share_vertex(const feature_points *p) {
 /* As documented: 48 u of both reaches and of what lies between the parts, along diagonals; as much again is
  * what a gap may be off. */
 static long double slack_between(const bvh *f, triangle_pair pair) {
-    const bvh_tree *p = &f->parts[f->leaf_parts[pair.a / BVH_LANES]];
-    const bvh_tree *q = &f->parts[f->leaf_parts[pair.b / BVH_LANES]];
+    const bvh_tree *p = &f->parts[f->leaf_parts[pair.a / LANES]];
+    const bvh_tree *q = &f->parts[f->leaf_parts[pair.b / LANES]];
     long double size = (long double)p->reach + q->reach;
     for (int i = 0; i < 6; i++) {
         double from = p->origin[i / 3][i % 3], to = q->origin[i / 3][i % 3];
@@ -109,7 +109,7 @@ static void feature_filter_in_runs(const bvh *f, double distance, uint16_t *out)
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
         for (int k = 0; k < 32; k++) some[k] = UNWRITTEN;
-        f->kernels->feature_filter(f, pairs + i, count, distance, some);
+        narrow_phase_kernels_of(f->mesh->context)->feature_filter(f, pairs + i, count, distance, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
         memcpy(out + i, some, count * sizeof *some);
     }
@@ -176,7 +176,8 @@ static void keeps_what_just_touches(void **state) {
             const uint32_t *slots = levels[0].bvh.slots;
             pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
         }
-        levels[0].bvh.kernels->feature_filter(&levels[0].bvh, pairs, count, 0.0, features[0]);
+        narrow_phase_kernels_of(levels[0].bvh.mesh->context)
+            ->feature_filter(&levels[0].bvh, pairs, count, 0.0, features[0]);
         for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
         close_levels();
     }

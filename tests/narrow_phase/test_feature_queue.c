@@ -1,6 +1,6 @@
 /* The kernels behind the feature queue: lane by lane what the scalar functions say, on every level that this
  * machine has; and whole intervals, the same on all levels and for all thread counts. */
-#include "runtime/bvh/kernels.h"
+#include "runtime/ccd/ccd_kernels.h"
 #include "runtime/ccd/coplanarity.h"
 #include "runtime/ccd/cubic.h"
 #include "runtime/ccd/inside_test.h"
@@ -106,13 +106,13 @@ static bool open_after_signs(uint32_t i) {
     return !separated_by_axes(&work.queries[i], first_count()) && !coplanarity_excluded(&f);
 }
 
-static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const kernels *)) {
+static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const ccd_kernels *)) {
     for (int level = 0; level < LEVEL_COUNT; level++) {
         if (contexts[level] == NULL) continue;
         random_stream random = stream_start(seed);
         for (int i = 0; i < FAMILY_COUNT * 2 * BATCHES_A_FAMILY; i++) {
             make_batch(&random, (pair_kind)(i % 2), (query_family)(i / 2 % FAMILY_COUNT));
-            check(&random, kernels_of(contexts[level]));
+            check(&random, ccd_kernels_of(contexts[level]));
         }
     }
 }
@@ -121,9 +121,9 @@ static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const k
 
 static uint64_t kept_total, pair_total;
 
-static void check_open(random_stream *random, const kernels *table) {
-    check_kept(random, work.kind == PAIR_VF ? table->keep_open_vf : table->keep_open_ee, open_after_signs,
-               &kept_total);
+static void check_open(random_stream *random, const ccd_kernels *table) {
+    check_kept(random, work.kind == PAIR_VF ? table->reject_by_signs_vf : table->reject_by_signs_ee,
+               open_after_signs, &kept_total);
     pair_total += work.count;
 }
 
@@ -160,13 +160,13 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
     assert_int_equal(pair_test(work.kind, &work.queries[i], &unused).touching, hit);
 }
 
-static void check_eight(const kernels *table, const feature_source *source, const feature_pairs *pairs,
+static void check_eight(const ccd_kernels *table, const feature_source *source, const feature_pairs *pairs,
                         uint32_t i) {
     bool vf = work.kind == PAIR_VF;
     root_outcomes roots[2];
     (vf ? table->roots_vf : table->roots_ee)(source, pairs->a + i, pairs->b + i, &roots[0]);
     (vf ? table->two_roots_vf : table->two_roots_ee)(source, pairs->a + i, pairs->b + i, &roots[1]);
-    for (uint32_t lane = 0; lane < KERNEL_LANES && i + lane < pairs->count; lane++) {
+    for (uint32_t lane = 0; lane < LANES && i + lane < pairs->count; lane++) {
         uint32_t decided = 0;
         for (int k = 0; k < 2; k++) {
             bool hit = roots[k].hits >> lane & 1, miss = roots[k].misses >> lane & 1;
@@ -181,7 +181,7 @@ static void check_eight(const kernels *table, const feature_source *source, cons
     }
 }
 
-static void check_roots(random_stream *random, const kernels *table) {
+static void check_roots(random_stream *random, const ccd_kernels *table) {
     feature_source source = source_of_work();
     feature_pairs pairs = pairs_of_work(random);
     if (pairs.count == 0) return;
@@ -189,7 +189,7 @@ static void check_roots(random_stream *random, const kernels *table) {
         pairs.a[pairs.count + i] = pairs.a[0];
         pairs.b[pairs.count + i] = pairs.b[0];
     }
-    for (uint32_t i = 0; i < pairs.count; i += KERNEL_LANES) check_eight(table, &source, &pairs, i);
+    for (uint32_t i = 0; i < pairs.count; i += LANES) check_eight(table, &source, &pairs, i);
 }
 
 /* The counts prove that each answer is given, and that all levels give it to the same pairs. */

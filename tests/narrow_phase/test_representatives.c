@@ -1,6 +1,7 @@
 /* Where pairs of adjacent triangles are skipped, exactly one pair of triangles that share no vertex tests each
  * pair of features that share none; or the pair of features is an orphan pair. */
 #include "runtime/narrow_phase/narrow_phase.h"
+#include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "runtime/narrow_phase/representatives.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"

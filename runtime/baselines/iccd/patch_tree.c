@@ -10,7 +10,7 @@ typedef struct pending_node {
 
 static uint32_t triangles_of(const bvh *f, const bvh_tree *p) {
     uint32_t last = p->first_leaf + p->leaf_count - 1;
-    return (p->leaf_count - 1) * BVH_LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
+    return (p->leaf_count - 1) * LANES + (uint32_t)__builtin_popcount(f->leaf_flags[last].used);
 }
 
 static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
@@ -27,8 +27,8 @@ static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
         if (at.parent != UINT32_MAX) tree->nodes[at.parent].right = node;
         tree->nodes[node] = (patch_node){.part = index, .first_slot = at.first, .height = at.height};
         if (at.height == 0) {
-            const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / BVH_LANES];
-            tree->nodes[node].triangle = l->triangles[at.first % BVH_LANES];
+            const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / LANES];
+            tree->nodes[node].triangle = l->triangles[at.first % LANES];
             continue;
         }
         uint32_t half = 1u << (at.height - 1);
@@ -66,15 +66,15 @@ static uint64_t square(uint32_t first, uint32_t count) {
 
 static void hide(const patch_node *node, bvh *f) {
     if (node->height <= LEAF_HEIGHT) {
-        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / BVH_LANES;
-        f->leaf_within[index] &= ~square(node->first_slot % BVH_LANES, 1u << node->height);
+        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / LANES;
+        f->leaf_within[index] &= ~square(node->first_slot % LANES, 1u << node->height);
         return;
     }
     int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
     uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
     uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
-    uint32_t block = f->parts[node->part].first_blocks[level] + child / BVH_LANES;
-    f->levels[level].within[block] &= ~square(child % BVH_LANES, count);
+    uint32_t block = f->parts[node->part].first_blocks[level] + child / LANES;
+    f->levels[level].within[block] &= ~square(child % LANES, count);
 }
 
 void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f) {

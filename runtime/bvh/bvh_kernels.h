@@ -1,0 +1,48 @@
+/* The kernels of the BVH. */
+#pragma once
+
+#include "src/core/context.h"
+#include "src/core/kernels.h"
+
+struct bvh;
+struct bvh_tree;
+struct traversal;
+struct traversal_lane;
+
+/* Of the records that were copied: the largest magnitude of a coordinate, and the sums by record_weights of
+ * those at the start and at the end. */
+typedef struct copied {
+    double reach, weighted[2][3];
+} copied;
+
+/* Along the axes, added up. */
+typedef struct extents {
+    double leaves, triangles;
+} extents;
+
+typedef struct bvh_kernels {
+    /* Fills records begin to end - 1, multiples of 8, of a part; see runtime/bvh/bvh.h. */
+    void (*copy_in)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
+                    const double *x0, const double *x1, copied *out);
+
+    /* Bounds of the children of blocks begin to end - 1 of any level but the part level. */
+    void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
+
+    /* How far leaves, and their triangles, extend at the start. */
+    extents (*extents_at_start)(const struct bvh *f);
+
+    /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; states: triangle_state
+     * of each triangle of the mesh, of which only the clean ones have an orientation; NULL: all. */
+    void (*orient)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
+                   const uint8_t *states, uint8_t *orientations);
+
+    /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
+     * what another visit may add. */
+    void (*search)(const struct traversal *t, struct traversal_lane *lane, size_t visits_max);
+} bvh_kernels;
+
+DECLARE_KERNELS(bvh_kernels);
+
+static inline const bvh_kernels *bvh_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, bvh_kernels);
+}

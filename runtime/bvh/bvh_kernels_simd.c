@@ -1,0 +1,10 @@
+/* The table of the BVH's kernels, one per instruction set. */
+#include "runtime/bvh/bvh_kernels_simd.h"
+
+const bvh_kernels SIMD_NAME(bvh_kernels) = {
+    .copy_in = SIMD_NAME(copy_in),
+    .refit = SIMD_NAME(refit),
+    .extents_at_start = SIMD_NAME(extents_at_start),
+    .orient = SIMD_NAME(orient),
+    .search = SIMD_NAME(search),
+};

@@ -1,0 +1,32 @@
+/* The kernels of the narrow phase: from pairs of triangles to the pairs of their features. */
+#pragma once
+
+#include "runtime/bvh/traversal.h"
+#include "runtime/narrow_phase/representatives.h"
+#include "src/core/kernels.h"
+
+/* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
+ * FEATURE_VERTEX_B + i vertex i of b against the face a, FEATURE_EDGES + 3 i + j edge i of a against edge j
+ * of b. */
+enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
+
+/* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
+ * their volumes, and that share no vertex. */
+typedef void feature_filter_kernel(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+                                   uint16_t *features);
+
+/* Of features of pairs of triangles, those that these represent; open: those whose representatives share a
+ * vertex, where the features share none. */
+typedef void represent_kernel(const cscd_mesh *mesh, const representatives *r, const triangle_pair *pairs,
+                              uint32_t count, uint16_t *features, uint16_t *open);
+
+typedef struct narrow_phase_kernels {
+    feature_filter_kernel *feature_filter;
+    represent_kernel *represent;
+} narrow_phase_kernels;
+
+DECLARE_KERNELS(narrow_phase_kernels);
+
+static inline const narrow_phase_kernels *narrow_phase_kernels_of(const cscd_context *context) {
+    return KERNELS_OF(context, narrow_phase_kernels);
+}
