@@ -1,5 +1,6 @@
 /* What each rule of the published culling loses, one at a time. */
 #include "benchmarks/lib/contest.h"
+#include "runtime/baselines/published.h"
 #include "runtime/detector/detector.h"
 
 #include <stdio.h>
@@ -34,7 +35,7 @@ static bool measure(const truth *t, const rule_set *set, losses *out, io_error *
     options.method = CSCD_METHOD_PUBLISHED;
     if (cscd_detector_create(r->mesh, r->charge, &options, &detector) != CSCD_OK)
         return io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
-    detector->published_rules = set->rules;
+    detector->rules = published_rules(set->rules);
     losses sum = {.with_contact = 0};
     cscd_status status = CSCD_OK;
     for (uint32_t i = 0; status == CSCD_OK && i + 1 < r->frame_count; i++) {

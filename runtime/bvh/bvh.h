@@ -108,6 +108,13 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
 /* No pair is hidden by `within`, where there is such a thing. */
 void bvh_show_all(bvh *f);
 
+/* Makes room for hidden pairs, of which there are none yet. False: no memory. */
+bool bvh_allow_hiding(bvh *f);
+
+static inline bool bvh_can_hide(const bvh *f) {
+    return f->leaf_within != NULL;
+}
+
 /* Whose pairs of adjacent triangles are left out: per component; NULL: nobody's. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
 

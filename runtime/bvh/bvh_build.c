@@ -378,3 +378,18 @@ void bvh_free(bvh *f) {
     }
     *f = (bvh){0};
 }
+
+bool bvh_allow_hiding(bvh *f) {
+    cscd_context *context = f->mesh->context;
+    if (f->leaf_within == NULL)
+        f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
+    bool allocated = f->leaf_within != NULL;
+    for (int i = 0; i < f->part_level; i++) {
+        bvh_level *level = &f->levels[i];
+        if (level->within == NULL)
+            level->within = context_allocate(context, level->block_count, sizeof *level->within);
+        allocated &= level->within != NULL;
+    }
+    bvh_show_all(f);
+    return allocated;
+}

@@ -2,30 +2,15 @@
 #include "runtime/bvh/bvh_rebuild.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { LOOK_EVERY = 16, USELESS_MAX = 4 };
 
 static const double decayed = 1.25, of_use = 1.1;
 
-/* As published, a patch of ICCD is any set of triangles: then all components are one part, and all obstacles
- * another. */
 static cscd_status build(const cscd_detector *d, const double *positions, bvh *out) {
     int axis_count = d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
-    uint32_t *one_part = NULL;
     bvh_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights, d->culling.region_count};
-    if (d->options.method == CSCD_METHOD_ICCD_PUBLISHED) {
-        one_part = context_allocate(d->context, d->mesh->triangle_count, sizeof *one_part);
-        if (one_part == NULL) return CSCD_OUT_OF_MEMORY;
-        uint32_t obstacles = 0, count = d->mesh->triangle_count;
-        for (uint32_t t = 0; t < count; t++) obstacles += one_part[t] = triangle_of_obstacle(d->mesh, t);
-        bool both = obstacles > 0 && obstacles < count;
-        if (!both) memset(one_part, 0, count * sizeof *one_part);
-        regions = (bvh_regions){one_part, d->culling.triangle_weights, both ? 2 : 1};
-    }
-    cscd_status status = bvh_build(d->mesh, regions, positions, axis_count, out);
-    context_free(d->context, one_part);
-    return status;
+    return bvh_build(d->mesh, regions, positions, axis_count, out);
 }
 
 /* How far blocks of parts extend, as a multiple of their parts; 0: there is one block. */
@@ -57,11 +42,10 @@ static bool beyond(tree_spread now, tree_spread before, double factor) {
     return now.leaves > factor * before.leaves || now.parts > factor * before.parts;
 }
 
-/* What hangs on the order of the triangles goes with the old trees; without memory for new ones they stay. */
+/* Without memory for new trees the old ones stay. */
 static bool rebuild(cscd_detector *d, const double *positions) {
     bvh fresh;
     if (build(d, positions, &fresh) != CSCD_OK) return false;
-    patches_free(d->context, &d->patches);
     bvh_free(&d->bvh);
     d->bvh = fresh;
     d->rebuilt = true;

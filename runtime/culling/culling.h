@@ -23,6 +23,9 @@ typedef struct culling {
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
+/* Makes one region of all components, and another one of all obstacles; triangles keep their weights. */
+void culling_join_components(culling *c);
+
 /* What is facing has been filled in: the orientations are these, and counted. */
 void culling_begin(culling *c);
 

@@ -9,7 +9,8 @@ void tainting_begin(cscd_detector *d) {
 /* Returns whether its pairs are kept from now on, and were not. */
 static bool taint(cscd_detector *d, uint32_t triangle) {
     start_states_taint(&d->starts, triangle);
-    return d->finished[d->mesh->triangle_components[triangle]] && culling_taint(&d->culling, triangle);
+    return d->wants_all_contacts[d->mesh->triangle_components[triangle]] &&
+           culling_taint(&d->culling, triangle);
 }
 
 static uint32_t taint_star(cscd_detector *d, const uint32_t *star, uint32_t count) {

@@ -64,6 +64,10 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
     cscd_method method = options->method;
     if (method == CSCD_METHOD_AUTO) method = plan != NULL ? plan->method : CSCD_METHOD_NONE;
     options->method = method;
+    if (method_stages_of(method)->rules == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "method %s is a baseline, and this library was built without runtime/baselines",
+                            cscd_method_name(method));
     if (method_traits_of(method)->needs_plan && (plan == NULL || plan->method != method))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s wants a plan of that method%s%s",
                             cscd_method_name(method), plan != NULL ? ", not " : "",
@@ -75,11 +79,12 @@ static bool allocate_per_component(cscd_detector *d) {
     size_t count = d->mesh->component_count;
     d->culled = context_allocate(d->context, count, sizeof *d->culled);
     d->touched = context_allocate(d->context, count, sizeof *d->touched);
-    d->finished = context_allocate(d->context, count, sizeof *d->finished);
+    d->wants_all_contacts = context_allocate(d->context, count, sizeof *d->wants_all_contacts);
+    d->incomplete = context_allocate(d->context, count, sizeof *d->incomplete);
     d->skipped = context_allocate(d->context, count, sizeof *d->skipped);
     d->guarantees = context_allocate(d->context, count, sizeof *d->guarantees);
-    return d->culled != NULL && d->touched != NULL && d->finished != NULL && d->skipped != NULL &&
-           d->guarantees != NULL;
+    return d->culled != NULL && d->touched != NULL && d->wants_all_contacts != NULL &&
+           d->incomplete != NULL && d->skipped != NULL && d->guarantees != NULL;
 }
 
 static bool allocate_per_triangle(cscd_detector *d) {
@@ -88,14 +93,22 @@ static bool allocate_per_triangle(cscd_detector *d) {
     return d->suspects != NULL && d->crossing != NULL;
 }
 
+static cscd_status create_hider(cscd_detector *d) {
+    if (d->stages->hider == NULL) return CSCD_OK;
+    d->hider_state = d->stages->hider->create(d->context);
+    return d->hider_state != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
 static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     cscd_context *context = d->context;
     bool own_regions =
         d->options.method == CSCD_METHOD_SINGLE && plan != NULL && plan->method != d->options.method;
     cscd_status status = traversal_create(context, &d->traversal);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
+    if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
+    if (status == CSCD_OK) status = create_hider(d);
     if (status == CSCD_OK) status = call_create(d);
     if (status != CSCD_OK) return status;
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
@@ -121,7 +134,9 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->context = context;
     d->mesh = mesh;
     d->options = chosen;
-    d->published_rules = PUBLISHED_ALL;
+    d->traits = method_traits_of(chosen.method);
+    d->stages = method_stages_of(chosen.method);
+    d->rules = *d->stages->rules;
     d->limit = limit_of(&chosen);
     status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && allocate_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
@@ -158,14 +173,15 @@ void cscd_detector_destroy(cscd_detector *d) {
     exclusions_free(context, &d->exclusions);
     representatives_free(context, &d->representatives);
     orphan_pairs_free(context, &d->orphans);
-    patches_free(context, &d->patches);
+    if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
     void *blocks[] = {d->contacts.items,
                       d->contacts.scratch,
                       d->intersections.items,
                       d->intersections.scratch,
                       d->culled,
                       d->touched,
-                      d->finished,
+                      d->wants_all_contacts,
+                      d->incomplete,
                       d->skipped,
                       d->suspects,
                       d->crossing,

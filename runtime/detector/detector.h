@@ -1,30 +1,22 @@
 /* The detector's inside: trees, lanes and buffers that live from one interval to the next. */
 #pragma once
 
-#include "runtime/baselines/iccd/patch.h"
 #include "runtime/bvh/traversal.h"
 #include "runtime/culling/culling.h"
 #include "runtime/culling/start_state.h"
+#include "runtime/detector/method_table.h"
 #include "runtime/detector/rollback.h"
 #include "runtime/intersections/static_check.h"
 #include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
 #include "runtime/narrow_phase/representatives.h"
+#include "src/core/methods.h"
 
 /* What a call returns, and as much room again for sorting it. */
 typedef struct result_buffer {
     void *items, *scratch;
     size_t capacity;
 } result_buffer;
-
-/* What method PUBLISHED does otherwise; benchmarks switch single rules off. */
-enum {
-    PUBLISHED_UNPROVEN = 1,        /* culls also where the start is not known to be embedded */
-    PUBLISHED_STILL = 2,           /* the detector point stays where it is at the start */
-    PUBLISHED_REPRESENTATIVES = 4, /* a feature's first triangle answers for it, whatever the flags */
-    PUBLISHED_ADJACENT = 8,        /* triangles that share a vertex are not tested */
-    PUBLISHED_ALL = 15
-};
 
 /* How far leaves extend, as a multiple of their triangles, and blocks of parts, of their parts. */
 typedef struct tree_spread {
@@ -36,20 +28,25 @@ struct cscd_detector {
     const cscd_mesh *mesh;
     cscd_detector_options options;
     separation limit; /* of the options, the default tolerance filled in */
-    uint8_t published_rules;
+    const method_traits *traits;
+    const method_stages *stages;
+    culling_rules rules;
 
     exclusions exclusions;
     culling culling;
     start_states starts;
-    bool *culled;               /* per component, in the interval at hand: pairs are culled in it, */
-    bool *touched;              /* it has a contact with itself, */
-    bool *skipped;              /* its pairs of adjacent triangles are left out, */
-    bool *finished;             /* it is culled, and all its contacts are wanted */
+    /* Per component, in the current interval: */
+    bool *culled;             /* its pairs are culled */
+    bool *wants_all_contacts; /* it is culled, and the closing pass finds all its contacts */
+    bool *touched;            /* it has a contact with itself */
+    bool *skipped;            /* its pairs of adjacent triangles are not traversed */
+    bool *incomplete;         /* some of its contacts may be missing */
+
     bool *suspects, *crossing;  /* per triangle, at the moment checked last */
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    patches patches;               /* of the BVH, with ICCD */
+    void *hider_state;             /* of stages->hider */
     bvh bvh;                       /* of the interval or moment at hand */
     tree_spread spread_when_built; /* and how good it is: see upkeep.h */
     uint32_t intervals_unlooked, useless_rebuilds;
@@ -69,23 +66,18 @@ struct cscd_detector {
     cscd_counters counters;
 };
 
-/* Does the method cull pairs by orientation? */
+/* With a minimum separation no pair is culled. */
 static inline bool detector_culls(const cscd_detector *d) {
-    cscd_method method = d->options.method;
-    bool by_orientation = method == CSCD_METHOD_SINGLE || method == CSCD_METHOD_KMEANS ||
-                          method == CSCD_METHOD_CHARGE || method == CSCD_METHOD_PUBLISHED;
-    return by_orientation && d->limit.distance == 0.0;
+    return d->rules.by_orientation && d->limit.distance == 0.0;
 }
 
-/* The regions that orientations are of; 0: there are none. */
+static inline bool detector_hides_pairs(const cscd_detector *d) {
+    return d->stages->hider != NULL && d->limit.distance == 0.0;
+}
+
+/* The number of regions that triangles are oriented by; 0 where they are not oriented. */
 static inline uint32_t detector_region_count(const cscd_detector *d) {
     return detector_culls(d) ? d->culling.region_count : 0;
-}
-
-/* Does it look for patches that cannot touch themselves? */
-static inline bool detector_seals(const cscd_detector *d) {
-    cscd_method method = d->options.method;
-    return (method == CSCD_METHOD_ICCD || method == CSCD_METHOD_ICCD_PUBLISHED) && d->limit.distance == 0.0;
 }
 
 /* Makes room for count results of size bytes; what the buffer held is dropped. */

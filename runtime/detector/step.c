@@ -13,97 +13,157 @@
 typedef struct step_work {
     interval_search search;
     cscd_mode mode;
-    bool rehearsal;                  /* the vertices may not go to its end */
+    bool rehearsal;                  /* the vertices may not go to the interval's end */
+    uint32_t unproven;               /* triangles whose start is still to be checked */
     bool any_culled, any_not_culled; /* components */
-    bool all_clean;                  /* are those that are culled */
+    bool all_clean;                  /* every triangle of the components that are culled is clean */
+    cscd_contacts contacts;
 } step_work;
 
-/* ---- culling --------------------------------------------------------------------------------------- */
-
-static bool follows(const cscd_detector *d, int rule) {
-    return d->options.method == CSCD_METHOD_PUBLISHED && (d->published_rules & rule) != 0;
-}
-
-static bool culls_unproven(const cscd_detector *d) {
-    return follows(d, PUBLISHED_UNPROVEN) && detector_culls(d);
-}
-
-/* Suspects beyond this share are worth volumes of their moment; fewer are found by those of the interval. */
-enum { SUSPECTS_SHARE = 16 };
-
-/* Finds out which triangles are clean at the start, and updates the tree for the interval. */
-static cscd_status prove_starts(step_work *work) {
+static void begin_interval(step_work *work) {
     cscd_detector *d = work->search.detector;
-    const double *start = work->search.interval.x0;
-    bool proves = detector_culls(d) && d->options.start == CSCD_START_PROVE && !culls_unproven(d);
-    double since = timer_now_ms();
-    uint32_t suspects = proves ? start_states_suspect(&d->starts, d->suspects) : 0;
-    bool at_once = suspects > d->mesh->triangle_count / SUSPECTS_SHARE;
-    cscd_status status = CSCD_OK;
-    if (at_once) {
-        status = upkeep_move_to(d, start, 0.0);
-        if (status == CSCD_OK) status = static_check_suspects(d, start);
-    }
-    if (proves) timer_lap(&since, &work->search.timings.proof_ms);
-    if (status == CSCD_OK) status = upkeep_move(d, start, work->search.interval.x1, d->limit.distance);
-    timer_lap(&since, &work->search.timings.update_ms);
-    if (status == CSCD_OK && suspects > 0 && !at_once) status = static_check_suspects(d, start);
-    if (proves) timer_lap(&since, &work->search.timings.proof_ms);
-    work->search.counters.static_checks = suspects > 0;
+    d->rebuilt = false;
+    culling_clear(&d->culling);
+    tainting_begin(d);
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->culled[c] = d->wants_all_contacts[c] = false;
+    if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
+    start_states_count(&d->starts);
     if (work->rehearsal) start_states_save(&d->starts);
+}
+
+/* ---- start states, refit --------------------------------------------------------------------------- */
+
+/* More unproven triangles than one in so many are worth volumes of the start alone; fewer are compared by the volumes
+ * of the interval, which are needed anyway. */
+enum { UNPROVEN_SHARE = 16 };
+
+/* Finds out which unproven triangles are clean, by the volumes that the trees have. */
+static cscd_status check_start(step_work *work) {
+    cscd_detector *d = work->search.detector;
+    cscd_status status = static_check_suspects(d, work->search.interval.x0);
+    work->unproven = 0;
+    if (status == CSCD_OK && work->rehearsal) start_states_save(&d->starts);
     return status;
 }
 
-/* A first contact that is to be left out may hide the one to report: then mode EARLIEST finishes, too. */
-static bool finishes(const step_work *work) {
+static cscd_status prove_starts(step_work *work) {
+    cscd_detector *d = work->search.detector;
+    if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
+    double since = timer_now_ms();
+    cscd_status status = CSCD_OK;
+    work->unproven = start_states_suspect(&d->starts, d->suspects);
+    work->search.counters.static_checks = work->unproven > 0;
+    if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
+        status = upkeep_move_to(d, work->search.interval.x0, 0.0);
+        if (status == CSCD_OK) status = check_start(work);
+    }
+    timer_lap(&since, &work->search.timings.proof_ms);
+    return status;
+}
+
+static cscd_status refit_trees(step_work *work) {
+    cscd_detector *d = work->search.detector;
+    const swept_interval *interval = &work->search.interval;
+    double since = timer_now_ms();
+    cscd_status status = upkeep_move(d, interval->x0, interval->x1, d->limit.distance);
+    timer_lap(&since, &work->search.timings.update_ms);
+    return status;
+}
+
+static cscd_status prove_remaining_starts(step_work *work) {
+    if (work->unproven == 0) return CSCD_OK;
+    double since = timer_now_ms();
+    cscd_status status = check_start(work);
+    timer_lap(&since, &work->search.timings.proof_ms);
+    return status;
+}
+
+/* ---- orientation ----------------------------------------------------------------------------------- */
+
+static cscd_status hide_pairs(step_work *work) {
+    cscd_detector *d = work->search.detector;
+    if (!detector_hides_pairs(d)) return CSCD_OK;
+    const swept_interval *interval = &work->search.interval;
+    double since = timer_now_ms();
+    cscd_status status =
+        d->stages->hider->hide(d->hider_state, &d->bvh, interval->x0, interval->x1, &work->search.counters);
+    timer_lap(&since, &work->search.timings.contour_ms);
+    return status;
+}
+
+/* A first contact that is to be left out may hide the one to report: then mode EARLIEST finds all contacts, too. */
+static bool finds_all_contacts(const step_work *work) {
     return work->mode == CSCD_MODE_ALL || exclusions_any(&work->search.detector->exclusions);
 }
 
-/* Which components are culled: closed ones of which nearly all triangles are clean. Those that are not all
- * clean are finished in either mode. As published: embedded ones, or all, and none is finished. */
-static void choose_culled(step_work *work) {
+static bool is_culled(const cscd_detector *d, uint32_t clean, uint32_t triangle_count) {
+    if (!detector_culls(d)) return false;
+    if (d->rules.assumes_clean) return true;
+    if (d->rules.embedded_only) return clean == triangle_count;
+    return start_states_pay(&d->starts, clean, triangle_count);
+}
+
+/* Culls closed components of which nearly all triangles are clean. Of those that are not all clean, all contacts are
+ * wanted in either mode. */
+static cscd_status choose_culled(step_work *work) {
     cscd_detector *d = work->search.detector;
-    bool published = d->options.method == CSCD_METHOD_PUBLISHED;
+    if (detector_hides_pairs(d)) return CSCD_OK; /* instead of culling */
     start_states_count(&d->starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_component *component = &d->mesh->components[c];
-        d->culled[c] = d->finished[c] = false;
         if (component_is_obstacle(d->mesh, c)) continue;
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
-        bool pays = start_states_pay(&d->starts, clean, component->triangle_count);
-        d->culled[c] = detector_culls(d) && (published ? embedded || follows(d, PUBLISHED_UNPROVEN) : pays);
-        d->finished[c] = d->culled[c] && !published && (finishes(work) || !embedded);
+        d->culled[c] = is_culled(d, clean, component->triangle_count);
+        d->wants_all_contacts[c] =
+            d->culled[c] && !d->traits->loses_contacts && (finds_all_contacts(work) || !embedded);
         work->any_culled |= d->culled[c];
         work->any_not_culled |= !d->culled[c];
         work->all_clean &= !d->culled[c] || embedded;
         work->search.counters.clean += clean;
     }
+    return CSCD_OK;
 }
 
-static orientation_query view_of(const step_work *work) {
+static orientation_query orientation_query_of(const step_work *work) {
     const cscd_detector *d = work->search.detector;
-    bool all = work->all_clean || follows(d, PUBLISHED_UNPROVEN);
+    bool all = work->all_clean || d->rules.assumes_clean;
     return (orientation_query){d->culled, all ? NULL : d->starts.triangles,
-                               (const double(*)[3])d->culling.detector_offsets, follows(d, PUBLISHED_STILL)};
+                               (const double(*)[3])d->culling.detector_offsets, d->rules.still_points};
 }
 
-static void orient(step_work *work, const orientation_query *view) {
+static cscd_status orient_triangles(step_work *work) {
     cscd_detector *d = work->search.detector;
+    orientation_query query = orientation_query_of(work);
+    if (detector_region_count(d) > 0) bvh_detector_points(&d->bvh, &query, d->culling.detector_points);
+    if (!work->any_culled) return CSCD_OK;
     double since = timer_now_ms();
-    bvh_orient(&d->bvh, view, d->culling.facing);
+    bvh_orient(&d->bvh, &query, d->culling.facing);
     culling_begin(&d->culling);
     timer_lap(&since, &work->search.timings.orientation_ms);
     work->search.counters.plus = d->culling.plus;
     work->search.counters.minus = d->culling.minus;
-    work->search.interval.culling = follows(d, PUBLISHED_REPRESENTATIVES) ? NULL : &d->culling;
+    work->search.interval.culling = d->rules.fixed_representatives ? NULL : &d->culling;
     work->search.interval.culled = d->culled;
+    return CSCD_OK;
 }
 
-/* Tests the pairs that contacts have uncovered, until these bring no more: then all contacts of the
- * components to be finished are found (docs/theory/culling.md). */
+/* ---- traversal, closing pass ----------------------------------------------------------------------- */
+
+static cscd_status traverse_pairs(step_work *work) {
+    const cscd_detector *d = work->search.detector;
+    bool all_culled = work->any_culled && !work->any_not_culled;
+    bool loses_contacts = d->traits->loses_contacts && (work->any_culled || detector_hides_pairs(d));
+    if (!all_culled && !loses_contacts) return interval_search_everything(&work->search);
+    interval_search_skip_adjacent(&work->search, d->rules.skips_adjacent);
+    return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
+}
+
+/* Tests the pairs that contacts have uncovered until these bring no more contacts. Then all contacts of the components
+ * that want them all are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->search.detector;
+    if (!work->any_culled) return CSCD_OK;
     work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
@@ -117,93 +177,66 @@ static cscd_status close_contacts(step_work *work) {
     }
 }
 
-/* ICCD needs no embedded start: a pair in a sealed patch never touches. */
-static cscd_status find_unsealed(step_work *work) {
-    cscd_detector *d = work->search.detector;
-    bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
-    double since = timer_now_ms();
-    if (d->patches.tree.node_count == 0) {
-        cscd_status status = patches_create(d->mesh, &d->bvh, &d->patches);
-        if (status != CSCD_OK) return status;
-    }
-    patches_seal(&d->patches, d->mesh, &d->bvh, work->search.interval.x0, work->search.interval.x1,
-                 published);
-    timer_lap(&since, &work->search.timings.contour_ms);
-    work->search.counters.contours = d->patches.contours;
-    work->search.counters.sealed = d->patches.sealed;
-    if (!published) return interval_search_everything(&work->search);
-    interval_search_skip_adjacent(&work->search, true);
-    return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
+/* ---- the pipeline ---------------------------------------------------------------------------------- */
+
+typedef cscd_status step_stage(step_work *work);
+
+static cscd_status search_every_feature_pair(step_work *work) {
+    return interval_search_by_brute_force(&work->search);
 }
 
-static cscd_status find_by_trees(step_work *work) {
+static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->search.detector;
-    cscd_status status = prove_starts(work);
-    if (status != CSCD_OK) return status;
-    if (detector_seals(d)) return find_unsealed(work);
-    choose_culled(work);
-    orientation_query view = view_of(work);
-    if (detector_region_count(d) > 0) bvh_detector_points(&d->bvh, &view, d->culling.detector_points);
-    if (!work->any_culled) return interval_search_everything(&work->search);
-    orient(work, &view);
-    if (d->options.method == CSCD_METHOD_PUBLISHED) {
-        interval_search_skip_adjacent(&work->search, follows(d, PUBLISHED_ADJACENT));
-        return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
-    }
-    if (work->any_not_culled) {
-        status = interval_search_everything(&work->search);
-    } else {
-        interval_search_skip_adjacent(&work->search, false);
-        status = interval_search_traverse(&work->search, TRAVERSAL_KEPT);
-    }
-    return status == CSCD_OK ? close_contacts(work) : status;
+    work->search.counters.rebuilds = d->rebuilt;
+    tainting_look(d);
+    double since = timer_now_ms();
+    cscd_status status = contact_list_collect(d, &work->search.counters, &work->contacts);
+    timer_lap(&since, &work->search.timings.contact_ms);
+    return status;
+}
+
+static step_stage *const stages_by_trees[] = {
+    prove_starts,           /* which triangles are clean at the start? */
+    refit_trees,            /* bounding volumes over the interval */
+    prove_remaining_starts, /* by these volumes, where few are to be checked */
+    hide_pairs,             /* pairs that a baseline's own test proves to stay apart */
+    choose_culled,          /* components whose pairs are culled by orientation */
+    orient_triangles,       /* from which side does each detector point see its triangles? */
+    traverse_pairs,         /* triangle pairs, feature pairs, contacts */
+    close_contacts,         /* pairs that these contacts uncover */
+    collect_contacts,       /* one sorted list */
+    NULL};
+
+static step_stage *const stages_by_brute_force[] = {search_every_feature_pair, collect_contacts, NULL};
+
+static cscd_status run_stages(step_stage *const *stages, step_work *work) {
+    cscd_status status = CSCD_OK;
+    for (int i = 0; status == CSCD_OK && stages[i] != NULL; i++) status = stages[i](work);
+    return status;
+}
+
+/* ---- guarantees ------------------------------------------------------------------------------------ */
+
+/* The reason for a component of a method that culls. */
+static cscd_reason culling_reason(const step_work *work, uint32_t component, bool embedded) {
+    const cscd_detector *d = work->search.detector;
+    if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
+    if (!embedded) return d->starts.of[component].crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
+    if (!d->touched[component]) return CSCD_REASON_CLEAN;
+    return finds_all_contacts(work) ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
 }
 
 static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
     const cscd_detector *d = work->search.detector;
-    const component_start *start = &d->starts.of[component];
-    bool embedded = start->clean == d->mesh->components[component].triangle_count;
-    cscd_guarantee g = {true, embedded, CSCD_REASON_METHOD};
+    bool embedded = d->starts.of[component].clean == d->mesh->components[component].triangle_count;
     if (component_is_obstacle(d->mesh, component))
         return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
-    if (detector_seals(d)) {
-        bool published = d->options.method == CSCD_METHOD_ICCD_PUBLISHED;
-        g.reason = published ? CSCD_REASON_PUBLISHED : CSCD_REASON_CONTOUR;
-        g.complete = !published;
-        return g;
-    }
-    if (!detector_culls(d)) return g;
-    if (d->options.method == CSCD_METHOD_PUBLISHED)
-        g.reason = CSCD_REASON_PUBLISHED;
-    else if (!d->mesh->components[component].closed_manifold)
-        g.reason = CSCD_REASON_SURFACE;
-    else if (!embedded)
-        g.reason = start->crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
-    else if (!d->touched[component])
-        g.reason = CSCD_REASON_CLEAN;
-    else
-        g.reason = finishes(work) ? CSCD_REASON_FINISHED : CSCD_REASON_EARLIEST;
-    g.complete = g.reason != CSCD_REASON_EARLIEST && g.reason != CSCD_REASON_PUBLISHED;
-    return g;
-}
-
-static cscd_status find(step_work *work, cscd_contacts *contacts) {
-    cscd_detector *d = work->search.detector;
-    d->rebuilt = false;
-    culling_clear(&d->culling);
-    tainting_begin(d);
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->finished[c] = false;
-    if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
-    start_states_count(&d->starts);
-    bool brute = d->options.method == CSCD_METHOD_BRUTE;
-    cscd_status status = brute ? interval_search_by_brute_force(&work->search) : find_by_trees(work);
-    if (status != CSCD_OK) return status;
-    work->search.counters.rebuilds = d->rebuilt;
-    tainting_look(d);
-    double since = timer_now_ms();
-    status = contact_list_collect(d, &work->search.counters, contacts);
-    timer_lap(&since, &work->search.timings.contact_ms);
-    return status;
+    if (!detector_culls(d) && !detector_hides_pairs(d))
+        return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
+    if (d->traits->loses_contacts) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
+    if (!detector_culls(d)) return (cscd_guarantee){true, embedded, CSCD_REASON_CONTOUR};
+    cscd_reason reason = culling_reason(work, component, embedded);
+    return (cscd_guarantee){reason != CSCD_REASON_EARLIEST, embedded, reason};
 }
 
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
@@ -212,35 +245,36 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
-    if (rehearsal) start_states_save(&d->starts); /* should it fail before the proof */
-    cscd_status status = find(&work, &out->contacts);
+    begin_interval(&work);
+    cscd_status status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(&work, c);
+    out->contacts = work.contacts;
     out->timings = work.search.timings;
     out->counters = work.search.counters;
     return CSCD_OK;
 }
 
-/* But where contacts may be missing. */
+/* ---- from one interval to the next ----------------------------------------------------------------- */
+
 void step_take(cscd_detector *d, const double *end) {
     if (!detector_culls(d)) {
         start_states_forget(&d->starts); /* contacts have not tainted it */
         return;
     }
-    bool *lost = d->culled; /* which nobody asks for any more */
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
-        lost[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
+        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
     }
-    start_states_end(&d->starts, end, lost);
+    start_states_end(&d->starts, end, d->incomplete);
 }
 
 void step_withdraw(cscd_detector *d) {
     if (detector_culls(d)) start_states_restore(&d->starts);
 }
 
-/* What was seen last has been checked then. States are of the start from here on; without culling they matter
- * only if a static check has left some. */
+/* The positions that were seen last have been checked then. From here on the states are those of the start; without
+ * culling they matter only if a static check has left some. */
 cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
                                  const char *start_name, const char *end_name) {
     uint32_t vertices = d->mesh->vertex_count;

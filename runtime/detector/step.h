@@ -10,17 +10,19 @@ typedef struct step_outcome {
     cscd_counters counters;
 } step_outcome;
 
-/* May positions hold this, and is what is known of triangles known of the start? Names are the arguments'. */
+/* Checks both arrays, under the names of the caller's arguments, and forgets what is known of triangles at other
+ * positions than the start. */
 cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
                                  const char *start_name, const char *end_name);
 
-/* Finds the contacts between x0 and x1, both checked, that the mode promises, and what it could promise of
- * each component. Then either the vertices go to x1, or, after a rehearsal, they do not. */
+/* Finds the contacts between x0 and x1, both checked, that the mode promises, and fills in the guarantees. Then the
+ * caller either takes the step or, only after a rehearsal, withdraws it. */
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out);
 
-/* They have: the states of the triangles are those at the end of the interval found last. */
+/* The vertices have gone to the end of the interval found last: carries the states of its triangles over to there,
+ * except in components whose contacts may be incomplete. */
 void step_take(cscd_detector *d, const double *end);
 
-/* They have not: the states are those at its start. */
+/* The vertices have not gone there: the states are those at the interval's start again. */
 void step_withdraw(cscd_detector *d);

@@ -1,7 +1,6 @@
 /* The longest step towards x1 that is certified free of contact, by the stages of a step. */
 #include "runtime/detector/step.h"
 #include "runtime/solver/free_step.h"
-#include "src/core/methods.h"
 #include "src/core/timer.h"
 
 #include <string.h>
@@ -50,13 +49,12 @@ static cscd_status try_motion(void *of, const double *from, const double *to, cs
 
 static cscd_status check_arguments(cscd_detector *d, const double *x0, const double *x1,
                                    const cscd_free_step *out) {
-    cscd_method method = d->options.method;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
-    if (method_traits_of(method)->loses_contacts)
+    if (d->traits->loses_contacts)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_detector_max_step: method %s loses contacts and certifies nothing",
-                            cscd_method_name(method));
+                            d->traits->name);
     return step_check_positions(d, x0, x1, "x0", "x1");
 }
 

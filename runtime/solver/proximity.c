@@ -119,7 +119,7 @@ static cscd_status find_near(cscd_detector *d, const double *positions, double d
                              cscd_proximities *out) {
     interval_search search = proximity_search(d, positions, distance);
     cscd_status status = CSCD_OK;
-    if (d->options.method == CSCD_METHOD_BRUTE) {
+    if (d->stages->brute_force) {
         status = interval_search_by_brute_force(&search);
     } else {
         status = upkeep_move_to(d, positions, distance);

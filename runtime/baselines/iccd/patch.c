@@ -189,21 +189,6 @@ static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, cont
     return true;
 }
 
-static bool allocate_within(bvh *f) {
-    cscd_context *context = f->mesh->context;
-    if (f->leaf_within == NULL)
-        f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
-    bool allocated = f->leaf_within != NULL;
-    for (int i = 0; i < f->part_level; i++) {
-        bvh_level *level = &f->levels[i];
-        if (level->within == NULL)
-            level->within = context_allocate(context, level->block_count, sizeof *level->within);
-        allocated &= level->within != NULL;
-    }
-    bvh_show_all(f);
-    return allocated;
-}
-
 static bool allocate(patches *p, contour_lists *lists) {
     cscd_context *context = lists->context;
     size_t count = p->tree.node_count;
@@ -231,7 +216,7 @@ cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
     patches p = {0};
     contour_lists lists = {.context = context};
     vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
-    bool made = visits != NULL && allocate_within(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
+    bool made = visits != NULL && bvh_allow_hiding(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
                 allocate(&p, &lists) && fill(&p, mesh, &p.tree, &lists, visits);
     context_free(context, visits);
     context_free(context, lists.begins);

@@ -1,0 +1,24 @@
+/* How a method leaves pairs of triangles out of a step. */
+#pragma once
+
+#include "runtime/bvh/bvh.h"
+
+/* With none of these every pair is tested, and by_orientation alone loses no contact. Each of the others comes from
+ * the literature and may lose contacts. */
+typedef struct culling_rules {
+    bool by_orientation;        /* pairs of triangles of one region are culled by their orientation */
+    bool assumes_clean;         /* every triangle counts as clean at the start; nothing is proven */
+    bool embedded_only;         /* a component is culled only if all its triangles are clean */
+    bool still_points;          /* detector points stay where they are at the start */
+    bool fixed_representatives; /* the first triangle at a feature tests it, whatever the orientations */
+    bool skips_adjacent;        /* triangles that share a vertex are not tested, and orphan pairs neither */
+    bool joins_components;      /* all components are one region, and all obstacles are another */
+} culling_rules;
+
+/* A stage between refit and orientation: it hides pairs of triangles in the BVH that, by its own test, do not touch in
+ * the interval that the BVH was refitted to. */
+typedef struct pair_hider {
+    void *(*create)(cscd_context *context); /* NULL: out of memory */
+    void (*destroy)(cscd_context *context, void *state);
+    cscd_status (*hide)(void *state, bvh *f, const double *x0, const double *x1, cscd_counters *counters);
+} pair_hider;

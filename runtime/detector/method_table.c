@@ -1,0 +1,30 @@
+/* How each method goes through the pipeline. Baselines are in runtime/baselines: without that folder and the lines between
+ * the marks here, the detector has all methods but them. */
+#include "runtime/detector/method_table.h"
+
+/* baselines: begin */
+#include "runtime/baselines/iccd/iccd.h"
+#include "runtime/baselines/published.h"
+/* baselines: end */
+
+static const culling_rules tests_every_pair = {.by_orientation = false};
+static const culling_rules culls_by_orientation = {.by_orientation = true};
+
+static const method_stages stages[] = {
+    [CSCD_METHOD_NONE] = {.rules = &tests_every_pair},
+    [CSCD_METHOD_BRUTE] = {.rules = &tests_every_pair, .brute_force = true},
+    [CSCD_METHOD_SINGLE] = {.rules = &culls_by_orientation},
+    [CSCD_METHOD_KMEANS] = {.rules = &culls_by_orientation},
+    [CSCD_METHOD_CHARGE] = {.rules = &culls_by_orientation},
+    /* baselines: begin */
+    [CSCD_METHOD_PUBLISHED] = {.rules = &published_culling},
+    [CSCD_METHOD_ICCD] = {.rules = &tests_every_pair, .hider = &iccd_hider},
+    [CSCD_METHOD_ICCD_PUBLISHED] = {.rules = &iccd_published_culling, .hider = &iccd_published_hider},
+    /* baselines: end */
+};
+
+static const method_stages absent;
+
+const method_stages *method_stages_of(cscd_method method) {
+    return (unsigned)method < sizeof stages / sizeof *stages ? &stages[method] : &absent;
+}
