@@ -18,9 +18,9 @@ static const struct extent {
     {"dumbbell-stairs", 34, 33, true}, {"dumbbell-stairs-free", 8, 2, false},
     {"figure-balls", 6, 4, false},     {"figure-balls-free", 6, 2, false},
 #else
-    {"pawn-drop", 36, 36, true},       {"pawn-drop-free", 60, 8, false},
-    {"dumbbell-stairs", 60, 36, true}, {"dumbbell-stairs-free", 60, 8, false},
-    {"figure-balls", 60, 12, false},   {"figure-balls-free", 60, 12, false},
+    {"pawn-drop", 36, 36, true},       {"pawn-drop-free", 20, 8, false},
+    {"dumbbell-stairs", 36, 36, true}, {"dumbbell-stairs-free", 20, 8, false},
+    {"figure-balls", 20, 8, false},    {"figure-balls-free", 20, 8, false},
 #endif
 };
 
