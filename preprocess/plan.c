@@ -174,7 +174,7 @@ cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions, con
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create: out is NULL");
     draft d = {.mesh = mesh, .positions = positions};
     d.options = options != NULL ? *options : cscd_plan_defaults();
-    progress_begin(context);
+    progress_begin(&context->progress);
     cscd_status status = check_options(context, &d.options);
     if (status == CSCD_OK) status = positions_check(context, positions, mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;

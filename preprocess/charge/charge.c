@@ -100,10 +100,10 @@ static cscd_status solve_components(workspace *work, const cscd_mesh *mesh, cons
         if (charged_triangles(mesh, c) == 0) continue;
         double begin = part_of_call * done / whole;
         done += charge_system_work(mesh->components[c].triangle_count);
-        progress_part(mesh->context, begin, part_of_call * done / whole);
+        progress_part(&mesh->context->progress, begin, part_of_call * done / whole);
         status = solve_component(work, mesh, positions, c, timings);
     }
-    progress_part(mesh->context, part_of_call, 1.0);
+    progress_part(&mesh->context->progress, part_of_call, 1.0);
     return status;
 }
 

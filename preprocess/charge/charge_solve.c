@@ -31,7 +31,7 @@ static void potentials_of_source(const charge_system *system, uint32_t k, uint32
 static void assemble_columns(void *data, uint32_t task) {
     charge_system *system = data;
     uint32_t n = system->count, first = task * COLUMNS_PER_TASK;
-    if (!progress_go_on(system->context, (double)first / n)) return;
+    if (!progress_go_on(&system->context->progress, (double)first / n)) return;
     for (uint32_t k = first; k < n && k < first + COLUMNS_PER_TASK; k++) {
         float *column = system->matrix + (size_t)k * n;
         for (uint32_t begin = 0; begin < n; begin += POINTS_PER_BLOCK) {
@@ -48,7 +48,7 @@ static void assemble_columns(void *data, uint32_t task) {
 static void evaluate_residual(void *data, uint32_t task) {
     charge_system *system = data;
     uint32_t begin = task * POINTS_PER_BLOCK, size = block_size(system, begin);
-    if (!progress_go_on(system->context, (double)begin / system->count)) return;
+    if (!progress_go_on(&system->context->progress, (double)begin / system->count)) return;
     double sums[POINTS_PER_BLOCK] = {0.0}, potentials[POINTS_PER_BLOCK];
     for (uint32_t k = 0; k < system->count; k++) {
         potentials_of_source(system, k, begin, size, potentials);
@@ -117,14 +117,14 @@ double charge_system_work(uint32_t count) {
 /* Begin and end are parts of the work. */
 static void enter_stage(const charge_system *system, const char *name, double begin, double end) {
     double work = charge_system_work(system->count);
-    progress_stage(system->context, name, begin / work, end / work);
+    progress_stage(&system->context->progress, name, begin / work, end / work);
 }
 
 static cscd_status assemble(charge_system *system) {
     enter_stage(system, "charge: matrix", 0.0, entries_work(system->count));
     parallel_run(system->context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns,
                  system);
-    return progress_status(system->context);
+    return context_progress_status(system->context);
 }
 
 static cscd_status factor(charge_system *system, uint32_t *zero_pivot) {
@@ -148,7 +148,7 @@ static cscd_status refine(charge_system *system) {
         enter_stage(system, "charge: refinement", work - left * entries_work(system->count),
                     work - (left - 1.0) * entries_work(system->count));
         parallel_run(threads, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
-        cscd_status status = progress_status(system->context);
+        cscd_status status = context_progress_status(system->context);
         if (status != CSCD_OK) return status;
         double change = apply_correction(system);
         double rate = change / before;

@@ -98,7 +98,7 @@ static void update_columns(const factoring *f, uint32_t first, uint32_t last) {
 static void advance(void *data, uint32_t task) {
     factoring *f = data;
     uint32_t begin = f->end + task * PANEL_WIDTH, end = least(f->count, begin + PANEL_WIDTH);
-    if (!progress_go_on(f->context, f->done)) return;
+    if (!progress_go_on(&f->context->progress, f->done)) return;
     update_columns(f, begin, end);
     if (task == 0) factor_panel(f, begin, end);
 }
@@ -125,7 +125,7 @@ static cscd_status factor(factoring *f) {
     for (uint32_t left = panels - 1; left > 0; left--) {
         f->done = share_done(f);
         parallel_run(threads, left, advance, f);
-        cscd_status status = progress_status(f->context);
+        cscd_status status = context_progress_status(f->context);
         if (status != CSCD_OK) return status;
         f->begin = f->end;
         f->end = least(f->count, f->end + PANEL_WIDTH);

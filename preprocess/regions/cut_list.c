@@ -111,7 +111,8 @@ static cscd_status add_cuts_of_band(search *s, cut_list *cuts) {
 static cscd_status find_all(search *s, const clusters *found, cut_list *cuts) {
     cscd_context *context = s->mesh->context;
     for (uint32_t i = 0; i < found->count; i++) {
-        if (!progress_go_on(context, (double)i / found->count)) return progress_status(context);
+        if (!progress_go_on(&context->progress, (double)i / found->count))
+            return context_progress_status(context);
         const uint32_t *cluster = found->triangles + found->offsets[i];
         uint32_t size = found->offsets[i + 1] - found->offsets[i];
         uint32_t component = s->mesh->triangle_components[cluster[0]];

@@ -95,7 +95,7 @@ static double try_cuts(const selection *s, const cut_list *cuts, uint32_t region
                        double least_visible) {
     double most = -1.0;
     for (uint32_t i = 0; i < s->own_count; i++) {
-        if (!progress_go_on(s->mesh->context, (double)i / s->own_count)) return -1.0;
+        if (!progress_go_on(&s->mesh->context->progress, (double)i / s->own_count)) return -1.0;
         sight *found = &s->found[i];
         uint32_t piece_count = cut_pieces(s, cuts, s->own[i]);
         if (piece_count == region_count || !look(s, piece_count, least_area, found) ||
@@ -189,7 +189,7 @@ cscd_status select_cuts(const cscd_mesh *mesh, const dual_graph *graph, const do
         s.own = own.items + own.offsets[c];
         s.own_count = own.offsets[c + 1] - own.offsets[c];
         select_in_component(&s, cuts, gain, part_share);
-        status = progress_status(mesh->context);
+        status = context_progress_status(mesh->context);
     }
     ungroup(mesh, &triangles);
     ungroup(mesh, &own);

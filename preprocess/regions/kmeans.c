@@ -113,7 +113,7 @@ static cscd_status find_centroids(work *w, uint32_t seed) {
                    vertices_of(w, c), w->shares[c], w->centroids + (size_t)w->firsts[c] * 3,
                    w->labels,         w->counts,    w->queue};
         double used = w->used_offsets[w->mesh->component_count];
-        progress_stage(w->mesh->context, "k-means", 0.8 * w->used_offsets[c] / used,
+        progress_stage(&w->mesh->context->progress, "k-means", 0.8 * w->used_offsets[c] / used,
                        0.8 * w->used_offsets[c + 1] / used);
         cscd_status status = lloyd_run(&l, (uint64_t)seed << 32 | c);
         if (status != CSCD_OK) return status;

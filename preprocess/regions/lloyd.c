@@ -42,7 +42,7 @@ static bool assign(const lloyd *l, int round) {
     bool changed = round == 0;
     for (uint32_t i = 0; i < l->point_count; i++) {
         double share = (round + (double)i / l->point_count) / LLOYD_ROUNDS_MAX;
-        if (i % POINTS_PER_LOOK == 0 && !progress_go_on(l->context, share)) return false;
+        if (i % POINTS_PER_LOOK == 0 && !progress_go_on(&l->context->progress, share)) return false;
         uint32_t v = l->points[i], nearest = nearest_centroid(l, l->positions + (size_t)v * 3);
         changed = changed || nearest != l->clusters[v];
         l->clusters[v] = nearest;
@@ -67,5 +67,5 @@ static void move_centroids(const lloyd *l) {
 cscd_status lloyd_run(const lloyd *l, uint64_t seed) {
     begin(l, seed);
     for (int round = 0; round < LLOYD_ROUNDS_MAX && assign(l, round); round++) move_centroids(l);
-    return progress_status(l->context);
+    return context_progress_status(l->context);
 }

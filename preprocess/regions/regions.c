@@ -89,10 +89,10 @@ static cscd_status find_regions(work *w, const double *density, const region_opt
     if (status != CSCD_OK) return status;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) w->areas[t] = surface_area(mesh, w->positions, t);
     weigh_edges(w);
-    progress_stage(mesh->context, "cuts", 0.0, 0.5);
+    progress_stage(&mesh->context->progress, "cuts", 0.0, 0.5);
     status = cut_list_find(mesh, &w->graph, &w->clusters, w->areas, w->weights, limits, &w->cuts);
     if (status != CSCD_OK) return status;
-    progress_stage(mesh->context, "choice of cuts", 0.5, 1.0);
+    progress_stage(&mesh->context->progress, "choice of cuts", 0.5, 1.0);
     return select_cuts(mesh, &w->graph, w->positions, w->areas, &w->cuts, o->gain, o->part_share, w->regions);
 }
 

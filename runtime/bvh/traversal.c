@@ -88,7 +88,8 @@ void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
     t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
     bool large = f->leaf_count >= SHARED_LEAVES_MIN;
     t->busy_lanes = large ? t->lane_count : 1;
-    if (large && (t->lane_count > 1 || progress_wanted(t->context))) t->lanes[0].out_of_memory = !spread(t);
+    if (large && (t->lane_count > 1 || progress_wanted(&t->context->progress)))
+        t->lanes[0].out_of_memory = !spread(t);
 }
 
 double traversal_done(const traversal *t) {
@@ -100,7 +101,7 @@ double traversal_done(const traversal *t) {
 static bool take_shares(traversal *t, traversal_lane *lane) {
     uint32_t next = atomic_load(&t->next_share), count;
     do {
-        if (next >= t->share_count || !progress_go_on(t->context, traversal_done(t))) return false;
+        if (next >= t->share_count || !progress_go_on(&t->context->progress, traversal_done(t))) return false;
         count = (t->share_count - next) / (4 * t->busy_lanes) + 1;
     } while (!atomic_compare_exchange_weak(&t->next_share, &next, next + count));
     if (!make_room(t->context, lane, count)) {

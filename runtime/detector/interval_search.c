@@ -31,7 +31,8 @@ static void search_and_test(void *data, uint32_t index) {
     traversal_lane *batch = &t->lanes[index];
     contact_lane *lane = &search->detector->contact_lanes[index];
     double begin = timer_now_ms(), spent = 0.0;
-    while (!lane->out_of_memory && progress_go_on(context, traversal_done(t)) && traversal_fill(t, index)) {
+    while (!lane->out_of_memory && progress_go_on(&context->progress, traversal_done(t)) &&
+           traversal_fill(t, index)) {
         batch->pairs_found += batch->pair_count;
         narrow_phase_test(&search->interval, batch->pairs, batch->pair_count, lane);
     }
@@ -59,7 +60,8 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
     cscd_detector *d = search->detector;
     double since = timer_now_ms(), together = 0.0;
     bool last = pass == TRAVERSAL_FRESH;
-    progress_stage(d->context, last ? "further passes" : "traversal", last ? 0.9 : 0.3, last ? 1.0 : 0.9);
+    progress_stage(&d->context->progress, last ? "further passes" : "traversal", last ? 0.9 : 0.3,
+                   last ? 1.0 : 0.9);
     traversal_begin(&d->traversal, &d->bvh, pass);
     timer_lap(&since, &search->timings.traversal_ms);
     parallel_run(d->context->threads, d->traversal.busy_lanes, search_and_test, search);
@@ -68,7 +70,7 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
     search->counters.boxes_tested += traversal_boxes_tested(&d->traversal);
     cscd_status status = traversal_status(&d->traversal);
     if (status == CSCD_OK) status = interval_search_lanes_status(d);
-    return status == CSCD_OK ? progress_status(d->context) : status;
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
 }
 
 /* ---- without pairs of adjacent triangles --------------------------------------------------------------- */
@@ -127,9 +129,9 @@ static void test_share(void *data, uint32_t index) {
 cscd_status interval_search_by_brute_force(interval_search *search) {
     cscd_detector *d = search->detector;
     double since = timer_now_ms();
-    progress_stage(d->context, "brute force", 0.0, 1.0);
+    progress_stage(&d->context->progress, "brute force", 0.0, 1.0);
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = interval_search_lanes_status(d);
-    return status == CSCD_OK ? progress_status(d->context) : status;
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
 }

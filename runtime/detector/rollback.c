@@ -8,7 +8,7 @@
 
 cscd_status call_create(cscd_detector *d) {
     call_memory *before = &d->before;
-    if (!progress_wanted(d->context)) return CSCD_OK;
+    if (!progress_wanted(&d->context->progress)) return CSCD_OK;
     before->triangles = context_allocate(d->context, d->mesh->triangle_count, sizeof *before->triangles);
     before->of = context_allocate(d->context, d->mesh->component_count, sizeof *before->of);
     return before->triangles != NULL && before->of != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -22,7 +22,7 @@ void call_free(cscd_detector *d) {
 void call_begin(cscd_detector *d) {
     const start_states *s = &d->starts;
     call_memory *before = &d->before;
-    progress_begin(d->context);
+    progress_begin(&d->context->progress);
     if (before->triangles == NULL) return;
     memcpy(before->triangles, s->triangles, d->mesh->triangle_count * sizeof *s->triangles);
     memcpy(before->of, s->of, d->mesh->component_count * sizeof *s->of);

@@ -151,7 +151,7 @@ static cscd_status find_intersections(moment *now) {
     bvh_skip_adjacent(&d->bvh, NULL);
     traversal_begin(&d->traversal, &d->bvh, now->pass);
     for (bool more = true; more;) {
-        if (!progress_go_on(d->context, traversal_done(&d->traversal))) break;
+        if (!progress_go_on(&d->context->progress, traversal_done(&d->traversal))) break;
         cscd_status status = traversal_round(&d->traversal, &more);
         if (status != CSCD_OK) return status;
         parallel_run(d->context->threads, d->traversal.lane_count, test_batch, now);
@@ -159,7 +159,7 @@ static cscd_status find_intersections(moment *now) {
             if (d->intersection_lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
         }
     }
-    return progress_status(d->context); /* before anybody believes that nothing more was found */
+    return context_progress_status(d->context); /* before anybody believes that nothing more was found */
 }
 
 /* What the lanes hold, ignored pairs among it, is what triangles are judged by. */
@@ -178,7 +178,7 @@ static void record_starts(const moment *now) {
 
 cscd_status static_check_suspects(cscd_detector *detector, const double *positions) {
     moment now = {detector, positions, TRAVERSAL_SUSPECTS};
-    progress_stage(detector->context, "start", 0.0, 0.3);
+    progress_stage(&detector->context->progress, "start", 0.0, 0.3);
     bvh_mark_suspects(&detector->bvh, detector->suspects);
     cscd_status status = find_intersections(&now);
     if (status == CSCD_OK) record_starts(&now);
@@ -212,7 +212,7 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
     moment now = {detector, positions, TRAVERSAL_KEPT};
     cscd_intersections result;
     call_begin(detector);
-    progress_stage(context, "static check", 0.0, 1.0);
+    progress_stage(&context->progress, "static check", 0.0, 1.0);
     status = check_moment(&now, &result);
     if (status != CSCD_OK) return call_fail(detector, status);
     timer_lap(&since, &spent);

@@ -51,11 +51,11 @@ void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint3
     const cscd_mesh *mesh = interval->mesh;
     double rows = (double)mesh->triangle_count + mesh->edge_count;
     for (uint32_t t = lane_index; t < mesh->triangle_count && !lane->out_of_memory; t += lane_count) {
-        if (!progress_go_on(mesh->context, t / rows)) break;
+        if (!progress_go_on(&mesh->context->progress, t / rows)) break;
         test_face(interval, t, lane);
     }
     for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count) {
-        if (!progress_go_on(mesh->context, ((double)mesh->triangle_count + e) / rows)) break;
+        if (!progress_go_on(&mesh->context->progress, ((double)mesh->triangle_count + e) / rows)) break;
         test_edge(interval, e, lane);
     }
     narrow_phase_finish(interval, lane);

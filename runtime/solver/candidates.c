@@ -83,7 +83,8 @@ static void test_share(void *data, uint32_t index) {
         size_t end = list->count * (index + 1) / d->traversal.lane_count;
         for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
             double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
-            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(d->context, share)) return;
+            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&d->context->progress, share))
+                return;
             (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
         }
     }
@@ -93,8 +94,8 @@ static void test_share(void *data, uint32_t index) {
 cscd_status candidates_test(const candidates *c, interval_search *search) {
     cscd_detector *d = search->detector;
     testing t = {c, search};
-    progress_stage(d->context, "candidates", 0.0, 1.0);
+    progress_stage(&d->context->progress, "candidates", 0.0, 1.0);
     parallel_run(d->context->threads, d->traversal.lane_count, test_share, &t);
     cscd_status status = interval_search_lanes_status(d);
-    return status == CSCD_OK ? progress_status(d->context) : status;
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
 }

@@ -163,7 +163,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     cscd_line *line = of;
     cscd_counters counters = {.vf = 0};
-    progress_part(line->detector->context, line->done, 0.5 + 0.5 * line->done);
+    progress_part(&line->detector->context->progress, line->done, 0.5 + 0.5 * line->done);
     line->done = 0.5 + 0.5 * line->done;
     interval_search search = interval_search_begin(line->detector, from, to, line->detector->limit);
     cscd_status status = candidates_test(&line->candidates, &search);

@@ -37,7 +37,7 @@ static cscd_status try_motion(void *of, const double *from, const double *to, cs
     step_outcome found;
     if (t->any) step_withdraw(t->detector);
     t->any = true;
-    progress_part(t->detector->context, t->done, 0.5 + 0.5 * t->done);
+    progress_part(&t->detector->context->progress, t->done, 0.5 + 0.5 * t->done);
     t->done = 0.5 + 0.5 * t->done;
     cscd_status status = step_find(t->detector, from, to, CSCD_MODE_EARLIEST, true, &found);
     if (status != CSCD_OK) return status;

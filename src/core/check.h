@@ -1,5 +1,5 @@
-/* The range of every coordinate and length: 0, or a magnitude from 2^-300 to 2^300. Inside it no product of the
- * exact predicates overflows, and none loses bits below the normal range. */
+/* The range of every coordinate and length: 0, or a magnitude from 2^-300 to 2^300. Inside it no product of
+ * the exact predicates overflows, and none loses bits below the normal range. */
 #pragma once
 
 #include <stdbool.h>

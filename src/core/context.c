@@ -1,35 +1,17 @@
-/* What every object shares: the allocator, the threads, progress, the sentence behind the last failure. */
+/* What all objects share: memory, threads, progress, and the sentence that explains the last failure. */
 #include "src/core/context.h"
 
 #include "src/core/processor.h"
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_ALIGNMENT = 64, THREAD_COUNT_MAX = 256 };
-
-/* Precedes each block and fills one alignment unit, so that the block itself is aligned. */
-typedef struct block_header {
-    size_t size; /* of the whole, header included */
-} block_header;
-
-static void *system_allocate(void *user, size_t size, size_t alignment) {
-    (void)user;
-    return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-}
-
-static void system_release(void *user, void *block, size_t size) {
-    (void)user;
-    (void)size;
-    free(block);
-}
+enum { THREAD_COUNT_MAX = 256 };
 
 cscd_context_options cscd_context_defaults(void) {
-    cscd_context_options options = {.struct_size = sizeof options,
-                                    .thread_count = 1,
-                                    .allocator = {system_allocate, system_release, NULL}};
+    cscd_context_options options = {
+        .struct_size = sizeof options, .thread_count = 1, .allocator = memory_system_allocator()};
     return options;
 }
 
@@ -45,19 +27,18 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     if (chosen.allocator.allocate == NULL) chosen.allocator = cscd_context_defaults().allocator;
 
     cscd_context *context =
-        chosen.allocator.allocate(chosen.allocator.user, sizeof *context, BLOCK_ALIGNMENT);
+        chosen.allocator.allocate(chosen.allocator.user, sizeof *context, MEMORY_ALIGNMENT);
     if (context == NULL) return CSCD_OUT_OF_MEMORY;
     memset(context, 0, sizeof *context);
-    context->allocator = chosen.allocator;
-    context->bytes = sizeof *context;
     context->progress = progress_of(chosen.progress);
     context->simd = chosen.simd != CSCD_SIMD_AUTO ? chosen.simd : processor_best_simd();
-    if (pthread_mutex_init(&context->allocator_lock, NULL) != 0) {
+    if (!memory_begin(&context->memory, chosen.allocator)) {
         chosen.allocator.release(chosen.allocator.user, context, sizeof *context);
         return CSCD_SYSTEM_ERROR;
     }
+    context->memory.bytes = sizeof *context;
     cscd_status status =
-        parallel_create(context, chosen.thread_count, chosen.parallel_for, &context->threads);
+        parallel_create(&context->memory, chosen.thread_count, chosen.parallel_for, &context->threads);
     if (status != CSCD_OK) {
         cscd_context_destroy(context);
         return status;
@@ -68,9 +49,9 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
 
 void cscd_context_destroy(cscd_context *context) {
     if (context == NULL) return;
-    parallel_destroy(context, context->threads);
-    pthread_mutex_destroy(&context->allocator_lock);
-    cscd_allocator allocator = context->allocator;
+    parallel_destroy(&context->memory, context->threads);
+    memory_end(&context->memory);
+    cscd_allocator allocator = context->memory.allocator;
     allocator.release(allocator.user, context, sizeof *context);
 }
 
@@ -87,67 +68,7 @@ cscd_simd cscd_context_simd(const cscd_context *context) {
 }
 
 size_t cscd_context_bytes(const cscd_context *context) {
-    return context->bytes;
-}
-
-void *context_allocate(cscd_context *context, size_t count, size_t size) {
-    if (size != 0 && count > (SIZE_MAX / 2 - BLOCK_ALIGNMENT) / size) return NULL;
-    size_t whole = count * size + BLOCK_ALIGNMENT;
-    pthread_mutex_lock(&context->allocator_lock);
-    char *memory = context->allocator.allocate(context->allocator.user, whole, BLOCK_ALIGNMENT);
-    if (memory != NULL) context->bytes += whole;
-    pthread_mutex_unlock(&context->allocator_lock);
-    if (memory == NULL) return NULL;
-    memset(memory, 0, whole);
-    ((block_header *)memory)->size = whole;
-    return memory + BLOCK_ALIGNMENT;
-}
-
-void *context_grow(cscd_context *context, void *block, size_t old_count, size_t new_count, size_t size) {
-    void *grown = context_allocate(context, new_count, size);
-    if (grown == NULL) return NULL;
-    if (block != NULL) memcpy(grown, block, old_count * size);
-    context_free(context, block);
-    return grown;
-}
-
-void context_free(cscd_context *context, void *block) {
-    if (block == NULL) return;
-    char *memory = (char *)block - BLOCK_ALIGNMENT;
-    size_t whole = ((block_header *)memory)->size;
-    pthread_mutex_lock(&context->allocator_lock);
-    context->bytes -= whole;
-    context->allocator.release(context->allocator.user, memory, whole);
-    pthread_mutex_unlock(&context->allocator_lock);
-}
-
-/* Pointers of different types are written as bytes. */
-static void set_pointer(void *pointer, void *value) {
-    memcpy(pointer, &value, sizeof value);
-}
-
-void context_free_all(cscd_context *context, array_list list) {
-    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
-        void *memory;
-        memcpy(&memory, block->pointer, sizeof memory);
-        context_free(context, memory);
-        set_pointer(block->pointer, NULL);
-    }
-}
-
-bool context_allocate_all(cscd_context *context, array_list list) {
-    for (const array_block *block = list.blocks; block->pointer != NULL; block++)
-        set_pointer(block->pointer, NULL);
-    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
-        if (block->size == 0) continue;
-        void *memory = context_allocate(context, block->count, block->size);
-        if (memory == NULL) {
-            context_free_all(context, list);
-            return false;
-        }
-        set_pointer(block->pointer, memory);
-    }
-    return true;
+    return context->memory.bytes;
 }
 
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...) {
@@ -160,9 +81,18 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 
 cscd_status context_out_of_memory(cscd_context *context) {
     return context_fail(context, CSCD_OUT_OF_MEMORY,
-                        "out of memory with %zu bytes in use; nothing was changed", context->bytes);
+                        "out of memory with %zu bytes in use; nothing was changed", context->memory.bytes);
+}
+
+cscd_status context_progress_status(cscd_context *context) {
+    const progress *p = &context->progress;
+    if (!progress_cancelled(p)) return CSCD_OK;
+    return context_fail(context, CSCD_CANCELLED,
+                        "cancelled by the progress function, about %.0f %% through, in the stage \"%s\"; "
+                        "the call may be repeated",
+                        100.0 * p->reported, p->stage);
 }
 
 cscd_status context_explain(cscd_context *context, cscd_status status) {
-    return status == CSCD_CANCELLED ? progress_status(context) : context_out_of_memory(context);
+    return status == CSCD_CANCELLED ? context_progress_status(context) : context_out_of_memory(context);
 }

@@ -1,68 +1,51 @@
-/* What every object shares: the allocator, the threads, progress, the sentence behind the last failure. */
+/* What all objects share: memory, threads, progress, and the sentence that explains the last failure. */
 #pragma once
 
-#include "cscd/cscd.h"
+#include "src/core/memory.h"
 #include "src/core/parallel.h"
 #include "src/core/progress.h"
 
-#include <pthread.h>
-
 struct cscd_context {
-    cscd_allocator allocator;
-    pthread_mutex_t allocator_lock;
-    size_t bytes;
+    host_memory memory;
     parallel *threads;
     progress progress;
     cscd_simd simd; /* never AUTO */
     char detail[512];
 };
 
-/* Zeroed memory for count elements of size bytes, 64-byte aligned; NULL when count * size overflows or the
- * allocator refuses. count 0 gives a block too. Any thread may call it. */
-void *context_allocate(cscd_context *context, size_t count, size_t size);
+/* These pass on to the functions of memory.h. */
 
-/* A block of new_count elements that begins with the first old_count of block; block is then freed, or,
- * when NULL is returned, still valid. */
-void *context_grow(cscd_context *context, void *block, size_t old_count, size_t new_count, size_t size);
+static inline void *context_allocate(cscd_context *context, size_t count, size_t size) {
+    return memory_allocate(&context->memory, count, size);
+}
 
-/* NULL does nothing. */
-void context_free(cscd_context *context, void *block);
+static inline void *context_grow(cscd_context *context, void *block, size_t old_count, size_t new_count,
+                                 size_t size) {
+    return memory_grow(&context->memory, block, old_count, new_count, size);
+}
 
-/* One array of a structure: the address of the pointer to it, and its size. An element size of 0 is an array that
- * this structure does without; its pointer stays NULL. */
-typedef struct array_block {
-    void *pointer; /* NULL ends a list */
-    size_t count, size;
-} array_block;
+static inline void context_free(cscd_context *context, void *block) {
+    memory_free(&context->memory, block);
+}
 
-/* The arrays of a structure, named once, for allocation and for release:
- *
- *     static array_list list_arrays(grid *g) {
- *         return (array_list){{ARRAY(g->cells, g->cell_count), ARRAY(g->names, g->name_count)}};
- *     }
- */
-typedef struct array_list {
-    array_block blocks[32]; /* at most 31 arrays and the end */
-} array_list;
+static inline bool context_allocate_all(cscd_context *context, array_list list) {
+    return memory_allocate_all(&context->memory, list);
+}
 
-#define ARRAY(pointer, count)                                                                                \
-    { &(pointer), count, sizeof *(pointer) }
-#define ARRAY_IF(condition, pointer, count)                                                                  \
-    { &(pointer), count, (condition) ? sizeof *(pointer) : 0 }
-
-/* Allocates all arrays of a list, or none: on failure every pointer is NULL. What the pointers were before does not
- * matter. */
-bool context_allocate_all(cscd_context *context, array_list list);
-
-/* Frees all arrays of a list, whatever their counts say, and sets their pointers to NULL. */
-void context_free_all(cscd_context *context, array_list list);
+static inline void context_free_all(cscd_context *context, array_list list) {
+    memory_free_all(&context->memory, list);
+}
 
 /* Sets the detail and returns status, so that a function can end with it. */
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The same words for every allocation that failed. */
+/* The sentence for every allocation that failed. */
 cscd_status context_out_of_memory(cscd_context *context);
 
-/* For functions below which nobody wrote a sentence: status is CANCELLED, or an allocation failed. */
+/* CSCD_OK, or CSCD_CANCELLED with its sentence. Results of tasks count only after this has returned CSCD_OK.
+ * */
+cscd_status context_progress_status(cscd_context *context);
+
+/* The sentence for a status that has none yet: CSCD_CANCELLED, or a failed allocation. */
 cscd_status context_explain(cscd_context *context, cscd_status status);

@@ -1,7 +1,6 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #include "src/core/parallel.h"
 
-#include "src/core/context.h"
 #include "src/core/timer.h"
 
 #include <pthread.h>
@@ -174,13 +173,12 @@ static cscd_status start_helpers(parallel *threads) {
     return CSCD_OK;
 }
 
-cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_parallel_for host,
-                            parallel **out) {
+cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out) {
     if (thread_count == 0) {
         long processors = sysconf(_SC_NPROCESSORS_ONLN);
         thread_count = processors < 1 ? 1 : processors > 256 ? 256 : (uint32_t)processors;
     }
-    parallel *threads = context_allocate(context, 1, sizeof *threads);
+    parallel *threads = memory_allocate(m, 1, sizeof *threads);
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
     threads->host = host;
@@ -188,20 +186,20 @@ cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_p
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
     pthread_cond_init(&threads->work_done, NULL);
-    threads->helpers = context_allocate(context, thread_count, sizeof *threads->helpers);
-    threads->ranges = context_allocate(context, thread_count, sizeof *threads->ranges);
+    threads->helpers = memory_allocate(m, thread_count, sizeof *threads->helpers);
+    threads->ranges = memory_allocate(m, thread_count, sizeof *threads->ranges);
     bool allocated = threads->helpers != NULL && threads->ranges != NULL;
     cscd_status status = allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK && host.run == NULL) status = start_helpers(threads);
     if (status != CSCD_OK) {
-        parallel_destroy(context, threads);
+        parallel_destroy(m, threads);
         return status;
     }
     *out = threads;
     return CSCD_OK;
 }
 
-void parallel_destroy(cscd_context *context, parallel *threads) {
+void parallel_destroy(host_memory *m, parallel *threads) {
     if (threads == NULL) return;
     atomic_store(&threads->quit, true);
     call_sleepers(threads);
@@ -209,9 +207,9 @@ void parallel_destroy(cscd_context *context, parallel *threads) {
     pthread_cond_destroy(&threads->work_done);
     pthread_cond_destroy(&threads->work_ready);
     pthread_mutex_destroy(&threads->lock);
-    context_free(context, threads->helpers);
-    context_free(context, threads->ranges);
-    context_free(context, threads);
+    memory_free(m, threads->helpers);
+    memory_free(m, threads->ranges);
+    memory_free(m, threads);
 }
 
 uint32_t parallel_thread_count(const parallel *threads) {

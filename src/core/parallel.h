@@ -1,7 +1,7 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #pragma once
 
-#include "cscd/cscd.h"
+#include "src/core/memory.h"
 
 /* What one thread writes all the time starts on a cache line of its own: two threads on one line halve the
  * speed of both (measured: traversal took twice as long with two threads as with one). */
@@ -11,9 +11,8 @@ typedef struct parallel parallel;
 typedef void parallel_task(void *data, uint32_t task);
 
 /* thread_count includes the caller; 0 means one per processor. With host.run no thread is started. */
-cscd_status parallel_create(cscd_context *context, uint32_t thread_count, cscd_parallel_for host,
-                            parallel **out);
-void parallel_destroy(cscd_context *context, parallel *threads);
+cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out);
+void parallel_destroy(host_memory *m, parallel *threads);
 
 /* Into how many lanes work is cut that keeps something per lane. */
 uint32_t parallel_thread_count(const parallel *threads);

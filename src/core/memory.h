@@ -1,0 +1,63 @@
+/* Blocks of memory from the host's allocator: zeroed, aligned, counted. */
+#pragma once
+
+#include "cscd/cscd.h"
+
+#include <pthread.h>
+
+enum { MEMORY_ALIGNMENT = 64 };
+
+typedef struct host_memory {
+    cscd_allocator allocator;
+    pthread_mutex_t lock;
+    size_t bytes; /* in use, headers included */
+} host_memory;
+
+/* The allocator of a host that brings none. */
+cscd_allocator memory_system_allocator(void);
+
+/* Returns false when the system refuses a lock. */
+bool memory_begin(host_memory *m, cscd_allocator allocator);
+void memory_end(host_memory *m);
+
+/* Zeroed memory for count elements of size bytes, 64-byte aligned; NULL when count * size overflows or the
+ * allocator refuses. count 0 gives a block too. Any thread may call it. */
+void *memory_allocate(host_memory *m, size_t count, size_t size);
+
+/* A block of new_count elements that begins with the first old_count of block; block is then freed, or,
+ * when NULL is returned, still valid. */
+void *memory_grow(host_memory *m, void *block, size_t old_count, size_t new_count, size_t size);
+
+/* NULL does nothing. */
+void memory_free(host_memory *m, void *block);
+
+/* ---- the arrays of a structure ------------------------------------------------------------------------- */
+
+/* One array: the address of the pointer to it, and its size. An element size of 0 is an array that this
+ * structure does without; its pointer stays NULL. */
+typedef struct array_block {
+    void *pointer; /* NULL ends a list */
+    size_t count, size;
+} array_block;
+
+/* The arrays of a structure, named once, for allocation and for release:
+ *
+ *     static array_list list_arrays(grid *g) {
+ *         return (array_list){{ARRAY(g->cells, g->cell_count), ARRAY(g->names, g->name_count)}};
+ *     }
+ */
+typedef struct array_list {
+    array_block blocks[32]; /* at most 31 arrays and the end */
+} array_list;
+
+#define ARRAY(pointer, count)                                                                                \
+    { &(pointer), count, sizeof *(pointer) }
+#define ARRAY_IF(condition, pointer, count)                                                                  \
+    { &(pointer), count, (condition) ? sizeof *(pointer) : 0 }
+
+/* Allocates all arrays of a list, or none: on failure every pointer is NULL. What the pointers were before
+ * does not matter. */
+bool memory_allocate_all(host_memory *m, array_list list);
+
+/* Frees all arrays of a list, whatever their counts say, and sets their pointers to NULL. */
+void memory_free_all(host_memory *m, array_list list);
