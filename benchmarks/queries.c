@@ -25,13 +25,13 @@ typedef struct result {
     size_t hits;
 } result;
 
-static elementary_verdict decide(const elementary_query *query, query_kind kind) {
+static elementary_verdict decide(const elementary_query *query, cscd_contact_kind kind) {
     elementary_hit hit;
-    return kind == QUERY_VF ? elementary_vf(query, &hit) : elementary_ee(query, &hit);
+    return kind == CSCD_CONTACT_VF ? elementary_vf(query, &hit) : elementary_ee(query, &hit);
 }
 
 /* The least of a few repeats; short queries are called several times in each, for the clock's sake. */
-static double time_query(const elementary_query *query, query_kind kind) {
+static double time_query(const elementary_query *query, cscd_contact_kind kind) {
     double least = 1e300;
     int calls = CALLS_PER_REPEAT;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
@@ -61,7 +61,7 @@ static double quantile(const result *r, double fraction) {
 }
 
 /* microseconds has room for all queries of the set. */
-static void run_set(const query_set *set, query_kind kind, result *out) {
+static void run_set(const query_set *set, cscd_contact_kind kind, result *out) {
     for (size_t i = 0; i < set->count; i++) {
         elementary_verdict verdict = decide(&set->queries[i], kind);
         out->false_positives += verdict.touching && !set->truths[i];
@@ -118,7 +118,7 @@ static bool add_result(result *total, const result *part) {
     return true;
 }
 
-static bool run_file(const char *path, query_kind kind, json *out, result *total, io_error *error) {
+static bool run_file(const char *path, cscd_contact_kind kind, json *out, result *total, io_error *error) {
     query_set set;
     if (!query_file_read(path, &set, error)) return false;
     result r = {.microseconds = malloc((set.count + 1) * sizeof(double))};
@@ -132,7 +132,7 @@ static bool run_file(const char *path, query_kind kind, json *out, result *total
             json_break_line(out);
             json_begin_object(out, NULL);
             json_string(out, "file", path);
-            json_string(out, "kind", kind == QUERY_VF ? "vf" : "ee");
+            json_string(out, "kind", kind == CSCD_CONTACT_VF ? "vf" : "ee");
             write_json(out, &r);
         } else {
             print_row(slash != NULL ? slash + 1 : path, &r);
@@ -145,7 +145,7 @@ static bool run_file(const char *path, query_kind kind, json *out, result *total
 
 typedef struct options {
     bool as_json, kind_given;
-    query_kind kind;
+    cscd_contact_kind kind;
     int first_file;
 } options;
 
@@ -157,8 +157,8 @@ static bool parse(int argument_count, char **arguments, options *o) {
         } else if (strcmp(arguments[i], "--kind") == 0 && i + 1 < argument_count) {
             const char *kind = arguments[++i];
             o->kind_given = true;
-            o->kind = strcmp(kind, "vf") == 0 ? QUERY_VF : QUERY_EE;
-            if (o->kind == QUERY_EE && strcmp(kind, "ee") != 0) return false;
+            o->kind = strcmp(kind, "vf") == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
+            if (o->kind == CSCD_CONTACT_EE && strcmp(kind, "ee") != 0) return false;
         } else {
             return false;
         }
@@ -170,7 +170,7 @@ static bool parse(int argument_count, char **arguments, options *o) {
 static bool run_files(const options *o, int argument_count, char **arguments, json *out, result *total,
                       io_error *error) {
     for (int i = o->first_file; i < argument_count; i++) {
-        query_kind kind = o->kind;
+        cscd_contact_kind kind = o->kind;
         if (!o->kind_given && !query_kind_from_path(arguments[i], &kind))
             return io_fail(error, "%s: neither vertex-face nor edge-edge in the name; give --kind",
                            arguments[i]);
@@ -180,7 +180,7 @@ static bool run_files(const options *o, int argument_count, char **arguments, js
 }
 
 int main(int argument_count, char **arguments) {
-    options o = {.kind = QUERY_VF};
+    options o = {.kind = CSCD_CONTACT_VF};
     io_error error = {""};
     result total = {0};
     if (!parse(argument_count, arguments, &o)) {

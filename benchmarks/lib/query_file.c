@@ -98,11 +98,11 @@ void query_set_free(query_set *set) {
     *set = (query_set){NULL, NULL, 0};
 }
 
-bool query_kind_from_path(const char *path, query_kind *out) {
+bool query_kind_from_path(const char *path, cscd_contact_kind *out) {
     if (strstr(path, "vertex-face") != NULL)
-        *out = QUERY_VF;
+        *out = CSCD_CONTACT_VF;
     else if (strstr(path, "edge-edge") != NULL)
-        *out = QUERY_EE;
+        *out = CSCD_CONTACT_EE;
     else
         return false;
     return true;

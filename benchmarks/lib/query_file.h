@@ -6,8 +6,6 @@
 
 #include <stddef.h>
 
-typedef enum query_kind { QUERY_VF, QUERY_EE } query_kind;
-
 typedef struct query_set {
     elementary_query *queries;
     bool *truths; /* does the pair touch? */
@@ -22,4 +20,4 @@ bool query_file_read(const char *path, query_set *out, io_error *error);
 void query_set_free(query_set *set);
 
 /* From "vertex-face" or "edge-edge" in the path; false when it holds neither. */
-bool query_kind_from_path(const char *path, query_kind *out);
+bool query_kind_from_path(const char *path, cscd_contact_kind *out);

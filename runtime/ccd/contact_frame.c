@@ -69,7 +69,7 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
 
 /* The nearest points at one moment, scaled, relative to the face's first corner (VF) or to the start of the
  * shorter edge (EE), so that its shape survives the addition. */
-static void find_parameters(const moment_vectors *m, int first_count, elementary_hit *hit) {
+static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, elementary_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     double a[3], b[3], c[3], end[3];
     double largest = max_of(vec3_largest(m->a), max_of(vec3_largest(m->b), vec3_largest(m->c)));
@@ -79,7 +79,7 @@ static void find_parameters(const moment_vectors *m, int first_count, elementary
         b[k] = factor * m->b[k];
         c[k] = factor * m->c[k];
     }
-    if (first_count == 1) {
+    if (kind == CSCD_CONTACT_VF) {
         closest_point_triangle(c, origin, a, b, &hit->u, &hit->v);
     } else if (vec3_largest(a) < vec3_largest(b)) {
         vec3_add_scaled(c, 1.0, b, end);
@@ -92,40 +92,40 @@ static void find_parameters(const moment_vectors *m, int first_count, elementary
 }
 
 /* From the point named on b to the one on a. */
-static void connection(const double a[3], const double b[3], const double c[3], int first_count,
+static void connection(const double a[3], const double b[3], const double c[3], cscd_contact_kind kind,
                        const elementary_hit *hit, double out[3]) {
-    double sign = first_count == 1 ? 1.0 : -1.0;
+    double sign = kind == CSCD_CONTACT_VF ? 1.0 : -1.0;
     for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - hit->u * a[k]) - hit->v * b[k];
 }
 
 /* Unit normal of the touching features, turned against the motion of a relative to b. */
-static void contact_normal(const point_vectors *v, const moment_vectors *m, int first_count,
+static void contact_normal(const point_vectors *v, const moment_vectors *m, cscd_contact_kind kind,
                            const elementary_hit *hit, double normal[3]) {
     double cross[3], start[3], end[3], motion[3];
     int exponent;
     scaled_cross(m, cross, &exponent);
     scale_to_one(cross, normal);
     double length = sqrt(vec3_dot(normal, normal));
-    connection(v->a[0], v->b[0], v->c[0], first_count, hit, start);
-    connection(v->a[1], v->b[1], v->c[1], first_count, hit, end);
+    connection(v->a[0], v->b[0], v->c[0], kind, hit, start);
+    connection(v->a[1], v->b[1], v->c[1], kind, hit, end);
     vec3_subtract(end, start, motion);
     double sign = vec3_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 
-void contact_frame_describe(const elementary_query *query, int first_count, const coplanarity *f, double toi,
-                            elementary_hit *hit) {
+void contact_frame_describe(const elementary_query *query, cscd_contact_kind kind, const coplanarity *f,
+                            double toi, elementary_hit *hit) {
     point_vectors vectors;
     double apart[3];
-    point_vectors_from(query, first_count, &vectors);
+    point_vectors_from(query, kind, &vectors);
     hit->toi = leave_gap(&vectors, largest_coordinate(query), f, toi);
     moment_vectors m = vectors_at(&vectors, hit->toi);
-    find_parameters(&m, first_count, hit);
-    connection(m.a, m.b, m.c, first_count, hit, apart);
+    find_parameters(&m, kind, hit);
+    connection(m.a, m.b, m.c, kind, hit, apart);
     for (int k = 0; k < 3; k++) {
         double on_a = blend(query->x0[0][k], query->x1[0][k], hit->toi);
-        if (first_count == 2) on_a += hit->u * m.a[k];
+        if (kind == CSCD_CONTACT_EE) on_a += hit->u * m.a[k];
         hit->point[k] = on_a - 0.5 * apart[k];
     }
-    contact_normal(&vectors, &m, first_count, hit, hit->normal);
+    contact_normal(&vectors, &m, kind, hit, hit->normal);
 }

@@ -6,5 +6,5 @@
 
 /* f: the features' coplanarity cubic. toi: not later than the first touch, and earlier by 2^-31 at most; made
  * earlier by 2^-32 at most, so that positions at it, rounded to doubles, have not passed each other yet. */
-void contact_frame_describe(const elementary_query *query, int first_count, const coplanarity *f, double toi,
-                            elementary_hit *hit);
+void contact_frame_describe(const elementary_query *query, cscd_contact_kind kind, const coplanarity *f,
+                            double toi, elementary_hit *hit);

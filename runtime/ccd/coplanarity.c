@@ -10,8 +10,8 @@ static void subtract_at_ends(const elementary_query *query, int to, int from, do
     for (int k = 0; k < 3; k++) size[k] = max_of(fabs(out[0][k]), fabs(out[1][k]));
 }
 
-void point_vectors_from(const elementary_query *query, int first_count, point_vectors *out) {
-    bool vf = first_count == 1;
+void point_vectors_from(const elementary_query *query, cscd_contact_kind kind, point_vectors *out) {
+    bool vf = kind == CSCD_CONTACT_VF;
     subtract_at_ends(query, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
     subtract_at_ends(query, 3, vf ? 1 : 2, out->b, out->size_b);
     subtract_at_ends(query, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);

@@ -11,8 +11,7 @@ typedef struct point_vectors {
     double size_a[3], size_b[3], size_c[3]; /* largest magnitude of each component over both ends */
 } point_vectors;
 
-/* first_count: 1 for VF, 2 for EE. */
-void point_vectors_from(const elementary_query *query, int first_count, point_vectors *out);
+void point_vectors_from(const elementary_query *query, cscd_contact_kind kind, point_vectors *out);
 
 typedef struct coplanarity {
     double b[4];  /* Bernstein coefficients of (A x B) . C */

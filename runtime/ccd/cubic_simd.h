@@ -110,7 +110,7 @@ static inline sign_lanes join(sign_lanes so_far, bounded_value x, f64w sign) {
 }
 
 /* right: they touch at every time in the interval at which they are coplanar; wrong: at none. */
-static inline sign_lanes inside(const vectors_x8 *v, int first_count, const intervals_x8 *interval) {
+static inline sign_lanes inside(const vectors_x8 *v, cscd_contact_kind kind, const intervals_x8 *interval) {
     f64w t = 0.5 * (interval->begin + interval->end), at[3][3], w3[3];
     f64w h = f64w_max(interval->end - t, t - interval->begin);
     f64w relative_error = 16.0 * 0x1p-53 + 5.0 * h;
@@ -130,28 +130,28 @@ static inline sign_lanes inside(const vectors_x8 *v, int first_count, const inte
     uint32_t positive = f64w_below(w.error, w.value), known = positive | f64w_below(w.value, -w.error);
     f64w sign = f64w_select(positive, f64w_all(1.0), f64w_all(-1.0));
     bounded_value u = cross_component(&c, &b, relative_error);
-    bounded_value to_v =
-        first_count == 1 ? cross_component(&a, &c, relative_error) : cross_component(&c, &a, relative_error);
+    bounded_value to_v = kind == CSCD_CONTACT_VF ? cross_component(&a, &c, relative_error)
+                                                 : cross_component(&c, &a, relative_error);
     bounded_value beyond_u = difference(w, u);
     sign_lanes signs = {ALL_WIDTH, 0};
     signs = join(signs, u, sign);
     signs = join(signs, to_v, sign);
-    if (first_count == 2) signs = join(signs, beyond_u, sign);
-    signs = join(signs, difference(first_count == 1 ? beyond_u : w, to_v), sign);
+    if (kind == CSCD_CONTACT_EE) signs = join(signs, beyond_u, sign);
+    signs = join(signs, difference(kind == CSCD_CONTACT_VF ? beyond_u : w, to_v), sign);
     return (sign_lanes){signs.right & known, signs.wrong & known};
 }
 
 /* ---- eight pairs --------------------------------------------------------------------------------------- */
 
 /* What becomes of the pairs i to i + WIDTH - 1 of the eight. */
-typedef void decide_some(const points_x8 *points, int first_count, int i, root_outcomes *out);
+typedef void decide_some(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out);
 
 static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                                int first_count, decide_some *decide, root_outcomes *out) {
+                                cscd_contact_kind kind, decide_some *decide, root_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
-        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
-        decide(&points, first_count, i, out);
+        load_features(source, kind, a + i, b + i, &points);
+        decide(&points, kind, i, out);
     }
 }

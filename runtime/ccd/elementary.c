@@ -15,60 +15,60 @@ static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
 static const double narrow = 0x1p-31;
 
 /* Between the second level and the third: directions that cost more than they save before the second. */
-static elementary_verdict decide_what_is_left(const elementary_query *query, int first_count,
+static elementary_verdict decide_what_is_left(const elementary_query *query, cscd_contact_kind kind,
                                               const coplanarity *f, elementary_hit *hit) {
     double toi;
-    if (separated_by_diagonals(query, first_count) || separated_in_plane(query, first_count))
-        return apart_by_signs;
-    bool touching = exact_touch(query, first_count, &toi);
-    if (touching) contact_frame_describe(query, first_count, f, toi, hit);
+    if (separated_by_diagonals(query, kind) || separated_in_plane(query, kind)) return apart_by_signs;
+    bool touching = exact_touch(query, kind, &toi);
+    if (touching) contact_frame_describe(query, kind, f, toi, hit);
     return (elementary_verdict){touching, ELEMENTARY_EXACT};
 }
 
 static elementary_verdict decide_at_roots(const elementary_query *query, const point_vectors *vectors,
-                                          int first_count, const coplanarity *f, elementary_hit *hit) {
+                                          cscd_contact_kind kind, const coplanarity *f, elementary_hit *hit) {
     root_interval roots[ROOTS_MAX];
     int count = cubic_isolate(f, roots);
-    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, first_count, f, hit);
+    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, kind, f, hit);
     for (int i = 0; i < count; i++) {
-        inside_verdict inside = inside_test(vectors, first_count, &roots[i]);
+        inside_verdict inside = inside_test(vectors, kind, &roots[i]);
         if (inside == INSIDE_NO) continue;
         if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)
-            return decide_what_is_left(query, first_count, f, hit);
-        contact_frame_describe(query, first_count, f, roots[i].begin, hit);
+            return decide_what_is_left(query, kind, f, hit);
+        contact_frame_describe(query, kind, f, roots[i].begin, hit);
         return (elementary_verdict){true, ELEMENTARY_ROOTS};
     }
     return (elementary_verdict){false, ELEMENTARY_ROOTS};
 }
 
-static elementary_verdict decide(const elementary_query *query, int first_count, elementary_hit *hit) {
-    if (separated_by_axes(query, first_count)) return apart_by_signs;
+static elementary_verdict decide(const elementary_query *query, cscd_contact_kind kind, elementary_hit *hit) {
+    if (separated_by_axes(query, kind)) return apart_by_signs;
     point_vectors vectors;
-    point_vectors_from(query, first_count, &vectors);
+    point_vectors_from(query, kind, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
     if (coplanarity_excluded(&f)) return apart_by_signs;
-    return decide_at_roots(query, &vectors, first_count, &f, hit);
+    return decide_at_roots(query, &vectors, kind, &f, hit);
 }
 
 elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit) {
-    return decide(query, 1, hit);
+    return decide(query, CSCD_CONTACT_VF, hit);
 }
 
 elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit) {
-    return decide(query, 2, hit);
+    return decide(query, CSCD_CONTACT_EE, hit);
 }
 
-elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
+elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_hit *hit) {
     point_vectors vectors;
-    point_vectors_from(query, first_count, &vectors);
+    point_vectors_from(query, kind, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
-    return decide_at_roots(query, &vectors, first_count, &f, hit);
+    return decide_at_roots(query, &vectors, kind, &f, hit);
 }
 
-void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit) {
+void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
+                         elementary_hit *hit) {
     point_vectors vectors;
-    point_vectors_from(query, first_count, &vectors);
+    point_vectors_from(query, kind, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
-    contact_frame_describe(query, first_count, &f, toi, hit);
+    contact_frame_describe(query, kind, &f, toi, hit);
 }

@@ -1,6 +1,8 @@
 /* Elementary tests: do a moving vertex and face, or two moving edges, touch, and when? */
 #pragma once
 
+#include "cscd/detector.h"
+
 #include <stdbool.h>
 
 /* Two features of four points together, all moving linearly from x0 (t = 0) to x1 (t = 1).
@@ -8,6 +10,11 @@
 typedef struct elementary_query {
     double x0[4][3], x1[4][3];
 } elementary_query;
+
+/* How many of the four points are the first feature's: its vertex, or the ends of its edge. */
+static inline int points_of_first(cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_VF ? 1 : 2;
+}
 
 /* The first touch. u, v, point and normal as in cscd_contact. */
 typedef struct elementary_hit {
@@ -35,7 +42,8 @@ elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *
 elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit);
 
 /* The rest, for callers that have done the first part: the levels after signs, which leave it open; and the
- * contact, where a root's interval that begins at toi decides for it. first_count: 1 for VF, 2 for EE. */
-elementary_verdict elementary_after_signs(const elementary_query *query, int first_count,
+ * contact, where a root's interval that begins at toi decides for it. */
+elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_hit *hit);
-void elementary_describe(const elementary_query *query, int first_count, double toi, elementary_hit *hit);
+void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
+                         elementary_hit *hit);

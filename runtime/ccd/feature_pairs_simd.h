@@ -50,6 +50,14 @@ static inline void load_ee(const feature_source *source, const uint32_t *a, cons
     load_both_ends(source, vertices, out);
 }
 
+static inline void load_features(const feature_source *source, cscd_contact_kind kind, const uint32_t *a,
+                                 const uint32_t *b, points_x8 *out) {
+    if (kind == CSCD_CONTACT_VF)
+        load_vf(source, a, b, out);
+    else
+        load_ee(source, a, b, out);
+}
+
 static inline void subtract_at_ends(const points_x8 *points, int to, int from, f64w out[2][3], f64w size[3]) {
     for (int k = 0; k < 3; k++) {
         out[0][k] = points->x0[to][k] - points->x0[from][k];
@@ -58,9 +66,8 @@ static inline void subtract_at_ends(const points_x8 *points, int to, int from, f
     }
 }
 
-/* first_count: 1 for VF, 2 for EE. */
-static inline void vectors_between(const points_x8 *points, int first_count, vectors_x8 *out) {
-    int vf = first_count == 1;
+static inline void vectors_between(const points_x8 *points, cscd_contact_kind kind, vectors_x8 *out) {
+    int vf = kind == CSCD_CONTACT_VF;
     subtract_at_ends(points, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
     subtract_at_ends(points, 3, vf ? 1 : 2, out->b, out->size_b);
     subtract_at_ends(points, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);

@@ -59,7 +59,8 @@ static int largest_axis(const double a[3], const double b[3]) {
     return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
 }
 
-inside_verdict inside_test(const point_vectors *vectors, int first_count, const root_interval *interval) {
+inside_verdict inside_test(const point_vectors *vectors, cscd_contact_kind kind,
+                           const root_interval *interval) {
     double t = 0.5 * (interval->begin + interval->end), h = max_of(interval->end - t, t - interval->begin);
     double relative_error = 16.0 * 0x1p-53 + 5.0 * h;
     blended a = blend(vectors->a, vectors->size_a, t), b = blend(vectors->b, vectors->size_b, t),
@@ -70,12 +71,12 @@ inside_verdict inside_test(const point_vectors *vectors, int first_count, const 
 
     double sign = w.value > 0.0 ? 1.0 : -1.0;
     bounded_value u = cross_component(&c, &b, k, relative_error);
-    bounded_value v = first_count == 1 ? cross_component(&a, &c, k, relative_error)
-                                       : cross_component(&c, &a, k, relative_error);
+    bounded_value v = kind == CSCD_CONTACT_VF ? cross_component(&a, &c, k, relative_error)
+                                              : cross_component(&c, &a, k, relative_error);
     bounded_value beyond_u = difference(w, u);
     const int signs[4] = {certain_sign(u, sign), certain_sign(v, sign),
-                          first_count == 1 ? 1 : certain_sign(beyond_u, sign),
-                          certain_sign(difference(first_count == 1 ? beyond_u : w, v), sign)};
+                          kind == CSCD_CONTACT_VF ? 1 : certain_sign(beyond_u, sign),
+                          certain_sign(difference(kind == CSCD_CONTACT_VF ? beyond_u : w, v), sign)};
     bool unsure = false;
     for (int i = 0; i < 4; i++) {
         if (signs[i] < 0) return INSIDE_NO;

@@ -7,5 +7,6 @@
 typedef enum inside_verdict { INSIDE_NO, INSIDE_YES, INSIDE_UNSURE } inside_verdict;
 
 /* Whether they touch at none (NO) or every one (YES) of the times in the interval at which the four points
- * are coplanar; certified. first_count: 1 for VF, 2 for EE. */
-inside_verdict inside_test(const point_vectors *vectors, int first_count, const root_interval *interval);
+ * are coplanar; certified. */
+inside_verdict inside_test(const point_vectors *vectors, cscd_contact_kind kind,
+                           const root_interval *interval);

@@ -43,9 +43,9 @@ static bool stay_beyond(span a0, span b0, span a1, span b1, double gap) {
            (a0.low - b0.high > gap && a1.low - b1.high > gap);
 }
 
-bool directions_part(const elementary_query *query, int first_count, double distance) {
+bool directions_part(const elementary_query *query, cscd_contact_kind kind, double distance) {
     const double(*x0)[3] = (const double(*)[3])query->x0, (*x1)[3] = (const double(*)[3])query->x1;
-    int a = first_count, b = 4 - first_count;
+    int a = points_of_first(kind), b = 4 - a;
     for (int k = 0; k < 3; k++) {
         if (stay_beyond(span_along_axis(x0, a, k), span_along_axis(x0 + a, b, k), span_along_axis(x1, a, k),
                         span_along_axis(x1 + a, b, k), distance))

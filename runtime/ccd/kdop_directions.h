@@ -9,4 +9,4 @@
  * directions of 14-DOPs, at both ends on the same side, and so throughout? The filters of the detector's
  * methods, in floats, leave out only what certainly is so; asking on the features' own points gives each
  * method the same pairs, whatever its trees. */
-bool directions_part(const elementary_query *query, int first_count, double distance);
+bool directions_part(const elementary_query *query, cscd_contact_kind kind, double distance);

@@ -20,7 +20,7 @@ static const double too_near = 0x1p-46;
 /* The query relative to its first point, scaled by a power of two. */
 typedef struct local_query {
     elementary_query at;
-    int first_count;        /* points of feature a */
+    cscd_contact_kind kind;
     double scale, distance; /* distance: the limit's, scaled */
     bool still;             /* nothing moves */
 } local_query;
@@ -48,9 +48,8 @@ static double query_extent(const elementary_query *query) {
 
 /* To an extent in [1/2, 1), so that no later product over- or underflows. The subtraction rounds: coordinates
  * are off by at most 2^-53. Scaling is exact, that of the distance too: its exponent stays within 1000. */
-static local_query localise(const elementary_query *query, int first_count, double distance) {
-    local_query local = {.first_count = first_count,
-                         .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
+static local_query localise(const elementary_query *query, cscd_contact_kind kind, double distance) {
+    local_query local = {.kind = kind, .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
     int exponent = 0;
     frexp(query_extent(query), &exponent);
     local.scale = ldexp(1.0, -exponent);
@@ -105,7 +104,7 @@ static void move_to(const local_query *local, double t, moment *m) {
         for (int k = 0; k < 3; k++)
             m->features.x[i][k] = (1.0 - t) * local->at.x0[i][k] + t * local->at.x1[i][k];
     }
-    if (local->first_count == 1)
+    if (local->kind == CSCD_CONTACT_VF)
         connect_vf(m);
     else
         connect_ee(m);
@@ -113,7 +112,7 @@ static void move_to(const local_query *local, double t, moment *m) {
 }
 
 static moment start(const local_query *local) {
-    moment m = {.features.first_count = local->first_count};
+    moment m = {.features.kind = local->kind};
     for (int i = 0; i < 4; i++) vec3_subtract(local->at.x1[i], local->at.x0[i], m.features.velocity[i]);
     move_to(local, 0.0, &m);
     return m;
@@ -161,7 +160,7 @@ static bool advance(const local_query *local, double reach, moment *m, bool *bou
 static void touching_normal(const moment *m, double normal[3]) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     double a[3], b[3];
-    bool vf = m->features.first_count == 1;
+    bool vf = m->features.kind == CSCD_CONTACT_VF;
     vec3_subtract(x[vf ? 2 : 1], x[vf ? 1 : 0], a);
     vec3_subtract(x[3], x[vf ? 1 : 2], b);
     vec3_cross(a, b, normal);
@@ -182,15 +181,15 @@ static void describe(const elementary_query *query, const local_query *local, co
 
 /* The extent being at least 1/2, half of SEPARATION_FINEST is no more of a tolerance than promised; it is 16
  * times DISTANCE_ERROR and 8 times what a plane proves nothing about: steps end at reach, not before it. */
-static bool comes_within(const elementary_query *query, int first_count, const separation *limit,
+static bool comes_within(const elementary_query *query, cscd_contact_kind kind, const separation *limit,
                          elementary_hit *hit, bool *bounded) {
-    local_query local = localise(query, first_count, limit->distance);
+    local_query local = localise(query, kind, limit->distance);
     double tolerance = fmax(limit->tolerance * local.scale, 0.5 * SEPARATION_FINEST);
     double reach = local.distance + (tolerance - DISTANCE_ERROR);
     moment m = start(&local);
     bool ran_out;
     if (!advance(&local, reach, &m, &ran_out)) return false;
-    if (directions_part(query, first_count, limit->distance)) return false;
+    if (directions_part(query, kind, limit->distance)) return false;
     describe(query, &local, &m, hit);
     *bounded = ran_out;
     return true;
@@ -198,10 +197,10 @@ static bool comes_within(const elementary_query *query, int first_count, const s
 
 bool separation_vf(const elementary_query *query, const separation *limit, elementary_hit *hit,
                    bool *bounded) {
-    return comes_within(query, 1, limit, hit, bounded);
+    return comes_within(query, CSCD_CONTACT_VF, limit, hit, bounded);
 }
 
 bool separation_ee(const elementary_query *query, const separation *limit, elementary_hit *hit,
                    bool *bounded) {
-    return comes_within(query, 2, limit, hit, bounded);
+    return comes_within(query, CSCD_CONTACT_EE, limit, hit, bounded);
 }

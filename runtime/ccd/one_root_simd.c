@@ -23,14 +23,14 @@ static inline uint32_t isolate(const cubics_x8 *f, intervals_x8 *out) {
     return isolate_between(f->b, f->error, falling | rising, f64w_all(0.0), f64w_all(1.0), change, root, out);
 }
 
-static inline void decide(const points_x8 *points, int first_count, int i, root_outcomes *out) {
+static inline void decide(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out) {
     vectors_x8 vectors;
     cubics_x8 f;
     intervals_x8 interval;
-    vectors_between(points, first_count, &vectors);
+    vectors_between(points, kind, &vectors);
     cubics_of(&vectors, &f);
     uint32_t isolated = isolate(&f, &interval);
-    sign_lanes touching = inside(&vectors, first_count, &interval);
+    sign_lanes touching = inside(&vectors, kind, &interval);
     out->misses |= (isolated & touching.wrong) << i;
     out->hits |= (isolated & touching.right & narrow_enough(&interval)) << i;
     memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
@@ -38,10 +38,10 @@ static inline void decide(const points_x8 *points, int first_count, int i, root_
 
 void SIMD_NAME(roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out) {
-    decide_eight(source, a, b, 1, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_VF, decide, out);
 }
 
 void SIMD_NAME(roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out) {
-    decide_eight(source, a, b, 2, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_EE, decide, out);
 }

@@ -106,11 +106,11 @@ static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
 }
 
 /* How far planes across a direction keep all points of the features apart. */
-static inline f64w gap_along(const f64w direction[3], int first_count, const f64w c[3], const f64w a[3],
-                             const f64w b[3]) {
+static inline f64w gap_along(const f64w direction[3], cscd_contact_kind kind, const f64w c[3],
+                             const f64w a[3], const f64w b[3]) {
     f64w zero = f64w_all(0.0);
     f64w along_a = dot(direction, a), along_b = dot(direction, b), along_c = dot(direction, c);
-    if (first_count == 1) return along_c - f64w_max(zero, f64w_max(along_a, along_b));
+    if (kind == CSCD_CONTACT_VF) return along_c - f64w_max(zero, f64w_max(along_a, along_b));
     return f64w_min(zero, along_a) - along_c - f64w_max(zero, along_b);
 }
 
@@ -137,8 +137,8 @@ typedef struct moment_vectors {
     f64w a[3], b[3], c[3];
 } moment_vectors;
 
-static inline void vectors_at(f64w x[4][3], int first_count, moment_vectors *out) {
-    int vf = first_count == 1;
+static inline void vectors_at(f64w x[4][3], cscd_contact_kind kind, moment_vectors *out) {
+    int vf = kind == CSCD_CONTACT_VF;
     for (int k = 0; k < 3; k++) {
         out->a[k] = x[vf ? 2 : 1][k] - x[vf ? 1 : 0][k];
         out->b[k] = x[3][k] - x[vf ? 1 : 2][k];
@@ -172,23 +172,23 @@ static inline void keep(const nearest *n, f64w distance, f64w factor, int i, pro
  * least of differences that are linear in time, so it is least at an end. Pairs that come within the
  * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
  * (SEPARATION_FINEST). */
-static inline void decide(points_x8 *p, int first_count, int i, const separation *limit,
+static inline void decide(points_x8 *p, cscd_contact_kind kind, int i, const separation *limit,
                           proximity_outcomes *out) {
     moment_vectors start, end;
     f64w error = f64w_all(0x1p-45), direction[3];
-    vectors_at(p->x0, first_count, &start);
-    vectors_at(p->x1, first_count, &end);
+    vectors_at(p->x0, kind, &start);
+    vectors_at(p->x1, kind, &end);
     f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
     f64w factor = to_one(extent), near = limit->distance * factor;
     f64w far = near + limit->tolerance * factor + 0x1p-40;
     multiply(&start, factor);
     multiply(&end, factor);
-    nearest n = first_count == 1 ? nearest_in_triangle(start.c, start.a, start.b)
-                                 : nearest_of_edges(start.c, start.a, start.b);
+    nearest n = kind == CSCD_CONTACT_VF ? nearest_in_triangle(start.c, start.a, start.b)
+                                        : nearest_of_edges(start.c, start.a, start.b);
     f64w distance = f64w_sqrt(n.squared);
     direction_of(&n, distance, direction);
-    f64w gap = gap_along(direction, first_count, start.c, start.a, start.b);
-    f64w gap_at_end = gap_along(direction, first_count, end.c, end.a, end.b);
+    f64w gap = gap_along(direction, kind, start.c, start.a, start.b);
+    f64w gap_at_end = gap_along(direction, kind, end.c, end.a, end.b);
     uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
     uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
     out->misses |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
@@ -197,21 +197,21 @@ static inline void decide(points_x8 *p, int first_count, int i, const separation
 }
 
 static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                              int first_count, const separation *limit, proximity_outcomes *out) {
+                              cscd_contact_kind kind, const separation *limit, proximity_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
-        (first_count == 1 ? load_vf : load_ee)(source, a + i, b + i, &points);
-        decide(&points, first_count, i, limit, out);
+        load_features(source, kind, a + i, b + i, &points);
+        decide(&points, kind, i, limit, out);
     }
 }
 
 void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separation *limit, proximity_outcomes *out) {
-    decide_all(source, a, b, 1, limit, out);
+    decide_all(source, a, b, CSCD_CONTACT_VF, limit, out);
 }
 
 void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separation *limit, proximity_outcomes *out) {
-    decide_all(source, a, b, 2, limit, out);
+    decide_all(source, a, b, CSCD_CONTACT_EE, limit, out);
 }

@@ -10,8 +10,8 @@
 enum { DIAGONAL_COUNT = 4 };
 
 /* +1: the first feature lies beyond the second along axis k; -1: before it; 0: neither. Exact. */
-static int side_along_axis(const double x[4][3], int first_count, int k) {
-    bool edges = first_count == 2;
+static int side_along_axis(const double x[4][3], cscd_contact_kind kind, int k) {
+    bool edges = kind == CSCD_CONTACT_EE;
     double a = x[0][k], b = x[1][k], c = x[2][k], d = x[3][k];
     double a_low = edges && b < a ? b : a, a_high = edges && b > a ? b : a;
     double b_low = c < d ? c : d, b_high = c > d ? c : d;
@@ -33,14 +33,14 @@ static void diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *er
     *error = 0x1p-51 * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]));
 }
 
-static void sides_along_diagonals(const double x[4][3], int first_count, int sides[DIAGONAL_COUNT]) {
+static void sides_along_diagonals(const double x[4][3], cscd_contact_kind kind, int sides[DIAGONAL_COUNT]) {
     double sums[4][DIAGONAL_COUNT], error[4];
     for (int i = 0; i < 4; i++) diagonals(x[i], sums[i], &error[i]);
     for (int k = 0; k < DIAGONAL_COUNT; k++) {
         double a_low = INFINITY, a_high = -INFINITY, b_low = INFINITY, b_high = -INFINITY;
         for (int i = 0; i < 4; i++) {
             double low = sums[i][k] - error[i], high = sums[i][k] + error[i];
-            if (i < first_count) {
+            if (i < points_of_first(kind)) {
                 a_low = low < a_low ? low : a_low;
                 a_high = high > a_high ? high : a_high;
             } else {
@@ -52,18 +52,18 @@ static void sides_along_diagonals(const double x[4][3], int first_count, int sid
     }
 }
 
-bool separated_by_axes(const elementary_query *query, int first_count) {
+bool separated_by_axes(const elementary_query *query, cscd_contact_kind kind) {
     for (int k = 0; k < 3; k++) {
-        int side = side_along_axis(query->x0, first_count, k);
-        if (side != 0 && side == side_along_axis(query->x1, first_count, k)) return true;
+        int side = side_along_axis(query->x0, kind, k);
+        if (side != 0 && side == side_along_axis(query->x1, kind, k)) return true;
     }
     return false;
 }
 
-bool separated_by_diagonals(const elementary_query *query, int first_count) {
+bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kind) {
     int start[DIAGONAL_COUNT], end[DIAGONAL_COUNT];
-    sides_along_diagonals(query->x0, first_count, start);
-    sides_along_diagonals(query->x1, first_count, end);
+    sides_along_diagonals(query->x0, kind, start);
+    sides_along_diagonals(query->x1, kind, end);
     for (int k = 0; k < DIAGONAL_COUNT; k++) {
         if (start[k] != 0 && start[k] == end[k]) return true;
     }
@@ -73,9 +73,10 @@ bool separated_by_diagonals(const elementary_query *query, int first_count) {
 /* Every point of the first feature beyond every one of the second along n. A gap is three differences, three
  * products and two sums, 4 roundings of parts that add up to `size`: below 4.1 u size, u = 2^-53; the bound,
  * 8 u size, leaves room for computing it; underflow loses 3 times 2^-1075 at most. */
-static bool beyond_along(const double x[4][3], int first_count, const double n[3]) {
-    for (int i = 0; i < first_count; i++) {
-        for (int j = first_count; j < 4; j++) {
+static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const double n[3]) {
+    int first = points_of_first(kind);
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++) {
             double gap = 0.0, size = 0.0;
             for (int k = 0; k < 3; k++) {
                 double part = (x[i][k] - x[j][k]) * n[k];
@@ -88,19 +89,19 @@ static bool beyond_along(const double x[4][3], int first_count, const double n[3
     return true;
 }
 
-static bool separated_along(const elementary_query *query, int first_count, const double n[3]) {
-    return beyond_along(query->x0, first_count, n) && beyond_along(query->x1, first_count, n);
+static bool separated_along(const elementary_query *query, cscd_contact_kind kind, const double n[3]) {
+    return beyond_along(query->x0, kind, n) && beyond_along(query->x1, kind, n);
 }
 
 /* times * n, at a size at which nothing over- or underflows. */
-static bool separated_along_scaled(const elementary_query *query, int first_count, double times,
+static bool separated_along_scaled(const elementary_query *query, cscd_contact_kind kind, double times,
                                    const double n[3]) {
     int exponent;
     double scaled[3], largest = vec3_largest(n);
     if (!(largest > 0.0)) return false;
     frexp(largest, &exponent);
     for (int k = 0; k < 3; k++) scaled[k] = ldexp(times * n[k], -exponent);
-    return separated_along(query, first_count, scaled);
+    return separated_along(query, kind, scaled);
 }
 
 /* Twice the vector between two points at t = 1/2. */
@@ -118,7 +119,8 @@ static bool vertex_outside_face(const elementary_query *query) {
         double outwards[3], to_vertex[3];
         vec3_cross(sides[i], normal, outwards);
         between_at_middle(query, 1 + i, 0, to_vertex);
-        if (vec3_dot(outwards, to_vertex) > 0.0 && separated_along_scaled(query, 1, 1.0, outwards))
+        if (vec3_dot(outwards, to_vertex) > 0.0 &&
+            separated_along_scaled(query, CSCD_CONTACT_VF, 1.0, outwards))
             return true;
     }
     return false;
@@ -138,11 +140,11 @@ static bool edges_beside(const elementary_query *query) {
         double first = vec3_dot(across, to_first), second = vec3_dot(across, to_second);
         if (!(first > 0.0 && second > 0.0) && !(first < 0.0 && second < 0.0)) continue;
         double turn = (first > 0.0) == (i == 0) ? 1.0 : -1.0;
-        if (separated_along_scaled(query, 2, turn, across)) return true;
+        if (separated_along_scaled(query, CSCD_CONTACT_EE, turn, across)) return true;
     }
     return false;
 }
 
-bool separated_in_plane(const elementary_query *query, int first_count) {
-    return first_count == 1 ? vertex_outside_face(query) : edges_beside(query);
+bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_VF ? vertex_outside_face(query) : edges_beside(query);
 }

@@ -4,11 +4,11 @@
 
 #include "runtime/ccd/elementary.h"
 
-/* All of these: true means certainly apart; first_count: 1 for VF, 2 for EE. The points of the features are
+/* All of these: true means certainly apart. The points of the features are
  * compared at one time, so the axes and the diagonals together reject whatever swept 14-DOPs of the features
  * would, and more. */
-bool separated_by_axes(const elementary_query *query, int first_count);
-bool separated_by_diagonals(const elementary_query *query, int first_count);
+bool separated_by_axes(const elementary_query *query, cscd_contact_kind kind);
+bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kind);
 
 /* By directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
-bool separated_in_plane(const elementary_query *query, int first_count);
+bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind);

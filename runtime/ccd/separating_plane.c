@@ -43,10 +43,11 @@ static void add_axis(axis_list *axes, const double axis[3], const double change[
 
 /* The edges in which the shortest connection ends, and those that are perpendicular to it by chance. */
 static axis_list find_axes(const moving_features *f, const shortest_connection *shortest, int axes_max) {
-    static const int ends[2][3][2] = {{{1, 2}, {1, 3}, {2, 3}}, {{0, 1}, {2, 3}}};
+    static const int ends[2][3][2] = {
+        [CSCD_CONTACT_VF] = {{1, 2}, {1, 3}, {2, 3}}, [CSCD_CONTACT_EE] = {{0, 1}, {2, 3}}};
     axis_list axes = {.count = 0};
-    for (int i = 0; i < (f->first_count == 1 ? 3 : 2) && axes.count < axes_max; i++) {
-        const int *edge = ends[f->first_count - 1][i];
+    for (int i = 0; i < (f->kind == CSCD_CONTACT_VF ? 3 : 2) && axes.count < axes_max; i++) {
+        const int *edge = ends[f->kind][i];
         double axis[3], change[3];
         vec3_subtract(f->x[edge[1]], f->x[edge[0]], axis);
         vec3_subtract(f->velocity[edge[1]], f->velocity[edge[0]], change);
@@ -132,8 +133,9 @@ static projection project(const moving_features *f, const separating_plane *plan
 static double holds(const moving_features *f, const projection *p, double distance, double lean,
                     double size) {
     double least = INFINITY, bend = distance * (size * size);
-    for (int i = 0; i < f->first_count; i++) {
-        for (int j = f->first_count; j < 4; j++) {
+    int first = points_of_first(f->kind);
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++) {
             double a = (p->x_normal[i] - p->x_normal[j]) - distance - SEPARATING_PLANE_ERROR;
             double b = (p->v_normal[i] - p->v_normal[j]) + (p->x_turn[i] - p->x_turn[j]) - distance * lean -
                        SEPARATING_PLANE_ERROR * size;

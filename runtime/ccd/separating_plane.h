@@ -1,12 +1,13 @@
 /* How long a plane that turns with two moving features keeps them farther apart than a distance. */
 #pragma once
 
+#include "runtime/ccd/elementary.h"
+
 #include <stdbool.h>
 
-/* Two features at one moment, the first first_count points and the rest: vertex and face (1), or two edges
- * (2). Their coordinates are below 1 in magnitude during the whole interval. */
+/* Two features at one moment. Their coordinates are below 1 in magnitude during the whole interval. */
 typedef struct moving_features {
-    int first_count;
+    cscd_contact_kind kind;
     double x[4][3], velocity[4][3]; /* off by at most 3 * 2^-53 and 2 * 2^-53 each */
 } moving_features;
 

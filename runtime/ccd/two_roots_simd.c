@@ -56,12 +56,12 @@ static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t la
     return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
 }
 
-static inline void decide(const points_x8 *points, int first_count, int i, root_outcomes *out) {
+static inline void decide(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out) {
     vectors_x8 vectors;
     cubics_x8 f;
     cut_cubics parts;
     intervals_x8 roots[2];
-    vectors_between(points, first_count, &vectors);
+    vectors_between(points, kind, &vectors);
     cubics_of(&vectors, &f);
     uint32_t lanes = cut(&f, &parts);
     out->misses |= (lanes & rootless(&parts, f.error)) << i;
@@ -69,10 +69,10 @@ static inline void decide(const points_x8 *points, int first_count, int i, root_
     if (lanes == 0) return;
     lanes = isolate_both(&parts, f.error, lanes, roots);
     if (lanes == 0) return;
-    sign_lanes first = inside(&vectors, first_count, &roots[0]);
+    sign_lanes first = inside(&vectors, kind, &roots[0]);
     uint32_t hits = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
     if (later != 0) {
-        sign_lanes second = inside(&vectors, first_count, &roots[1]);
+        sign_lanes second = inside(&vectors, kind, &roots[1]);
         out->misses |= (later & second.wrong) << i;
         later &= second.right & narrow_enough(&roots[1]);
     }
@@ -83,10 +83,10 @@ static inline void decide(const points_x8 *points, int first_count, int i, root_
 
 void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, 1, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_VF, decide, out);
 }
 
 void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, 2, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_EE, decide, out);
 }

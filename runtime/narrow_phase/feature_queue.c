@@ -36,7 +36,7 @@ static void describe_hits(const swept_interval *interval, cscd_contact_kind kind
         elementary_query query;
         elementary_hit hit;
         swept_interval_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
-        elementary_describe(&query, kind == CSCD_CONTACT_VF ? 1 : 2, roots->begin[at], &hit);
+        elementary_describe(&query, kind, roots->begin[at], &hit);
         add_contact(interval, kind, pairs, i + at, &hit, false, lane);
     }
 }
@@ -64,7 +64,7 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
         elementary_query query;
         elementary_hit hit;
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        elementary_verdict verdict = elementary_after_signs(&query, kind == CSCD_CONTACT_VF ? 1 : 2, &hit);
+        elementary_verdict verdict = elementary_after_signs(&query, kind, &hit);
         lane->decided[verdict.level]++;
         if (verdict.touching) add_contact(interval, kind, pairs, i, &hit, false, lane);
     }

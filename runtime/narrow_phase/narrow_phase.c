@@ -88,7 +88,7 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
                                  uint32_t b) {
     elementary_query query;
     swept_interval_load(interval, kind, a, b, &query);
-    return directions_part(&query, kind == CSCD_CONTACT_VF ? 1 : 2, interval->limit.distance);
+    return directions_part(&query, kind, interval->limit.distance);
 }
 
 /* Adjacent triangles of components that are culled are pairs like others. */

@@ -29,7 +29,7 @@ static double seconds_now(clockid_t clock) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static void ask(fuzzing *f, pair_kind kind, query_family family) {
+static void ask(fuzzing *f, cscd_contact_kind kind, query_family family) {
     tally *t = &f->families[kind][family];
     elementary_query query = generate_query(&f->random, kind, family);
     double start = seconds_now(CLOCK_THREAD_CPUTIME_ID);
@@ -53,10 +53,10 @@ static void print_numbers(const uint64_t *numbers, int count) {
     for (int i = 0; i < count; i++) printf(" %9llu", (unsigned long long)numbers[i]);
 }
 
-static void print_totals(const fuzzing *f, pair_kind kind) {
-    printf("%s %-14s %9s %9s %9s %9s %9s %9s %9s %9s %9s %7s %7s\n", kind == PAIR_VF ? "vf" : "ee", "family",
-           "queries", "hits", "signs", "roots", "exact", "missed", "false", "late", "early", "us mean",
-           "us max");
+static void print_totals(const fuzzing *f, cscd_contact_kind kind) {
+    printf("%s %-14s %9s %9s %9s %9s %9s %9s %9s %9s %9s %7s %7s\n", kind == CSCD_CONTACT_VF ? "vf" : "ee",
+           "family", "queries", "hits", "signs", "roots", "exact", "missed", "false", "late", "early",
+           "us mean", "us max");
     for (int i = 0; i < FAMILY_COUNT; i++) {
         const tally *t = &f->families[kind][i];
         printf("   %-14s", query_family_name((query_family)i));
@@ -87,11 +87,11 @@ int main(int argument_count, char **arguments) {
         for (int i = 0; i < BATCH; i++)
             for (int kind = 0; kind < 2; kind++)
                 if (asked[kind])
-                    ask(&f, (pair_kind)kind, (query_family)stream_below(&f.random, FAMILY_COUNT));
+                    ask(&f, (cscd_contact_kind)kind, (query_family)stream_below(&f.random, FAMILY_COUNT));
     }
     if (isatty(STDERR_FILENO)) fprintf(stderr, "\n");
     for (int kind = 0; kind < 2; kind++)
-        if (asked[kind]) print_totals(&f, (pair_kind)kind);
+        if (asked[kind]) print_totals(&f, (cscd_contact_kind)kind);
     printf("%llu queries, seed %llu, %llu differences\n", (unsigned long long)f.queries,
            (unsigned long long)seed, (unsigned long long)f.differences);
     algebraic_oracle_finish();

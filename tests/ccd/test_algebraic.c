@@ -264,7 +264,7 @@ static void room_for_the_worst(void **state) {
                 query.x1[3][k] = query.x0[0][k];
             }
         }
-        touching += exact_touch_in(&pool, &query, random_integer(1, 2), &toi);
+        touching += exact_touch_in(&pool, &query, (cscd_contact_kind)random_integer(0, 1), &toi);
         peak = pool.peak > peak ? pool.peak : peak;
     }
     printf("at most %u of %d limbs, %d of %d touching\n", peak, INTEGER_POOL_LIMBS, touching, ROUND_COUNT);

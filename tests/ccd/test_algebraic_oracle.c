@@ -247,7 +247,7 @@ static elementary_query scaled_axes(const elementary_query *query, const double 
     return out;
 }
 
-static void check_known(pair_kind kind, const known_case *known, size_t count) {
+static void check_known(cscd_contact_kind kind, const known_case *known, size_t count) {
     for (size_t i = 0; i < count; i++) {
         elementary_query query = scaled_axes(&known[i].query, known[i].scale);
         oracle_verdict found = algebraic_oracle(kind, &query);
@@ -262,12 +262,12 @@ static void check_known(pair_kind kind, const known_case *known, size_t count) {
 
 static void known_vf(void **state) {
     (void)state;
-    check_known(PAIR_VF, vf_cases, sizeof vf_cases / sizeof *vf_cases);
+    check_known(CSCD_CONTACT_VF, vf_cases, sizeof vf_cases / sizeof *vf_cases);
 }
 
 static void known_ee(void **state) {
     (void)state;
-    check_known(PAIR_EE, ee_cases, sizeof ee_cases / sizeof *ee_cases);
+    check_known(CSCD_CONTACT_EE, ee_cases, sizeof ee_cases / sizeof *ee_cases);
 }
 
 /* ---- subdivision ---- */
@@ -280,7 +280,7 @@ typedef struct subdivided {
 
 /* Contacts are close at their time, and nothing is before it; where there is none, nothing is at any time,
  * but for near misses that are too close to tell. */
-static void subdivide(pair_kind kind, const elementary_query *query, subdivided *counts) {
+static void subdivide(cscd_contact_kind kind, const elementary_query *query, subdivided *counts) {
     oracle_verdict verdict = algebraic_oracle(kind, query);
     if (verdict.touching) {
         counts->hits++;
@@ -300,8 +300,8 @@ static void agrees_with_subdivision(void **state) {
     for (int family = 0; family < FAMILY_NUDGED; family++) {
         subdivided counts = {0, 0, 0};
         for (int i = 0; i < 2 * SUBDIVIDED; i++) {
-            elementary_query query = exact_query(&random, (pair_kind)(i % 2), (query_family)family);
-            subdivide((pair_kind)(i % 2), &query, &counts);
+            elementary_query query = exact_query(&random, (cscd_contact_kind)(i % 2), (query_family)family);
+            subdivide((cscd_contact_kind)(i % 2), &query, &counts);
         }
         printf("%-15s %4u contacts, %4u misses, %3u too close to tell\n",
                query_family_name((query_family)family), counts.hits, counts.misses, counts.open);
@@ -313,7 +313,7 @@ static void agrees_with_subdivision(void **state) {
 
 enum { SYMMETRIC = 500 };
 
-static void assert_same(pair_kind kind, const elementary_query *query, oracle_verdict expected) {
+static void assert_same(cscd_contact_kind kind, const elementary_query *query, oracle_verdict expected) {
     oracle_verdict found = algebraic_oracle(kind, query);
     assert_true(found.touching == expected.touching && found.simple == expected.simple);
     assert_true(found.toi_low == expected.toi_low && found.toi_high == expected.toi_high);
@@ -328,12 +328,12 @@ static elementary_query axes_turned(const elementary_query *query) {
     return out;
 }
 
-static void check_symmetries(pair_kind kind, const elementary_query *query) {
+static void check_symmetries(cscd_contact_kind kind, const elementary_query *query) {
     static const int vf_orders[2][4] = {{0, 2, 3, 1}, {0, 2, 1, 3}},
                      ee_orders[2][4] = {{1, 0, 2, 3}, {2, 3, 0, 1}};
     oracle_verdict verdict = algebraic_oracle(kind, query);
     for (int i = 0; i < 2; i++) {
-        elementary_query other = query_permuted(query, kind == PAIR_VF ? vf_orders[i] : ee_orders[i]);
+        elementary_query other = query_permuted(query, kind == CSCD_CONTACT_VF ? vf_orders[i] : ee_orders[i]);
         assert_same(kind, &other, verdict);
     }
     elementary_query turned = axes_turned(query), reversed = query_reversed(query);
@@ -347,7 +347,7 @@ static void has_the_symmetries(void **state) {
     (void)state;
     random_stream random = stream_start(22);
     for (int i = 0; i < 2 * SYMMETRIC * FAMILY_COUNT; i++) {
-        pair_kind kind = (pair_kind)(i % 2);
+        cscd_contact_kind kind = (cscd_contact_kind)(i % 2);
         elementary_query query = generate_query(&random, kind, (query_family)(i / 2 % FAMILY_COUNT));
         check_symmetries(kind, &query);
     }

@@ -267,7 +267,7 @@ static coplanarity computed_cubic(const tetrahedra *s) {
         memcpy(query.x0[(i + 1) % 4], s->x[0][i], sizeof query.x0[0]);
         memcpy(query.x1[(i + 1) % 4], s->x[1][i], sizeof query.x1[0]);
     }
-    point_vectors_from(&query, 1, &vectors);
+    point_vectors_from(&query, CSCD_CONTACT_VF, &vectors);
     return coplanarity_cubic(&vectors);
 }
 

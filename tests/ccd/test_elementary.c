@@ -16,8 +16,8 @@ static int seed(void **state) {
     return 0;
 }
 
-static const char *kind_name(pair_kind kind) {
-    return kind == PAIR_VF ? "vf" : "ee";
+static const char *kind_name(cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_VF ? "vf" : "ee";
 }
 
 /* The contact that was built in, unless the features met before: then whatever was found holds. */
@@ -34,7 +34,7 @@ static bool check_contact(const contact_case *c) {
     return true;
 }
 
-static void check_contacts(pair_kind kind) {
+static void check_contacts(cscd_contact_kind kind) {
     int built = 0, earlier = 0, once = 0;
     for (int round = 0; round < ROUND_COUNT; round++) {
         contact_case c = random_contact(kind);
@@ -51,15 +51,15 @@ static void check_contacts(pair_kind kind) {
 
 static void vf_contacts(void **state) {
     (void)state;
-    check_contacts(PAIR_VF);
+    check_contacts(CSCD_CONTACT_VF);
 }
 
 static void ee_contacts(void **state) {
     (void)state;
-    check_contacts(PAIR_EE);
+    check_contacts(CSCD_CONTACT_EE);
 }
 
-static void check_misses(pair_kind kind, const char *name, contact_case (*make)(pair_kind)) {
+static void check_misses(cscd_contact_kind kind, const char *name, contact_case (*make)(cscd_contact_kind)) {
     int count[ELEMENTARY_LEVEL_COUNT] = {0};
     for (int round = 0; round < ROUND_COUNT; round++) {
         contact_case c = make(kind);
@@ -75,14 +75,14 @@ static void check_misses(pair_kind kind, const char *name, contact_case (*make)(
 
 static void vf_near_misses(void **state) {
     (void)state;
-    check_misses(PAIR_VF, "side", random_side_miss);
-    check_misses(PAIR_VF, "short", random_short_miss);
+    check_misses(CSCD_CONTACT_VF, "side", random_side_miss);
+    check_misses(CSCD_CONTACT_VF, "short", random_short_miss);
 }
 
 static void ee_near_misses(void **state) {
     (void)state;
-    check_misses(PAIR_EE, "side", random_side_miss);
-    check_misses(PAIR_EE, "short", random_short_miss);
+    check_misses(CSCD_CONTACT_EE, "side", random_side_miss);
+    check_misses(CSCD_CONTACT_EE, "short", random_short_miss);
 }
 
 /* Orders of the four points that leave the features what they are; the last four of EE exchange the edges. */
@@ -104,12 +104,13 @@ static void check_same_contact(const contact_case *c, const elementary_hit *a, c
 static void check_orders(const contact_case *c) {
     elementary_hit hit;
     elementary_verdict verdict = pair_test(c->kind, &c->query, &hit);
-    int count = c->kind == PAIR_VF ? 6 : 8;
+    int count = c->kind == CSCD_CONTACT_VF ? 6 : 8;
     for (int i = 0; i < count; i++) {
-        elementary_query query = query_permuted(&c->query, c->kind == PAIR_VF ? vf_orders[i] : ee_orders[i]);
+        elementary_query query =
+            query_permuted(&c->query, c->kind == CSCD_CONTACT_VF ? vf_orders[i] : ee_orders[i]);
         elementary_hit other;
         assert_true(pair_test(c->kind, &query, &other).touching == verdict.touching);
-        double side = c->kind == PAIR_EE && i >= 4 ? -1.0 : 1.0;
+        double side = c->kind == CSCD_CONTACT_EE && i >= 4 ? -1.0 : 1.0;
         if (verdict.touching) check_same_contact(c, &hit, &other, side);
     }
 }
@@ -146,10 +147,11 @@ static void check_powers_of_two(const contact_case *c) {
 }
 
 static void for_each_kind_of_case(void (*check)(const contact_case *)) {
-    static contact_case (*const makers[])(pair_kind) = {random_contact, random_side_miss, random_short_miss};
+    static contact_case (*const makers[])(cscd_contact_kind) = {random_contact, random_side_miss,
+                                                                random_short_miss};
     for (int round = 0; round < SYMMETRY_ROUND_COUNT; round++) {
         for (int i = 0; i < 6; i++) {
-            contact_case c = makers[i / 2](i % 2 == 0 ? PAIR_VF : PAIR_EE);
+            contact_case c = makers[i / 2](i % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE);
             check(&c);
         }
     }

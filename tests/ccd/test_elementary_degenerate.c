@@ -21,13 +21,13 @@ static void random_grid_vector(int range, double out[3]) {
 }
 
 /* Features of integer corners whose points u = i / 4, v = j / 4 coincide. */
-static void grid_features(pair_kind kind, int range, int i, int j, double at[4][3]) {
+static void grid_features(cscd_contact_kind kind, int range, int i, int j, double at[4][3]) {
     double along_a[3], along_b[3], meeting[3];
     random_grid_vector(range, meeting);
     random_grid_vector(range, along_a);
     random_grid_vector(range, along_b);
     for (int k = 0; k < 3; k++) {
-        if (kind == PAIR_VF) {
+        if (kind == CSCD_CONTACT_VF) {
             at[0][k] = meeting[k];
             at[1][k] = meeting[k] - i * along_a[k] - j * along_b[k];
             at[2][k] = at[1][k] + 4.0 * along_a[k];
@@ -43,19 +43,20 @@ static void grid_features(pair_kind kind, int range, int i, int j, double at[4][
 
 typedef enum place { INSIDE, ON_BORDER, ON_CORNER, PLACE_COUNT } place;
 
-static void random_place(pair_kind kind, place where, int *i, int *j) {
+static void random_place(cscd_contact_kind kind, place where, int *i, int *j) {
     static const int vf_border[3][2] = {{1, 0}, {0, 3}, {2, 2}};
     static const int corners[4][2] = {{0, 0}, {4, 0}, {0, 4}, {4, 4}};
     static const int ee_border[4][2] = {{0, 1}, {4, 2}, {3, 0}, {2, 4}};
-    const int *choice = corners[random_integer(0, kind == PAIR_VF ? 2 : 3)];
-    if (where == ON_BORDER && kind == PAIR_VF) choice = vf_border[random_integer(0, 2)];
-    if (where == ON_BORDER && kind == PAIR_EE) choice = ee_border[random_integer(0, 3)];
+    const int *choice = corners[random_integer(0, kind == CSCD_CONTACT_VF ? 2 : 3)];
+    if (where == ON_BORDER && kind == CSCD_CONTACT_VF) choice = vf_border[random_integer(0, 2)];
+    if (where == ON_BORDER && kind == CSCD_CONTACT_EE) choice = ee_border[random_integer(0, 3)];
     *i = where == INSIDE ? 1 : choice[0];
     *j = where == INSIDE ? random_integer(1, 2) : choice[1];
 }
 
 /* An exact contact at toi = before / (before + after). */
-static elementary_query grid_contact(pair_kind kind, place where, int range, double before, double after) {
+static elementary_query grid_contact(cscd_contact_kind kind, place where, int range, double before,
+                                     double after) {
     double at[4][3], velocity[4][3];
     int i, j;
     random_place(kind, where, &i, &j);
@@ -71,7 +72,7 @@ static void exact_contacts(void **state) {
     (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         for (int c = 0; c < 2 * PLACE_COUNT; c++) {
-            pair_kind kind = c % 2 == 0 ? PAIR_VF : PAIR_EE;
+            cscd_contact_kind kind = c % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
             int before = random_integer(0, 5), after = random_integer(before == 0, 5);
             elementary_query query = grid_contact(kind, (place)(c / 2), ranges[round % 5], before, after);
             check_touches(kind, &query, before / (double)(before + after));
@@ -83,7 +84,7 @@ static void ends_of_the_interval(void **state) {
     int counts[2] = {0, 0};
     (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
-        pair_kind kind = round % 2 == 0 ? PAIR_VF : PAIR_EE;
+        cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         place where = (place)(round / 2 % PLACE_COUNT);
         elementary_query query = grid_contact(kind, where, 1000, 0, 1);
         check_first(kind, &query, 0.0, 0.0);
@@ -125,10 +126,10 @@ static turning random_turning(void) {
 }
 
 /* VF: p0 at the origin. EE: the edges' middles at the origin and at the offset. */
-static void place_turning(pair_kind kind, const double a[3], const double b[3], const double c[3],
+static void place_turning(cscd_contact_kind kind, const double a[3], const double b[3], const double c[3],
                           double out[4][3]) {
     for (int k = 0; k < 3; k++) {
-        bool vf = kind == PAIR_VF;
+        bool vf = kind == CSCD_CONTACT_VF;
         out[0][k] = vf ? c[k] : -0.5 * a[k];
         out[1][k] = vf ? 0.0 : 0.5 * a[k];
         out[2][k] = vf ? a[k] : c[k] - 0.5 * b[k];
@@ -136,7 +137,7 @@ static void place_turning(pair_kind kind, const double a[3], const double b[3], 
     }
 }
 
-static elementary_query turning_query(pair_kind kind, const turning *m, double lift) {
+static elementary_query turning_query(cscd_contact_kind kind, const turning *m, double lift) {
     const double a[3] = {1, 0, 0}, b[3] = {0, 1, 0}, c[3] = {m->c0, m->d0, lift};
     const double a_speed[3] = {m->e, 0, m->alpha}, b_speed[3] = {0, 0, m->beta};
     const double c_speed[3] = {m->c1, m->d1, m->alpha * m->c0 + m->beta * m->d0};
@@ -149,11 +150,11 @@ static elementary_query turning_query(pair_kind kind, const turning *m, double l
 static void double_roots(void **state) {
     (void)state;
     for (int round = 0; round < 2 * ROUND_COUNT; round++) {
-        pair_kind kind = round % 2 == 0 ? PAIR_VF : PAIR_EE;
+        cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         turning m = random_turning();
         elementary_query query = turning_query(kind, &m, 0.0);
         elementary_hit hit = check_first(kind, &query, 0.5, 1e-9);
-        if (kind == PAIR_VF) assert_true(fabs(hit.u - m.c0) < 1e-4 && fabs(hit.v - m.d0) < 1e-4);
+        if (kind == CSCD_CONTACT_VF) assert_true(fabs(hit.u - m.c0) < 1e-4 && fabs(hit.v - m.d0) < 1e-4);
         query = turning_query(kind, &m, bend(&m) > 0.0 ? 0x1p-30 : -0x1p-30);
         check_apart(kind, &query);
     }
@@ -166,11 +167,11 @@ static void scissors(void **state) {
         double gap = ldexp(1.0, exponent);
         const elementary_query query = {{{-2, 2, 0}, {2, -2, 0}, {1, gap, 0}, {6, gap, 0}},
                                         {{-2, 0, 0}, {2, 0, 0}, {0, gap, 0}, {5, gap, 0}}};
-        check_apart(PAIR_EE, &query);
+        check_apart(CSCD_CONTACT_EE, &query);
     }
     const elementary_query closed = {{{-2, 2, 0}, {2, -2, 0}, {1, 0, 0}, {6, 0, 0}},
                                      {{-2, 0, 0}, {2, 0, 0}, {0, 0, 0}, {5, 0, 0}}};
-    check_first(PAIR_EE, &closed, 1.0, 1e-9);
+    check_first(CSCD_CONTACT_EE, &closed, 1.0, 1e-9);
 }
 
 /* ---- mirrored at the plane x = 0 ---- */
@@ -202,7 +203,7 @@ static double meeting_time(const elementary_query *query, int i) {
     return end > 0.0 ? 2.0 : start / (start - end);
 }
 
-static void check_mirrored(pair_kind kind, const elementary_query *query, double toi) {
+static void check_mirrored(cscd_contact_kind kind, const elementary_query *query, double toi) {
     if (toi > 1.0)
         check_apart(kind, query);
     else
@@ -218,7 +219,7 @@ static void mirrored_edges(void **state) {
             random_right(&query, i, true);
             mirror_point(&query, i, i + 2);
         }
-        check_mirrored(PAIR_EE, &query, fmin(meeting_time(&query, 0), meeting_time(&query, 1)));
+        check_mirrored(CSCD_CONTACT_EE, &query, fmin(meeting_time(&query, 0), meeting_time(&query, 1)));
     }
 }
 
@@ -232,9 +233,9 @@ static void mirrored_vertices(void **state) {
         for (int i = 2; i < 4; i++) mirror_point(&query, i, i);
         elementary_query edges = query;
         mirror_point(&query, 0, 1);
-        check_mirrored(PAIR_VF, &query, meeting_time(&query, 0));
+        check_mirrored(CSCD_CONTACT_VF, &query, meeting_time(&query, 0));
         mirror_point(&edges, 0, 2);
-        check_mirrored(PAIR_EE, &edges, meeting_time(&edges, 0));
+        check_mirrored(CSCD_CONTACT_EE, &edges, meeting_time(&edges, 0));
     }
 }
 
@@ -259,7 +260,7 @@ static void symmetric_face(void **state) {
         if (fabs(across) < 0.05) continue;
         elementary_query query =
             query_through((const double(*)[3])at, (const double(*)[3])velocity, toi, 1.0 - toi);
-        elementary_hit hit = check_touches(PAIR_VF, &query, toi);
+        elementary_hit hit = check_touches(CSCD_CONTACT_VF, &query, toi);
         double width = (1.0 - hit.toi) * query.x0[2][0] + hit.toi * query.x1[2][0];
         if (fabs(width) > 1e-3) assert_true(fabs(hit.u - hit.v) < 1e-9);
     }

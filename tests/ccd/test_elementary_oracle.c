@@ -21,20 +21,20 @@ typedef struct failures {
     int count;
 } failures;
 
-static void note(failures *f, const char *what, pair_kind kind, const elementary_query *query) {
+static void note(failures *f, const char *what, cscd_contact_kind kind, const elementary_query *query) {
     if (f->count++ >= SHOWN) return;
     compared result = compare_with_oracle(kind, query);
     printf("%s:\n", what);
     print_compared(kind, query, &result);
 }
 
-typedef void query_check(failures *f, pair_kind kind, const elementary_query *query);
+typedef void query_check(failures *f, cscd_contact_kind kind, const elementary_query *query);
 
 static void on_each_family(uint64_t seed, int count, query_check *check) {
     failures f = {0};
     random_stream random = stream_start(seed);
     for (int i = 0; i < 2 * count * FAMILY_COUNT; i++) {
-        pair_kind kind = (pair_kind)(i % 2);
+        cscd_contact_kind kind = (cscd_contact_kind)(i % 2);
         elementary_query query = generate_query(&random, kind, (query_family)(i / 2 % FAMILY_COUNT));
         check(&f, kind, &query);
     }
@@ -55,7 +55,7 @@ static void print_tally(query_family family, const tally *t) {
     printf("\n");
 }
 
-static tally compare_family(random_stream *random, failures *f, pair_kind kind, query_family family) {
+static tally compare_family(random_stream *random, failures *f, cscd_contact_kind kind, query_family family) {
     tally t = {0};
     for (int i = 0; i < QUERIES_A_FAMILY; i++) {
         elementary_query query = generate_query(random, kind, family);
@@ -69,7 +69,7 @@ static tally compare_family(random_stream *random, failures *f, pair_kind kind, 
     return t;
 }
 
-static void compare_kind(pair_kind kind) {
+static void compare_kind(cscd_contact_kind kind) {
     random_stream random = stream_start(31 + kind);
     failures f = {0};
     printf("                  hits misses |  signs  roots  exact | missed  false   late  early\n");
@@ -85,27 +85,27 @@ static void compare_kind(pair_kind kind) {
 
 static void vf_agrees_with_oracle(void **state) {
     (void)state;
-    compare_kind(PAIR_VF);
+    compare_kind(CSCD_CONTACT_VF);
 }
 
 static void ee_agrees_with_oracle(void **state) {
     (void)state;
-    compare_kind(PAIR_EE);
+    compare_kind(CSCD_CONTACT_EE);
 }
 
 /* ---- symmetries ---- */
 
-static bool same_verdict(pair_kind kind, const elementary_query *query, bool touching, double toi) {
+static bool same_verdict(cscd_contact_kind kind, const elementary_query *query, bool touching, double toi) {
     elementary_hit hit = {.toi = toi};
     return pair_test(kind, query, &hit).touching == touching && fabs(hit.toi - toi) <= 1e-9;
 }
 
-static void check_renumbered(failures *f, pair_kind kind, const elementary_query *query, bool touching,
-                             double toi) {
+static void check_renumbered(failures *f, cscd_contact_kind kind, const elementary_query *query,
+                             bool touching, double toi) {
     static const int vf_orders[5][4] = {{0, 2, 3, 1}, {0, 3, 1, 2}, {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 3, 2, 1}};
     static const int ee_orders[5][4] = {{1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
     for (int i = 0; i < 5; i++) {
-        elementary_query other = query_permuted(query, kind == PAIR_VF ? vf_orders[i] : ee_orders[i]);
+        elementary_query other = query_permuted(query, kind == CSCD_CONTACT_VF ? vf_orders[i] : ee_orders[i]);
         if (!same_verdict(kind, &other, touching, toi)) note(f, "renumbered", kind, query);
     }
 }
@@ -121,7 +121,7 @@ static elementary_query axes_exchanged(const elementary_query *query, int turn, 
     return out;
 }
 
-static void check_symmetries(failures *f, pair_kind kind, const elementary_query *query) {
+static void check_symmetries(failures *f, cscd_contact_kind kind, const elementary_query *query) {
     elementary_hit hit = {.toi = 2.0}, unused;
     bool touching = pair_test(kind, query, &hit).touching;
     elementary_query reversed = query_reversed(query), large = query_scaled(query, 17);
@@ -149,11 +149,11 @@ static long double ulp_of_largest(const elementary_query *query) {
     return (long double)nextafter(largest, INFINITY) - largest;
 }
 
-static void check_named_points(failures *f, pair_kind kind, const elementary_query *query) {
+static void check_named_points(failures *f, cscd_contact_kind kind, const elementary_query *query) {
     elementary_hit hit;
     if (!pair_test(kind, query, &hit).touching) return;
     bool inside = hit.toi >= 0.0 && hit.toi <= 1.0 && hit.u >= 0.0 && hit.u <= 1.0 && hit.v >= 0.0 &&
-                  hit.v <= 1.0 && (kind == PAIR_EE || hit.u + hit.v <= 1.0 + 0x1p-50);
+                  hit.v <= 1.0 && (kind == CSCD_CONTACT_EE || hit.u + hit.v <= 1.0 + 0x1p-50);
     long double allowed = 1e-8L * largest_displacement(query) + 64 * ulp_of_largest(query);
     if (!inside) note(f, "outside the features", kind, query);
     if (!(named_distance(kind, query, hit.toi, hit.u, hit.v) <= allowed)) {
@@ -181,7 +181,7 @@ static int stepped;
 
 /* Simple roots of pairs well apart at the start that move visibly, and are still apart a millionth of the way
  * before the impact and at all times earlier: by more than the rounding of the step can move them. */
-static bool step_is_certain(pair_kind kind, const elementary_query *query, elementary_hit *hit) {
+static bool step_is_certain(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit) {
     long double ulp = ulp_of_largest(query);
     return pair_test(kind, query, hit).touching && algebraic_oracle(kind, query).simple &&
            feature_distance(kind, query, 0) >= 64 * ulp &&
@@ -189,7 +189,7 @@ static bool step_is_certain(pair_kind kind, const elementary_query *query, eleme
            proved_apart(kind, query, 0, hit->toi * (1 - 1e-6L), 16 * ulp);
 }
 
-static void check_step(failures *f, pair_kind kind, const elementary_query *query) {
+static void check_step(failures *f, cscd_contact_kind kind, const elementary_query *query) {
     elementary_hit hit = {.toi = 2.0}, again = {.toi = 2.0};
     if (!step_is_certain(kind, query, &hit)) return;
     elementary_query shorter = step_to(query, hit.toi);

@@ -15,7 +15,7 @@ static separation within(double distance) {
 
 typedef struct known {
     const char *name;
-    pair_kind kind;
+    cscd_contact_kind kind;
     elementary_query query;
     double distance, toi, u, v; /* u below 0: any, the nearest points are not unique */
     double point[3], normal[3];
@@ -33,7 +33,7 @@ typedef struct known {
 
 static const known approaches[] = {
     {"face",
-     PAIR_VF,
+     CSCD_CONTACT_VF,
      {{{1, 1, 3}, FACE}, {{1, 1, -1}, FACE}},
      0.5,
      0.625,
@@ -42,7 +42,7 @@ static const known approaches[] = {
      {1, 1, 0.25},
      {0, 0, 1}},
     {"face from below",
-     PAIR_VF,
+     CSCD_CONTACT_VF,
      {{{1, 2, -3}, FACE}, {{1, 2, 1}, FACE}},
      1,
      0.5,
@@ -50,9 +50,17 @@ static const known approaches[] = {
      0.5,
      {1, 2, -0.5},
      {0, 0, -1}},
-    {"side", PAIR_VF, {{{2, -3, 0}, FACE}, {{2, 1, 0}, FACE}}, 1, 0.5, 0.5, 0, {2, -0.5, 0}, {0, -1, 0}},
+    {"side",
+     CSCD_CONTACT_VF,
+     {{{2, -3, 0}, FACE}, {{2, 1, 0}, FACE}},
+     1,
+     0.5,
+     0.5,
+     0,
+     {2, -0.5, 0},
+     {0, -1, 0}},
     {"long side",
-     PAIR_VF,
+     CSCD_CONTACT_VF,
      {{{5, 5, 0}, FACE}, {{1, 1, 0}, FACE}},
      1.4142135623730951,
      0.5,
@@ -61,7 +69,7 @@ static const known approaches[] = {
      {2.5, 2.5, 0},
      {0.70710678118654757, 0.70710678118654757, 0}},
     {"corner",
-     PAIR_VF,
+     CSCD_CONTACT_VF,
      {{{-3, -4, 0}, FACE}, {{0, 0, 0}, FACE}},
      1,
      0.8,
@@ -70,7 +78,7 @@ static const known approaches[] = {
      {-0.3, -0.4, 0},
      {-0.6, -0.8, 0}},
     {"face moves",
-     PAIR_VF,
+     CSCD_CONTACT_VF,
      {{{1, 1, 5}, FACE}, {{1, 1, 5}, {0, 0, 4}, {4, 0, 4}, {0, 4, 4}}},
      2,
      0.75,
@@ -79,7 +87,7 @@ static const known approaches[] = {
      {1, 1, 4},
      {0, 0, 1}},
     {"crossing edges",
-     PAIR_EE,
+     CSCD_CONTACT_EE,
      {{{0, -1, 3}, {0, 3, 3}, EDGE}, {{0, -1, -1}, {0, 3, -1}, EDGE}},
      0.5,
      0.625,
@@ -88,7 +96,7 @@ static const known approaches[] = {
      {0, 0, 0.25},
      {0, 0, 1}},
     {"edge and end",
-     PAIR_EE,
+     CSCD_CONTACT_EE,
      {{{0, 5, 0}, {0, 3, 0}, EDGE}, {{0, 3, 0}, {0, 1, 0}, EDGE}},
      2,
      0.5,
@@ -97,7 +105,7 @@ static const known approaches[] = {
      {0, 1, 0},
      {0, 1, 0}},
     {"ends",
-     PAIR_EE,
+     CSCD_CONTACT_EE,
      {{{5, 0, 0}, {9, 0, 0}, EDGE}, {{2, 0, 0}, {6, 0, 0}, EDGE}},
      1,
      1,
@@ -106,7 +114,7 @@ static const known approaches[] = {
      {1.5, 0, 0},
      {1, 0, 0}},
     {"parallel edges",
-     PAIR_EE,
+     CSCD_CONTACT_EE,
      {{{-2, 0, 4}, {2, 0, 4}, EDGE}, {{-2, 0, 0}, {2, 0, 0}, EDGE}},
      1,
      0.75,
@@ -187,7 +195,7 @@ static void lines_and_points(void **state) {
         separation limit = within(1.0);
         elementary_hit hit;
         bool bounded;
-        pair_kind kind = i < 3 ? PAIR_VF : PAIR_EE;
+        cscd_contact_kind kind = i < 3 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         assert_true(check_separation(kind, &degenerate[i], &limit, &bounded) && !bounded);
         separation_test(kind, &degenerate[i], &limit, &hit, &bounded);
         assert_true(hit.toi <= 0.5 && hit.toi > 0.5 - 1e-6 && fabs(hit.normal[2] - 1.0) < 1e-9);
@@ -199,8 +207,8 @@ static void lines_and_points(void **state) {
 /* ---- grazing ---------------------------------------------------------------------------------------- */
 
 /* Passes a corner, or the end of an edge, at height h. */
-static elementary_query passing(pair_kind kind, double h) {
-    if (kind == PAIR_VF)
+static elementary_query passing(cscd_contact_kind kind, double h) {
+    if (kind == CSCD_CONTACT_VF)
         return (elementary_query){{{-3, 0, h}, {0, 0, 0}, {4, 3, -1}, {4, -3, -1}},
                                   {{3, 0, h}, {0, 0, 0}, {4, 3, -1}, {4, -3, -1}}};
     return (elementary_query){{{-3, -1, h}, {-3, 1, h}, {0, 0, 0}, {4, 0, -4}},
@@ -213,15 +221,15 @@ static void grazing(void **state) {
         for (int kind = 0; kind < 2; kind++) {
             double d = ldexp(1.0, exponent);
             separation limit = within(d);
-            elementary_query exact = passing((pair_kind)kind, d),
-                             far = passing((pair_kind)kind, d * (1 + 1e-3)),
-                             near = passing((pair_kind)kind, d * (1 - 1e-9));
+            elementary_query exact = passing((cscd_contact_kind)kind, d),
+                             far = passing((cscd_contact_kind)kind, d * (1 + 1e-3)),
+                             near = passing((cscd_contact_kind)kind, d * (1 - 1e-9));
             elementary_hit hit;
             bool bounded;
-            assert_true(check_separation((pair_kind)kind, &exact, &limit, &bounded) && !bounded);
-            assert_false(check_separation((pair_kind)kind, &far, &limit, &bounded));
-            assert_true(check_separation((pair_kind)kind, &near, &limit, &bounded) && !bounded);
-            separation_test((pair_kind)kind, &near, &limit, &hit, &bounded);
+            assert_true(check_separation((cscd_contact_kind)kind, &exact, &limit, &bounded) && !bounded);
+            assert_false(check_separation((cscd_contact_kind)kind, &far, &limit, &bounded));
+            assert_true(check_separation((cscd_contact_kind)kind, &near, &limit, &bounded) && !bounded);
+            separation_test((cscd_contact_kind)kind, &near, &limit, &hit, &bounded);
             assert_true(hit.toi < 0.5 && hit.toi > 0.5 - 1e-3);
         }
     }
@@ -270,8 +278,8 @@ static void next_to_each_other(void **state) {
     for (int exponent = -60; exponent < 0; exponent++) {
         separation limit = within(ldexp(1.0, exponent));
         bool bounded;
-        check_separation(PAIR_VF, &query, &limit, &bounded);
-        check_separation(PAIR_EE, &query, &limit, &bounded);
+        check_separation(CSCD_CONTACT_VF, &query, &limit, &bounded);
+        check_separation(CSCD_CONTACT_EE, &query, &limit, &bounded);
     }
 }
 
@@ -317,13 +325,13 @@ static void bound_on_work(void **state) {
     separation limit = within(1e-9);
     elementary_hit hit;
     bool bounded = false;
-    assert_true(check_separation(PAIR_VF, &twisting, &limit, &bounded));
+    assert_true(check_separation(CSCD_CONTACT_VF, &twisting, &limit, &bounded));
     assert_true(bounded);
     separation_vf(&twisting, &limit, &hit, &bounded);
     assert_true(hit.toi > 0.0 && hit.toi < 0.5);
     elementary_query diving = twisting; /* early, not late */
     diving.x1[0][2] = -3.0;
-    assert_true(check_separation(PAIR_VF, &diving, &limit, &bounded));
+    assert_true(check_separation(CSCD_CONTACT_VF, &diving, &limit, &bounded));
 }
 
 int main(void) {

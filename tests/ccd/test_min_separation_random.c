@@ -122,7 +122,7 @@ enum { FAMILY_COUNT = sizeof families / sizeof *families };
 /* ---- distances -------------------------------------------------------------------------------------- */
 
 /* About the least distance, where it matters, or anything. */
-static separation random_limit(pair_kind kind, const elementary_query *query) {
+static separation random_limit(cscd_contact_kind kind, const elementary_query *query) {
     static const double factors[] = {0.5, 1 - 1e-3, 1 - 1e-6, 1 - 1e-9, 1.0, 1 + 1e-9, 1 + 1e-3, 2.0};
     separation limit = {ldexp(random_between(0.5, 1.0), -random_integer(0, 40)), 0.0};
     double least = (double)sampled_least(kind, query);
@@ -141,9 +141,9 @@ static void against_samples(void **state) {
             elementary_query query;
             families[f].make(&query);
             for (int kind = 0; kind < 2; kind++) {
-                separation limit = random_limit((pair_kind)kind, &query);
+                separation limit = random_limit((cscd_contact_kind)kind, &query);
                 bool bound = false;
-                reported += check_separation((pair_kind)kind, &query, &limit, &bound);
+                reported += check_separation((cscd_contact_kind)kind, &query, &limit, &bound);
                 bounded += bound;
             }
         }
@@ -167,14 +167,14 @@ static void order_of_points(void **state) {
         elementary_query query;
         families[(size_t)round % FAMILY_COUNT].make(&query);
         for (int kind = 0; kind < 2; kind++) {
-            separation limit = random_limit((pair_kind)kind, &query);
+            separation limit = random_limit((cscd_contact_kind)kind, &query);
             bool bounded;
             long double surely = limit.distance - tolerance_of(&query, &limit);
-            bool certain = sampled_least((pair_kind)kind, &query) < surely;
+            bool certain = sampled_least((cscd_contact_kind)kind, &query) < surely;
             for (int i = 0; i < 4; i++) {
-                const int *order = kind == PAIR_VF ? vf_orders[i] : ee_orders[i];
+                const int *order = kind == CSCD_CONTACT_VF ? vf_orders[i] : ee_orders[i];
                 elementary_query other = query_permuted(&query, order);
-                bool reported = check_separation((pair_kind)kind, &other, &limit, &bounded);
+                bool reported = check_separation((cscd_contact_kind)kind, &other, &limit, &bounded);
                 assert_true(reported || !certain);
             }
         }
@@ -189,14 +189,14 @@ static void powers_of_two(void **state) {
         families[(size_t)round % FAMILY_COUNT].make(&query);
         for (int kind = 0; kind < 2; kind++) {
             int exponent = random_integer(-200, 240);
-            separation limit = random_limit((pair_kind)kind, &query);
+            separation limit = random_limit((cscd_contact_kind)kind, &query);
             separation scaled = {ldexp(limit.distance, exponent), ldexp(limit.tolerance, exponent)};
             elementary_query other = query_scaled(&query, exponent);
             elementary_hit hit = {0}, other_hit = {0};
             bool bounded = false, other_bounded = false;
-            bool found = separation_test((pair_kind)kind, &query, &limit, &hit, &bounded);
-            assert_true(separation_test((pair_kind)kind, &other, &scaled, &other_hit, &other_bounded) ==
-                        found);
+            bool found = separation_test((cscd_contact_kind)kind, &query, &limit, &hit, &bounded);
+            assert_true(separation_test((cscd_contact_kind)kind, &other, &scaled, &other_hit,
+                                        &other_bounded) == found);
             assert_true(bounded == other_bounded && hit.toi == other_hit.toi);
             assert_true(hit.u == other_hit.u && hit.v == other_hit.v);
             assert_memory_equal(hit.normal, other_hit.normal, sizeof hit.normal);

@@ -19,7 +19,7 @@ enum { BATCH_MAX = 200, SLACK = 8, BATCHES_A_FAMILY = 48 };
 
 /* Queries as a mesh of their own, four vertices each. Pair i is query order[i]. */
 typedef struct batch {
-    pair_kind kind;
+    cscd_contact_kind kind;
     uint32_t count, order[BATCH_MAX];
     elementary_query queries[BATCH_MAX];
     double x0[BATCH_MAX * 12], x1[BATCH_MAX * 12];
@@ -44,7 +44,7 @@ static feature_source source_of_work(void) {
                             (const uint32_t(*)[2])work.edges};
 }
 
-static void make_batch(random_stream *random, pair_kind kind, query_family family) {
+static void make_batch(random_stream *random, cscd_contact_kind kind, query_family family) {
     work.kind = kind;
     work.count = stream_below(random, 4) == 0 ? stream_below(random, 20) : stream_below(random, BATCH_MAX);
     for (uint32_t i = 0; i < work.count; i++) {
@@ -63,18 +63,14 @@ static feature_pairs pairs_of_work(random_stream *random) {
     }
     for (uint32_t i = 0; i < work.count; i++) {
         uint32_t q = work.order[i];
-        work.a[i] = work.kind == PAIR_VF ? q * 4 : q * 2;
-        work.b[i] = work.kind == PAIR_VF ? q : q * 2 + 1;
+        work.a[i] = work.kind == CSCD_CONTACT_VF ? q * 4 : q * 2;
+        work.b[i] = work.kind == CSCD_CONTACT_VF ? q : q * 2 + 1;
     }
     return (feature_pairs){work.a, work.b, work.count};
 }
 
 static uint32_t query_of(uint32_t a) {
-    return work.kind == PAIR_VF ? a / 4 : a / 2;
-}
-
-static int first_count(void) {
-    return work.kind == PAIR_VF ? 1 : 2;
+    return work.kind == CSCD_CONTACT_VF ? a / 4 : a / 2;
 }
 
 typedef bool query_predicate(uint32_t i);
@@ -96,14 +92,14 @@ static void check_kept(random_stream *random, list_kernel *kernel, query_predica
 }
 
 static coplanarity cubic_of(uint32_t i, point_vectors *vectors) {
-    point_vectors_from(&work.queries[i], first_count(), vectors);
+    point_vectors_from(&work.queries[i], work.kind, vectors);
     return coplanarity_cubic(vectors);
 }
 
 static bool open_after_signs(uint32_t i) {
     point_vectors vectors;
     coplanarity f = cubic_of(i, &vectors);
-    return !separated_by_axes(&work.queries[i], first_count()) && !coplanarity_excluded(&f);
+    return !separated_by_axes(&work.queries[i], work.kind) && !coplanarity_excluded(&f);
 }
 
 static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const ccd_kernels *)) {
@@ -111,7 +107,7 @@ static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const c
         if (contexts[level] == NULL) continue;
         random_stream random = stream_start(seed);
         for (int i = 0; i < FAMILY_COUNT * 2 * BATCHES_A_FAMILY; i++) {
-            make_batch(&random, (pair_kind)(i % 2), (query_family)(i / 2 % FAMILY_COUNT));
+            make_batch(&random, (cscd_contact_kind)(i % 2), (query_family)(i / 2 % FAMILY_COUNT));
             check(&random, ccd_kernels_of(contexts[level]));
         }
     }
@@ -122,7 +118,7 @@ static void for_each_batch(uint64_t seed, void (*check)(random_stream *, const c
 static uint64_t kept_total, pair_total;
 
 static void check_open(random_stream *random, const ccd_kernels *table) {
-    check_kept(random, work.kind == PAIR_VF ? table->reject_by_signs_vf : table->reject_by_signs_ee,
+    check_kept(random, work.kind == CSCD_CONTACT_VF ? table->reject_by_signs_vf : table->reject_by_signs_ee,
                open_after_signs, &kept_total);
     pair_total += work.count;
 }
@@ -150,7 +146,7 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
     int count = cubic_isolate(&f, roots);
     assert_true(single ? count == 1 : count == 0 || count == 2);
     for (int k = 0; k < count && touching == NULL; k++) {
-        inside_verdict inside = inside_test(&vectors, first_count(), &roots[k]);
+        inside_verdict inside = inside_test(&vectors, work.kind, &roots[k]);
         assert_true(inside == INSIDE_YES || inside == INSIDE_NO);
         if (inside == INSIDE_YES) touching = &roots[k];
     }
@@ -162,7 +158,7 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
 
 static void check_eight(const ccd_kernels *table, const feature_source *source, const feature_pairs *pairs,
                         uint32_t i) {
-    bool vf = work.kind == PAIR_VF;
+    bool vf = work.kind == CSCD_CONTACT_VF;
     root_outcomes roots[2];
     (vf ? table->roots_vf : table->roots_ee)(source, pairs->a + i, pairs->b + i, &roots[0]);
     (vf ? table->two_roots_vf : table->two_roots_ee)(source, pairs->a + i, pairs->b + i, &roots[1]);

@@ -108,10 +108,10 @@ static void check_frame(const rig *r, const cscd_proximity *p, const double *x, 
 static long double check_proximity(const rig *r, const cscd_proximity *p, const double *x, double distance) {
     elementary_query query = query_of(r, p, x);
     bring_home(&query);
-    pair_kind kind = p->kind == CSCD_CONTACT_VF ? PAIR_VF : PAIR_EE;
+    cscd_contact_kind kind = p->kind == CSCD_CONTACT_VF ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
     long double extent = extent_of(&query), rounding = 0x1p-48L * extent;
     assert_true(p->u >= 0.0 && p->u <= 1.0 && p->v >= 0.0 && p->v <= 1.0);
-    if (kind == PAIR_VF) assert_true(p->u + p->v <= 1.0 + 0x1p-52);
+    if (kind == CSCD_CONTACT_VF) assert_true(p->u + p->v <= 1.0 + 0x1p-52);
     long double features = feature_distance(kind, &query, 0.0L);
     long double named = named_distance(kind, &query, 0.0L, p->u, p->v);
     assert_true(fabsl(named - p->distance) <= rounding);

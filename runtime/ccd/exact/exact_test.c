@@ -20,7 +20,7 @@
 
 /* Coordinates relative to point 0, and areas. */
 typedef struct configuration {
-    int first_count;
+    cscd_contact_kind kind;
     polynomial offset[4][3]; /* x_i - x_0 */
     polynomial area[4][3];   /* of the triangle without point i, projected along axis k */
     polynomial volume;
@@ -73,9 +73,10 @@ static polynomial volume_of(integer_pool *pool, const configuration *c) {
     return sum;
 }
 
-static void configure(integer_pool *pool, const elementary_query *query, int first_count, configuration *c) {
+static void configure(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind,
+                      configuration *c) {
     int exponent = common_exponent(query);
-    c->first_count = first_count;
+    c->kind = kind;
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) c->offset[i][k] = coordinate_offset(pool, query, i, k, exponent);
     }
@@ -93,13 +94,13 @@ static void configure(integer_pool *pool, const elementary_query *query, int fir
 
 /* W: the sum of w_i over the first feature. */
 static polynomial radon_sum(integer_pool *pool, const configuration *c, int k) {
-    if (c->first_count == 1) return c->area[0][k];
+    if (c->kind == CSCD_CONTACT_VF) return c->area[0][k];
     return polynomial_subtract(pool, &c->area[0][k], &c->area[1][k]);
 }
 
 static bool weights_agree(integer_pool *pool, const configuration *c, const algebraic *root, int k, int sum) {
     for (int i = 0; i < 4; i++) {
-        int expected = (i < c->first_count) == (i % 2 == 0) ? sum : -sum;
+        int expected = (i < points_of_first(c->kind)) == (i % 2 == 0) ? sum : -sum;
         if (algebraic_sign(pool, root, &c->area[i][k]) * expected < 0) return false;
     }
     return true;
@@ -125,9 +126,9 @@ static bool on_segment(integer_pool *pool, const configuration *c, const algebra
 static bool collapsed_touch(integer_pool *pool, const configuration *c, const algebraic *root) {
     static const int vf[3][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
     static const int ee[4][4] = {{0, 2, 3, 1}, {1, 2, 3, 0}, {2, 0, 1, 3}, {3, 0, 1, 2}};
-    int count = c->first_count == 1 ? 3 : 4;
+    int count = c->kind == CSCD_CONTACT_VF ? 3 : 4;
     for (int i = 0; i < count; i++) {
-        const int *p = c->first_count == 1 ? vf[i] : ee[i];
+        const int *p = c->kind == CSCD_CONTACT_VF ? vf[i] : ee[i];
         if (on_segment(pool, c, root, p[0], p[1], p[2], p[3])) return true;
     }
     return false;
@@ -181,8 +182,9 @@ static void try_coplanar(search *s) {
         polynomial sum = radon_sum(s->pool, c, k);
         try_roots(s, &sum);
         s->pool->used = mark;
-        for (int i = 0; i < c->first_count; i++) {
-            for (int j = c->first_count; j < 4; j++) {
+        int first = points_of_first(c->kind);
+        for (int i = 0; i < first; i++) {
+            for (int j = first; j < 4; j++) {
                 polynomial between = polynomial_subtract(s->pool, &c->offset[i][k], &c->offset[j][k]);
                 try_roots(s, &between);
                 s->pool->used = mark;
@@ -191,10 +193,10 @@ static void try_coplanar(search *s) {
     }
 }
 
-bool exact_touch_in(integer_pool *pool, const elementary_query *query, int first_count, double *toi) {
+bool exact_touch_in(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind, double *toi) {
     configuration c;
     integer_pool_start(pool);
-    configure(pool, query, first_count, &c);
+    configure(pool, query, kind, &c);
     search s = {pool, &c, 2.0};
     if (c.volume.degree >= 0)
         try_roots(&s, &c.volume);
@@ -205,7 +207,7 @@ bool exact_touch_in(integer_pool *pool, const elementary_query *query, int first
     return true;
 }
 
-bool exact_touch(const elementary_query *query, int first_count, double *toi) {
+bool exact_touch(const elementary_query *query, cscd_contact_kind kind, double *toi) {
     integer_pool pool;
-    return exact_touch_in(&pool, query, first_count, toi);
+    return exact_touch_in(&pool, query, kind, toi);
 }

@@ -42,15 +42,15 @@ typedef struct gram {
 /* ---- set-up ---- */
 
 /* A coordinate axis along which one feature stays behind the other. */
-static bool apart_along(pair_kind kind, const double x[4][3], int k, int direction) {
-    int first_count = kind == PAIR_VF ? 1 : 2;
-    for (int i = 0; i < first_count; i++)
-        for (int j = first_count; j < 4; j++)
+static bool apart_along(cscd_contact_kind kind, const double x[4][3], int k, int direction) {
+    int first = points_of_first(kind);
+    for (int i = 0; i < first; i++)
+        for (int j = first; j < 4; j++)
             if (!(direction > 0 ? x[i][k] < x[j][k] : x[i][k] > x[j][k])) return false;
     return true;
 }
 
-static bool apart(pair_kind kind, const elementary_query *query) {
+static bool apart(cscd_contact_kind kind, const elementary_query *query) {
     for (int k = 0; k < 3; k++)
         for (int direction = -1; direction <= 1; direction += 2)
             if (apart_along(kind, query->x0, k, direction) && apart_along(kind, query->x1, k, direction))
@@ -86,12 +86,12 @@ static void integer_axis(const elementary_query *query, int k, fmpz_t start[4], 
 }
 
 /* ends[n]: the points of which difference n is taken */
-static int difference_ends(pair_kind kind, int ends[4][2]) {
+static int difference_ends(cscd_contact_kind kind, int ends[4][2]) {
     for (int n = 0; n < 4; n++) {
-        ends[n][0] = kind == PAIR_VF ? 0 : n / 2;
-        ends[n][1] = kind == PAIR_VF ? n % 3 + 1 : n % 2 + 2;
+        ends[n][0] = kind == CSCD_CONTACT_VF ? 0 : n / 2;
+        ends[n][1] = kind == CSCD_CONTACT_VF ? n % 3 + 1 : n % 2 + 2;
     }
-    return kind == PAIR_VF ? 3 : 4;
+    return kind == CSCD_CONTACT_VF ? 3 : 4;
 }
 
 /* Adds the products of the differences' coordinates k, each start + change t. */
@@ -118,7 +118,7 @@ static void add_axis(gram *g, const int ends[4][2], fmpz_t start[4], fmpz_t chan
     }
 }
 
-static void gram_init(gram *g, pair_kind kind, const elementary_query *query) {
+static void gram_init(gram *g, cscd_contact_kind kind, const elementary_query *query) {
     fmpz_t start[4], change[4];
     int ends[4][2];
     g->count = difference_ends(kind, ends);
@@ -262,7 +262,7 @@ static oracle_verdict first_touch(gram *g, moment_list *list) {
     return verdict;
 }
 
-oracle_verdict algebraic_oracle(pair_kind kind, const elementary_query *query) {
+oracle_verdict algebraic_oracle(cscd_contact_kind kind, const elementary_query *query) {
     if (apart(kind, query)) return never;
     gram g;
     moment_list list;

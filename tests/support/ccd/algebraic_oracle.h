@@ -14,7 +14,7 @@ typedef struct oracle_verdict {
 } oracle_verdict;
 
 /* Any finite coordinates; features are closed point sets, and may have no length or area. */
-oracle_verdict algebraic_oracle(pair_kind kind, const elementary_query *query);
+oracle_verdict algebraic_oracle(cscd_contact_kind kind, const elementary_query *query);
 
 /* Gives back what the arithmetic keeps between calls. */
 void algebraic_oracle_finish(void);

@@ -17,8 +17,8 @@ typedef struct exact_positions {
     long double x[4][3];
 } exact_positions;
 
-elementary_verdict pair_test(pair_kind kind, const elementary_query *query, elementary_hit *hit) {
-    return kind == PAIR_VF ? elementary_vf(query, hit) : elementary_ee(query, hit);
+elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit) {
+    return kind == CSCD_CONTACT_VF ? elementary_vf(query, hit) : elementary_ee(query, hit);
 }
 
 elementary_query query_permuted(const elementary_query *query, const int order[4]) {
@@ -86,15 +86,15 @@ static long double length(const long double a[3]) {
 }
 
 /* Two directions that span the contact plane: sides of the face, or the two edges. */
-static void directions(pair_kind kind, const exact_positions *p, long double a[3], long double b[3]) {
-    subtract(p->x[kind == PAIR_VF ? 2 : 1], p->x[kind == PAIR_VF ? 1 : 0], a);
-    subtract(p->x[3], p->x[kind == PAIR_VF ? 1 : 2], b);
+static void directions(cscd_contact_kind kind, const exact_positions *p, long double a[3], long double b[3]) {
+    subtract(p->x[kind == CSCD_CONTACT_VF ? 2 : 1], p->x[kind == CSCD_CONTACT_VF ? 1 : 0], a);
+    subtract(p->x[3], p->x[kind == CSCD_CONTACT_VF ? 1 : 2], b);
 }
 
-static void contact_points(pair_kind kind, const exact_positions *p, long double u, long double v,
+static void contact_points(cscd_contact_kind kind, const exact_positions *p, long double u, long double v,
                            long double on_a[3], long double on_b[3]) {
     for (int k = 0; k < 3; k++) {
-        if (kind == PAIR_VF) {
+        if (kind == CSCD_CONTACT_VF) {
             on_a[k] = p->x[0][k];
             on_b[k] = (1 - u - v) * p->x[1][k] + u * p->x[2][k] + v * p->x[3][k];
         } else {
@@ -105,8 +105,8 @@ static void contact_points(pair_kind kind, const exact_positions *p, long double
 }
 
 /* Motion of the point of a relative to that of b, over the interval. */
-static void relative_motion(pair_kind kind, const elementary_query *query, long double u, long double v,
-                            long double out[3]) {
+static void relative_motion(cscd_contact_kind kind, const elementary_query *query, long double u,
+                            long double v, long double out[3]) {
     exact_positions start = positions_at(query, 0), end = positions_at(query, 1);
     long double a0[3], b0[3], a1[3], b1[3];
     contact_points(kind, &start, u, v, a0, b0);
@@ -114,17 +114,18 @@ static void relative_motion(pair_kind kind, const elementary_query *query, long 
     for (int k = 0; k < 3; k++) out[k] = (a1[k] - a0[k]) - (b1[k] - b0[k]);
 }
 
-static long double volume_at(const elementary_query *query, pair_kind kind, long double t) {
+static long double volume_at(const elementary_query *query, cscd_contact_kind kind, long double t) {
     exact_positions p = positions_at(query, t);
     long double a[3], b[3], c[3], n[3];
     directions(kind, &p, a, b);
-    subtract(p.x[0], p.x[kind == PAIR_VF ? 1 : 2], c);
+    subtract(p.x[0], p.x[kind == CSCD_CONTACT_VF ? 1 : 2], c);
     cross(a, b, n);
     return dot(n, c);
 }
 
 /* Of the volume, by its values at four times; returns the largest. */
-static long double bernstein_coefficients(const elementary_query *query, pair_kind kind, long double b[4]) {
+static long double bernstein_coefficients(const elementary_query *query, cscd_contact_kind kind,
+                                          long double b[4]) {
     long double f[4], largest = 0;
     for (int i = 0; i < 4; i++) f[i] = volume_at(query, kind, i / 3.0L);
     b[0] = f[0];
@@ -136,7 +137,7 @@ static long double bernstein_coefficients(const elementary_query *query, pair_ki
 }
 
 /* The changes of sign from coefficient first on; -1 when one of them is near zero. */
-static int sign_changes(const elementary_query *query, pair_kind kind, int first) {
+static int sign_changes(const elementary_query *query, cscd_contact_kind kind, int first) {
     long double b[4], largest = bernstein_coefficients(query, kind, b);
     int changes = 0;
     for (int i = first; i < 4; i++) {
@@ -146,11 +147,11 @@ static int sign_changes(const elementary_query *query, pair_kind kind, int first
     return changes;
 }
 
-bool crosses_once(const elementary_query *query, pair_kind kind) {
+bool crosses_once(const elementary_query *query, cscd_contact_kind kind) {
     return sign_changes(query, kind, 0) == 1;
 }
 
-bool leaves_at_start(const elementary_query *query, pair_kind kind) {
+bool leaves_at_start(const elementary_query *query, cscd_contact_kind kind) {
     return sign_changes(query, kind, 1) == 0;
 }
 
@@ -161,14 +162,14 @@ static void random_vector(double size, double out[3]) {
 }
 
 /* Random features of about unit size whose points u, v coincide. */
-static void touching_features(pair_kind kind, double u, double v, double at[4][3]) {
+static void touching_features(cscd_contact_kind kind, double u, double v, double at[4][3]) {
     double along_a[3], along_b[3];
     random_vector(1.0, at[0]);
     random_vector(1.0, along_a);
     random_vector(1.0, along_b);
     for (int k = 0; k < 3; k++) {
         double meeting = at[0][k];
-        if (kind == PAIR_VF) {
+        if (kind == CSCD_CONTACT_VF) {
             at[1][k] = meeting - u * along_a[k] - v * along_b[k];
             at[2][k] = at[1][k] + along_a[k];
             at[3][k] = at[1][k] + along_b[k];
@@ -203,7 +204,7 @@ static void place(contact_case *c) {
 }
 
 /* The contact at u, v; the interval ends cut before it, if cut > 0. */
-static contact_case unit_contact(pair_kind kind, double u, double v, double cut) {
+static contact_case unit_contact(cscd_contact_kind kind, double u, double v, double cut) {
     contact_case c = {.kind = kind, .size = 1.0, .u = u, .v = v};
     do {
         double at[4][3], velocity[4][3];
@@ -217,14 +218,14 @@ static contact_case unit_contact(pair_kind kind, double u, double v, double cut)
     } while (true);
 }
 
-static void random_parameters(pair_kind kind, double *u, double *v) {
+static void random_parameters(cscd_contact_kind kind, double *u, double *v) {
     do {
         *u = random_between(0.01, 0.99);
         *v = random_between(0.01, 0.99);
-    } while (kind == PAIR_VF && *u + *v > 0.99);
+    } while (kind == CSCD_CONTACT_VF && *u + *v > 0.99);
 }
 
-contact_case random_contact(pair_kind kind) {
+contact_case random_contact(cscd_contact_kind kind) {
     double u, v;
     random_parameters(kind, &u, &v);
     contact_case c = unit_contact(kind, u, v, 0.0);
@@ -232,7 +233,7 @@ contact_case random_contact(pair_kind kind) {
     return c;
 }
 
-contact_case random_short_miss(pair_kind kind) {
+contact_case random_short_miss(cscd_contact_kind kind) {
     double u, v;
     random_parameters(kind, &u, &v);
     contact_case c = unit_contact(kind, u, v, SHORT_MISS);
@@ -240,15 +241,15 @@ contact_case random_short_miss(pair_kind kind) {
     return c;
 }
 
-static void move_outside(pair_kind kind, double *u, double *v) {
+static void move_outside(cscd_contact_kind kind, double *u, double *v) {
     double *moved = random_integer(0, 1) ? u : v;
     if (random_integer(0, 1))
         *moved = -SIDE_MISS;
     else
-        *moved = kind == PAIR_VF ? 1.0 + SIDE_MISS - (moved == u ? *v : *u) : 1.0 + SIDE_MISS;
+        *moved = kind == CSCD_CONTACT_VF ? 1.0 + SIDE_MISS - (moved == u ? *v : *u) : 1.0 + SIDE_MISS;
 }
 
-contact_case random_side_miss(pair_kind kind) {
+contact_case random_side_miss(cscd_contact_kind kind) {
     double u, v;
     random_parameters(kind, &u, &v);
     move_outside(kind, &u, &v);
@@ -271,8 +272,9 @@ static double extent(const elementary_query *query) {
     return largest > 0.0 ? largest : 1.0;
 }
 
-static void fail_query(pair_kind kind, const elementary_query *query, double found, double expected) {
-    printf("%s: toi %.17g, expected %.17g (2: never)\n", kind == PAIR_VF ? "vf" : "ee", found, expected);
+static void fail_query(cscd_contact_kind kind, const elementary_query *query, double found, double expected) {
+    printf("%s: toi %.17g, expected %.17g (2: never)\n", kind == CSCD_CONTACT_VF ? "vf" : "ee", found,
+           expected);
     for (int i = 0; i < 4; i++)
         printf("  (%a %a %a) -> (%a %a %a)\n", query->x0[i][0], query->x0[i][1], query->x0[i][2],
                query->x1[i][0], query->x1[i][1], query->x1[i][2]);
@@ -296,7 +298,7 @@ static long double largest_displacement(const elementary_query *query) {
     return largest;
 }
 
-static void check_points(pair_kind kind, const elementary_query *query, double size,
+static void check_points(cscd_contact_kind kind, const elementary_query *query, double size,
                          const elementary_hit *hit) {
     exact_positions p = positions_at(query, hit->toi);
     long double on_a[3], on_b[3], apart[3];
@@ -311,7 +313,7 @@ static void check_points(pair_kind kind, const elementary_query *query, double s
         assert_true(fabsl(hit->point[k] - (on_a[k] + on_b[k]) / 2) <= 1e-12L * size + rounding);
 }
 
-static void check_normal(pair_kind kind, const elementary_query *query, double size,
+static void check_normal(cscd_contact_kind kind, const elementary_query *query, double size,
                          const elementary_hit *hit) {
     exact_positions p = positions_at(query, hit->toi);
     long double n[3] = {hit->normal[0], hit->normal[1], hit->normal[2]}, a[3], b[3], area[3], motion[3];
@@ -330,15 +332,16 @@ static void check_normal(pair_kind kind, const elementary_query *query, double s
     assert_true(dot(n, motion) <= 1e-13L / quality * size);
 }
 
-void check_hit(pair_kind kind, const elementary_query *query, double size, const elementary_hit *hit) {
+void check_hit(cscd_contact_kind kind, const elementary_query *query, double size,
+               const elementary_hit *hit) {
     assert_true(hit->toi >= 0.0 && hit->toi <= 1.0);
     assert_true(hit->u >= 0.0 && hit->u <= 1.0 && hit->v >= 0.0 && hit->v <= 1.0);
-    if (kind == PAIR_VF) assert_true(hit->u + hit->v <= 1.0 + 0x1p-50);
+    if (kind == CSCD_CONTACT_VF) assert_true(hit->u + hit->v <= 1.0 + 0x1p-50);
     check_points(kind, query, size, hit);
     check_normal(kind, query, size, hit);
 }
 
-elementary_hit check_touches(pair_kind kind, const elementary_query *query, double toi) {
+elementary_hit check_touches(cscd_contact_kind kind, const elementary_query *query, double toi) {
     elementary_hit hit = {.toi = 2.0};
     if (!pair_test(kind, query, &hit).touching || hit.toi > toi + TOI_LATE)
         fail_query(kind, query, hit.toi, toi);
@@ -346,13 +349,13 @@ elementary_hit check_touches(pair_kind kind, const elementary_query *query, doub
     return hit;
 }
 
-elementary_hit check_first(pair_kind kind, const elementary_query *query, double toi, double early) {
+elementary_hit check_first(cscd_contact_kind kind, const elementary_query *query, double toi, double early) {
     elementary_hit hit = check_touches(kind, query, toi);
     if (hit.toi < toi - early) fail_query(kind, query, hit.toi, toi);
     return hit;
 }
 
-void check_apart(pair_kind kind, const elementary_query *query) {
+void check_apart(cscd_contact_kind kind, const elementary_query *query) {
     elementary_hit hit = {.toi = 2.0};
     if (pair_test(kind, query, &hit).touching) fail_query(kind, query, hit.toi, 2.0);
 }

@@ -5,35 +5,33 @@
 
 #include <stdbool.h>
 
-typedef enum pair_kind { PAIR_VF, PAIR_EE } pair_kind;
-
 /* A query with a contact known to be in it, or known to be missed. */
 typedef struct contact_case {
-    pair_kind kind;
+    cscd_contact_kind kind;
     elementary_query query;
     double size; /* of the features and of their paths, to a factor of 10 */
     double toi, u, v;
 } contact_case;
 
-elementary_verdict pair_test(pair_kind kind, const elementary_query *query, elementary_hit *hit);
+elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit);
 
 /* Features of any size and place that pass through each other at toi in (0.02, 0.98), both parameters inside,
  * in general position: they are not slivers, and meet at a speed and an angle that fix toi to 1e-10. */
-contact_case random_contact(pair_kind kind);
+contact_case random_contact(cscd_contact_kind kind);
 
 /* The four points are coplanar once in the interval and change sides there: by the signs of the Bernstein
  * coefficients, all of them far from zero. */
-bool crosses_once(const elementary_query *query, pair_kind kind);
+bool crosses_once(const elementary_query *query, cscd_contact_kind kind);
 
 /* Where they are coplanar at the start: they never are again, by the same signs. */
-bool leaves_at_start(const elementary_query *query, pair_kind kind);
+bool leaves_at_start(const elementary_query *query, cscd_contact_kind kind);
 
 /* The only time at which the points are coplanar is toi; then the point of contact lies a millionth of the
  * feature's length outside a border. No contact. */
-contact_case random_side_miss(pair_kind kind);
+contact_case random_side_miss(cscd_contact_kind kind);
 
 /* The features approach, the interval ends a millionth before the only time of contact. No contact. */
-contact_case random_short_miss(pair_kind kind);
+contact_case random_short_miss(cscd_contact_kind kind);
 
 /* The points in another order; end before start; coordinates times 2^exponent. */
 elementary_query query_permuted(const elementary_query *query, const int order[4]);
@@ -49,13 +47,13 @@ elementary_query query_through(const double at[4][3], const double velocity[4][3
  * displacement and 64 units in the last place of each other, the interval and the features contain them,
  * point is their midpoint; the normal is unit, perpendicular to the features, and against the motion, or 0
  * where the features have none. */
-void check_hit(pair_kind kind, const elementary_query *query, double size, const elementary_hit *hit);
+void check_hit(cscd_contact_kind kind, const elementary_query *query, double size, const elementary_hit *hit);
 
 /* These print the query where they fail. A contact at toi or before it: */
-elementary_hit check_touches(pair_kind kind, const elementary_query *query, double toi);
+elementary_hit check_touches(cscd_contact_kind kind, const elementary_query *query, double toi);
 
 /* The first contact, at toi: what is found is not later, and at most `early` earlier. */
-elementary_hit check_first(pair_kind kind, const elementary_query *query, double toi, double early);
+elementary_hit check_first(cscd_contact_kind kind, const elementary_query *query, double toi, double early);
 
 /* No contact. */
-void check_apart(pair_kind kind, const elementary_query *query);
+void check_apart(cscd_contact_kind kind, const elementary_query *query);

@@ -40,16 +40,16 @@ static elementary_query grid(random_stream *random, int range) {
 typedef enum place { ANYWHERE, ON_BORDER, JUST_OUTSIDE } place;
 
 /* u = i / 4, v = j / 4 */
-static void choose_place(random_stream *random, pair_kind kind, place where, int *i, int *j) {
+static void choose_place(random_stream *random, cscd_contact_kind kind, place where, int *i, int *j) {
     static const int vf_border[6][2] = {{0, 0}, {4, 0}, {0, 4}, {1, 0}, {0, 3}, {2, 2}};
     static const int ee_border[8][2] = {{0, 0}, {4, 0}, {0, 4}, {4, 4}, {0, 1}, {4, 2}, {3, 0}, {2, 4}};
-    uint32_t n = stream_below(random, kind == PAIR_VF ? 6 : 8);
+    uint32_t n = stream_below(random, kind == CSCD_CONTACT_VF ? 6 : 8);
     if (where == ON_BORDER) {
-        *i = kind == PAIR_VF ? vf_border[n][0] : ee_border[n][0];
-        *j = kind == PAIR_VF ? vf_border[n][1] : ee_border[n][1];
+        *i = kind == CSCD_CONTACT_VF ? vf_border[n][0] : ee_border[n][0];
+        *j = kind == CSCD_CONTACT_VF ? vf_border[n][1] : ee_border[n][1];
     } else if (where == ANYWHERE) {
         *i = stream_integer(random, 0, 4);
-        *j = stream_integer(random, 0, kind == PAIR_VF ? 4 - *i : 4);
+        *j = stream_integer(random, 0, kind == CSCD_CONTACT_VF ? 4 - *i : 4);
     } else {
         *i = stream_integer(random, -1, 5);
         *j = *i >= 0 && *i <= 4 ? 5 : stream_integer(random, 0, 4);
@@ -57,11 +57,11 @@ static void choose_place(random_stream *random, pair_kind kind, place where, int
 }
 
 /* Points of the features with sides a and b; those named by u and v are b's + offset at the origin. */
-static void place_features(pair_kind kind, const int uv[2], const double a[3], const double b[3],
+static void place_features(cscd_contact_kind kind, const int uv[2], const double a[3], const double b[3],
                            const double offset[3], double out[4][3]) {
     double u = 0.25 * uv[0], v = 0.25 * uv[1];
     for (int k = 0; k < 3; k++) {
-        if (kind == PAIR_VF) {
+        if (kind == CSCD_CONTACT_VF) {
             out[0][k] = 0.0;
             out[1][k] = offset[k] - u * a[k] - v * b[k];
             out[2][k] = out[1][k] + a[k];
@@ -75,7 +75,8 @@ static void place_features(pair_kind kind, const int uv[2], const double a[3], c
     }
 }
 
-static void integer_features(random_stream *random, pair_kind kind, place where, int range, double at[4][3]) {
+static void integer_features(random_stream *random, cscd_contact_kind kind, place where, int range,
+                             double at[4][3]) {
     double a[3], b[3], meeting[3];
     int uv[2];
     choose_place(random, kind, where, &uv[0], &uv[1]);
@@ -90,7 +91,7 @@ static void integer_features(random_stream *random, pair_kind kind, place where,
     for (int i = 0; i < 12; i++) at[i / 3][i % 3] += meeting[i % 3];
 }
 
-static moving_points contact_points(random_stream *random, pair_kind kind, place where) {
+static moving_points contact_points(random_stream *random, cscd_contact_kind kind, place where) {
     moving_points points;
     int range = some_range(random), speed = one_in(random, 3) ? some_range(random) : range;
     integer_features(random, kind, where, range, points.at);
@@ -110,11 +111,11 @@ static elementary_query at_some_time(random_stream *random, const moving_points 
 }
 
 /* Half of them touch; the others would if their features were larger. */
-static moving_points contact_or_not(random_stream *random, pair_kind kind) {
+static moving_points contact_or_not(random_stream *random, cscd_contact_kind kind) {
     return contact_points(random, kind, one_in(random, 2) ? ANYWHERE : JUST_OUTSIDE);
 }
 
-static elementary_query contact_at_end(random_stream *random, pair_kind kind) {
+static elementary_query contact_at_end(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_points(random, kind, (place)stream_below(random, 3));
     if (one_in(random, 2)) return through(&points, 0, 1);
     return through(&points, 1, 0);
@@ -122,7 +123,7 @@ static elementary_query contact_at_end(random_stream *random, pair_kind kind) {
 
 /* ---- flat ---- */
 
-static elementary_query axis_plane(random_stream *random, pair_kind kind) {
+static elementary_query axis_plane(random_stream *random, cscd_contact_kind kind) {
     elementary_query query;
     if (one_in(random, 2)) {
         query = grid(random, some_range(random));
@@ -139,7 +140,7 @@ static elementary_query axis_plane(random_stream *random, pair_kind kind) {
 }
 
 /* The planar x, y in the frame of two vectors of space; z is the common motion along a third one. */
-static elementary_query tilted_plane(random_stream *random, pair_kind kind) {
+static elementary_query tilted_plane(random_stream *random, cscd_contact_kind kind) {
     elementary_query flat = axis_plane(random, kind), query;
     double frame[3][3];
     for (int i = 0; i < 3; i++) grid_vector(random, 3, frame[i]);
@@ -155,7 +156,7 @@ static elementary_query tilted_plane(random_stream *random, pair_kind kind) {
 }
 
 /* i e + j f(t), where i moves only if e rests: linear in time, and in the plane of e and f. */
-static elementary_query turning_plane(random_stream *random, pair_kind kind) {
+static elementary_query turning_plane(random_stream *random, cscd_contact_kind kind) {
     elementary_query flat = axis_plane(random, kind), query;
     double e[2][3], f[2][3], origin[2][3];
     bool sliding = !one_in(random, 3);
@@ -193,11 +194,12 @@ static elementary_query collinear(random_stream *random) {
 
 /* EE: the second edge is a multiple of the first, which may turn. VF: the vertex keeps a multiple of one side
  * as its distance from a corner. */
-static elementary_query parallel(random_stream *random, pair_kind kind) {
+static elementary_query parallel(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_or_not(random, kind);
     elementary_query query = at_some_time(random, &points);
-    int multiple = stream_integer(random, -3, 3), pivot = kind == PAIR_VF ? 1 : 2;
-    int moved = kind == PAIR_VF ? 0 : 3, from = kind == PAIR_VF ? 2 : 0, to = kind == PAIR_VF ? 3 : 1;
+    int multiple = stream_integer(random, -3, 3), pivot = kind == CSCD_CONTACT_VF ? 1 : 2;
+    int moved = kind == CSCD_CONTACT_VF ? 0 : 3, from = kind == CSCD_CONTACT_VF ? 2 : 0,
+        to = kind == CSCD_CONTACT_VF ? 3 : 1;
     if (one_in(random, 4)) query = grid(random, some_range(random));
     for (int k = 0; k < 3; k++) {
         query.x0[moved][k] = query.x0[pivot][k] + multiple * (query.x0[to][k] - query.x0[from][k]);
@@ -206,7 +208,7 @@ static elementary_query parallel(random_stream *random, pair_kind kind) {
     return query;
 }
 
-static elementary_query coincident(random_stream *random, pair_kind kind) {
+static elementary_query coincident(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_or_not(random, kind);
     elementary_query query = at_some_time(random, &points);
     if (one_in(random, 2)) query = grid(random, some_range(random));
@@ -219,7 +221,7 @@ static elementary_query coincident(random_stream *random, pair_kind kind) {
     return query;
 }
 
-static elementary_query at_rest(random_stream *random, pair_kind kind) {
+static elementary_query at_rest(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_points(random, kind, (place)stream_below(random, 3));
     double motion[3] = {0, 0, 0};
     if (one_in(random, 2)) grid_vector(random, some_range(random), motion);
@@ -272,7 +274,7 @@ static moving_points implosion(random_stream *random) {
     return points;
 }
 
-static elementary_query grazing_query(random_stream *random, pair_kind kind, bool triple) {
+static elementary_query grazing_query(random_stream *random, cscd_contact_kind kind, bool triple) {
     grazing m = triple ? triple_root(random) : double_root(random);
     moving_points points;
     double motion[3], lift = 0.0;
@@ -290,7 +292,7 @@ static elementary_query grazing_query(random_stream *random, pair_kind kind, boo
     return through(&points, before, stream_integer(random, 1, 4));
 }
 
-elementary_query exact_query(random_stream *random, pair_kind kind, query_family family) {
+elementary_query exact_query(random_stream *random, cscd_contact_kind kind, query_family family) {
     moving_points points;
     switch (family) {
     case FAMILY_SMALL_GRID:

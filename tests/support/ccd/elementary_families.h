@@ -7,4 +7,4 @@
 int stream_integer(random_stream *random, int lowest, int highest);
 
 /* A query of the family, which comes before FAMILY_NUDGED. */
-elementary_query exact_query(random_stream *random, pair_kind kind, query_family family);
+elementary_query exact_query(random_stream *random, cscd_contact_kind kind, query_family family);

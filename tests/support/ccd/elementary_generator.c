@@ -24,7 +24,7 @@ static double *coordinate(elementary_query *query, int i) {
     return i < 12 ? &query->x0[i / 3][i % 3] : &query->x1[i / 3 - 4][i % 3];
 }
 
-static elementary_query some_exact_query(random_stream *random, pair_kind kind) {
+static elementary_query some_exact_query(random_stream *random, cscd_contact_kind kind) {
     return exact_query(random, kind, (query_family)stream_below(random, FAMILY_NUDGED));
 }
 
@@ -37,7 +37,7 @@ static double largest_coordinate(elementary_query *query) {
 }
 
 /* 0 goes by an ulp of the largest coordinate. */
-static elementary_query nudged(random_stream *random, pair_kind kind) {
+static elementary_query nudged(random_stream *random, cscd_contact_kind kind) {
     elementary_query query = some_exact_query(random, kind);
     for (int n = stream_integer(random, 1, 2); n > 0; n--) {
         double *x = coordinate(&query, stream_integer(random, 0, 23));
@@ -61,11 +61,11 @@ static double parameter(random_stream *random) {
     return one_in(random, 3) ? end : end + unit(random) * ldexp(1.0, -stream_integer(random, 0, 52));
 }
 
-static void general_features(random_stream *random, pair_kind kind, double at[4][3]) {
+static void general_features(random_stream *random, cscd_contact_kind kind, double at[4][3]) {
     double u = parameter(random), v = parameter(random);
     for (int k = 0; k < 3; k++) {
         double meeting = unit(random), a = unit(random), b = unit(random);
-        if (kind == PAIR_VF) {
+        if (kind == CSCD_CONTACT_VF) {
             at[0][k] = meeting;
             at[1][k] = meeting - u * a - (1.0 - u) * v * b;
             at[2][k] = at[1][k] + a;
@@ -79,7 +79,7 @@ static void general_features(random_stream *random, pair_kind kind, double at[4]
     }
 }
 
-static elementary_query general(random_stream *random, pair_kind kind) {
+static elementary_query general(random_stream *random, cscd_contact_kind kind) {
     double at[4][3], velocity[4][3], before = parameter(random);
     double speed = ldexp(1.0, one_in(random, 3) ? -stream_integer(random, 0, 40) : 1);
     general_features(random, kind, at);
@@ -88,7 +88,7 @@ static elementary_query general(random_stream *random, pair_kind kind) {
 }
 
 /* Columns of random numbers do: the families are invariant to linear maps. */
-static elementary_query rounded(random_stream *random, pair_kind kind) {
+static elementary_query rounded(random_stream *random, cscd_contact_kind kind) {
     elementary_query exact = some_exact_query(random, kind), query;
     double map[3][3];
     for (int i = 0; i < 9; i++) map[i / 3][i % 3] = unit(random);
@@ -107,7 +107,7 @@ static double wild_number(random_stream *random) {
 }
 
 /* All coordinates wild, or a few of an exact query's. */
-static elementary_query wild(random_stream *random, pair_kind kind) {
+static elementary_query wild(random_stream *random, cscd_contact_kind kind) {
     elementary_query query = some_exact_query(random, kind);
     int first = one_in(random, 4) ? 0 : stream_integer(random, 20, 24);
     for (int n = first; n < 24; n++) {
@@ -128,12 +128,13 @@ static bool in_range(elementary_query *query) {
     return true;
 }
 
-static elementary_query renumbered(random_stream *random, pair_kind kind, const elementary_query *query) {
+static elementary_query renumbered(random_stream *random, cscd_contact_kind kind,
+                                   const elementary_query *query) {
     static const int ee_orders[8][4] = {{0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2},
                                         {2, 3, 0, 1}, {3, 2, 0, 1}, {2, 3, 1, 0}, {3, 2, 1, 0}};
     static const int vf_orders[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
                                         {0, 1, 3, 2}, {0, 2, 1, 3}, {0, 3, 2, 1}};
-    if (kind == PAIR_VF) return query_permuted(query, vf_orders[stream_below(random, 6)]);
+    if (kind == CSCD_CONTACT_VF) return query_permuted(query, vf_orders[stream_below(random, 6)]);
     return query_permuted(query, ee_orders[stream_below(random, 8)]);
 }
 
@@ -166,7 +167,7 @@ static void shift(random_stream *random, elementary_query *query) {
     *query = shifted;
 }
 
-elementary_query generate_query(random_stream *random, pair_kind kind, query_family family) {
+elementary_query generate_query(random_stream *random, cscd_contact_kind kind, query_family family) {
     elementary_query query;
     switch (family) {
     case FAMILY_NUDGED:

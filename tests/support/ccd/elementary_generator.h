@@ -31,4 +31,4 @@ const char *query_family_name(query_family family);
 
 /* Points are renumbered, axes exchanged, time reversed, coordinates shifted and scaled by powers of two at
  * random, exactly, so that all coordinates are 0 or from 2^-300 to 2^300. */
-elementary_query generate_query(random_stream *random, pair_kind kind, query_family family);
+elementary_query generate_query(random_stream *random, cscd_contact_kind kind, query_family family);

@@ -10,7 +10,7 @@ typedef struct vector {
 enum { MOST_INTERVALS = 1 << 12 };
 
 typedef struct proof {
-    pair_kind kind;
+    cscd_contact_kind kind;
     const elementary_query *query;
     long double speed, distance;
     int intervals;
@@ -78,17 +78,17 @@ static long double segment_segment(const vector p[4]) {
     return inside ? fminl(best, fabsl(dot(c, n)) / sqrtl(square)) : best;
 }
 
-long double feature_distance(pair_kind kind, const elementary_query *query, long double t) {
+long double feature_distance(cscd_contact_kind kind, const elementary_query *query, long double t) {
     vector p[4];
     for (int i = 0; i < 4; i++) p[i] = position(query, i, t);
-    return kind == PAIR_VF ? point_triangle(p) : segment_segment(p);
+    return kind == CSCD_CONTACT_VF ? point_triangle(p) : segment_segment(p);
 }
 
-long double named_distance(pair_kind kind, const elementary_query *query, long double t, long double u,
-                           long double v) {
+long double named_distance(cscd_contact_kind kind, const elementary_query *query, long double t,
+                           long double u, long double v) {
     vector p[4];
     for (int i = 0; i < 4; i++) p[i] = position(query, i, t);
-    if (kind == PAIR_EE) return norm(difference(between(p[0], p[1], u), between(p[2], p[3], v)));
+    if (kind == CSCD_CONTACT_EE) return norm(difference(between(p[0], p[1], u), between(p[2], p[3], v)));
     for (int k = 0; k < 3; k++) p[0].x[k] -= (1 - u - v) * p[1].x[k] + u * p[2].x[k] + v * p[3].x[k];
     return norm(p[0]);
 }
@@ -98,11 +98,11 @@ static vector motion(const elementary_query *query, int i) {
 }
 
 /* No two points of the features approach faster. */
-static long double closing_speed(pair_kind kind, const elementary_query *query) {
+static long double closing_speed(cscd_contact_kind kind, const elementary_query *query) {
     long double fastest = 0;
-    int first_count = kind == PAIR_VF ? 1 : 2;
-    for (int i = 0; i < first_count; i++)
-        for (int j = first_count; j < 4; j++)
+    int first = points_of_first(kind);
+    for (int i = 0; i < first; i++)
+        for (int j = first; j < 4; j++)
             fastest = fmaxl(fastest, norm(difference(motion(query, i), motion(query, j))));
     return fastest;
 }
@@ -114,7 +114,7 @@ static bool stays_apart(proof *p, long double low, long double high) {
     return stays_apart(p, low, middle) && stays_apart(p, middle, high);
 }
 
-bool proved_apart(pair_kind kind, const elementary_query *query, long double low, long double high,
+bool proved_apart(cscd_contact_kind kind, const elementary_query *query, long double low, long double high,
                   long double distance) {
     proof p = {kind, query, closing_speed(kind, query), distance + 0x1p-55L * largest_coordinate(query), 0};
     return stays_apart(&p, low, high);

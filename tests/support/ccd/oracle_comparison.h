@@ -19,7 +19,7 @@ typedef struct compared {
     elementary_hit hit; /* toi 2 where the test reports none */
 } compared;
 
-compared compare_with_oracle(pair_kind kind, const elementary_query *query);
+compared compare_with_oracle(cscd_contact_kind kind, const elementary_query *query);
 
 /* In hexadecimal, as an initialiser, with both answers in a comment. */
-void print_compared(pair_kind kind, const elementary_query *query, const compared *result);
+void print_compared(cscd_contact_kind kind, const elementary_query *query, const compared *result);

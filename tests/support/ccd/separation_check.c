@@ -11,9 +11,9 @@ enum { CELLS = 48, DEPTH_MAX = 40, SAMPLES_MAX = 5000, BISECTIONS = 60 };
 
 typedef long double vec[3];
 
-bool separation_test(pair_kind kind, const elementary_query *query, const separation *limit,
+bool separation_test(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
                      elementary_hit *hit, bool *bounded) {
-    return (kind == PAIR_VF ? separation_vf : separation_ee)(query, limit, hit, bounded);
+    return (kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(query, limit, hit, bounded);
 }
 
 /* ---- distance at one moment ------------------------------------------------------------------------- */
@@ -88,19 +88,19 @@ static void place(const elementary_query *query, int i, long double t, vec out) 
     }
 }
 
-long double sampled_distance(pair_kind kind, const elementary_query *query, long double t) {
+long double sampled_distance(cscd_contact_kind kind, const elementary_query *query, long double t) {
     vec x[4];
     for (int i = 0; i < 4; i++) place(query, i, t, x[i]);
-    return kind == PAIR_VF ? distance_vf((const vec *)x) : distance_ee((const vec *)x);
+    return kind == CSCD_CONTACT_VF ? distance_vf((const vec *)x) : distance_ee((const vec *)x);
 }
 
 /* ---- over the interval ------------------------------------------------------------------------------ */
 
-static long double largest_speed(pair_kind kind, const elementary_query *query) {
+static long double largest_speed(cscd_contact_kind kind, const elementary_query *query) {
     long double largest = 0.0L;
-    int first_count = kind == PAIR_VF ? 1 : 2;
-    for (int i = 0; i < first_count; i++) {
-        for (int j = first_count; j < 4; j++) {
+    int first = points_of_first(kind);
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++) {
             vec motion;
             for (int k = 0; k < 3; k++)
                 motion[k] = ((long double)query->x1[i][k] - query->x0[i][k]) -
@@ -112,7 +112,7 @@ static long double largest_speed(pair_kind kind, const elementary_query *query) 
 }
 
 typedef struct search {
-    pair_kind kind;
+    cscd_contact_kind kind;
     const elementary_query *query;
     long double distance, speed;
     int samples_left;
@@ -146,7 +146,7 @@ static sampled_answer search_between(search *s, long double t0, long double d0, 
     return right != SAMPLED_APART ? right : left;
 }
 
-sampled_answer sampled_within(pair_kind kind, const elementary_query *query, long double distance,
+sampled_answer sampled_within(cscd_contact_kind kind, const elementary_query *query, long double distance,
                               double *time) {
     search s = {kind, query, distance, largest_speed(kind, query), SAMPLES_MAX};
     long double before = 0.0L, d0 = sampled_distance(kind, query, before);
@@ -168,7 +168,7 @@ sampled_answer sampled_within(pair_kind kind, const elementary_query *query, lon
     return answer;
 }
 
-long double sampled_least(pair_kind kind, const elementary_query *query) {
+long double sampled_least(cscd_contact_kind kind, const elementary_query *query) {
     int best = 0;
     long double least = INFINITY;
     for (int i = 0; i <= CELLS; i++) {
@@ -207,9 +207,9 @@ long double tolerance_of(const elementary_query *query, const separation *limit)
     return fmaxl(limit->tolerance, (long double)SEPARATION_FINEST * query_extent_of(query));
 }
 
-static void fail_query(pair_kind kind, const elementary_query *query, const separation *limit,
+static void fail_query(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
                        const char *what) {
-    print_error("%s, distance %a, tolerance %a:\n", kind == PAIR_VF ? "vf" : "ee", limit->distance,
+    print_error("%s, distance %a, tolerance %a:\n", kind == CSCD_CONTACT_VF ? "vf" : "ee", limit->distance,
                 limit->tolerance);
     for (int i = 0; i < 4; i++)
         print_error("    {%a, %a, %a} -> {%a, %a, %a}\n", query->x0[i][0], query->x0[i][1], query->x0[i][2],
@@ -218,20 +218,21 @@ static void fail_query(pair_kind kind, const elementary_query *query, const sepa
 }
 
 /* The points that u and v name at toi, relative to the first point at t = 0. */
-static void named_points(pair_kind kind, const elementary_query *query, const elementary_hit *hit, vec a,
-                         vec b) {
+static void named_points(cscd_contact_kind kind, const elementary_query *query, const elementary_hit *hit,
+                         vec a, vec b) {
     vec x[4];
     long double t = hit->toi, u = hit->u, v = hit->v;
     for (int i = 0; i < 4; i++) place(query, i, t, x[i]);
     for (int k = 0; k < 3; k++) {
-        a[k] = kind == PAIR_VF ? x[0][k] : (1.0L - u) * x[0][k] + u * x[1][k];
-        b[k] = kind == PAIR_VF ? (1.0L - u - v) * x[1][k] + u * x[2][k] + v * x[3][k]
-                               : (1.0L - v) * x[2][k] + v * x[3][k];
+        a[k] = kind == CSCD_CONTACT_VF ? x[0][k] : (1.0L - u) * x[0][k] + u * x[1][k];
+        b[k] = kind == CSCD_CONTACT_VF ? (1.0L - u - v) * x[1][k] + u * x[2][k] + v * x[3][k]
+                                       : (1.0L - v) * x[2][k] + v * x[3][k];
     }
 }
 
 /* Between them; that of two points, so the features are no farther apart. */
-static long double named_distance(pair_kind kind, const elementary_query *query, const elementary_hit *hit) {
+static long double named_distance(cscd_contact_kind kind, const elementary_query *query,
+                                  const elementary_hit *hit) {
     vec a, b, offset;
     named_points(kind, query, hit, a, b);
     subtract(a, b, offset);
@@ -239,7 +240,8 @@ static long double named_distance(pair_kind kind, const elementary_query *query,
 }
 
 /* What is wrong with the hit's place; NULL if nothing is. */
-static const char *wrong_place(pair_kind kind, const elementary_query *query, const elementary_hit *hit) {
+static const char *wrong_place(cscd_contact_kind kind, const elementary_query *query,
+                               const elementary_hit *hit) {
     vec a, b, offset;
     long double rounding = 0x1p-46L * query_extent_of(query), size = 0.0L;
     named_points(kind, query, hit, a, b);
@@ -259,7 +261,8 @@ static const char *wrong_place(pair_kind kind, const elementary_query *query, co
     return NULL;
 }
 
-bool check_separation(pair_kind kind, const elementary_query *query, const separation *limit, bool *bounded) {
+bool check_separation(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
+                      bool *bounded) {
     elementary_hit hit;
     double time;
     long double farthest = limit->distance + tolerance_of(query, limit);

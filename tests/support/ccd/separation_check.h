@@ -6,22 +6,22 @@
 
 #include <stdbool.h>
 
-bool separation_test(pair_kind kind, const elementary_query *query, const separation *limit,
+bool separation_test(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
                      elementary_hit *hit, bool *bounded);
 
 /* At one moment. */
-long double sampled_distance(pair_kind kind, const elementary_query *query, long double t);
+long double sampled_distance(cscd_contact_kind kind, const elementary_query *query, long double t);
 
 typedef enum sampled_answer { SAMPLED_APART, SAMPLED_WITHIN, SAMPLED_UNDECIDED } sampled_answer;
 
 /* Do the features come within distance of each other? They cannot approach faster than their points, so
  * between two samples the distance has a lower bound; where it does not decide, there are more samples, up to
  * a number. WITHIN: *time is an early sample that is. */
-sampled_answer sampled_within(pair_kind kind, const elementary_query *query, long double distance,
+sampled_answer sampled_within(cscd_contact_kind kind, const elementary_query *query, long double distance,
                               double *time);
 
 /* The least distance over some samples, and more of them about the least. */
-long double sampled_least(pair_kind kind, const elementary_query *query);
+long double sampled_least(cscd_contact_kind kind, const elementary_query *query);
 
 /* The largest difference of a coordinate from that of the first point at t = 0. */
 double query_extent_of(const elementary_query *query);
@@ -31,4 +31,5 @@ long double tolerance_of(const elementary_query *query, const separation *limit)
 
 /* Asserts, printing the query where they fail, all that separation.h says: of the answer, the time, the
  * distance then, u, v, point and normal. Returns whether the pair was reported. */
-bool check_separation(pair_kind kind, const elementary_query *query, const separation *limit, bool *bounded);
+bool check_separation(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
+                      bool *bounded);
