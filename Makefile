@@ -55,10 +55,13 @@ KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
+# `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
+HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
-                   $(if $(filter release,$(CONFIG)),,tests/install/test_install.c)
+                   $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
+                   $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c))
 # ONLY="bvh line_search": the tests with one of these words in their names, or of these rooms.
 ONLY ?=
@@ -69,7 +72,7 @@ endif
 FUZZ_SOURCES    := $(wildcard tests/*/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
-BENCHMARK_SOURCES := $(wildcard benchmarks/*.c)
+BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
 SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
@@ -122,7 +125,7 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -196,6 +199,10 @@ check-run: tool library $(FAST_TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BU
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
 	@BUILD=$(BUILD) tests/run.sh $(TESTS)
 
+# What is left without runtime/baselines builds, and passes its tests: about a minute.
+test-without-baselines: packages
+	@tests/without_baselines.sh
+
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
                   core/test_parallel_for core/test_contexts)
@@ -268,6 +275,7 @@ help:
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
 	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined; ONLY="near line": those of these names)'
+	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'

@@ -1,6 +1,7 @@
 /* The published culling loses first contacts, which the detector's own rules do not (test_culling.c), says so,
  * and culls nothing with a minimum separation. */
 #include "tests/support/culling/first_contacts.h"
+#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -73,8 +74,34 @@ static void nothing_is_culled_with_a_separation(void **state) {
     assert_true(contacts > 1000);
 }
 
+/* What loses contacts certifies no step. */
+static void no_step_is_certified(void **state) {
+    static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD_PUBLISHED};
+    (void)state;
+    scene_make(SCENE_TWO_SPHERES, 1, &interval);
+    for (int i = 0; i < 2; i++) {
+        cscd_contacts found;
+        cscd_free_step out = {.length = -1.0};
+        rig r = step_by(methods[i], 0.0, &found);
+        assert_int_equal(cscd_detector_max_step(r.detector, interval.x0, interval.x1, NULL, &out),
+                         CSCD_INVALID_ARGUMENT);
+        assert_non_null(strstr(cscd_context_detail(r.context), cscd_method_name(methods[i])));
+        assert_true(out.length == -1.0);
+        rig_destroy(&r);
+    }
+}
+
+/* So no test passes here because a build lacks them. */
+static void baselines_are_present(void **state) {
+    static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD,
+                                          CSCD_METHOD_ICCD_PUBLISHED};
+    (void)state;
+    for (int i = 0; i < 3; i++) assert_int_equal(method_or_none(methods[i]), methods[i]);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(first_contacts_are_lost),
-                                       cmocka_unit_test(nothing_is_culled_with_a_separation)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(first_contacts_are_lost), cmocka_unit_test(nothing_is_culled_with_a_separation),
+        cmocka_unit_test(no_step_is_certified), cmocka_unit_test(baselines_are_present)};
     return cmocka_run_group_tests_name("published", tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include "src/core/context.h"
 #include "src/core/timer.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/methods.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"
 
@@ -155,8 +156,9 @@ static void other_methods_go_on(void **state) {
     (void)state;
     for (uint64_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         sequence_make(SEQUENCE_SCENE, i + 40, 8, &q);
-        interrupt(i % 2 == 0 ? 1 : 3, UINT32_MAX,
-                  (workload){.options = of_method(methods[i], CSCD_MODE_ALL, CSCD_START_PROVE)});
+        interrupt(
+            i % 2 == 0 ? 1 : 3, UINT32_MAX,
+            (workload){.options = of_method(method_or_none(methods[i]), CSCD_MODE_ALL, CSCD_START_PROVE)});
     }
 }
 

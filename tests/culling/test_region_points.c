@@ -1,6 +1,7 @@
 /* Where a detector says that its regions' points are: the means of its triangles moved, and what orientations
  * are of. */
 #include "cscd/cscd.h"
+#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -130,7 +131,7 @@ static void other_methods_have_no_regions(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_BRUTE, CSCD_METHOD_ICCD};
     cscd_detector_options options = cscd_detector_defaults();
     for (int i = 0; i < 3; i++) {
-        options.method = methods[i];
+        options.method = method_or_none(methods[i]);
         rig r = rig_create(&interval, 1, &options);
         assert_int_equal(cscd_detector_region_count(r.detector), 0);
         rig_destroy(&r);

@@ -1,6 +1,7 @@
 /* Line searches: their steps against brute force, their candidates and proximity against the detector's. */
 #include "cscd/cscd.h"
 #include "runtime/solver/proximity.h"
+#include "tests/support/methods.h"
 #include "tests/support/oracle.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/solver/free_step_check.h"
@@ -27,7 +28,7 @@ typedef struct search {
 
 static search search_create(cscd_method method, double min_separation, uint32_t threads) {
     search s = {.options = cscd_detector_defaults()};
-    s.options.method = method;
+    s.options.method = method_or_none(method);
     s.options.min_separation = min_separation;
     s.r = rig_create(&interval, threads, &s.options);
     assert_int_equal(cscd_line_create(s.r.detector, &s.line), CSCD_OK);

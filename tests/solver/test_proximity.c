@@ -2,6 +2,7 @@
 #include "cscd/cscd.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/ccd/feature_distance.h"
+#include "tests/support/methods.h"
 #include "tests/support/oracle.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -22,7 +23,7 @@ enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 
 static rig rig_of(const scene *s, cscd_method method, uint32_t threads) {
     cscd_detector_options options = cscd_detector_defaults();
-    options.method = method;
+    options.method = method_or_none(method);
     return rig_create(s, threads, &options);
 }
 

@@ -1,6 +1,7 @@
 /* What solvers ask for when memory runs out, at every allocation, and that a steady state takes none. */
 #include "cscd/cscd.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/methods.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -37,7 +38,7 @@ static void counted_create(counted *c, cscd_method method, uint32_t threads) {
     context_options.thread_count = threads;
     context_options.progress.report = go_on;
     cscd_detector_options options = cscd_detector_defaults();
-    options.method = method;
+    options.method = method_or_none(method);
     cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
     assert_int_equal(cscd_context_create(&context_options, &c->context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(c->context, &desc, &c->mesh), CSCD_OK);

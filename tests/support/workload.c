@@ -1,6 +1,8 @@
 /* Every call of the API that takes long, one after the other, and a digest of what each gave. */
 #include "tests/support/workload.h"
 
+#include "src/core/methods.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -110,15 +112,11 @@ static void near(run *r, const double *x) {
     end_call(r, status);
 }
 
-static bool refuses_max_step(cscd_method method) {
-    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
-}
-
 static void max_step(run *r, const double *x0, const double *x1) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     cscd_free_step found = {.length = 0.0};
     cscd_status status;
-    if (refuses_max_step(r->w->options.method)) return;
+    if (method_traits_of(r->w->options.method)->loses_contacts) return; /* it refuses to certify */
     do {
         status = cscd_detector_max_step(r->detector, x0, x1, end, &found);
     } while (again(r, status));

@@ -71,8 +71,6 @@ static void methods_agree_in_mode_all(void **state) {
         {"--method", "single", "--threads", "3"},
         {"--method", "kmeans:4"},
         {"--method", "brute"},
-        {"--method", "iccd", "--threads", "2"},
-        {"--method", "iccd", "--mode", "earliest", "--no-check"},
         {"--method", "single", "--no-check"},
         {"--method", "kmeans:7", "--start", "unknown"},
         {"--start", "unknown", "--no-check"},
@@ -179,62 +177,6 @@ static void tables_have_a_column_for_orientation(void **state) {
     tool_run_free(&run);
 }
 
-/* It promises nothing, and what it loses is no news. */
-static void published_is_marked_as_such(void **state) {
-    (void)state;
-    tool_run run =
-        RUN_TOOL("replay", model.text, cache.text, "--method", "published", "--json", summary.text);
-    assert_int_equal(run.code, 0);
-    assert_string_equal(run.error, "");
-    assert_non_null(strstr(run.out, "method published: in "));
-    assert_non_null(strstr(run.out, "\npublished "));
-    json_node *root = json_node_read_file(summary.text);
-    assert_string_equal(json_node_string(json_node_member(root, "summary"), "method"), "published");
-    json_node_free(root);
-    tool_run_free(&run);
-}
-
-/* Contours instead of orientations; promises all, needs no start and no plan. */
-static void iccd_has_a_column_for_contours(void **state) {
-    (void)state;
-    tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "iccd", "--json", summary.text);
-    assert_int_equal(run.code, 0);
-    assert_non_null(strstr(run.out, "\niccd "));
-    assert_non_null(strstr(run.out, " contour "));
-    assert_non_null(strstr(run.out, "plan: none"));
-    assert_null(strstr(run.out, "may be missing"));
-    assert_int_equal(count_of(run.out, " X "), 4); /* orientation and proof, in both rows */
-    tool_run_free(&run);
-    json_node *root = json_node_read_file(summary.text), *none = REPLAY("--method", "none");
-    const json_node *total = json_node_member(root, "summary");
-    assert_string_equal(json_node_string(total, "method"), "iccd");
-    assert_true(json_node_number(total, "static_checks") == 0);
-    assert_true(json_node_number(total, "intervals_complete") == FRAMES - 1);
-    assert_true(json_node_number(json_node_member(total, "contour_ms"), "mean") > 0);
-    for (size_t k = 0; k < FRAMES - 1; k++) {
-        expect_guarantee(root, k, "all", "patches");
-        assert_true(json_node_number(json_node_member(interval(root, k), "ms"), "contour") > 0);
-        assert_true(json_node_number(json_node_member(interval(none, k), "ms"), "contour") == 0);
-        assert_true(json_node_number(interval(root, k), "pcp") < json_node_number(interval(none, k), "pcp"));
-    }
-    json_node_free(root);
-    json_node_free(none);
-}
-
-static void iccd_as_published_is_marked_as_such(void **state) {
-    (void)state;
-    tool_run run =
-        RUN_TOOL("replay", model.text, cache.text, "--method", "iccd-published", "--json", summary.text);
-    assert_int_equal(run.code, 0);
-    assert_string_equal(run.error, "");
-    assert_non_null(strstr(run.out, "method iccd-published: in 15 of 15 intervals contacts"));
-    assert_non_null(strstr(run.out, "\niccd-published "));
-    tool_run_free(&run);
-    json_node *root = json_node_read_file(summary.text);
-    for (size_t k = 0; k < FRAMES - 1; k++) expect_guarantee(root, k, "earliest", "published");
-    json_node_free(root);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(methods_agree_in_mode_all),
@@ -242,9 +184,6 @@ int main(void) {
         cmocka_unit_test(counters_tell_that_culling_is_on),
         cmocka_unit_test(starts_are_proven_once),
         cmocka_unit_test(tables_have_a_column_for_orientation),
-        cmocka_unit_test(published_is_marked_as_such),
-        cmocka_unit_test(iccd_has_a_column_for_contours),
-        cmocka_unit_test(iccd_as_published_is_marked_as_such),
     };
     return cmocka_run_group_tests_name("tool_modes", tests, make_files, remove_files);
 }

@@ -197,7 +197,6 @@ static void takes_the_plan_of_the_model(void **state) {
     EXPECT_PLAN("none", "none", 0, "with --min-separation nothing is culled", "--min-separation", "0.001");
     EXPECT_PLAN("none", "none", 0, "with --min-separation nothing is culled", "--min-separation", "0.001",
                 "--method", "single");
-    EXPECT_PLAN("file", "kmeans", 4, "published ", "--method", "published");
 }
 
 static void takes_the_plan_that_it_is_given(void **state) {

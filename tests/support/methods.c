@@ -1,0 +1,49 @@
+/* The methods that this build has: without runtime/baselines there are no ICCD, ICCD_PUBLISHED and PUBLISHED. */
+#include "tests/support/methods.h"
+
+#include "tests/support/test.h"
+
+#include <string.h>
+
+#if __has_include("runtime/baselines/published.h")
+static const bool has_baselines = true;
+#else
+static const bool has_baselines = false;
+#endif
+
+static bool is_baseline(cscd_method method) {
+    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD ||
+           method == CSCD_METHOD_ICCD_PUBLISHED;
+}
+
+cscd_method method_or_none(cscd_method method) {
+    static const double corners[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_plan *plan = NULL;
+    cscd_detector *detector = NULL;
+    cscd_mesh_desc desc = {4, 4, triangles};
+    cscd_plan_options plan_options = cscd_plan_defaults();
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_context_options context_options = cscd_context_defaults();
+    context_options.thread_count = 1;
+    assert_int_equal(cscd_context_create(&context_options, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    plan_options.method = options.method = method;
+    if (method == CSCD_METHOD_KMEANS || method == CSCD_METHOD_CHARGE)
+        assert_int_equal(cscd_plan_create(mesh, corners, &plan_options, &plan), CSCD_OK);
+    cscd_status status = cscd_detector_create(mesh, plan, &options, &detector);
+    bool present = has_baselines || !is_baseline(method);
+    assert_int_equal(status, present ? CSCD_OK : CSCD_INVALID_ARGUMENT);
+    if (!present) {
+        assert_null(detector);
+        assert_non_null(strstr(cscd_context_detail(context), cscd_method_name(method)));
+        assert_non_null(strstr(cscd_context_detail(context), "built without runtime/baselines"));
+    }
+    cscd_detector_destroy(detector);
+    cscd_plan_destroy(plan);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    return present ? method : CSCD_METHOD_NONE;
+}

@@ -1,0 +1,8 @@
+/* The methods that this build has: without runtime/baselines there are no ICCD, ICCD_PUBLISHED and PUBLISHED. */
+#pragma once
+
+#include "cscd/cscd.h"
+
+/* The method itself, or NONE in a build without baselines where it is one of them. Fails the test if a build lacks a
+ * method that it should have, or has one that it should lack, or refuses one without the sentence that says why. */
+cscd_method method_or_none(cscd_method method);

@@ -1,0 +1,29 @@
+#!/bin/sh
+# Removes runtime/baselines, and the lines of the method table that are marked as its own, from a copy of the sources.
+# Builds library and tool from what is left and runs the tests that use methods; `make test-without-baselines` calls it.
+set -eu
+cd "$(dirname "$0")/.."
+copy=build/without-baselines
+started=$(date +%s)
+
+rm -rf "$copy"
+mkdir -p "$copy"
+git ls-files -co --exclude-standard Makefile include src preprocess runtime models benchmarks tests |
+    tar -cf - --ignore-failed-read -T - | tar -xf - -C "$copy"
+cd "$copy"
+table=runtime/detector/method_table.c
+[ -d runtime/baselines ] && [ "$(grep -c 'baselines: begin' "$table")" = "$(grep -c 'baselines: end' "$table")" ] &&
+    grep -q 'baselines: begin' "$table" || { echo "$0: there is nothing to remove" >&2; exit 1; }
+rm -r runtime/baselines
+sed -i '/baselines: begin/,/baselines: end/d' "$table"
+
+# Optimised a little, without symbols and sanitizers: the quickest to build and to run together.
+tests=''
+for name in bvh/test_bulk_motion core/test_progress culling/test_culling_traps \
+    culling/test_region_points detector/test_detector detector/test_memory detector/test_oracle detector/test_threads \
+    solver/test_line_search solver/test_max_step solver/test_proximity solver/test_solver_memory; do
+    tests="$tests build/release/tests/$name"
+done
+make -s -j"$(nproc)" tool library $tests CFLAGS='-O1 -g0'
+BUILD=build/release tests/run.sh $tests
+echo "without baselines: $(($(date +%s) - started)) s"
