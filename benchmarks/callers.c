@@ -142,8 +142,8 @@ static bool run_frames(const caller_kind *kind, caller *c, const uint64_t *calls
     return true;
 }
 
-static bool measure(const caller_kind *kind, const bench_options *o, samples *s, uint32_t *triangle_count,
-                    io_error *error) {
+static bool measure_caller(const caller_kind *kind, const bench_options *o, samples *s,
+                           uint32_t *triangle_count, io_error *error) {
     cscd_context_options options = cscd_context_defaults();
     cscd_context *context = NULL;
     uint64_t calls = 0;
@@ -179,7 +179,7 @@ static double sum_of(const double *values, uint32_t count) {
 }
 
 /* Of values in order: as many of them as `share` says are no larger. */
-static double percentile(const double *values, uint32_t count, double share) {
+static double percentile_of(const double *values, uint32_t count, double share) {
     uint32_t place = (uint32_t)(share * count);
     return values[place < count ? place : count - 1];
 }
@@ -188,8 +188,8 @@ static void print_row(const caller_kind *kind, uint32_t triangle_count, samples 
     double share = sum_of(s->detect, s->count) / sum_of(s->total, s->count);
     qsort(s->detect, s->count, sizeof *s->detect, compare_doubles);
     qsort(s->total, s->count, sizeof *s->total, compare_doubles);
-    double values[4] = {percentile(s->detect, s->count, 0.5), percentile(s->detect, s->count, 0.99),
-                        percentile(s->total, s->count, 0.5), percentile(s->total, s->count, 0.99)};
+    double values[4] = {percentile_of(s->detect, s->count, 0.5), percentile_of(s->detect, s->count, 0.99),
+                        percentile_of(s->total, s->count, 0.5), percentile_of(s->total, s->count, 0.99)};
     printf("  %-9s %-12s %9u %6u %6.0f %% %8.2f %8.2f %9.2f %9.2f %6u %6u %6u %6u\n", kind->name,
            kind->scene_name, triangle_count, s->count, 100.0 * share, values[0], values[1], values[2],
            values[3], (uint32_t)s->first_calls, (uint32_t)s->calls[0], (uint32_t)s->calls[1],
@@ -211,7 +211,7 @@ static void print_row(const caller_kind *kind, uint32_t triangle_count, samples 
     json_end_object(out);
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_callers(const bench_options *o, json *out, io_error *error) {
     printf("%u thread%s; ms of a frame\n", o->thread_count, o->thread_count == 1 ? "" : "s");
     printf("  %-9s %-12s %9s %6s %8s %17s %19s %27s\n", "", "", "", "", "share of", "in cscd", "all of it",
            "allocations by cscd");
@@ -222,7 +222,7 @@ static bool run(const bench_options *o, json *out, io_error *error) {
         static samples s;
         memset(&s, 0, sizeof s);
         s.count = o->quick && frames > QUICK_FRAMES ? QUICK_FRAMES : frames;
-        if (!measure(&kinds[i], o, &s, &triangle_count, error)) return false;
+        if (!measure_caller(&kinds[i], o, &s, &triangle_count, error)) return false;
         print_row(&kinds[i], triangle_count, &s, out);
     }
     return true;
@@ -230,6 +230,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {5000};
-    static const bench_program program = {"callers", help, sizes, 1, 1, run};
+    static const bench_program program = {"callers", help, sizes, 1, 1, run_callers};
     return bench_main(&program, argument_count, arguments);
 }

@@ -47,8 +47,8 @@ static void print_row(const char *name, const deforming_body *b, const subject *
     json_end_object(out);
 }
 
-static bool measure(const cloth_pair *p, const deforming_body *b, const bench_options *o, json *out,
-                    io_error *error) {
+static bool measure_pair(const cloth_pair *p, const deforming_body *b, const bench_options *o, json *out,
+                         io_error *error) {
     subject_options options = {CSCD_METHOD_AUTO, CSCD_MODE_ALL, o->thread_count, o->simd, o->volume};
     subject *s = subject_make(b, &options, error);
     if (s == NULL) return false;
@@ -68,7 +68,7 @@ static bool measure(const cloth_pair *p, const deforming_body *b, const bench_op
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_pairs(const bench_options *o, json *out, io_error *error) {
     static const cloth_pair pairs[] = {{"cloth_ball", 92}, {"cloth_funnel", 227}};
     printf("mode all, %u thread%s, simd %s; milliseconds\n  %-14s %9s", o->thread_count,
            o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "frames", "triangles");
@@ -78,7 +78,7 @@ static bool run(const bench_options *o, json *out, io_error *error) {
         deforming_body b;
         if (!bench_has_data(o, pairs[i].name)) continue;
         if (!deforming_body_read(o->data, pairs[i].name, pairs[i].first, &b, error)) return false;
-        bool good = measure(&pairs[i], &b, o, out, error);
+        bool good = measure_pair(&pairs[i], &b, o, out, error);
         deforming_body_free(&b);
         if (!good) return false;
     }
@@ -86,6 +86,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 }
 
 int main(int argument_count, char **arguments) {
-    static const bench_program program = {"cloth", help, NULL, 0, 0, run};
+    static const bench_program program = {"cloth", help, NULL, 0, 0, run_pairs};
     return bench_main(&program, argument_count, arguments);
 }

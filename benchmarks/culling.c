@@ -31,12 +31,12 @@ typedef struct tally {
     uint32_t intervals, checks;
 } tally;
 
-static bool fail(const char *text) {
+static bool print_failure(const char *text) {
     fprintf(stderr, "culling: %s\n", text);
     return false;
 }
 
-static void add(tally *t, const cscd_timings *ms, const cscd_counters *n, size_t contacts) {
+static void add_interval(tally *t, const cscd_timings *ms, const cscd_counters *n, size_t contacts) {
     t->update += ms->update_ms;
     t->orientation += ms->orientation_ms;
     t->traversal += ms->traversal_ms;
@@ -65,20 +65,20 @@ static bool all_proven(const recording *r, const cscd_detector *detector) {
     return true;
 }
 
-static bool replay(recording *r, cscd_detector *detector, const char *name) {
+static bool replay_method(recording *r, cscd_detector *detector, const char *name) {
     tally sums[2] = {{.intervals = 0}, {.intervals = 0}};
     io_error error;
     uint32_t count = animation_frame_count(r->frames);
     for (uint32_t i = 0; i < count; i++) {
         double *start = r->positions[(i + 1) % 2], *end = r->positions[i % 2];
         cscd_contacts found;
-        if (!animation_read(r->frames, i, end, &error)) return fail(error.text);
+        if (!animation_read(r->frames, i, end, &error)) return print_failure(error.text);
         if (i == 0) continue;
         if (cscd_detector_step(detector, start, end, &found) != CSCD_OK)
-            return fail(cscd_context_detail(r->context));
+            return print_failure(cscd_context_detail(r->context));
         cscd_timings ms = cscd_detector_timings(detector);
         cscd_counters n = cscd_detector_counters(detector);
-        add(&sums[all_proven(r, detector)], &ms, &n, found.count);
+        add_interval(&sums[all_proven(r, detector)], &ms, &n, found.count);
     }
     uint32_t triangles = cscd_mesh_triangle_count(r->mesh);
     print_tally(name, "proven", &sums[1], triangles);
@@ -88,7 +88,7 @@ static bool replay(recording *r, cscd_detector *detector, const char *name) {
 }
 
 /* "kmeans:4+": method, number of regions, mode earliest. */
-static bool parse(const char *name, cscd_plan_options *plan, cscd_detector_options *detector) {
+static bool parse_method(const char *name, cscd_plan_options *plan, cscd_detector_options *detector) {
     char method[32];
     size_t length = strcspn(name, ":+");
     if (length >= sizeof method) return false;
@@ -104,13 +104,14 @@ static bool run_method(recording *r, const char *name) {
     cscd_detector *detector = NULL;
     cscd_plan_options plan_options = cscd_plan_defaults();
     cscd_detector_options options = cscd_detector_defaults();
-    if (!parse(name, &plan_options, &options)) return fail("unknown method");
+    if (!parse_method(name, &plan_options, &options)) return print_failure("unknown method");
     plan_options.method = options.method == CSCD_METHOD_PUBLISHED ? CSCD_METHOD_SINGLE : options.method;
     cscd_status status = CSCD_OK;
     if (options.method != CSCD_METHOD_NONE)
         status = cscd_plan_create(r->mesh, r->model.positions, &plan_options, &plan);
     if (status == CSCD_OK) status = cscd_detector_create(r->mesh, plan, &options, &detector);
-    bool ran = status == CSCD_OK ? replay(r, detector, name) : fail(cscd_context_detail(r->context));
+    bool ran =
+        status == CSCD_OK ? replay_method(r, detector, name) : print_failure(cscd_context_detail(r->context));
     cscd_detector_destroy(detector);
     cscd_plan_destroy(plan);
     return ran;
@@ -119,15 +120,16 @@ static bool run_method(recording *r, const char *name) {
 static bool open_recording(const char *model, const char *frames, recording *out) {
     io_error error;
     recording r = {0};
-    if (!mesh_file_read(model, &r.model, &error)) return fail(error.text);
+    if (!mesh_file_read(model, &r.model, &error)) return print_failure(error.text);
     cscd_mesh_desc desc = {r.model.vertex_count, r.model.triangle_count, r.model.triangles};
-    bool opened = animation_open(&frames, 1, r.model.vertex_count, &r.frames, &error) || fail(error.text);
+    bool opened =
+        animation_open(&frames, 1, r.model.vertex_count, &r.frames, &error) || print_failure(error.text);
     if (opened && (cscd_context_create(NULL, &r.context) != CSCD_OK ||
                    cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK))
-        opened = fail("the mesh could not be made");
+        opened = print_failure("the mesh could not be made");
     for (int i = 0; opened && i < 2; i++) {
         r.positions[i] = malloc((size_t)r.model.vertex_count * sizeof(double[3]));
-        opened = r.positions[i] != NULL || fail("out of memory");
+        opened = r.positions[i] != NULL || print_failure("out of memory");
     }
     *out = r;
     return opened;

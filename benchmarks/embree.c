@@ -76,7 +76,7 @@ static void give_bounds(const struct RTCBoundsFunctionArguments *arguments) {
     to->upper_z = b.high[2];
 }
 
-static bool overlap(const box *a, const box *b) {
+static bool boxes_overlap(const box *a, const box *b) {
     return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) &
            (b->low[1] <= a->high[1]) & (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }
@@ -86,7 +86,7 @@ static void take_pairs(void *user, struct RTCCollision *collisions, unsigned int
     p->reported += count;
     for (unsigned int i = 0; i < count; i++) {
         const struct RTCCollision *c = &collisions[i];
-        p->pairs += c->primID0 < c->primID1 && overlap(&p->boxes[c->primID0], &p->boxes[c->primID1]);
+        p->pairs += c->primID0 < c->primID1 && boxes_overlap(&p->boxes[c->primID0], &p->boxes[c->primID1]);
     }
 }
 
@@ -207,7 +207,7 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     printf("%s, Embree %s, one thread; milliseconds\n  %9s %-16s %9s %9s %9s %12s %10s\n",
            body_kind_name(o->kind), RTC_VERSION_STRING, "triangles", "", "update", "find", "both", "reported",
            "pairs");
@@ -218,6 +218,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {3000, 10000, 20000, 50000, 150000};
-    static const bench_program program = {"embree", help, sizes, 5, 3, run};
+    static const bench_program program = {"embree", help, sizes, 5, 3, run_sizes};
     return bench_main(&program, argument_count, arguments);
 }

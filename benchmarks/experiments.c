@@ -8,15 +8,15 @@
 
 enum { KMEANS_RUNS = 20, LONG_STEP_INTERVALS = 2, REGIONS_MAX = 64 };
 
-static bool fail(const char *text) {
+static bool print_failure(const char *text) {
     fprintf(stderr, "experiments: %s\n", text);
     return false;
 }
 
 /* One step of a new detector; false: it failed, and why has been said. */
-static bool measure(const cscd_mesh *mesh, const cscd_context *context, const cscd_plan *plan,
-                    cscd_method method, const double *start, const double *end, cscd_counters *counters,
-                    cscd_timings *ms) {
+static bool measure_step(const cscd_mesh *mesh, const cscd_context *context, const cscd_plan *plan,
+                         cscd_method method, const double *start, const double *end, cscd_counters *counters,
+                         cscd_timings *ms) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
     cscd_contacts found;
@@ -29,7 +29,7 @@ static bool measure(const cscd_mesh *mesh, const cscd_context *context, const cs
         *ms = cscd_detector_timings(detector);
     }
     cscd_detector_destroy(detector);
-    return status == CSCD_OK || fail(cscd_context_detail(context));
+    return status == CSCD_OK || print_failure(cscd_context_detail(context));
 }
 
 /* ---- a sphere ---------------------------------------------------------------------------------------- */
@@ -37,7 +37,7 @@ static bool measure(const cscd_mesh *mesh, const cscd_context *context, const cs
 static bool measure_sphere(uint32_t triangles) {
     body sphere;
     io_error error;
-    if (!body_make(BODY_SPHERE, triangles, &sphere, &error)) return fail(error.text);
+    if (!body_make(BODY_SPHERE, triangles, &sphere, &error)) return print_failure(error.text);
     recording_data r = {.frame_count = 0};
     const cscd_mesh_desc desc = {sphere.vertex_count, sphere.triangle_count, sphere.triangles};
     double *end = malloc((size_t)sphere.vertex_count * 3 * sizeof *end);
@@ -48,7 +48,7 @@ static bool measure_sphere(uint32_t triangles) {
     for (int i = 0; good && i < 3; i++) {
         cscd_counters n;
         cscd_timings ms;
-        good = measure(r.mesh, r.context, NULL, methods[i], sphere.positions, end, &n, &ms);
+        good = measure_step(r.mesh, r.context, NULL, methods[i], sphere.positions, end, &n, &ms);
         if (good)
             printf("  %9u %-8s %9llu %9llu %9llu %9.3f\n", triangles, cscd_method_name(methods[i]),
                    (unsigned long long)n.pcp, (unsigned long long)n.contours, (unsigned long long)n.sealed,
@@ -117,7 +117,7 @@ static bool measure_kmeans(const recording_data *r) {
         options.k = n;
         options.seed = seed;
         if (cscd_plan_create(r->mesh, r->model.positions, &options, &plan) != CSCD_OK)
-            return fail(cscd_context_detail(r->context));
+            return print_failure(cscd_context_detail(r->context));
         double share = visible_share(plan);
         uint32_t enclosed = count_enclosed(r->mesh, plan);
         cscd_plan_destroy(plan);
@@ -158,7 +158,7 @@ static bool measure_long_step(const recording_data *r, const cscd_plan *plan, cs
         const double *start = recording_data_frame(r, 20 + 10 * i),
                      *last = recording_data_frame(r, 21 + 10 * i);
         for (size_t j = 0; j < size; j++) end[j] = last[j] + (j % 3 == 0 ? step : 0.0);
-        good = measure(r->mesh, r->context, plan, method, start, end, &n, &ms);
+        good = measure_step(r->mesh, r->context, plan, method, start, end, &n, &ms);
         pcp += (double)n.pcp / LONG_STEP_INTERVALS;
         tests += (double)n.tests / LONG_STEP_INTERVALS;
         total += ms.total_ms / LONG_STEP_INTERVALS;

@@ -24,12 +24,12 @@ static const char *const set_names[SET_COUNT] = {"16 KiB", "1 MiB", "16 MiB", "6
 
 static volatile uint64_t seen; /* results go here, so that they are wanted */
 
-static double best(double least, double ms) {
+static double lesser_time(double least, double ms) {
     return least < 0.0 || ms < least ? ms : least;
 }
 
 /* Times over a set, so that about as many bytes are moved in each. */
-static uint32_t rounds(size_t size) {
+static uint32_t rounds_of(size_t size) {
     size_t count = ((size_t)1 << 27) / size;
     return count > 0 ? (uint32_t)count : 1;
 }
@@ -39,9 +39,9 @@ static uint32_t rounds(size_t size) {
 typedef enum transfer { TRANSFER_READ, TRANSFER_WRITE, TRANSFER_COPY } transfer;
 
 /* GB/s, of bytes that the program sees: a copy counts what it reads and what it writes. */
-static double bandwidth(const machine_kernels *k, transfer kind, char *memory, size_t size) {
+static double measure_bandwidth(const machine_kernels *k, transfer kind, char *memory, size_t size) {
     double least = -1.0;
-    uint32_t count = rounds(size);
+    uint32_t count = rounds_of(size);
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         double since = timer_now_ms(), ms = 0.0;
         for (uint32_t i = 0; i < count; i++) {
@@ -50,7 +50,7 @@ static double bandwidth(const machine_kernels *k, transfer kind, char *memory, s
             if (kind == TRANSFER_COPY) k->copy(memory, memory + size / 2, size / 2);
         }
         timer_lap(&since, &ms);
-        least = best(least, ms);
+        least = lesser_time(least, ms);
     }
     return (double)size * count / least * 1e-6;
 }
@@ -63,7 +63,7 @@ static void print_bandwidth(const machine_kernels *const *levels, int level_coun
         for (int l = 0; l < level_count; l++) {
             printf("  %-8s %-8s", set_names[i], levels[l]->name);
             for (int kind = TRANSFER_READ; kind <= TRANSFER_COPY; kind++)
-                printf(" %8.1f", bandwidth(levels[l], (transfer)kind, memory, sets[i]));
+                printf(" %8.1f", measure_bandwidth(levels[l], (transfer)kind, memory, sets[i]));
             putchar('\n');
             fflush(stdout);
         }
@@ -101,7 +101,7 @@ static double random_point_ns(const double *points, size_t size) {
         }
         timer_lap(&since, &ms);
         seen = (uint64_t)(sums[0] + sums[1] + sums[2]);
-        least = best(least, ms);
+        least = lesser_time(least, ms);
     }
     free(order);
     return least * 1e6 / ((double)reads * repeats);
@@ -120,7 +120,7 @@ static double latency_ns(char *memory, size_t size) {
         for (uint32_t i = 0; i < steps; i++) memcpy(&at, memory + (size_t)at * LINE, sizeof at);
         timer_lap(&since, &ms);
         seen = at;
-        least = best(least, ms);
+        least = lesser_time(least, ms);
     }
     memset(memory, 0, size);
     return least * 1e6 / steps;
@@ -140,13 +140,13 @@ static void print_random(char *memory, int set_count) {
 /* ---- arithmetic -------------------------------------------------------------------------------------- */
 
 /* Gop/s: a multiplication and an addition are two. */
-static double rate(double (*function)(uint32_t), uint32_t lanes) {
+static double arithmetic_rate(double (*function)(uint32_t), uint32_t lanes) {
     double least = -1.0;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         double since = timer_now_ms(), ms = 0.0;
         seen = (uint64_t)function(STEPS);
         timer_lap(&since, &ms);
-        least = best(least, ms);
+        least = lesser_time(least, ms);
     }
     return 2.0 * MACHINE_CHAINS * lanes * STEPS / least * 1e-6;
 }
@@ -158,7 +158,7 @@ static double box_rate(const machine_kernels *k) {
         double since = timer_now_ms(), ms = 0.0;
         seen = k->boxes(STEPS / 8);
         timer_lap(&since, &ms);
-        least = best(least, ms);
+        least = lesser_time(least, ms);
     }
     return 64.0 * (STEPS / 8) / least * 1e-6;
 }
@@ -169,9 +169,9 @@ static void print_rates(const machine_kernels *const *levels, int level_count) {
         "level", "float", "double", "float vector", "double vec.", "box pairs");
     for (int l = 0; l < level_count; l++) {
         const machine_kernels *k = levels[l];
-        printf("  %-8s %10.1f %10.1f %12.1f %12.1f %10.2f\n", k->name, rate(k->f32_one, 1),
-               rate(k->f64_one, 1), rate(k->f32_vector, k->f32_lanes), rate(k->f64_vector, k->f64_lanes),
-               box_rate(k));
+        printf("  %-8s %10.1f %10.1f %12.1f %12.1f %10.2f\n", k->name, arithmetic_rate(k->f32_one, 1),
+               arithmetic_rate(k->f64_one, 1), arithmetic_rate(k->f32_vector, k->f32_lanes),
+               arithmetic_rate(k->f64_vector, k->f64_lanes), box_rate(k));
         fflush(stdout);
     }
 }

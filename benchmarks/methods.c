@@ -36,19 +36,19 @@ typedef struct options {
     uint32_t scene_count;
 } options;
 
-static bool fail(const char *text) {
+static bool print_failure(const char *text) {
     fprintf(stderr, "methods: %s\n", text);
     return false;
 }
 
-static bool refuse(const char *argument, const char *why) {
+static bool refuse_argument(const char *argument, const char *why) {
     fprintf(stderr, "methods: %s %s\n", argument, why);
     return false;
 }
 
 /* ---- what takes part --------------------------------------------------------------------------------- */
 
-static bool enter(report *r, const entrant *e, uint32_t repeats, io_error *error) {
+static bool enter_contest(report *r, const entrant *e, uint32_t repeats, io_error *error) {
     if (!contest_run(r->truth, e, repeats, &r->results[r->count], error)) return false;
     r->count++;
     return true;
@@ -59,7 +59,7 @@ static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = mode};
     snprintf(e.name, sizeof e.name, "%s%s", cscd_method_name(method), mode == CSCD_MODE_EARLIEST ? "+" : "");
-    return enter(r, &e, repeats, error);
+    return enter_contest(r, &e, repeats, error);
 }
 
 /* Trees of 14-DOPs: whether they pay is to be measured. */
@@ -67,7 +67,7 @@ static bool enter_kdop14(report *r, cscd_method method, uint32_t repeats, io_err
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = CSCD_MODE_ALL, .volume = CSCD_VOLUME_KDOP14};
     snprintf(e.name, sizeof e.name, "%s kdop14", cscd_method_name(method));
-    return enter(r, &e, repeats, error);
+    return enter_contest(r, &e, repeats, error);
 }
 
 /* Five seeded runs, as in the thesis. */
@@ -75,7 +75,7 @@ static bool enter_kmeans(report *r, uint32_t k, cscd_mode mode, io_error *error)
     if (r->truth->recording->charge == NULL) return true;
     entrant e = {.method = CSCD_METHOD_KMEANS, .mode = mode, .k = k, .seed = 1};
     snprintf(e.name, sizeof e.name, "kmeans:%u%s", k, mode == CSCD_MODE_EARLIEST ? "+" : "");
-    return enter(r, &e, KMEANS_RUNS, error);
+    return enter_contest(r, &e, KMEANS_RUNS, error);
 }
 
 static bool enter_all(report *r, bool every_k, uint32_t repeats, io_error *error) {
@@ -130,7 +130,7 @@ static bool list_data(options *o) {
         if (name != NULL) o->scenes[o->scene_count++] = name;
     }
     if (folder != NULL) closedir(folder);
-    if (o->scene_count == first) return refuse(o->data, "has no recordings");
+    if (o->scene_count == first) return refuse_argument(o->data, "has no recordings");
     qsort(o->scenes + first, o->scene_count - first, sizeof *o->scenes, compare_names);
     return true;
 }
@@ -170,13 +170,13 @@ static bool run_scene(const options *o, const char *scene, json *out, io_error *
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run(const options *o, int argument_count, char **arguments) {
+static bool run_scenes(const options *o, int argument_count, char **arguments) {
     json out;
     io_error error;
     FILE *file = o->json_path != NULL ? fopen(o->json_path, "w") : NULL;
     if (o->json_path != NULL && file == NULL) {
         io_fail(&error, "%s: %s", o->json_path, strerror(errno));
-        return fail(error.text);
+        return print_failure(error.text);
     }
     if (file != NULL) {
         out = (json){.file = file};
@@ -186,7 +186,7 @@ static bool run(const options *o, int argument_count, char **arguments) {
     bool good = true;
     double since = timer_now_ms(), spent = 0.0;
     for (uint32_t i = 0; good && i < o->scene_count; i++)
-        good = run_scene(o, o->scenes[i], file != NULL ? &out : NULL, &error) || fail(error.text);
+        good = run_scene(o, o->scenes[i], file != NULL ? &out : NULL, &error) || print_failure(error.text);
     timer_lap(&since, &spent);
     if (good) printf("\n%u recordings in %.0f s\n", o->scene_count, spent * 1e-3);
     if (file == NULL) return good;
@@ -198,7 +198,7 @@ static bool run(const options *o, int argument_count, char **arguments) {
     fputc('\n', file);
     bool written = !ferror(file);
     written = fclose(file) == 0 && written;
-    return (written || fail("the JSON could not be written")) && good;
+    return (written || print_failure("the JSON could not be written")) && good;
 }
 
 /* A whole number from 1 to 999. */
@@ -208,7 +208,7 @@ static bool parse_threads(const char *text, uint32_t *out) {
     return *out > 0;
 }
 
-static bool parse(int count, char **arguments, options *o) {
+static bool parse_arguments(int count, char **arguments, options *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
         const char **text = strcmp(name, "--json") == 0    ? &o->json_path
@@ -217,18 +217,18 @@ static bool parse(int count, char **arguments, options *o) {
                                                            : NULL;
         bool threads = strcmp(name, "--threads") == 0;
         if ((text != NULL || threads) && (value == NULL || value[0] == '-'))
-            return refuse(name, "wants a value");
+            return refuse_argument(name, "wants a value");
         if (strcmp(name, "--quick") == 0) {
             o->quick = true;
         } else if (text != NULL) {
             *text = arguments[++i];
         } else if (threads) {
             if (!parse_threads(arguments[++i], &o->thread_count))
-                return refuse(value, "is no number of threads");
+                return refuse_argument(value, "is no number of threads");
         } else if (name[0] == '-') {
-            return refuse(name, "is no option");
+            return refuse_argument(name, "is no option");
         } else if (o->scene_count == SCENES_MAX) {
-            return refuse(name, "is one scene too many");
+            return refuse_argument(name, "is one scene too many");
         } else {
             o->scenes[o->scene_count++] = name;
         }
@@ -243,7 +243,7 @@ int main(int argument_count, char **arguments) {
         fputs(help, stdout);
         return 0;
     }
-    if (!parse(argument_count, arguments, &o)) {
+    if (!parse_arguments(argument_count, arguments, &o)) {
         fputs(help, stderr);
         return 2;
     }
@@ -251,7 +251,7 @@ int main(int argument_count, char **arguments) {
     mkdir(o.cache, 0777);
     char *data = bench_data_folder("sequences");
     if (o.data == NULL) o.data = data;
-    bool good = choose_scenes(&o) && run(&o, argument_count, arguments);
+    bool good = choose_scenes(&o) && run_scenes(&o, argument_count, arguments);
     free(data);
     return good ? 0 : 1;
 }

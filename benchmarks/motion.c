@@ -156,7 +156,7 @@ static bool run_cloth(const bench_options *o, json *out, io_error *error) {
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_bodies(const bench_options *o, json *out, io_error *error) {
     printf("  %-14s %9s %-7s %7s %10s %7s %12s %10s %9s %9s\n", "scene", "triangles", "method", "lengths",
            "total ms", "cost", "#PCPs", "tests", "contacts", "differing");
     bool good = true;
@@ -167,6 +167,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {2000, 5000, 20000, 100000};
-    static const bench_program program = {"motion", help, sizes, 4, 2, run};
+    static const bench_program program = {"motion", help, sizes, 4, 2, run_bodies};
     return bench_main(&program, argument_count, arguments);
 }

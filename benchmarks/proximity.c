@@ -120,7 +120,7 @@ static cscd_status run_once(rig *r, const task *t, bool counts, result *out) {
 }
 
 /* The first run, which builds trees and makes buffers grow, is left out. */
-static bool measure(const frames *f, const task *t, uint32_t repeats, result *out, io_error *error) {
+static bool measure_task(const frames *f, const task *t, uint32_t repeats, result *out, io_error *error) {
     rig r = {.f = f, .distance = t->distance * f->edge};
     cscd_detector_options options = cscd_detector_defaults();
     options.method = t->method;
@@ -141,7 +141,7 @@ static bool measure(const frames *f, const task *t, uint32_t repeats, result *ou
 }
 
 /* Over the intervals that both have. */
-static double ratio(const frames *f, const result *a, const result *b) {
+static double time_ratio(const frames *f, const result *a, const result *b) {
     double sums[2] = {0.0, 0.0};
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) {
         if (isnan(a->ms[i]) || isnan(b->ms[i])) continue;
@@ -161,9 +161,11 @@ static bool run_lengths(const frames *f, const result *plain, uint32_t repeats, 
         const task near = {.method = CSCD_METHOD_NONE, .distance = lengths[i], .act = act_near};
         const task apart = {.method = CSCD_METHOD_NONE, .separation = lengths[i], .act = act_step};
         result a, b;
-        if (!measure(f, &near, repeats, &a, error) || !measure(f, &apart, repeats, &b, error)) return false;
+        if (!measure_task(f, &near, repeats, &a, error) || !measure_task(f, &apart, repeats, &b, error))
+            return false;
         found = a.found;
-        double rows[4] = {ratio(f, &a, plain), a.found / triangles, ratio(f, &b, plain), b.found / triangles};
+        double rows[4] = {time_ratio(f, &a, plain), a.found / triangles, time_ratio(f, &b, plain),
+                          b.found / triangles};
         printf("  %-18s %6.2f %10.2f %12.3f %10.2f %12.3f\n", f->name, lengths[i], rows[0], rows[1], rows[2],
                rows[3]);
         fflush(stdout);
@@ -198,8 +200,8 @@ static bool run_steps(const frames *f, const result *plain, uint32_t repeats, js
          {.method = CSCD_METHOD_NONE, .distance = 0.25, .prepare = act_begin, .act = act_line_near}}};
     for (size_t i = 0; i < sizeof tasks / sizeof *tasks; i++) {
         result r;
-        if (!measure(f, &tasks[i].task, repeats, &r, error)) return false;
-        printf("  %-18s %-24s %8.2f %12.0f %8u\n", f->name, tasks[i].name, ratio(f, &r, plain), r.found,
+        if (!measure_task(f, &tasks[i].task, repeats, &r, error)) return false;
+        printf("  %-18s %-24s %8.2f %12.0f %8u\n", f->name, tasks[i].name, time_ratio(f, &r, plain), r.found,
                r.refused);
         fflush(stdout);
         if (out->file == NULL) continue;
@@ -207,7 +209,7 @@ static bool run_steps(const frames *f, const result *plain, uint32_t repeats, js
         json_begin_object(out, NULL);
         json_string(out, "frames", f->name);
         json_string(out, "call", tasks[i].name);
-        json_number(out, "steps", ratio(f, &r, plain));
+        json_number(out, "steps", time_ratio(f, &r, plain));
         json_integer(out, "refused", r.refused);
         json_end_object(out);
     }
@@ -219,7 +221,7 @@ static bool run_tables(const frames *f, const bench_options *o, json *out, io_er
     uint32_t repeats = o->quick ? 2 : REPEATS, count = f->interval_count - f->first_timed;
     result plain;
     double sum = 0.0;
-    if (!measure(f, &step, repeats, &plain, error)) return false;
+    if (!measure_task(f, &step, repeats, &plain, error)) return false;
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) sum += plain.ms[i];
     printf("\n%s: %u triangles, %u interval%s; a plain step takes %.3f ms and finds %.0f contacts\n", f->name,
            cscd_mesh_triangle_count(f->mesh), count, count == 1 ? "" : "s", sum / count, plain.found);
@@ -275,7 +277,7 @@ static bool run_cloth(const char *name, int first, const bench_options *o, json 
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_frames(const bench_options *o, json *out, io_error *error) {
     printf("%u thread%s; ratios to a plain step\n", o->thread_count, o->thread_count == 1 ? "" : "s");
     return run_recording("pawn-drop-free", o, out, error) &&
            run_recording("figure-balls-free", o, out, error) && run_recording("pawn-drop", o, out, error) &&
@@ -284,6 +286,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 }
 
 int main(int argument_count, char **arguments) {
-    static const bench_program program = {"proximity", help, NULL, 0, 0, run};
+    static const bench_program program = {"proximity", help, NULL, 0, 0, run_frames};
     return bench_main(&program, argument_count, arguments);
 }

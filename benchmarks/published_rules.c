@@ -28,7 +28,7 @@ typedef struct losses {
     size_t contacts, lost;
 } losses;
 
-static bool measure(const truth *t, const rule_set *set, losses *out, io_error *error) {
+static bool measure_losses(const truth *t, const rule_set *set, losses *out, io_error *error) {
     const recording_data *r = t->recording;
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
@@ -62,7 +62,7 @@ static bool measure_recording(const char *name, io_error *error) {
     bool good = truth_find(&r, &t, error);
     for (size_t i = 0; good && i < sizeof rule_sets / sizeof *rule_sets; i++) {
         losses l = {.with_contact = 0};
-        good = measure(&t, &rule_sets[i], &l, error);
+        good = measure_losses(&t, &rule_sets[i], &l, error);
         if (good)
             printf("  %-16s %-34s %5zu of %5zu %13u of %3u %12u\n", name, rule_sets[i].name, l.lost,
                    l.contacts, l.first, l.with_contact, l.none_left);

@@ -31,7 +31,8 @@ typedef struct table {
 
 /* ---- measuring --------------------------------------------------------------------------------------- */
 
-static bool replay(const deforming_body *b, subject *s, uint32_t intervals, double *loop, io_error *error) {
+static bool replay_body(const deforming_body *b, subject *s, uint32_t intervals, double *loop,
+                        io_error *error) {
     double loops[INTERVALS_MAX + 1];
     size_t size = (size_t)b->vertex_count * 3;
     double *ends = body_allocate(2 * size, sizeof *ends);
@@ -47,12 +48,12 @@ static bool replay(const deforming_body *b, subject *s, uint32_t intervals, doub
     return good;
 }
 
-static bool measure(const deforming_body *b, const subject_options *options, uint32_t intervals, row *out,
-                    io_error *error) {
+static bool measure_row(const deforming_body *b, const subject_options *options, uint32_t intervals, row *out,
+                        io_error *error) {
     subject *s = subject_make(b, options, error);
     if (s == NULL) return false;
     double loop;
-    bool good = replay(b, s, intervals, &loop, error);
+    bool good = replay_body(b, s, intervals, &loop, error);
     row r = {.triangles = b->triangle_count,
              .method = options->method,
              .mode = options->mode,
@@ -99,7 +100,7 @@ static void print_per_triangle(const table *t) {
 }
 
 /* The row of a method nearest in size to `triangles`; NULL: it took no part. */
-static const row *nearest(const table *t, const row *like, uint32_t triangles) {
+static const row *nearest_row(const table *t, const row *like, uint32_t triangles) {
     const row *best = NULL;
     for (uint32_t i = 0; i < t->count; i++) {
         const row *r = &t->rows[i];
@@ -114,11 +115,11 @@ static const row *nearest(const table *t, const row *like, uint32_t triangles) {
 static void print_growth(const table *t) {
     const row *last = &t->rows[t->count - 1];
     printf("\ncost per triangle at %u over that at %u\n", last->triangles,
-           nearest(t, last, COMPARED_SIZE)->triangles);
+           nearest_row(t, last, COMPARED_SIZE)->triangles);
     for (uint32_t i = 0; i < t->count; i++) {
         const row *r = &t->rows[i];
         if (r->triangles != last->triangles) continue;
-        const row *small = nearest(t, r, COMPARED_SIZE);
+        const row *small = nearest_row(t, r, COMPARED_SIZE);
         double scale = (double)small->triangles / r->triangles;
         printf("  %-7s %-8s", cscd_method_name(r->method), cscd_mode_name(r->mode));
         for (int k = 0; k < STAGE_COUNT; k++) {
@@ -172,7 +173,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
                                    o->thread_count, o->simd, o->volume};
         snprintf(text, sizeof text, "%u triangles, %s", b.triangle_count, cscd_method_name(options.method));
         terminal_progress_say(shown, text);
-        good = measure(&b, &options, intervals, r, error);
+        good = measure_row(&b, &options, intervals, r, error);
         if (!good) break;
         t->count++;
         if (shown->shown) fputs("\r\033[K", stderr);
@@ -186,7 +187,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_table(const bench_options *o, json *out, io_error *error) {
     static table t;
     terminal_progress shown;
     double contacts = 0.0;
@@ -213,6 +214,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {2000, 5000, 20000, 100000, 300000, 1300000};
-    static const bench_program program = {"scaling", help, sizes, 6, 3, run};
+    static const bench_program program = {"scaling", help, sizes, 6, 3, run_table};
     return bench_main(&program, argument_count, arguments);
 }

@@ -29,7 +29,7 @@ typedef struct worker {
 } worker;
 
 /* Starts when the last of all has come. */
-static void *work(void *data) {
+static void *run_worker(void *data) {
     worker *w = data;
     atomic_fetch_sub(&waiting, 1);
     while (atomic_load(&waiting) > 0) {
@@ -40,7 +40,7 @@ static void *work(void *data) {
     return NULL;
 }
 
-static double lesser(double a, double b) {
+static double lesser_time(double a, double b) {
     return a > 0.0 && a < b ? a : b;
 }
 
@@ -53,15 +53,15 @@ static void time_loops(loop_times *least) {
     worker w[3] = {{0.0, 0.0, 0.0}};
     pthread_t other;
     atomic_store(&waiting, 1);
-    work(&w[0]);
+    run_worker(&w[0]);
     atomic_store(&waiting, 2);
-    if (pthread_create(&other, NULL, work, &w[1]) != 0) exit(1);
-    work(&w[2]);
+    if (pthread_create(&other, NULL, run_worker, &w[1]) != 0) exit(1);
+    run_worker(&w[2]);
     pthread_join(other, NULL);
     double begin = w[1].begin < w[2].begin ? w[1].begin : w[2].begin;
     double end = w[1].end > w[2].end ? w[1].end : w[2].end;
-    least->one = lesser(least->one, w[0].end - w[0].begin);
-    least->two = lesser(least->two, end - begin);
+    least->one = lesser_time(least->one, w[0].end - w[0].begin);
+    least->two = lesser_time(least->two, end - begin);
 }
 
 /* ---- measuring --------------------------------------------------------------------------------------- */
@@ -84,14 +84,14 @@ static bool run_interval(const deforming_body *b, duel *d, uint32_t i, double *e
         cscd_contacts found;
         good = subject_step(d->subjects[which], ends, ends + size, i > 0, &found, error);
         for (int j = 0; good && i > 0 && j < STAGE_COUNT; j++)
-            d->least[which][j][i] = lesser(d->least[which][j][i], samples->ms[j][0]);
+            d->least[which][j][i] = lesser_time(d->least[which][j][i], samples->ms[j][0]);
         samples->count = 0;
     }
     if (i > 0) time_loops(&d->loops);
     return good;
 }
 
-static double mean(const duel *d, int which, int stage) {
+static double mean_time(const duel *d, int which, int stage) {
     double sum = 0.0;
     for (uint32_t i = 1; i <= d->intervals; i++) sum += d->least[which][stage][i];
     return sum / d->intervals;
@@ -99,17 +99,17 @@ static double mean(const duel *d, int which, int stage) {
 
 static void print_row(const deforming_body *b, const subject_options *options, const duel *d, json *out) {
     double machine = 2.0 * d->loops.one / d->loops.two;
-    double speedup = mean(d, 0, STAGE_TOTAL) / mean(d, 1, STAGE_TOTAL);
+    double speedup = mean_time(d, 0, STAGE_TOTAL) / mean_time(d, 1, STAGE_TOTAL);
     printf("  %9u %-7s", b->triangle_count, cscd_method_name(options->method));
     for (int i = 0; i < STAGE_COUNT; i++) {
-        double ms = mean(d, 0, i);
+        double ms = mean_time(d, 0, i);
         if (i == stage_named("proof")) continue;
         if (ms >= 0.001)
-            printf(" %8.2f", ms / mean(d, 1, i));
+            printf(" %8.2f", ms / mean_time(d, 1, i));
         else
             printf(" %8s", "-");
     }
-    printf(" %9.3f %9.3f %8.2f %10.2f\n", mean(d, 0, STAGE_TOTAL), mean(d, 1, STAGE_TOTAL), machine,
+    printf(" %9.3f %9.3f %8.2f %10.2f\n", mean_time(d, 0, STAGE_TOTAL), mean_time(d, 1, STAGE_TOTAL), machine,
            speedup / machine);
     fflush(stdout);
     if (out->file == NULL) return;
@@ -119,7 +119,7 @@ static void print_row(const deforming_body *b, const subject_options *options, c
     json_string(out, "method", cscd_method_name(options->method));
     for (int k = 0; k < 2; k++) {
         json_begin_object(out, k == 0 ? "one_ms" : "two_ms");
-        for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), mean(d, k, i));
+        for (int i = 0; i < STAGE_COUNT; i++) json_number(out, stage_name(i), mean_time(d, k, i));
         json_end_object(out);
     }
     json_number(out, "machine", machine);
@@ -149,7 +149,7 @@ static bool run_method(const deforming_body *b, const bench_options *o, cscd_met
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_duels(const bench_options *o, json *out, io_error *error) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE};
     printf("%s, mode all, simd %s; speedup by a second thread\n  %9s %-7s", body_kind_name(o->kind),
            cscd_simd_name(o->simd), "triangles", "method");
@@ -169,6 +169,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {2000, 5000, 20000, 100000};
-    static const bench_program program = {"threads", help, sizes, 4, 3, run};
+    static const bench_program program = {"threads", help, sizes, 4, 3, run_duels};
     return bench_main(&program, argument_count, arguments);
 }

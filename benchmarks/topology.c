@@ -71,7 +71,7 @@ static cscd_status make_plan(subject_set *s) {
     return cscd_plan_create(s->mesh, s->body->rest, &options, &s->plan);
 }
 
-static cscd_status make(subject_set *s, double ms[PART_COUNT]) {
+static cscd_status make_subjects(subject_set *s, double ms[PART_COUNT]) {
     const deforming_body *b = s->body;
     const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
     cscd_detector_options options = cscd_detector_defaults();
@@ -87,7 +87,7 @@ static cscd_status make(subject_set *s, double ms[PART_COUNT]) {
     return status;
 }
 
-static void unmake(subject_set *s) {
+static void destroy_subjects(subject_set *s) {
     cscd_detector_destroy(s->detector);
     cscd_plan_destroy(s->plan);
     cscd_mesh_destroy(s->mesh);
@@ -96,7 +96,7 @@ static void unmake(subject_set *s) {
     s->mesh = NULL;
 }
 
-static cscd_status step(subject_set *s, uint32_t interval, double ms[PART_COUNT]) {
+static cscd_status step_interval(subject_set *s, uint32_t interval, double ms[PART_COUNT]) {
     cscd_contacts found;
     double now = timer_now_ms(), took = 0.0;
     cscd_status status = cscd_detector_step(s->detector, s->ends[interval][0], s->ends[interval][1], &found);
@@ -110,11 +110,11 @@ static cscd_status step(subject_set *s, uint32_t interval, double ms[PART_COUNT]
 }
 
 /* Lowers least[] to what this repetition took. */
-static cscd_status repeat(subject_set *s, double least[PART_COUNT]) {
+static cscd_status repeat_once(subject_set *s, double least[PART_COUNT]) {
     double ms[PART_COUNT] = {[PART_STEADY] = HUGE_VAL};
-    cscd_status status = make(s, ms);
-    for (uint32_t i = 0; status == CSCD_OK && i < INTERVAL_COUNT; i++) status = step(s, i, ms);
-    unmake(s);
+    cscd_status status = make_subjects(s, ms);
+    for (uint32_t i = 0; status == CSCD_OK && i < INTERVAL_COUNT; i++) status = step_interval(s, i, ms);
+    destroy_subjects(s);
     for (int i = 0; i < PART_COUNT; i++) least[i] = fmin(least[i], ms[i]);
     return status;
 }
@@ -146,12 +146,13 @@ static void write_row(json *out, const subject_set *s, const char *plan, const d
     json_end_object(out);
 }
 
-static bool measure(subject_set *s, const bench_options *o, const char *plan, json *out, io_error *error) {
+static bool measure_set(subject_set *s, const bench_options *o, const char *plan, json *out,
+                        io_error *error) {
     double least[PART_COUNT];
     uint32_t repeats = o->interval_count > 0 ? o->interval_count : o->quick ? 5 : REPEATS;
     cscd_status status = CSCD_OK;
     for (int i = 0; i < PART_COUNT; i++) least[i] = HUGE_VAL;
-    for (uint32_t i = 0; status == CSCD_OK && i < repeats; i++) status = repeat(s, least);
+    for (uint32_t i = 0; status == CSCD_OK && i < repeats; i++) status = repeat_once(s, least);
     if (status != CSCD_OK) return io_fail(error, "%s: %s", plan, cscd_context_detail(s->context));
     print_row(s, plan, least);
     write_row(out, s, plan, least);
@@ -163,9 +164,9 @@ static bool measure(subject_set *s, const bench_options *o, const char *plan, js
 static bool find_regions(subject_set *s, carried *out, io_error *error) {
     double unused[PART_COUNT];
     s->method = CSCD_METHOD_KMEANS;
-    cscd_status status = make(s, unused);
+    cscd_status status = make_subjects(s, unused);
     if (status != CSCD_OK) {
-        unmake(s);
+        destroy_subjects(s);
         return io_fail(error, "kmeans: %s", cscd_context_detail(s->context));
     }
     out->region_count = cscd_plan_region_count(s->plan);
@@ -177,7 +178,7 @@ static bool find_regions(subject_set *s, carried *out, io_error *error) {
         cscd_region region = cscd_plan_region(s->plan, r);
         for (uint32_t k = 0; k < 3; k++) out->points[3 * r + k] = region.detector_point[k];
     }
-    unmake(s);
+    destroy_subjects(s);
     return true;
 }
 
@@ -186,16 +187,16 @@ static bool find_regions(subject_set *s, carried *out, io_error *error) {
 static bool run_rows(subject_set *s, const bench_options *o, json *out, io_error *error) {
     carried kept = {0};
     s->method = CSCD_METHOD_NONE;
-    bool good = measure(s, o, "none", out, error);
+    bool good = measure_set(s, o, "none", out, error);
     s->method = CSCD_METHOD_SINGLE;
-    good = good && measure(s, o, "single", out, error) && find_regions(s, &kept, error);
+    good = good && measure_set(s, o, "single", out, error) && find_regions(s, &kept, error);
     s->carried = &kept;
     s->method = CSCD_METHOD_KMEANS;
-    good = good && measure(s, o, "parts", out, error);
+    good = good && measure_set(s, o, "parts", out, error);
     s->carried = NULL;
     s->method = CSCD_METHOD_SINGLE;
     s->start = CSCD_START_VOUCHED;
-    good = good && measure(s, o, "vouched", out, error);
+    good = good && measure_set(s, o, "vouched", out, error);
     free(kept.regions);
     free(kept.points);
     return good;
@@ -223,7 +224,7 @@ static bool run_size(const bench_options *o, uint32_t size, json *out, io_error 
     return good;
 }
 
-static bool run(const bench_options *o, json *out, io_error *error) {
+static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s; ms, in brackets steady steps\n  %9s %-7s", body_kind_name(o->kind),
            o->thread_count, o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "method");
     for (int i = 0; i < PART_COUNT; i++) printf(i == PART_STEADY ? " %12s" : " %17s", part_names[i]);
@@ -236,6 +237,6 @@ static bool run(const bench_options *o, json *out, io_error *error) {
 
 int main(int argument_count, char **arguments) {
     static const uint32_t sizes[] = {5000, 20000, 100000};
-    static const bench_program program = {"topology", help, sizes, 3, 2, run};
+    static const bench_program program = {"topology", help, sizes, 3, 2, run_sizes};
     return bench_main(&program, argument_count, arguments);
 }

@@ -44,7 +44,7 @@ typedef struct capsule {
 } capsule;
 
 /* Repeatable noise in -1..1. */
-static double noise(uint32_t index) {
+static double noise_at(uint32_t index) {
     uint32_t h = index * 2654435769u + 0x9e3779b9u;
     h = (h ^ h >> 16) * 0x85ebca6bu;
     h = (h ^ h >> 13) * 0xc2b2ae35u;
@@ -58,9 +58,9 @@ static void place_rings(capsule *model) {
     for (uint32_t ring = 0; ring < ring_count; ring++) {
         uint32_t from_end = ring < ring_count - 1 - ring ? ring : ring_count - 1 - ring;
         uint32_t count = from_end == 0 ? 1 : from_end < cap_rings ? 5 * from_end : around;
-        double s = straight * ((ring - (double)cap_rings + 0.07 * noise(ring)) / rows - 0.5);
+        double s = straight * ((ring - (double)cap_rings + 0.07 * noise_at(ring)) / rows - 0.5);
         if (from_end < cap_rings) {
-            double uneven = from_end == 0 ? 0.0 : 0.05 * noise(ring);
+            double uneven = from_end == 0 ? 0.0 : 0.05 * noise_at(ring);
             double polar = 0.5 * pi * (from_end + uneven) / cap_rings;
             s = (ring == from_end ? -1.0 : 1.0) * (0.5 * straight + cos(polar));
         }
@@ -68,7 +68,7 @@ static void place_rings(capsule *model) {
         for (uint32_t i = 0; i < count; i++, vertex++) {
             double turned = fmod(0.5 * from_end + 0.037 * ring, 1.0);
             model->s[vertex] = s;
-            model->psi[vertex] = 2.0 * pi * (i + turned + 0.06 * noise(vertex + 1000)) / count;
+            model->psi[vertex] = 2.0 * pi * (i + turned + 0.06 * noise_at(vertex + 1000)) / count;
         }
     }
     model->first[ring_count] = vertex;

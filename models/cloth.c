@@ -99,7 +99,7 @@ static bool record_frames(cloth_simulation *c, const char *folder, const uint64_
 }
 
 /* user: the resolution; 0: the scene's own. */
-static bool record(void *user, uint32_t index, const char *folder, io_error *error) {
+static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const cloth_scene *s = &cloth_scenes[index];
     const uint32_t *resolution = user;
     uint64_t allocations = 0;
@@ -155,7 +155,7 @@ int main(int argument_count, char **arguments) {
         .scene_count = cloth_scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
-        .record = record,
+        .record = record_scene,
         .user = &resolution};
     if (argument_count > 2 && strcmp(arguments[1], "--resolution") == 0) {
         if (!parse_resolution(arguments[2], &resolution)) return 2;

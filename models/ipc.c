@@ -16,7 +16,7 @@ static bool open_outputs(const char *folder, const ipc_solver *p, point_cache_wr
                                  error);
 }
 
-static double each(uint64_t sum, uint32_t count) {
+static double mean_of(uint64_t sum, uint32_t count) {
     return (double)sum / count;
 }
 
@@ -28,11 +28,11 @@ static void print_summary(const ipc_solver *p, const motion *m) {
            scene->step_seconds * scene->steps, p->springs.count);
     printf("  a time step: %.1f Newton iterations (%u steps stopped at the bound), %.2f of them with "
            "obstacles\n",
-           each(s->newton, s->steps), s->unfinished, each(s->driven, s->steps));
+           mean_of(s->newton, s->steps), s->unfinished, mean_of(s->driven, s->steps));
     printf(
         "  a Newton iteration: %.0f conjugate gradients, %.0f candidates, %.2f trials of %.0f near pairs\n",
-        each(s->conjugate_gradients, s->newton), each(s->candidates, s->newton), each(s->trials, s->newton),
-        each(s->near, s->trials));
+        mean_of(s->conjugate_gradients, s->newton), mean_of(s->candidates, s->newton),
+        mean_of(s->trials, s->newton), mean_of(s->near, s->trials));
     printf("  lines limited by contact: %u of %u; least distance %.2g, reach %g, never below %g\n", s->cut,
            s->newton, s->least_distance, scene->barrier.reach, scene->min_separation);
     printf("  from frame to frame: contacts in %u of %u intervals, crossing in %u of %u frames\n",
@@ -45,7 +45,7 @@ static void print_summary(const ipc_solver *p, const motion *m) {
            1e-3 * s->certify_ms, 1e-3 * s->near_ms);
 }
 
-static cscd_status advance(ipc_solver *p) {
+static cscd_status advance_frame(ipc_solver *p) {
     cscd_status status = CSCD_OK;
     for (uint32_t i = 0; i < p->scene->steps && status == CSCD_OK; i++) status = ipc_solver_advance(p);
     return status;
@@ -60,7 +60,7 @@ static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writ
     bool good = true;
     for (uint32_t frame = 0; good && frame < p->scene->frame_count; frame++) {
         scene_program_show(p->scene->name, frame, p->scene->frame_count);
-        cscd_status status = frame > 0 ? advance(p) : CSCD_OK;
+        cscd_status status = frame > 0 ? advance_frame(p) : CSCD_OK;
         memcpy(rounded.positions, p->positions, bytes);
         body_round(&rounded);
         if (status == CSCD_OK)
@@ -87,7 +87,7 @@ static bool record_solver(ipc_solver *p, cscd_context *context, const char *fold
     return good && complete;
 }
 
-static bool record(void *user, uint32_t index, const char *folder, io_error *error) {
+static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const ipc_scene *s = &ipc_scenes[index];
     cscd_context *context = NULL;
     ipc_solver p;
@@ -121,6 +121,6 @@ int main(int argument_count, char **arguments) {
         .scene_count = ipc_scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
-        .record = record};
+        .record = record_scene};
     return scene_program_run(&program, argument_count, arguments);
 }

@@ -47,7 +47,7 @@ static void close_recording(recording *r) {
         tumble_close(&r->bodies);
 }
 
-static bool go(recording *r, uint32_t frame, io_error *error) {
+static bool go_to_frame(recording *r, uint32_t frame, io_error *error) {
     if (r->stage.scene == NULL) return frame == 0 || tumble_advance(&r->bodies, error);
     object_stage_go(&r->stage, frame);
     return true;
@@ -67,7 +67,7 @@ static bool record_frames(recording *r, point_cache_writer *frames, census *c, c
     bool good = true;
     for (uint32_t frame = 0; good && frame < r->frame_count; frame++) {
         scene_program_show(r->name, frame, r->frame_count);
-        good = go(r, frame, error);
+        good = go_to_frame(r, frame, error);
         cscd_status status = good ? census_add(c, r->frame) : CSCD_OK;
         if (status != CSCD_OK)
             good = io_fail(error, "%s: frame %u: %s: %s", r->name, frame, cscd_status_string(status),
@@ -119,7 +119,7 @@ static bool record_opened(recording *r, cscd_context *context, const char *folde
     return good;
 }
 
-static bool record(void *user, uint32_t index, const char *folder, io_error *error) {
+static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     recording r = {.name = NULL};
     cscd_context *context = NULL;
     (void)user;
@@ -155,6 +155,6 @@ int main(int argument_count, char **arguments) {
         .scene_count = object_scene_count + 1,
         .scene_name = scene_name,
         .scene_text = scene_text,
-        .record = record};
+        .record = record_scene};
     return scene_program_run(&program, argument_count, arguments);
 }

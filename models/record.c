@@ -43,7 +43,7 @@ static bool close_outputs(outputs *out, io_error *error) {
     return good;
 }
 
-static bool measure(const recorder *r, motion *m, io_error *error) {
+static bool measure_frame(const recorder *r, motion *m, io_error *error) {
     cscd_status status = m->mesh == NULL ? motion_begin(r->mesh, r->frame, m) : motion_add(m, r->frame);
     return status == CSCD_OK || io_fail(error, "%s: %s", r->scene->name, cscd_context_detail(r->context));
 }
@@ -60,7 +60,7 @@ static void print_summary(const recorder *r, const motion *m, double start_energ
            m->largest_motion, most_energy / start_energy);
 }
 
-static bool record(void *user, uint32_t index, const char *folder, io_error *error) {
+static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const scene *s = &scenes[index];
     (void)user;
     recorder r;
@@ -71,7 +71,7 @@ static bool record(void *user, uint32_t index, const char *folder, io_error *err
     bool good = open_outputs(folder, &r, &out, error);
     for (uint32_t frame = 0; good && frame < s->frame_count; frame++) {
         scene_program_show(s->name, frame, s->frame_count);
-        good = (frame == 0 || recorder_advance(&r, error)) && measure(&r, &m, error) &&
+        good = (frame == 0 || recorder_advance(&r, error)) && measure_frame(&r, &m, error) &&
                write_frame(&r, &out, error);
         most_energy = fmax(most_energy, recorder_energy(&r));
     }
@@ -107,6 +107,6 @@ int main(int argument_count, char **arguments) {
         .scene_count = scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
-        .record = record};
+        .record = record_scene};
     return scene_program_run(&program, argument_count, arguments);
 }

@@ -68,7 +68,7 @@ static int read_arguments(int count, char **arguments, request *out) {
     return 0;
 }
 
-static int run(int argument_count, char **arguments) {
+static int write_shape(int argument_count, char **arguments) {
     request wanted = {0};
     body b = {0};
     io_error error;
@@ -93,7 +93,7 @@ static int run(int argument_count, char **arguments) {
 }
 
 int main(int argument_count, char **arguments) {
-    int code = run(argument_count, arguments);
+    int code = write_shape(argument_count, arguments);
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     fprintf(stderr, "shape: standard output: %s\n", strerror(errno));
     return 1;

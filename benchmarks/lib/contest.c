@@ -10,7 +10,7 @@
 /* A TOI is early by less than this. */
 static const double toi_early = 1e-9;
 
-static bool explain(const recording_data *r, const char *what, io_error *error) {
+static bool explain_failure(const recording_data *r, const char *what, io_error *error) {
     return io_fail(error, "%s, %s: %s", r->name, what, cscd_context_detail(r->context));
 }
 
@@ -37,10 +37,10 @@ static bool find_interval(truth *t, cscd_detector *none, cscd_detector *prover, 
     const recording_data *r = t->recording;
     const double *start = recording_data_frame(r, i), *end = recording_data_frame(r, i + 1);
     cscd_contacts found;
-    if (cscd_detector_step(prover, start, end, &found) != CSCD_OK) return explain(r, "single", error);
+    if (cscd_detector_step(prover, start, end, &found) != CSCD_OK) return explain_failure(r, "single", error);
     t->proven[i] = all_proven(prover, r->mesh);
     t->proven_count += t->proven[i];
-    if (cscd_detector_step(none, start, end, &found) != CSCD_OK) return explain(r, "none", error);
+    if (cscd_detector_step(none, start, end, &found) != CSCD_OK) return explain_failure(r, "none", error);
     return keep_contacts(t, i, &found) || io_fail(error, "%s: out of memory", r->name);
 }
 
@@ -59,7 +59,7 @@ bool truth_find(const recording_data *r, truth *out, io_error *error) {
     options.method = CSCD_METHOD_SINGLE;
     if (good && (cscd_detector_create(r->mesh, NULL, NULL, &none) != CSCD_OK ||
                  cscd_detector_create(r->mesh, NULL, &options, &prover) != CSCD_OK))
-        good = explain(r, "detectors", error);
+        good = explain_failure(r, "detectors", error);
     for (uint32_t i = 0; good && i < intervals; i++) good = find_interval(&t, none, prover, i, error);
     cscd_detector_destroy(none);
     cscd_detector_destroy(prover);
@@ -115,8 +115,8 @@ static bool is_published(const entrant *e) {
 
 /* Counts what is missing; false if the lists differ in a way that is not allowed. No method may report what
  * method none does not; a published one may lose anything, mode earliest what its guarantee leaves out. */
-static bool compare(const truth *t, uint32_t interval, const cscd_detector *detector, const entrant *e,
-                    const cscd_contacts *found, score *s) {
+static bool compare_contacts(const truth *t, uint32_t interval, const cscd_detector *detector,
+                             const entrant *e, const cscd_contacts *found, score *s) {
     const cscd_contact *expected = t->contacts + t->offsets[interval];
     size_t count = t->offsets[interval + 1] - t->offsets[interval], next = 0;
     bool kept = true;
@@ -172,20 +172,20 @@ static bool make_detector(const truth *t, const entrant *e, cscd_detector **out,
     if (e->method == CSCD_METHOD_CHARGE || e->method == CSCD_METHOD_PUBLISHED) plan = r->charge;
     if (status == CSCD_OK) status = cscd_detector_create(r->mesh, plan, &options, out);
     cscd_plan_destroy(kmeans);
-    return status == CSCD_OK || explain(r, e->name, error);
+    return status == CSCD_OK || explain_failure(r, e->name, error);
 }
 
-static bool replay(const truth *t, const entrant *e, cscd_detector *detector, score classes[CLASS_COUNT],
-                   io_error *error) {
+static bool replay_once(const truth *t, const entrant *e, cscd_detector *detector, score classes[CLASS_COUNT],
+                        io_error *error) {
     const recording_data *r = t->recording;
     for (uint32_t i = 0; i + 1 < r->frame_count; i++) {
         cscd_contacts found;
         score *s = &classes[t->proven[i] ? CLASS_PROVEN : CLASS_OTHER];
         if (cscd_detector_step(detector, recording_data_frame(r, i), recording_data_frame(r, i + 1),
                                &found) != CSCD_OK)
-            return explain(r, e->name, error);
+            return explain_failure(r, e->name, error);
         add_step(s, detector, found.count);
-        if (!compare(t, i, detector, e, &found, s))
+        if (!compare_contacts(t, i, detector, e, &found, s))
             return io_fail(
                 error, "%s, %s, interval %u: %zu contacts, method none has %zu: this breaks the guarantee",
                 r->name, e->name, i, found.count, t->offsets[i + 1] - t->offsets[i]);
@@ -202,7 +202,7 @@ bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out
         entrant run = *e;
         run.seed += repeat;
         bool good =
-            make_detector(t, &run, &detector, error) && replay(t, &run, detector, made.classes, error);
+            make_detector(t, &run, &detector, error) && replay_once(t, &run, detector, made.classes, error);
         cscd_detector_destroy(detector);
         if (!good) return false;
         double ms = (made.classes[0].ms.total_ms + made.classes[1].ms.total_ms - before) / intervals;

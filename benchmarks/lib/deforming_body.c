@@ -37,7 +37,7 @@ static void find_edge(deforming_body *b) {
 }
 
 /* A permutation of 0 .. count - 1, the same every time. */
-static uint32_t *shuffle(uint32_t count) {
+static uint32_t *random_order(uint32_t count) {
     uint32_t *order = body_allocate(count, sizeof *order);
     uint64_t state = 1;
     for (uint32_t i = 0; i < count; i++) {
@@ -50,7 +50,7 @@ static uint32_t *shuffle(uint32_t count) {
 }
 
 static void shuffle_body(deforming_body *b) {
-    uint32_t *vertices = shuffle(b->vertex_count), *triangles = shuffle(b->triangle_count);
+    uint32_t *vertices = random_order(b->vertex_count), *triangles = random_order(b->triangle_count);
     double *rest = body_allocate(b->vertex_count, sizeof(double[3]));
     uint32_t *corners = body_allocate(b->triangle_count, sizeof(uint32_t[3]));
     for (size_t v = 0; v < b->vertex_count; v++)
@@ -123,7 +123,7 @@ void deforming_body_free(deforming_body *b) {
 /* x moves by a function of y and z, y by one of z, z by itself, increasing: a triangular map, and so is every
  * map between two of them, linearly in time. Those are one-to-one, so a surface that did not touch itself at
  * rest never does; a mesh that is fine enough does not either. */
-static void wave(const deforming_body *b, double phase, double p[3]) {
+static void apply_wave(const deforming_body *b, double phase, double p[3]) {
     double size = 0.08 * b->length, height = b->high[2] - b->low[2];
     double up = (p[2] - b->low[2]) / height, across = (p[1] - b->low[1]) / height;
     p[0] += size * sin(turn * (up + 0.3 * across) + phase);
@@ -137,12 +137,12 @@ static void close_legs(double distance, double p[3]) {
     p[0] -= down * down * (3.0 - 2.0 * down) * distance * p[0] / sqrt(p[0] * p[0] + 0.0025);
 }
 
-static void place(const deforming_body *b, uint32_t frame, double shift, double *out) {
+static void place_frame(const deforming_body *b, uint32_t frame, double shift, double *out) {
     const double *from = b->motion == DEFORM_PAIR && frame > 0 ? b->last : b->rest;
     double phase = b->edge / (0.08 * b->length) * frame, distance = 0.13 + 0.5 * b->edge * frame;
     for (size_t v = 0; v < b->vertex_count; v++) {
         double p[3] = {from[3 * v], from[3 * v + 1], from[3 * v + 2]};
-        if (b->motion == DEFORM_WAVE) wave(b, phase, p);
+        if (b->motion == DEFORM_WAVE) apply_wave(b, phase, p);
         if (b->motion == DEFORM_LEGS) close_legs(distance, p);
         for (int k = 0; k < 3; k++)
             out[3 * v + (size_t)k] = nearbyint(p[k] * 0x1p30) * 0x1p-30 + (k == 0 ? shift : 0.0);
@@ -151,8 +151,8 @@ static void place(const deforming_body *b, uint32_t frame, double shift, double 
 
 void deforming_body_interval(const deforming_body *b, uint32_t i, double shift, double *start, double *end) {
     uint32_t first = b->motion == DEFORM_PAIR ? 0 : i;
-    place(b, first, i * shift, start);
-    place(b, first + 1, (i + 1) * shift, end);
+    place_frame(b, first, i * shift, start);
+    place_frame(b, first + 1, (i + 1) * shift, end);
 }
 
 double deforming_body_speed(const deforming_body *b) {

@@ -19,7 +19,7 @@ static const char options_help[] =
     "  --data FOLDER    with cloth_ball92.ply and so on (default: frames/ in CSCD_DATA, if that is set)\n"
     "  --json OUT.json  the rows, and where they come from\n";
 
-static bool refuse(const char *program, const char *argument, const char *why) {
+static bool refuse_argument(const char *program, const char *argument, const char *why) {
     fprintf(stderr, "%s: %s %s\n", program, argument, why);
     return false;
 }
@@ -60,7 +60,7 @@ static bool parse_value(const char *name, const char *value, bench_options *o, b
     return true;
 }
 
-static bool parse(const char *program, int count, char **arguments, bench_options *o) {
+static bool parse_arguments(const char *program, int count, char **arguments, bench_options *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : "";
         bool known, *flag = strcmp(name, "--quick") == 0      ? &o->quick
@@ -71,9 +71,9 @@ static bool parse(const char *program, int count, char **arguments, bench_option
             continue;
         }
         bool good = parse_value(name, value, o, &known);
-        if (!known) return refuse(program, name, "is no option");
-        if (i + 1 == count) return refuse(program, name, "wants a value");
-        if (!good) return refuse(program, value, "is no value for that option");
+        if (!known) return refuse_argument(program, name, "is no option");
+        if (i + 1 == count) return refuse_argument(program, name, "wants a value");
+        if (!good) return refuse_argument(program, value, "is no value for that option");
         i++;
     }
     return true;
@@ -132,7 +132,7 @@ int bench_main(const bench_program *program, int argument_count, char **argument
         printf("%s%s", program->help, options_help);
         return 0;
     }
-    if (!parse(program->name, argument_count, arguments, &o)) return 2;
+    if (!parse_arguments(program->name, argument_count, arguments, &o)) return 2;
     char *data = bench_data_folder("frames");
     if (o.data == NULL) o.data = data;
     if (o.size_count == 0) {

@@ -77,7 +77,7 @@ static cscd_status make_parts(const deforming_body *b, subject *s) {
     return status == CSCD_OK ? cscd_detector_create(s->mesh, s->plan, &detector, &s->detector) : status;
 }
 
-static bool explain(const subject *s, cscd_status status, io_error *error) {
+static bool explain_status(const subject *s, cscd_status status, io_error *error) {
     const char *detail = s->context != NULL ? cscd_context_detail(s->context) : "";
     return io_fail(error, "method %s, mode %s: %s", cscd_method_name(s->options.method),
                    cscd_mode_name(s->options.mode), detail[0] != '\0' ? detail : cscd_status_string(status));
@@ -88,7 +88,7 @@ subject *subject_make(const deforming_body *b, const subject_options *options, i
     s->options = *options;
     cscd_status status = make_parts(b, s);
     if (status == CSCD_OK) return s;
-    explain(s, status, error);
+    explain_status(s, status, error);
     subject_destroy(s);
     return NULL;
 }
@@ -124,7 +124,7 @@ static void add_sample(stage_samples *s, const cscd_detector *detector, size_t c
 bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
                   io_error *error) {
     cscd_status status = cscd_detector_step(s->detector, start, end, found);
-    if (status != CSCD_OK) return explain(s, status, error);
+    if (status != CSCD_OK) return explain_status(s, status, error);
     if (counts) add_sample(&s->samples, s->detector, found->count);
     return true;
 }

@@ -20,22 +20,22 @@ double cloth_separation(const cloth_simulation *c) {
     return ldexp(c->safe.separation, -2 * (int)c->safe.counts.tightest);
 }
 
-static bool explain(const cloth_simulation *c, cscd_status status, io_error *error) {
+static bool explain_status(const cloth_simulation *c, cscd_status status, io_error *error) {
     if (status == CSCD_OK) return true;
     return io_fail(error, "%s: %s: %s", c->scene->name, cscd_status_string(status),
                    cscd_context_detail(c->context));
 }
 
-static cscd_mesh_desc describe(const body *b) {
+static cscd_mesh_desc describe_body(const body *b) {
     return (cscd_mesh_desc){b->vertex_count, b->triangle_count, b->triangles};
 }
 
 /* One scene of the garment, which is looked after, and obstacles, which move as they are told. */
 static cscd_status open_mesh(cloth_simulation *c) {
-    cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {{describe(&c->garment), false}};
+    cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {{describe_body(&c->garment), false}};
     uint32_t count = c->scene->obstacle_count;
     for (uint32_t i = 0; i < count; i++)
-        objects[1 + i] = (cscd_object_desc){describe(&c->obstacles[i]), true};
+        objects[1 + i] = (cscd_object_desc){describe_body(&c->obstacles[i]), true};
     return cscd_mesh_create_scene(c->context, objects, 1 + count, &c->mesh);
 }
 
@@ -75,7 +75,7 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context
     bool good = true;
     for (uint32_t i = 0; good && i < s->obstacle_count; i++)
         good = cloth_obstacle_make(&s->obstacles[i], &c.obstacles[i], error);
-    if (good) good = explain(&c, open_mesh(&c), error) && explain(&c, make_state(&c), error);
+    if (good) good = explain_status(&c, open_mesh(&c), error) && explain_status(&c, make_state(&c), error);
     if (!good) {
         cloth_close(&c);
         return false;
@@ -118,7 +118,7 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
 }
 
 /* The motion that the solver wants, in c->target. */
-static void want(cloth_simulation *c) {
+static void find_target(cloth_simulation *c) {
     size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3;
     double *goal = c->positions; /* not needed until the frame's end, but for the start of it */
     memcpy(c->target, c->start, size * sizeof *goal);
@@ -136,15 +136,15 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     cscd_proximities near;
     cscd_status status = cscd_detector_near(c->safe.detector, c->start, reach * c->spacing, &near);
     s->near_ms += clock_now_ms() - begin;
-    if (!explain(c, status, error)) return false;
+    if (!explain_status(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);
-    want(c);
+    find_target(c);
 
     double found = clock_now_ms();
     uint64_t steps_before = c->safe.counts.steps;
     status = safe_motion_find(&c->safe, c->start, c->positions, &length);
     s->step_ms += clock_now_ms() - found;
-    if (!explain(c, status, error)) return false;
+    if (!explain_status(c, status, error)) return false;
     for (size_t i = 0; i < free_size; i++)
         c->velocities[i] += (c->positions[i] - c->target[i]) / c->scene->frame_seconds;
     c->clock += length * c->scene->frame_seconds;

@@ -37,7 +37,7 @@ static double triangle_area(const double *p, const double *q, const double *r) {
 }
 
 /* Of the angle at p between q and r. */
-static double cotangent(const double *p, const double *q, const double *r) {
+static double corner_cotangent(const double *p, const double *q, const double *r) {
     double to_q[3], to_r[3], normal[3];
     vec3_subtract(q, p, to_q);
     vec3_subtract(r, p, to_r);
@@ -62,8 +62,8 @@ static fabric_hinge make_hinge(const side sides[2], const double *rest, double b
     const double *x[4];
     double sum[3];
     for (int i = 0; i < 4; i++) x[i] = rest + h.vertices[i] * 3;
-    double at_0[2] = {cotangent(x[0], x[1], x[2]), cotangent(x[0], x[1], x[3])};
-    double at_1[2] = {cotangent(x[1], x[0], x[2]), cotangent(x[1], x[0], x[3])};
+    double at_0[2] = {corner_cotangent(x[0], x[1], x[2]), corner_cotangent(x[0], x[1], x[3])};
+    double at_1[2] = {corner_cotangent(x[1], x[0], x[2]), corner_cotangent(x[1], x[0], x[3])};
     h.weights[0] = at_1[0] + at_1[1];
     h.weights[1] = at_0[0] + at_0[1];
     h.weights[2] = -at_0[0] - at_1[0];
@@ -115,8 +115,8 @@ void fabric_free(fabric *f) {
 
 /* Equation 26 of XPBD for one iteration: the multiplier of a constraint that is off by `error`, and that
  * changed by `change` since the small step began; `squares` is the sum of inverse mass * gradient^2. */
-static double multiplier(double error, double change, double squares, double compliance, double damping,
-                         double step) {
+static double constraint_multiplier(double error, double change, double squares, double compliance,
+                                    double damping, double step) {
     double lag = damping / step;
     return -(error + lag * change) / ((1.0 + lag) * squares + compliance / (step * step));
 }
@@ -131,8 +131,8 @@ static void solve_spring(const fabric *f, const fabric_spring *s, double step, c
     if (!vec3_normalize(direction)) return;
     double wa = f->inverse_masses[s->vertices[0]], wb = f->inverse_masses[s->vertices[1]];
     if (wa + wb == 0.0) return;
-    double change = multiplier(length - s->rest, length - vec3_dot(before, direction), wa + wb, s->compliance,
-                               f->damping, step);
+    double change = constraint_multiplier(length - s->rest, length - vec3_dot(before, direction), wa + wb,
+                                          s->compliance, f->damping, step);
     vec3_add_scaled(positions + a, wa * change, direction);
     vec3_add_scaled(positions + b, -wb * change, direction);
 }
@@ -145,8 +145,8 @@ static void solve_hinge(const fabric *f, const fabric_hinge *h, double step, con
     for (int i = 0; i < 4; i++) squares += f->inverse_masses[h->vertices[i]] * h->weights[i] * h->weights[i];
     double length = vec3_norm(direction);
     if (squares == 0.0 || !vec3_normalize(direction)) return;
-    double change = multiplier(length - h->rest, length - vec3_dot(before, direction), squares, h->compliance,
-                               f->damping, step);
+    double change = constraint_multiplier(length - h->rest, length - vec3_dot(before, direction), squares,
+                                          h->compliance, f->damping, step);
     for (int i = 0; i < 4; i++)
         vec3_add_scaled(positions + h->vertices[i] * 3,
                         f->inverse_masses[h->vertices[i]] * h->weights[i] * change, direction);

@@ -122,7 +122,7 @@ static bool is_told(const safe_motion *s, uint32_t vertex) {
 
 /* The vertices of a contact come into one zone; but for an obstacle's, which only tell it how they move: or
  * all that lies on a floor were one. Returns UINT32_MAX for vertices of obstacles only. */
-static uint32_t join(safe_motion *s, const cscd_stencil *stencil, const double *x0, const double *x1) {
+static uint32_t join_zones(safe_motion *s, const cscd_stencil *stencil, const double *x0, const double *x1) {
     uint32_t zone = UINT32_MAX;
     for (int i = 0; i < 4; i++) {
         if (is_told(s, stencil->vertices[i])) continue;
@@ -163,7 +163,7 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
     for (size_t i = 0; i < found->count; i++) {
         const cscd_contact *c = &found->items[i];
         stencil = cscd_mesh_stencil(s->mesh, c->kind, c->a, c->b, c->u, c->v);
-        join(s, &stencil, x0, x1);
+        join_zones(s, &stencil, x0, x1);
     }
     sum_up_zones(s, x0, x1);
     for (size_t i = 0; i < found->count; i++) {

@@ -8,12 +8,12 @@ static void *count_and_allocate(void *user, size_t size, size_t alignment) {
     return aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }
 
-static void release(void *user, void *block, size_t size) {
+static void free_block(void *user, void *block, size_t size) {
     (void)user;
     (void)size;
     free(block);
 }
 
 cscd_allocator allocation_count_interface(uint64_t *count) {
-    return (cscd_allocator){count_and_allocate, release, count};
+    return (cscd_allocator){count_and_allocate, free_block, count};
 }

@@ -30,15 +30,15 @@ static double largest_eigenvalue(double m[4][4]) {
     return value;
 }
 
-static void centroid(const double *points, uint32_t count, double out[3]) {
+static void find_centroid(const double *points, uint32_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0.0;
     for (uint32_t i = 0; i < count; i++) vec3_add_scaled(out, 1.0 / count, points + i * 3);
 }
 
 double rigid_residual(const double *from, const double *to, uint32_t point_count) {
     double from_centre[3], to_centre[3], s[3][3] = {{0.0}}, squares = 0.0;
-    centroid(from, point_count, from_centre);
-    centroid(to, point_count, to_centre);
+    find_centroid(from, point_count, from_centre);
+    find_centroid(to, point_count, to_centre);
     for (uint32_t i = 0; i < point_count; i++) {
         double a[3], b[3];
         vec3_subtract(from + i * 3, from_centre, a);

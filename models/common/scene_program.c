@@ -28,7 +28,7 @@ static bool is_known(const scene_program *p, char *name) {
     return false;
 }
 
-static int run(const scene_program *p, int argument_count, char **arguments) {
+static int run_program(const scene_program *p, int argument_count, char **arguments) {
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) return print_help(p, stdout);
     if (argument_count < 3) return print_help(p, stderr);
     char **names = arguments + 1;
@@ -49,7 +49,7 @@ static int run(const scene_program *p, int argument_count, char **arguments) {
 }
 
 int scene_program_run(const scene_program *p, int argument_count, char **arguments) {
-    int code = run(p, argument_count, arguments);
+    int code = run_program(p, argument_count, arguments);
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     fprintf(stderr, "%s: standard output: %s\n", p->name, strerror(errno));
     return 1;

@@ -55,7 +55,7 @@ static ipc_contact make_contact(const cscd_mesh *mesh, const double *rest, const
     return c;
 }
 
-static void reserve(ipc_contacts *contacts, size_t count) {
+static void reserve_items(ipc_contacts *contacts, size_t count) {
     if (count <= contacts->capacity) return;
     free(contacts->items);
     contacts->capacity = count + count / 2;
@@ -65,7 +65,7 @@ static void reserve(ipc_contacts *contacts, size_t count) {
 void ipc_contacts_find(ipc_contacts *contacts, const cscd_mesh *mesh, const double *rest,
                        const double *positions, const cscd_proximities *near,
                        const ipc_barrier_options *options) {
-    reserve(contacts, near->count);
+    reserve_items(contacts, near->count);
     contacts->count = near->count;
     contacts->energy = 0.0;
     contacts->least_distance = INFINITY;

@@ -43,7 +43,7 @@ static void add_spring(ipc_block *sum, const ipc_spring_hessian *h) {
 }
 
 /* By cofactors; the block is positive definite. */
-static void invert(ipc_block *block) {
+static void invert_block(ipc_block *block) {
     const double *m = block->m;
     double xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];
     double determinant = m[0] * xx + m[1] * xy + m[2] * xz;
@@ -70,7 +70,7 @@ void ipc_system_set(ipc_system *s, const double *positions, const ipc_contacts *
     }
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         if (s->inertia[v] > 0.0)
-            invert(&s->inverses[v]);
+            invert_block(&s->inverses[v]);
         else
             s->inverses[v] = (ipc_block){{0.0}};
     }
@@ -85,17 +85,17 @@ void ipc_system_product(const ipc_system *s, const double *x, double *out) {
     }
 }
 
-static double inner(const ipc_system *s, const double *a, const double *b) {
+static double inner_product(const ipc_system *s, const double *a, const double *b) {
     double sum = 0.0;
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) sum += a[i] * b[i];
     return sum;
 }
 
-static void add(const ipc_system *s, double *a, double factor, const double *b) {
+static void add_multiple(const ipc_system *s, double *a, double factor, const double *b) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) a[i] += factor * b[i];
 }
 
-static void precondition(ipc_system *s) {
+static void apply_preconditioner(ipc_system *s) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         const double *m = s->inverses[v].m, *x = s->residual + (size_t)v * 3;
         double *out = s->preconditioned + (size_t)v * 3;
@@ -111,16 +111,16 @@ uint32_t ipc_system_solve(ipc_system *s, const double *gradient, double toleranc
     ipc_system_product(s, x, s->product);
     for (uint32_t i = 0; i < count; i++)
         s->residual[i] = s->inertia[i / 3] > 0.0 ? -gradient[i] - s->product[i] : 0.0;
-    precondition(s);
+    apply_preconditioner(s);
     memcpy(s->search, s->preconditioned, count * sizeof *s->search);
-    double size = inner(s, s->residual, s->preconditioned), enough = tolerance * tolerance * size;
+    double size = inner_product(s, s->residual, s->preconditioned), enough = tolerance * tolerance * size;
     while (size > enough && iteration < most) {
         ipc_system_product(s, s->search, s->product);
-        double length = size / inner(s, s->search, s->product), before = size;
-        add(s, x, length, s->search);
-        add(s, s->residual, -length, s->product);
-        precondition(s);
-        size = inner(s, s->residual, s->preconditioned);
+        double length = size / inner_product(s, s->search, s->product), before = size;
+        add_multiple(s, x, length, s->search);
+        add_multiple(s, s->residual, -length, s->product);
+        apply_preconditioner(s);
+        size = inner_product(s, s->residual, s->preconditioned);
         for (uint32_t i = 0; i < count; i++)
             s->search[i] = s->preconditioned[i] + size / before * s->search[i];
         iteration++;

@@ -19,7 +19,7 @@ static void place_upright(double radius, double height, double angle, double poi
     point[2] = radius * sin(angle);
 }
 
-static void move(body *b, const double scale[3], const double offset[3]) {
+static void scale_and_move(body *b, const double scale[3], const double offset[3]) {
     for (uint32_t i = 0; i < b->vertex_count * 3; i++)
         b->positions[i] = scale[i % 3] * b->positions[i] + offset[i % 3];
     body_round(b);
@@ -33,7 +33,8 @@ static uint32_t make_rings(uint32_t triangle_count, ipc_object objects[IPC_OBJEC
         objects[i] = (ipc_object){.obstacle = i == 0};
         body_add_rings(&objects[i].shape, &o, triangle_count / LINKS / 2 * 2,
                        i % 2 == 0 ? place_upright : NULL);
-        move(&objects[i].shape, (double[3]){1.0, 1.0, 1.0}, (double[3]){link_spacing * i, 0.0, 0.0});
+        scale_and_move(&objects[i].shape, (double[3]){1.0, 1.0, 1.0},
+                       (double[3]){link_spacing * i, 0.0, 0.0});
     }
     return LINKS;
 }
@@ -41,7 +42,7 @@ static uint32_t make_rings(uint32_t triangle_count, ipc_object objects[IPC_OBJEC
 static ipc_object make_plate(double height, double travel) {
     ipc_object plate = {.obstacle = true, .travel = {0.0, 0.0, travel}};
     add_cube(&plate.shape, PLATE_DIVISIONS);
-    move(&plate.shape, (double[3]){2.0, 2.0, 0.1}, (double[3]){0.0, 0.0, height});
+    scale_and_move(&plate.shape, (double[3]){2.0, 2.0, 0.1}, (double[3]){0.0, 0.0, height});
     return plate;
 }
 

@@ -37,7 +37,7 @@ static void add_object(ipc_solver *p, const ipc_object *object, uint32_t first_v
     ipc_springs_add_body(&p->springs, b, first_vertex, stuff);
 }
 
-static void allocate(ipc_solver *p) {
+static void allocate_arrays(ipc_solver *p) {
     double **arrays[] = {&p->positions, &p->velocities, &p->travels, &p->before, &p->predicted,
                          &p->gradient,  &p->direction,  &p->end,     &p->trial};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
@@ -61,7 +61,7 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
     ipc_object objects[IPC_OBJECTS_MAX] = {{.obstacle = false}};
     uint32_t count = scene->make(triangle_count > 0 ? triangle_count : scene->triangle_count, objects);
     for (uint32_t i = 0; i < count; i++) body_append(&p.shape, &objects[i].shape, (double[3]){0.0, 0.0, 0.0});
-    allocate(&p);
+    allocate_arrays(&p);
     memcpy(p.positions, p.shape.positions, (size_t)p.shape.vertex_count * 3 * sizeof *p.positions);
     uint32_t first_vertex = 0;
     for (uint32_t i = 0; i < count; i++) {

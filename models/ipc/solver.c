@@ -30,7 +30,7 @@ double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc
 }
 
 /* Where an obstacle's coordinate i is to be at the end of the time step. */
-static double goal(const ipc_solver *p, uint32_t i) {
+static double goal_of(const ipc_solver *p, uint32_t i) {
     return p->shape.positions[i] + p->to_travel * p->travels[i];
 }
 
@@ -39,7 +39,7 @@ static void aim_obstacles(ipc_solver *p) {
     p->arrived = true;
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) {
         if (p->inertia[i / 3] > 0.0) continue;
-        p->direction[i] = goal(p, i) - p->positions[i];
+        p->direction[i] = goal_of(p, i) - p->positions[i];
         p->arrived = p->arrived && p->direction[i] == 0.0;
     }
 }
@@ -61,7 +61,7 @@ static double find_direction(ipc_solver *p) {
 }
 
 /* The energy at the trial point, `length` along the line. */
-static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
+static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) {
     cscd_proximities near;
     double since = clock_now_ms();
     cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
@@ -75,7 +75,7 @@ static cscd_status evaluate(ipc_solver *p, double length, double *energy) {
 }
 
 /* Certified: p->trial is what the library verified, at most `longest` along the line. */
-static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
+static cscd_status step_along_line(ipc_solver *p, double longest, cscd_free_step *step) {
     double since = clock_now_ms();
     cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
     add_detection(p, since, &p->statistics.certify_ms);
@@ -84,7 +84,7 @@ static cscd_status reach(ipc_solver *p, double longest, cscd_free_step *step) {
 
 static cscd_status begin_line(ipc_solver *p) {
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
-        p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal(p, i);
+        p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal_of(p, i);
     double since = clock_now_ms();
     cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
     add_detection(p, since, &p->statistics.begin_ms);
@@ -101,8 +101,8 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
     for (int i = 0; status == CSCD_OK && !*found && i < HALVINGS_MOST; i++) {
         cscd_free_step step;
         double energy = INFINITY;
-        status = reach(p, longest, &step);
-        if (status == CSCD_OK) status = evaluate(p, step.length, &energy);
+        status = step_along_line(p, longest, &step);
+        if (status == CSCD_OK) status = evaluate_trial(p, step.length, &energy);
         if (status != CSCD_OK) return status;
         p->statistics.cut += i == 0 && step.limited;
         *found = !p->arrived || energy <= p->energy + least_gain * step.length * slope;
@@ -113,7 +113,7 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
 }
 
 /* What was tried is where the vertices are. */
-static void accept(ipc_solver *p) {
+static void accept_trial(ipc_solver *p) {
     double *positions = p->positions;
     ipc_contacts contacts = p->contacts;
     p->positions = p->trial;
@@ -123,7 +123,7 @@ static void accept(ipc_solver *p) {
     p->statistics.least_distance = fmin(p->statistics.least_distance, p->contacts.least_distance);
 }
 
-static double farthest(const ipc_solver *p) {
+static double farthest_move(const ipc_solver *p) {
     double most = 0.0;
     for (uint32_t v = 0; v < p->shape.vertex_count; v++)
         most = fmax(most, vec3_norm(p->direction + (size_t)v * 3));
@@ -138,8 +138,8 @@ cscd_status ipc_solver_iterate(ipc_solver *p, bool *done) {
     p->statistics.newton++;
     p->statistics.driven += !p->arrived;
     p->statistics.unfinished += !found;
-    if (found) accept(p);
-    *done = p->arrived && (!found || farthest(p) < done_share * p->scene->barrier.reach);
+    if (found) accept_trial(p);
+    *done = p->arrived && (!found || farthest_move(p) < done_share * p->scene->barrier.reach);
     return CSCD_OK;
 }
 

@@ -59,7 +59,7 @@ static bool make_bodies(body *out, io_error *error) {
     return true;
 }
 
-static bool explain(const tumble *t, cscd_status status, io_error *error) {
+static bool explain_status(const tumble *t, cscd_status status, io_error *error) {
     return status == CSCD_OK || io_fail(error, "%s: %s: %s", tumble_name, cscd_status_string(status),
                                         cscd_context_detail(t->context));
 }
@@ -78,7 +78,7 @@ bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
     t.frame = body_allocate(count, sizeof *t.frame);
     t.start = body_allocate(count, sizeof *t.start);
     memcpy(t.frame, t.shape.positions, count * sizeof *t.frame);
-    if (!explain(&t, open_detector(&t), error)) {
+    if (!explain_status(&t, open_detector(&t), error)) {
         tumble_close(&t);
         return false;
     }
@@ -107,7 +107,7 @@ bool tumble_advance(tumble *t, io_error *error) {
         cscd_contacts found;
         memcpy(t->start, t->soft.vertices, bytes);
         simulation_advance(&t->soft, &t->around, &t->contacts, frame_seconds / CHECKS, SMALL_STEPS);
-        if (!explain(t, cscd_detector_step(t->detector, t->start, t->soft.vertices, &found), error))
+        if (!explain_status(t, cscd_detector_step(t->detector, t->start, t->soft.vertices, &found), error))
             return false;
         self_contacts_add(&t->contacts, &found, t->start, t->soft.vertices);
     }

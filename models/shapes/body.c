@@ -6,31 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void *checked(void *block) {
+static void *check_memory(void *block) {
     if (block != NULL) return block;
     fprintf(stderr, "out of memory for the mesh\n");
     exit(1);
 }
 
 void *body_allocate(size_t count, size_t size) {
-    return checked(calloc(count > 0 ? count : 1, size));
+    return check_memory(calloc(count > 0 ? count : 1, size));
 }
 
-static void *grown(void *block, uint32_t *capacity, size_t item_size) {
+static void *grow_block(void *block, uint32_t *capacity, size_t item_size) {
     *capacity = *capacity == 0 ? 1024 : *capacity * 2;
-    return checked(realloc(block, *capacity * item_size));
+    return check_memory(realloc(block, *capacity * item_size));
 }
 
 uint32_t body_add_vertex(body *b, double x, double y, double z) {
     if (b->vertex_count == b->vertex_capacity)
-        b->positions = grown(b->positions, &b->vertex_capacity, 3 * sizeof *b->positions);
+        b->positions = grow_block(b->positions, &b->vertex_capacity, 3 * sizeof *b->positions);
     memcpy(b->positions + (size_t)b->vertex_count * 3, (double[3]){x, y, z}, 3 * sizeof(double));
     return b->vertex_count++;
 }
 
 void body_add_triangle(body *b, uint32_t v0, uint32_t v1, uint32_t v2) {
     if (b->triangle_count == b->triangle_capacity)
-        b->triangles = grown(b->triangles, &b->triangle_capacity, 3 * sizeof *b->triangles);
+        b->triangles = grow_block(b->triangles, &b->triangle_capacity, 3 * sizeof *b->triangles);
     memcpy(b->triangles + (size_t)b->triangle_count++ * 3, (uint32_t[3]){v0, v1, v2}, 3 * sizeof(uint32_t));
 }
 

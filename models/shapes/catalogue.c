@@ -84,7 +84,7 @@ uint32_t body_default_count(body_kind kind) {
     return body_nearest_count(kind, entries[kind].default_count);
 }
 
-static bool refuse(body_kind kind, uint32_t triangle_count, io_error *error) {
+static bool refuse_count(body_kind kind, uint32_t triangle_count, io_error *error) {
     const entry *e = &entries[kind];
     uint32_t least = body_least_count(kind);
     if (triangle_count < least || triangle_count > BODY_TRIANGLES_MAX)
@@ -107,7 +107,7 @@ bool body_make(body_kind kind, uint32_t triangle_count, body *out, io_error *err
     bool good = true;
     if (triangle_count == 0) triangle_count = body_default_count(kind);
     if (body_nearest_count(kind, triangle_count) != triangle_count)
-        return refuse(kind, triangle_count, error);
+        return refuse_count(kind, triangle_count, error);
     if (e->add_rings != NULL) e->add_rings(&b, triangle_count);
     if (e->add_implicit != NULL) good = e->add_implicit(&b, triangle_count);
     if (e->add_squares != NULL) e->add_squares(&b, squares_below(e, triangle_count));

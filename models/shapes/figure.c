@@ -25,7 +25,7 @@ static double to_limb(const double p[3], const limb *l) {
 }
 
 /* The smaller of the two, rounded where they are less than `blend` apart. */
-static double united(double a, double b, double blend) {
+static double round_union(double a, double b, double blend) {
     double h = fmax(blend - fabs(a - b), 0.0) / blend;
     return fmin(a, b) - h * h * blend * 0.25;
 }
@@ -49,7 +49,7 @@ static double to_figure(const double point[3]) {
     double p[3] = {fabs(point[0]), point[1], point[2]};
     double distance = to_limb(p, &limbs[0]);
     for (size_t i = 1; i < sizeof limbs / sizeof *limbs; i++)
-        distance = united(distance, to_limb(p, &limbs[i]), limbs[i].blend);
+        distance = round_union(distance, to_limb(p, &limbs[i]), limbs[i].blend);
     return distance;
 }
 
@@ -63,7 +63,7 @@ static double to_ring(const double p[3], double centre, double major, double min
 }
 
 static double to_genus2(const double p[3]) {
-    return united(to_ring(p, -0.85, 0.7, 0.25), to_ring(p, 0.85, 0.7, 0.25), 0.2);
+    return round_union(to_ring(p, -0.85, 0.7, 0.25), to_ring(p, 0.85, 0.7, 0.25), 0.2);
 }
 
 bool add_genus2(body *b, uint32_t triangle_count) {

@@ -16,7 +16,7 @@ static size_t grid_index(const grid *g, uint32_t x, uint32_t y, uint32_t z) {
     return ((size_t)z * g->size[1] + y) * g->size[0] + x;
 }
 
-static grid sample(const implicit *surface, double spacing) {
+static grid sample_grid(const implicit *surface, double spacing) {
     const double *low = surface->low, *high = surface->high;
     grid g = {.spacing = spacing};
     for (int k = 0; k < 3; k++) {
@@ -37,7 +37,7 @@ static grid sample(const implicit *surface, double spacing) {
     return g;
 }
 
-static bool inside(const grid *g, const uint32_t at[3], uint32_t step_axis, uint32_t other_axis) {
+static bool corner_is_inside(const grid *g, const uint32_t at[3], uint32_t step_axis, uint32_t other_axis) {
     uint32_t p[3] = {at[0], at[1], at[2]};
     if (step_axis < 3) p[step_axis]++;
     if (other_axis < 3) p[other_axis]++;
@@ -52,8 +52,9 @@ static bool is_ambiguous(const grid *g) {
             for (at[0] = 0; at[0] + 1 < g->size[0]; at[0]++) {
                 for (uint32_t u = 0; u < 3; u++) {
                     uint32_t v = (u + 1) % 3;
-                    bool here = inside(g, at, 3, 3), across = inside(g, at, u, v);
-                    if (here == across && here != inside(g, at, u, 3) && here != inside(g, at, v, 3))
+                    bool here = corner_is_inside(g, at, 3, 3), across = corner_is_inside(g, at, u, v);
+                    if (here == across && here != corner_is_inside(g, at, u, 3) &&
+                        here != corner_is_inside(g, at, v, 3))
                         return true;
                 }
             }
@@ -151,12 +152,12 @@ void implicit_project(const implicit *surface, double scale, double p[3]) {
 
 void body_add_implicit(body *b, const implicit *surface, double spacing) {
     uint32_t at[3];
-    grid g = sample(surface, spacing);
+    grid g = sample_grid(surface, spacing);
     while (is_ambiguous(&g)) {
         free(g.values);
         free(g.cells);
         spacing *= 0.97;
-        g = sample(surface, spacing);
+        g = sample_grid(surface, spacing);
     }
     for (at[2] = 0; at[2] + 1 < g.size[2]; at[2]++) {
         for (at[1] = 0; at[1] + 1 < g.size[1]; at[1]++) {

@@ -36,13 +36,13 @@ void outline_arc(outline *o, double centre_radius, double centre_height, double 
 }
 
 /* The angle of the tangent where a piece starts or ends. */
-static double direction(const outline_piece *piece, int end) {
+static double tangent_angle(const outline_piece *piece, int end) {
     if (piece->size == 0.0) return atan2(piece->to[1] - piece->from[1], piece->to[0] - piece->from[0]);
     return piece->angle[end] + (piece->angle[1] > piece->angle[0] ? 90.0 : -90.0) * degree;
 }
 
 void outline_turn(outline *o, double size, double by) {
-    double side = by > 0.0 ? 1.0 : -1.0, heading = direction(&o->pieces[o->piece_count - 1], 1) / degree;
+    double side = by > 0.0 ? 1.0 : -1.0, heading = tangent_angle(&o->pieces[o->piece_count - 1], 1) / degree;
     double from = heading - 90.0 * side;
     outline_arc(o, o->end[0] - size * cos(from * degree), o->end[1] - size * sin(from * degree), size, from,
                 from + by);
@@ -65,7 +65,8 @@ double outline_section(const outline *o, uint32_t *piece) {
     while (*piece < o->piece_count) {
         const outline_piece *last = &o->pieces[(*piece)++];
         sum += last->length;
-        if (*piece < o->piece_count && cos(direction(last + 1, 0) - direction(last, 1)) < cos(20.0 * degree))
+        if (*piece < o->piece_count &&
+            cos(tangent_angle(last + 1, 0) - tangent_angle(last, 1)) < cos(20.0 * degree))
             break;
     }
     return sum;

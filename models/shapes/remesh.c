@@ -36,7 +36,7 @@ static edge *sorted_edges(const surface *s, uint32_t *count) {
     return edges;
 }
 
-static void middle(const surface *s, const implicit *shape, uint32_t h, double scale, double at[3]) {
+static void edge_middle(const surface *s, const implicit *shape, uint32_t h, double scale, double at[3]) {
     const double *p = s->mesh.positions + (size_t)half_edge_from(s, h) * 3;
     const double *q = s->mesh.positions + (size_t)half_edge_to(s, h) * 3;
     for (int k = 0; k < 3; k++) at[k] = 0.5 * (p[k] + q[k]);
@@ -65,7 +65,7 @@ static uint32_t collapse_shortest(surface *s, const implicit *shape, uint32_t mo
         if (triangle_is_dead(s, h / 3)) continue;
         uint32_t a = half_edge_from(s, h), b = half_edge_to(s, h);
         if (touched[a] || touched[b] || surface_valence(s, a) + surface_valence(s, b) > 13) continue;
-        middle(s, shape, h, scale, at);
+        edge_middle(s, shape, h, scale, at);
         if (!surface_collapse(s, h, at)) continue;
         touch_neighbours(s, touched, a);
         done++;
@@ -87,7 +87,7 @@ static uint32_t split_longest(surface *s, const implicit *shape, uint32_t most, 
         if (touched[a] || touched[b]) continue;
         touch_neighbours(s, touched, a);
         touch_neighbours(s, touched, b);
-        middle(s, shape, h, scale, at);
+        edge_middle(s, shape, h, scale, at);
         surface_split(s, h, at);
         touched[s->mesh.vertex_count - 1] = 1;
         done++;
@@ -97,7 +97,7 @@ static uint32_t split_longest(surface *s, const implicit *shape, uint32_t most, 
     return done;
 }
 
-static int excess(uint32_t valence) {
+static int excess_valence(uint32_t valence) {
     return (int)valence - 6;
 }
 
@@ -107,7 +107,7 @@ static bool evens_valences(const surface *s, uint32_t h) {
                      s->mesh.triangles[half_edge_previous(s->twins[h])]};
     int gain = 0;
     for (int i = 0; i < 4; i++) {
-        int now = excess(surface_valence(s, v[i])), then = now + (i < 2 ? -1 : 1);
+        int now = excess_valence(surface_valence(s, v[i])), then = now + (i < 2 ? -1 : 1);
         gain += now * now - then * then;
     }
     return gain > 0;
@@ -137,7 +137,7 @@ static void flip_where(surface *s, bool (*wanted)(const surface *, uint32_t)) {
 }
 
 /* Vertices move along the surface towards the mean of their neighbours. */
-static void relax(surface *s, const implicit *shape, double length) {
+static void relax_vertices(surface *s, const implicit *shape, double length) {
     for (uint32_t v = 0; v < s->mesh.vertex_count; v++) {
         if (s->out[v] == UINT32_MAX) continue;
         double sum[3] = {0.0, 0.0, 0.0}, count = 0.0;
@@ -167,7 +167,7 @@ static double ideal_length(const surface *s, uint32_t count) {
 }
 
 /* To the target; false when not enough edges can be collapsed. */
-static bool reach(surface *s, const implicit *shape, uint32_t target, double length) {
+static bool reach_count(surface *s, const implicit *shape, uint32_t target, double length) {
     for (int pass = 0; pass < PASSES_MAX && s->live_triangles != target; pass++) {
         uint32_t most = s->live_triangles / 50 + 1;
         if (s->live_triangles > target) {
@@ -188,9 +188,9 @@ static bool even_out(surface *s, const implicit *shape, uint32_t target, int rou
         uint32_t most = s->live_triangles / 8;
         split_longest(s, shape, most, length, 4.0 / 3.0 * length);
         collapse_shortest(s, shape, most, length, 0.75 * length);
-        if (!reach(s, shape, target, length)) return false;
+        if (!reach_count(s, shape, target, length)) return false;
         flip_where(s, evens_valences);
-        relax(s, shape, length);
+        relax_vertices(s, shape, length);
     }
     return true;
 }
@@ -207,7 +207,7 @@ bool body_remesh(body *b, const implicit *shape, uint32_t triangle_count) {
     double length = ideal_length(&s, triangle_count);
     for (int round = 0; good && round < FINAL_ROUNDS; round++) {
         flip_where(&s, is_not_delaunay);
-        relax(&s, shape, length);
+        relax_vertices(&s, shape, length);
     }
     flip_where(&s, is_not_delaunay);
     surface_close(&s, b);

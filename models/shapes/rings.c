@@ -67,7 +67,7 @@ static int by_remainder(const void *a, const void *b) {
 }
 
 /* In proportion to the radii, by largest remainders. */
-static void apportion(ring *rings, uint32_t count, uint32_t total) {
+static void apportion_vertices(ring *rings, uint32_t count, uint32_t total) {
     double low = 0.0, high = 1.0, sum = 0.0;
     assert(total >= SIZE_LEAST * count);
     for (int round = 0; round < 200; round++) {
@@ -106,22 +106,22 @@ static void add_vertices(body *b, ring *rings, uint32_t count, rings_place *plac
     }
 }
 
-static uint32_t corner(const ring *r, uint32_t i) {
+static uint32_t ring_vertex(const ring *r, uint32_t i) {
     return r->first + (i + r->shift) % r->size;
 }
 
 /* Two rings of any two sizes: always on along the one whose next edge has its middle first. */
-static void stitch(body *b, const ring *low, const ring *high) {
+static void stitch_rings(body *b, const ring *low, const ring *high) {
     uint32_t i = 0, j = 0;
     while (i < low->size || j < high->size) {
         double low_middle = low->turn + (i + 0.5) / low->size,
                high_middle = high->turn + (j + 0.5) / high->size;
         bool along_low = i < low->size && (j == high->size || low_middle <= high_middle);
-        uint32_t here = corner(low, i), above = corner(high, j);
+        uint32_t here = ring_vertex(low, i), above = ring_vertex(high, j);
         if (along_low)
-            body_add_triangle(b, here, corner(low, ++i), above);
+            body_add_triangle(b, here, ring_vertex(low, ++i), above);
         else
-            body_add_triangle(b, here, corner(high, ++j), above);
+            body_add_triangle(b, here, ring_vertex(high, ++j), above);
     }
 }
 
@@ -131,7 +131,7 @@ static void stitch_around(body *b, const ring *last, ring first) {
     uint32_t steps = (uint32_t)floor(offset + 0.5);
     first.turn += (double)steps / first.size;
     first.shift = steps % first.size;
-    stitch(b, last, &first);
+    stitch_rings(b, last, &first);
 }
 
 static void add_pole(body *b, const ring *r, double height, bool lower, rings_place *place) {
@@ -139,7 +139,7 @@ static void add_pole(body *b, const ring *r, double height, bool lower, rings_pl
     place(0.0, height, 0.0, p);
     uint32_t pole = body_add_vertex(b, p[0], p[1], p[2]);
     for (uint32_t i = 0; i < r->size; i++)
-        body_add_triangle(b, pole, corner(r, lower ? i + 1 : i), corner(r, lower ? i : i + 1));
+        body_add_triangle(b, pole, ring_vertex(r, lower ? i + 1 : i), ring_vertex(r, lower ? i : i + 1));
 }
 
 void body_add_rings(body *b, const outline *o, uint32_t triangle_count, rings_place *place) {
@@ -149,9 +149,9 @@ void body_add_rings(body *b, const outline *o, uint32_t triangle_count, rings_pl
     ring *rings = body_allocate(count, sizeof *rings);
     place_rings(o, distance, rings);
     if (place == NULL) place = revolve_point;
-    apportion(rings, count, total);
+    apportion_vertices(rings, count, total);
     add_vertices(b, rings, count, place);
-    for (uint32_t k = 0; k + 1 < count; k++) stitch(b, &rings[k], &rings[k + 1]);
+    for (uint32_t k = 0; k + 1 < count; k++) stitch_rings(b, &rings[k], &rings[k + 1]);
     if (o->closed)
         stitch_around(b, &rings[count - 1], rings[0]);
     else {

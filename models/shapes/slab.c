@@ -95,7 +95,7 @@ uint32_t slab_triangles(uint32_t n) {
 }
 
 /* Where the middle is after a length s, in x and z, and the direction up from there. */
-static void fold(double s, double centre[2], double up[2]) {
+static void fold_profile(double s, double centre[2], double up[2]) {
     double bend = pi * fold_radius;
     for (int k = 0; k < 3; k++) {
         double way = k % 2 == 0 ? 1.0 : -1.0, level = 2.0 * fold_radius * (k - 1);
@@ -124,7 +124,7 @@ void add_slab(body *b, uint32_t n) {
         double *p = b->positions + (size_t)v * 3, centre[2], up[2];
         double s = p[0] / size[0] * slab_length();
         double height = thickness * (p[2] / size[2] - 0.5);
-        fold(s, centre, up);
+        fold_profile(s, centre, up);
         p[0] = centre[0] + height * up[0];
         p[1] = width * (p[1] / size[1] - 0.5);
         p[2] = centre[1] + height * up[1];

@@ -8,7 +8,7 @@
 
 static const uint32_t none = UINT32_MAX;
 
-static void *resized(void *block, uint32_t *capacity, uint32_t count, uint32_t room) {
+static void *grow_list(void *block, uint32_t *capacity, uint32_t count, uint32_t room) {
     if (room <= *capacity) return block;
     *capacity = room + room / 2;
     uint32_t *larger = body_allocate(*capacity, sizeof *larger);
@@ -40,8 +40,8 @@ static void find_twins(surface *s) {
 void surface_open(surface *s, body *mesh) {
     *s = (surface){.mesh = *mesh, .live_triangles = mesh->triangle_count};
     *mesh = (body){0};
-    s->twins = resized(NULL, &s->twin_capacity, 0, s->mesh.triangle_count * 3);
-    s->out = resized(NULL, &s->out_capacity, 0, s->mesh.vertex_count);
+    s->twins = grow_list(NULL, &s->twin_capacity, 0, s->mesh.triangle_count * 3);
+    s->out = grow_list(NULL, &s->out_capacity, 0, s->mesh.vertex_count);
     find_twins(s);
 }
 
@@ -104,7 +104,7 @@ static bool are_neighbours(const surface *s, uint32_t a, uint32_t b) {
     return false;
 }
 
-static void join(surface *s, uint32_t h, uint32_t twin) {
+static void join_twins(surface *s, uint32_t h, uint32_t twin) {
     s->twins[h] = twin;
     s->twins[twin] = h;
 }
@@ -131,9 +131,9 @@ bool surface_flip(surface *s, uint32_t h) {
     s->out[a] = g1;
     s->out[b] = h1;
     /* h: d b, h1: b c, h2: c d; g: c a, g1: a d, g2: d c */
-    join(s, h, beside_d);
-    join(s, g, beside_c);
-    join(s, h2, g2);
+    join_twins(s, h, beside_d);
+    join_twins(s, g, beside_c);
+    join_twins(s, h2, g2);
     s->out[c] = g;
     s->out[d] = h;
     return true;
@@ -201,8 +201,8 @@ bool surface_collapse(surface *s, uint32_t h, const double at[3]) {
     uint32_t c = half_edge_from(s, h2), d = half_edge_from(s, g2), *v = s->mesh.triangles;
     for (uint32_t i = half_edge_turn(s, g); i != g; i = half_edge_turn(s, i)) v[i] = a;
     uint32_t bc = s->twins[h1], ca = s->twins[h2], ad = s->twins[g1], db = s->twins[g2];
-    join(s, bc, ca);
-    join(s, ad, db);
+    join_twins(s, bc, ca);
+    join_twins(s, ad, db);
     s->out[a] = ca;
     s->out[b] = none;
     s->out[c] = bc;
@@ -219,20 +219,20 @@ void surface_split(surface *s, uint32_t h, const double at[3]) {
     uint32_t b = half_edge_to(s, h), a = half_edge_to(s, g);
     uint32_t c = half_edge_to(s, h1), d = half_edge_to(s, g1);
     uint32_t m = body_add_vertex(&s->mesh, at[0], at[1], at[2]);
-    s->out = resized(s->out, &s->out_capacity, m, m + 1);
+    s->out = grow_list(s->out, &s->out_capacity, m, m + 1);
     uint32_t first = s->mesh.triangle_count * 3;
     body_add_triangle(&s->mesh, m, b, c);
     body_add_triangle(&s->mesh, m, a, d);
-    s->twins = resized(s->twins, &s->twin_capacity, first, first + 6);
+    s->twins = grow_list(s->twins, &s->twin_capacity, first, first + 6);
     s->live_triangles += 2;
-    join(s, first + 1, s->twins[h1]);
-    join(s, first + 4, s->twins[g1]);
+    join_twins(s, first + 1, s->twins[h1]);
+    join_twins(s, first + 4, s->twins[g1]);
     s->mesh.triangles[h1] = m;
     s->mesh.triangles[g1] = m;
-    join(s, h1, first + 2);
-    join(s, g1, first + 5);
-    join(s, h, first + 3);
-    join(s, g, first);
+    join_twins(s, h1, first + 2);
+    join_twins(s, g1, first + 5);
+    join_twins(s, h, first + 3);
+    join_twins(s, g, first);
     s->out[m] = first;
     s->out[a] = h;
     s->out[b] = g;

@@ -11,14 +11,14 @@ static const uint8_t cuts[2][5][4] = {
     {{1, 3, 0, 5}, {2, 0, 3, 6}, {4, 5, 6, 0}, {7, 6, 5, 3}, {0, 3, 5, 6}},
 };
 
-static double determinant(double m[3][3]) {
+static double determinant_of(double m[3][3]) {
     return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
 /* The derivatives of the determinant. */
-static void cofactors(double m[3][3], double out[3][3]) {
+static void find_cofactors(double m[3][3], double out[3][3]) {
     for (int i = 0; i < 3; i++) {
         int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         for (int j = 0; j < 3; j++) {
@@ -52,14 +52,14 @@ static tetrahedron make_tetrahedron(const lattice *l, uint32_t cell, const uint8
     double edges[3][3], minors[3][3], young = m->young;
     for (int i = 0; i < 4; i++) t.nodes[i] = l->cells[cell][corners[i]];
     edges_of(&t, l->rest, edges);
-    if (determinant(edges) < 0.0) {
+    if (determinant_of(edges) < 0.0) {
         uint32_t swapped = t.nodes[2];
         t.nodes[2] = t.nodes[3];
         t.nodes[3] = swapped;
         edges_of(&t, l->rest, edges);
     }
-    double sixfold = determinant(edges);
-    cofactors(edges, minors);
+    double sixfold = determinant_of(edges);
+    find_cofactors(edges, minors);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) t.to_rest[i][j] = minors[j][i] / sixfold;
     }
@@ -80,8 +80,8 @@ tetrahedron *tetrahedra_make(const lattice *l, const material *m) {
 
 /* Moves the nodes along the gradient (of the constraint by the deformation gradient) until the constraint,
  * with its compliance, is met to first order. */
-static void correct(const tetrahedron *t, double by_gradient[3][3], double value, double compliance,
-                    const double *inverse_masses, double *nodes) {
+static void correct_nodes(const tetrahedron *t, double by_gradient[3][3], double value, double compliance,
+                          const double *inverse_masses, double *nodes) {
     double gradients[4][3] = {{0.0}};
     for (int j = 0; j < 3; j++) {
         for (int i = 0; i < 3; i++) {
@@ -104,12 +104,12 @@ void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const doubl
         deformation_gradient(t, nodes, f);
         double size = sqrt(vec3_dot(f[0], f[0]) + vec3_dot(f[1], f[1]) + vec3_dot(f[2], f[2]));
         for (int k = 0; k < 9; k++) gradient[k / 3][k % 3] = f[k / 3][k % 3] / size;
-        correct(t, gradient, size, 1.0 / (t->shear * t->volume * step * step), inverse_masses, nodes);
+        correct_nodes(t, gradient, size, 1.0 / (t->shear * t->volume * step * step), inverse_masses, nodes);
 
         deformation_gradient(t, nodes, f);
-        cofactors(f, gradient);
-        double growth = determinant(f) - 1.0 - t->shear / t->bulk;
-        correct(t, gradient, growth, 1.0 / (t->bulk * t->volume * step * step), inverse_masses, nodes);
+        find_cofactors(f, gradient);
+        double growth = determinant_of(f) - 1.0 - t->shear / t->bulk;
+        correct_nodes(t, gradient, growth, 1.0 / (t->bulk * t->volume * step * step), inverse_masses, nodes);
     }
 }
 
@@ -120,7 +120,7 @@ double tetrahedra_energy(const tetrahedron *tetrahedra, uint32_t count, const do
         double f[3][3], rest_growth = t->shear / t->bulk;
         deformation_gradient(t, nodes, f);
         double squared = vec3_dot(f[0], f[0]) + vec3_dot(f[1], f[1]) + vec3_dot(f[2], f[2]);
-        double growth = determinant(f) - 1.0 - rest_growth;
+        double growth = determinant_of(f) - 1.0 - rest_growth;
         energy += 0.5 * t->volume *
                   (t->shear * (squared - 3.0) + t->bulk * (growth * growth - rest_growth * rest_growth));
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool explain(const recorder *r, cscd_status status, io_error *error) {
+static bool explain_status(const recorder *r, cscd_status status, io_error *error) {
     if (status == CSCD_OK) return true;
     return io_fail(error, "%s: %s: %s", r->scene->name, cscd_status_string(status),
                    cscd_context_detail(r->context));
@@ -46,7 +46,7 @@ bool recorder_open(const scene *s, cscd_context *context, recorder *out, io_erro
         *out = r;
         return true;
     }
-    explain(&r, status, error);
+    explain_status(&r, status, error);
     recorder_close(&r);
     return false;
 }
@@ -71,7 +71,7 @@ bool recorder_advance(recorder *r, io_error *error) {
         memcpy(r->start, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->start);
         simulation_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
         cscd_status status = cscd_detector_step(r->detector, r->start, r->soft.vertices, &found);
-        if (!explain(r, status, error)) return false;
+        if (!explain_status(r, status, error)) return false;
         r->detect_ms += cscd_detector_timings(r->detector).total_ms;
         self_contacts_add(&r->contacts, &found, r->start, r->soft.vertices);
     }

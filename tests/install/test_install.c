@@ -35,18 +35,18 @@ static void find_build(void) {
 }
 
 /* Runs the target for the tree below `place`, apart from the make that may run this test. */
-static void make(const char *target, const char *place, const char *variables) {
+static void run_make(const char *target, const char *place, const char *variables) {
     shell("env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES make -s %s BUILD_ROOT='%s' CONFIG=%s GSL=%d "
           "DESTDIR='%s' %s",
           target, build.root, build.config, build.gsl, place, variables);
 }
 
-static void expect(const char *what, char *found, const char *expected) {
+static void expect_output(const char *what, char *found, const char *expected) {
     if (strcmp(found, expected) != 0) fail_msg("%s: found\n%s\nexpected\n%s", what, found, expected);
     free(found);
 }
 
-static int install(void **state) {
+static int install_release(void **state) {
     (void)state;
     find_build();
     if (strcmp(build.config, "release") != 0) {
@@ -57,7 +57,7 @@ static int install(void **state) {
     snprintf(prefix, sizeof prefix, "%s/stage/opt/cscd", folder.path);
     char place[512];
     snprintf(place, sizeof place, "%s/stage", folder.path);
-    make("install", place, "PREFIX=/opt/cscd");
+    run_make("install", place, "PREFIX=/opt/cscd");
     return 0;
 }
 
@@ -86,26 +86,27 @@ static void files_are_where_they_belong(void **state) {
              "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"
              "lib/pkgconfig/cscd.pc\nshare/man/man1/cscd.1\nshare/man/man3/cscd.3\n",
              CSCD_VERSION_MAJOR, version);
-    expect("installed files",
-           shell_output(0, "cd '%s' && find . ! -type d -printf '%%P\\n' | LC_ALL=C sort", prefix), expected);
+    expect_output("installed files",
+                  shell_output(0, "cd '%s' && find . ! -type d -printf '%%P\\n' | LC_ALL=C sort", prefix),
+                  expected);
     shell("cmp '%s/bin/cscd' '%s/%s%s/cscd'", prefix, build.root, build.config,
           build.gsl ? "" : "-without-gsl");
-    expect("places that no value was filled in",
-           shell_output(1, "grep -rn '@[A-Z_]*@' '%s/lib/pkgconfig' '%s/lib/cmake' '%s/share'", prefix,
-                        prefix, prefix),
-           "");
+    expect_output("places that no value was filled in",
+                  shell_output(1, "grep -rn '@[A-Z_]*@' '%s/lib/pkgconfig' '%s/lib/cmake' '%s/share'", prefix,
+                               prefix, prefix),
+                  "");
 }
 
 static void shared_library_exports_the_api(void **state) {
     (void)state;
     char soname[32];
     snprintf(soname, sizeof soname, "libcscd.so.%d\n", CSCD_VERSION_MAJOR);
-    expect(
+    expect_output(
         "soname",
         shell_output(0, "readelf -d '%s/lib/libcscd.so' | sed -n 's/.*SONAME.*\\[\\(.*\\)\\]/\\1/p'", prefix),
         soname);
     char *declared = api_names("*.h");
-    expect(
+    expect_output(
         "declared (<) and exported (>)",
         shell_output(0,
                      "nm -D --defined-only '%s/lib/libcscd.so' | sed -n 's/.* T \\(.*\\)@@CSCD_%d$/\\1/p' | "
@@ -114,10 +115,11 @@ static void shared_library_exports_the_api(void **state) {
                      prefix, CSCD_VERSION_MAJOR, folder.path, declared, folder.path),
         "");
     free(declared);
-    expect("anything else exported",
-           shell_output(0, "nm -D --defined-only '%s/lib/libcscd.so' | grep -vE ' T cscd_| A CSCD_' || true",
-                        prefix),
-           "");
+    expect_output(
+        "anything else exported",
+        shell_output(0, "nm -D --defined-only '%s/lib/libcscd.so' | grep -vE ' T cscd_| A CSCD_' || true",
+                     prefix),
+        "");
 }
 
 /* Compiles tests/install/client.c with what pkg-config says, changed by a filter; returns what it prints. */
@@ -133,17 +135,19 @@ static void c_program_by_pkg_config(void **state) {
     (void)state;
     char version[32];
     snprintf(version, sizeof version, "%s\n", cscd_version_string());
-    expect("version of cscd.pc",
-           shell_output(0, "PKG_CONFIG_PATH='%s/lib/pkgconfig' pkg-config --modversion cscd", prefix),
-           version);
-    expect("shared", c_client("", "cat"), clients_output());
+    expect_output("version of cscd.pc",
+                  shell_output(0, "PKG_CONFIG_PATH='%s/lib/pkgconfig' pkg-config --modversion cscd", prefix),
+                  version);
+    expect_output("shared", c_client("", "cat"), clients_output());
     shell("readelf -d '%s/client' | grep -q 'NEEDED.*libcscd.so.%d\\]'", folder.path, CSCD_VERSION_MAJOR);
-    expect("static", c_client("--static", "sed 's/-lcscd/-l:libcscd.a/'"), clients_output());
-    expect("libraries of the static client",
-           shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libcscd' || true", folder.path), "0\n");
-    expect("GSL beside the static client",
-           shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libgsl\\.' || true", folder.path),
-           build.gsl ? "1\n" : "0\n");
+    expect_output("static", c_client("--static", "sed 's/-lcscd/-l:libcscd.a/'"), clients_output());
+    expect_output("libraries of the static client",
+                  shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libcscd' || true", folder.path),
+                  "0\n");
+    expect_output(
+        "GSL beside the static client",
+        shell_output(0, "readelf -d '%s/client' | grep -c 'NEEDED.*libgsl\\.' || true", folder.path),
+        build.gsl ? "1\n" : "0\n");
 }
 
 /* The page cscd(3) ends with a program, between .nf and .fi; it is compiled as C99. */
@@ -165,14 +169,15 @@ static void cmake_project(const char *place) {
     shell("cmake -S tests/install -B '%s/project' -Dcscd_DIR='%s/lib/cmake/cscd' && "
           "cmake --build '%s/project' --clean-first",
           folder.path, place, folder.path);
-    expect("CMake, shared", shell_output(0, "'%s/project/with-cscd'", folder.path), clients_output());
-    expect("CMake, static", shell_output(0, "'%s/project/with-cscd-static'", folder.path), clients_output());
-    expect("libraries of the programs",
-           shell_output(0,
-                        "cd '%s/project' && for program in with-cscd with-cscd-static; do "
-                        "readelf -d $program | grep -c 'NEEDED.*libcscd' || true; done",
-                        folder.path),
-           "1\n0\n");
+    expect_output("CMake, shared", shell_output(0, "'%s/project/with-cscd'", folder.path), clients_output());
+    expect_output("CMake, static", shell_output(0, "'%s/project/with-cscd-static'", folder.path),
+                  clients_output());
+    expect_output("libraries of the programs",
+                  shell_output(0,
+                               "cd '%s/project' && for program in with-cscd with-cscd-static; do "
+                               "readelf -d $program | grep -c 'NEEDED.*libcscd' || true; done",
+                               folder.path),
+                  "1\n0\n");
 }
 
 /* The tree may be moved: then nothing of its old place is left to be found. */
@@ -198,7 +203,7 @@ static void expect_version(const char *version, const char *answer) {
           "message(\"${PACKAGE_VERSION_COMPATIBLE} ${PACKAGE_VERSION_EXACT}\")\\n' "
           "%s %d '%s/lib/cmake/cscd/cscdConfigVersion.cmake' >'%s/version.cmake'",
           version, atoi(version), prefix, folder.path);
-    expect(version, shell_output(0, "cmake -P '%s/version.cmake'", folder.path), answer);
+    expect_output(version, shell_output(0, "cmake -P '%s/version.cmake'", folder.path), answer);
 }
 
 static void cmake_takes_the_same_major_version(void **state) {
@@ -219,8 +224,8 @@ static void uninstall_leaves_nothing(void **state) {
     (void)state;
     char place[512];
     snprintf(place, sizeof place, "%s/stage", folder.path);
-    make("uninstall", place, "PREFIX=/opt/cscd");
-    expect("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
+    run_make("uninstall", place, "PREFIX=/opt/cscd");
+    expect_output("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
 }
 
 /* Folders of any names; what was there before, files and empty folders, stays. */
@@ -232,15 +237,15 @@ static void uninstall_leaves_what_others_made(void **state) {
     snprintf(place, sizeof place, "%s/with space", folder.path);
     shell("mkdir -p '%s/usr/lib/a-machine/pkgconfig' '%s/usr/man/man1' && touch '%s/usr/man/man1/other.1'",
           place, place, place);
-    make("install", place, variables);
+    run_make("install", place, variables);
     shell("test -e \"$(PKG_CONFIG_PATH='%s/usr/lib/a-machine/pkgconfig' pkg-config --variable=includedir "
           "cscd | tr -d '\\\\')/cscd/cscd.h\"",
           place);
-    make("uninstall", place, variables);
-    expect("what is left",
-           shell_output(0, "cd '%s' && find . -mindepth 1 -printf '%%P\\n' | LC_ALL=C sort", place),
-           "usr\nusr/lib\nusr/lib/a-machine\nusr/lib/a-machine/pkgconfig\nusr/man\nusr/man/man1\n"
-           "usr/man/man1/other.1\n");
+    run_make("uninstall", place, variables);
+    expect_output("what is left",
+                  shell_output(0, "cd '%s' && find . -mindepth 1 -printf '%%P\\n' | LC_ALL=C sort", place),
+                  "usr\nusr/lib\nusr/lib/a-machine\nusr/lib/a-machine/pkgconfig\nusr/man\nusr/man/man1\n"
+                  "usr/man/man1/other.1\n");
 }
 
 int main(void) {
@@ -250,5 +255,5 @@ int main(void) {
         cmocka_unit_test(cpp_program_by_cmake),        cmocka_unit_test(cmake_takes_the_same_major_version),
         cmocka_unit_test(uninstall_leaves_nothing),    cmocka_unit_test(uninstall_leaves_what_others_made),
     };
-    return cmocka_run_group_tests(tests, install, remove_all);
+    return cmocka_run_group_tests(tests, install_release, remove_all);
 }

@@ -81,7 +81,7 @@ static double go_on(press *p) {
     return length;
 }
 
-static void lift(press *p, uint32_t first, uint32_t last, double by) {
+static void lift_vertices(press *p, uint32_t first, uint32_t last, double by) {
     for (uint32_t v = first; v < last; v++) p->x1[v * 3 + 2] += by;
 }
 
@@ -90,7 +90,7 @@ static void free_motions_are_left_alone(void **state) {
     press p = make_press(0.3, 0.3);
     random_stream random = stream_start(3);
     for (uint32_t i = 0; i < p.floor * 3; i++) p.x1[i] += stream_between(&random, -0.02, 0.02);
-    lift(&p, p.lid, p.vertex_count, -0.1);
+    lift_vertices(&p, p.lid, p.vertex_count, -0.1);
     double *wanted = body_allocate(p.vertex_count * 3, sizeof *wanted);
     memcpy(wanted, p.x1, p.vertex_count * 3 * sizeof *wanted);
     assert_true(go_on(&p) == 1.0);
@@ -105,7 +105,7 @@ static void free_motions_are_left_alone(void **state) {
 static void what_falls_stops_at_the_floor(void **state) {
     (void)state;
     press p = make_press(0.1, 1.0);
-    lift(&p, 0, p.floor, -0.5);
+    lift_vertices(&p, 0, p.floor, -0.5);
     for (uint32_t v = 0; v < p.floor; v++) p.x1[v * 3] += 0.2;
     assert_true(go_on(&p) == 1.0);
     assert_int_equal(p.safe.counts.cut, 1);
@@ -141,7 +141,7 @@ static void obstacles_wait_for_what_they_press(void **state) {
     double way = 0.0;
     for (int motion = 0; motion < 40; motion++) {
         memcpy(p.x1, p.x0, p.vertex_count * 3 * sizeof *p.x1);
-        lift(&p, p.lid, p.vertex_count, -0.03);
+        lift_vertices(&p, p.lid, p.vertex_count, -0.03);
         way += 0.03 * go_on(&p);
     }
     assert_true(way > 0.08 && way < 0.1);
@@ -149,7 +149,7 @@ static void obstacles_wait_for_what_they_press(void **state) {
     double lid = p.x0[p.lid * 3 + 2], floor = p.x0[(p.floor + 7) * 3 + 2];
     assert_true(lid > floor && lid < floor + 4.0 * separation);
     for (int motion = 0; motion < 3; motion++) {
-        lift(&p, p.lid, p.vertex_count, 0.03);
+        lift_vertices(&p, p.lid, p.vertex_count, 0.03);
         for (uint32_t v = 0; v < p.floor; v++) p.x1[v * 3 + 2] += 0.01;
         assert_true(go_on(&p) == 1.0);
     }

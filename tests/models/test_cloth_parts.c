@@ -99,7 +99,7 @@ static double *copy_of(const double *values, size_t count) {
     return copy;
 }
 
-static void shake(uint64_t seed, double by, double *positions, uint32_t count) {
+static void shake_vertices(uint64_t seed, double by, double *positions, uint32_t count) {
     random_stream random = stream_start(seed);
     for (uint32_t i = 0; i < count; i++) positions[i] += by * stream_between(&random, -1.0, 1.0);
 }
@@ -147,7 +147,7 @@ static void springs_and_hinges_keep_momentum(void **state) {
     fabric f = fabric_make(&b, &cotton);
     double *before = copy_of(b.positions, b.vertex_count * 3), *x, linear[3] = {0}, angular[3] = {0},
            most = 0.0;
-    shake(7, 1e-6, before, b.vertex_count * 3);
+    shake_vertices(7, 1e-6, before, b.vertex_count * 3);
     x = copy_of(before, b.vertex_count * 3);
     fabric_solve(&f, 1e-3, b.positions, x);
     for (uint32_t v = 0; v < b.vertex_count; v++) {

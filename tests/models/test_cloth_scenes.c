@@ -42,7 +42,7 @@ static cscd_detector *make_detector(const cloth_simulation *run, cscd_method met
     return detector;
 }
 
-static trial begin(const char *name, uint32_t thread_count) {
+static trial begin_trial(const char *name, uint32_t thread_count) {
     trial t = {0};
     io_error error;
     cscd_context_options options = cscd_context_defaults();
@@ -60,7 +60,7 @@ static trial begin(const char *name, uint32_t thread_count) {
     return t;
 }
 
-static void end(trial *t) {
+static void end_trial(trial *t) {
     cscd_detector_destroy(t->judge);
     cscd_detector_destroy(t->brute);
     cloth_close(&t->run);
@@ -69,7 +69,7 @@ static void end(trial *t) {
     free(t->after);
 }
 
-static void advance(trial *t) {
+static void advance_trial(trial *t) {
     io_error error;
     double *kept = t->before;
     if (!cloth_advance(&t->run, &error)) fail_msg("%s", error.text);
@@ -139,7 +139,7 @@ static bool run_scene(trial *t, size_t *most_folds) {
     uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;
     expect_embedded(t->judge, t->after);
     for (uint32_t frame = 1; frame < frame_count; frame++) {
-        advance(t);
+        advance_trial(t);
         expect_nothing(t->judge, t->before, t->after, frame);
         if (frame % BRUTE_EVERY == 0) expect_nothing(t->brute, t->before, t->after, frame);
         if (frame % 20 > 0) continue;
@@ -156,7 +156,7 @@ static bool run_scene(trial *t, size_t *most_folds) {
 /* It lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it. */
 static void the_sheet_drapes_over_the_ball(void **state) {
     (void)state;
-    trial t = begin("cloth-drape", 1);
+    trial t = begin_trial("cloth-drape", 1);
     const cloth_obstacle *ball = &t.run.scene->obstacles[1];
     double top = ball->centre[2] + ball->rise + ball->size, highest = 0.0;
     size_t most_folds;
@@ -171,13 +171,13 @@ static void the_sheet_drapes_over_the_ball(void **state) {
         assert_true(most_folds > 20 && m.obstacles[0] > 10);
         assert_true(highest > top && highest < top + 2.0 * t.run.spacing);
     }
-    end(&t);
+    end_trial(&t);
 }
 
 /* Flat on the floor, below the ball. */
 static void the_sleeve_lies_in_folds(void **state) {
     (void)state;
-    trial t = begin("sleeve", 1);
+    trial t = begin_trial("sleeve", 1);
     double highest = 0.0;
     size_t most_folds;
     bool whole = run_scene(&t, &most_folds);
@@ -191,18 +191,18 @@ static void the_sleeve_lies_in_folds(void **state) {
         assert_true(most_folds > 20 && m.folds > 20 && m.obstacles[1] > 10);
         assert_true(highest < 0.4 * t.run.scene->height);
     }
-    end(&t);
+    end_trial(&t);
 }
 
 /* The panels of the bag meet nothing but each other at their seams, where their vertices stay together, bit
  * for bit. */
 static void seams_hold(void **state) {
     (void)state;
-    trial t = begin("bag", 1);
+    trial t = begin_trial("bag", 1);
     expect_embedded(t.judge, t.after);
     assert_true(t.run.seam_count > 3 * (RESOLUTION - 1));
     for (uint32_t frame = 1; frame < SEWN_FRAMES; frame++) {
-        advance(&t);
+        advance_trial(&t);
         expect_nothing(t.judge, t.before, t.after, frame);
         for (uint32_t i = 0; i < t.run.seam_count; i++)
             assert_memory_equal(t.run.positions + t.run.seams[2 * i] * 3,
@@ -211,13 +211,13 @@ static void seams_hold(void **state) {
     expect_embedded(t.judge, t.after);
     assert_true(t.run.statistics.motion.cut > 0);
     assert_true(count_meetings(&t).obstacles[1] > 10);
-    end(&t);
+    end_trial(&t);
 }
 
 /* Steps of the garment alone, by a method that culls: of the open sheet nothing can be culled, and the sleeve
  * is known to be embedded throughout. */
 static void expect_reason(const char *name, cscd_reason reason, bool culls) {
-    trial t = begin(name, 1);
+    trial t = begin_trial(name, 1);
     cscd_mesh *mesh;
     cscd_plan *plan;
     cscd_detector *detector;
@@ -229,7 +229,7 @@ static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     assert_int_equal(cscd_plan_create(mesh, garment->positions, &options, &plan), CSCD_OK);
     assert_int_equal(cscd_detector_create(mesh, plan, NULL, &detector), CSCD_OK);
     for (uint32_t frame = 1; frame < 40; frame++) {
-        advance(&t);
+        advance_trial(&t);
         expect_nothing(detector, t.before, t.after, frame);
         cscd_guarantee guarantee = cscd_detector_guarantee(detector, 0);
         assert_int_equal(guarantee.reason, reason);
@@ -240,7 +240,7 @@ static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     cscd_detector_destroy(detector);
     cscd_plan_destroy(plan);
     cscd_mesh_destroy(mesh);
-    end(&t);
+    end_trial(&t);
 }
 
 static void guarantees_say_what_was_culled(void **state) {
@@ -252,17 +252,17 @@ static void guarantees_say_what_was_culled(void **state) {
 static void threads_change_nothing(void **state) {
     (void)state;
     for (uint32_t i = 0; i < cloth_scene_count; i++) {
-        trial one = begin(cloth_scenes[i].name, 1), three = begin(cloth_scenes[i].name, 3);
+        trial one = begin_trial(cloth_scenes[i].name, 1), three = begin_trial(cloth_scenes[i].name, 3);
         for (uint32_t frame = 1; frame < THREADED_FRAMES; frame++) {
-            advance(&one);
-            advance(&three);
+            advance_trial(&one);
+            advance_trial(&three);
             assert_memory_equal(one.run.positions, three.run.positions,
                                 one.vertex_count * 3 * sizeof *one.run.positions);
         }
         assert_int_equal(one.run.statistics.near_pairs, three.run.statistics.near_pairs);
         assert_int_equal(one.run.statistics.motion.contacts, three.run.statistics.motion.contacts);
-        end(&one);
-        end(&three);
+        end_trial(&one);
+        end_trial(&three);
     }
 }
 

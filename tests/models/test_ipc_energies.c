@@ -105,7 +105,7 @@ static void springs_hold_the_body(void **state) {
     }
 }
 
-static double directional(const double *gradient, const double *direction, uint32_t count) {
+static double directional_derivative(const double *gradient, const double *direction, uint32_t count) {
     double sum = 0.0;
     for (uint32_t i = 0; i < count; i++) sum += gradient[i] * direction[i];
     return sum;
@@ -127,7 +127,7 @@ static void springs_have_their_gradient(void **state) {
             free(there);
         }
         ipc_springs_add_gradient(&springs, x, gradient);
-        double slope = directional(gradient, direction, count);
+        double slope = directional_derivative(gradient, direction, count);
         assert_close((energies[1] - energies[0]) / 2e-6, slope, 1e-6 * fabs(slope) + 1e-4);
         free(x);
         free(direction);
@@ -210,7 +210,7 @@ static void proximity_free(near_fixture *f) {
     cscd_context_destroy(f->context);
 }
 
-static void find(near_fixture *f, const double *x, ipc_contacts *contacts) {
+static void find_contacts(near_fixture *f, const double *x, ipc_contacts *contacts) {
     cscd_proximities near;
     assert_int_equal(cscd_detector_near(f->detector, x, barrier.reach, &near), CSCD_OK);
     ipc_contacts_find(contacts, f->mesh, f->x, x, &near, &barrier);
@@ -220,7 +220,7 @@ static void find(near_fixture *f, const double *x, ipc_contacts *contacts) {
 static void check_gradient(near_fixture *f, double tolerance) {
     ipc_contacts contacts = {0}, moved = {0};
     double gradient[24] = {0.0}, sum[3] = {0.0, 0.0, 0.0};
-    find(f, f->x, &contacts);
+    find_contacts(f, f->x, &contacts);
     assert_true(contacts.count > 0 && contacts.energy > 0.0 && contacts.least_distance < barrier.reach);
     ipc_contacts_add_gradient(&contacts, gradient);
     for (int i = 0; i < 24; i++) {
@@ -228,7 +228,7 @@ static void check_gradient(near_fixture *f, double tolerance) {
         for (int side = 0; side < 2; side++) {
             memcpy(there, f->x, sizeof there);
             there[i] += side == 0 ? -h : h;
-            find(f, there, &moved);
+            find_contacts(f, there, &moved);
             energies[side] = moved.energy;
         }
         assert_close((energies[1] - energies[0]) / (2.0 * h), gradient[i], tolerance);
@@ -273,7 +273,7 @@ static void near_pairs_have_their_curvature(void **state) {
         double direction[24], product[24] = {0.0}, expected = 0.0, there[24], h = 1e-6;
         cscd_proximities near;
         for (int i = 0; i < 24; i++) direction[i] = stream_between(&random, -1.0, 1.0);
-        find(&f, f.x, &contacts);
+        find_contacts(&f, f.x, &contacts);
         ipc_contacts_add_product(&contacts, direction, product);
         for (size_t c = 0; c < contacts.count; c++) {
             double distance[2] = {-1.0, -1.0};
@@ -291,7 +291,7 @@ static void near_pairs_have_their_curvature(void **state) {
             assert_true(contacts.items[c].curvature >= 0.0);
             expected += contacts.items[c].curvature * change * change;
         }
-        assert_close(directional(product, direction, 24), expected, 1e-5 * (1.0 + expected));
+        assert_close(directional_derivative(product, direction, 24), expected, 1e-5 * (1.0 + expected));
         ipc_contacts_free(&contacts);
         proximity_free(&f);
     }

@@ -58,7 +58,7 @@ static judges call_judges(const ipc_solver *p) {
     return j;
 }
 
-static void dismiss(judges *j) {
+static void dismiss_judges(judges *j) {
     cscd_detector_destroy(j->apart);
     cscd_detector_destroy(j->touching);
     cscd_detector_destroy(j->brute);
@@ -74,7 +74,7 @@ static void expect_none(cscd_detector *detector, const double *from, const doubl
 }
 
 /* Nothing touches on the way nor comes nearer than allowed, and the end crosses nowhere. */
-static void judge(judges *j, const double *from, const double *to) {
+static void judge_interval(judges *j, const double *from, const double *to) {
     cscd_intersections crossing;
     expect_none(j->touching, from, to);
     expect_none(j->apart, from, to);
@@ -105,7 +105,7 @@ static void step_and_judge(ipc_solver *p, judges *j, double *from) {
         assert_true(i < 60);
         memcpy(from, p->positions, (size_t)p->shape.vertex_count * 3 * sizeof *from);
         assert_int_equal(ipc_solver_iterate(p, &done), CSCD_OK);
-        judge(j, from, p->positions);
+        judge_interval(j, from, p->positions);
         if (p->arrived) assert_true(p->energy < energy);
         if (i == 0) check_energy(p, j->touching);
     }
@@ -128,7 +128,7 @@ static ipc_solver run_and_judge(const struct extent *e, cscd_context *context) {
     assert_true(p.statistics.cut > 0 && p.statistics.candidates > 0 && p.statistics.near > 0);
     assert_true(p.statistics.least_distance > p.scene->min_separation);
     free(from);
-    dismiss(&j);
+    dismiss_judges(&j);
     return p;
 }
 
@@ -211,7 +211,7 @@ static void the_energy_falls_however_wild_the_motion(void **state) {
     for (int step = 0; step < 2; step++) step_and_judge(&p, &j, from);
     assert_true(p.statistics.trials > p.statistics.newton && p.statistics.cut > 0);
     free(from);
-    dismiss(&j);
+    dismiss_judges(&j);
     ipc_solver_free(&p);
     cscd_context_destroy(context);
 }
@@ -257,10 +257,10 @@ static void scenes_begin_apart(void **state) {
             volatile float rounded = (float)p.shape.positions[k];
             assert_true((double)rounded == p.shape.positions[k] && p.positions[k] == p.shape.positions[k]);
         }
-        judge(&j, p.positions, p.positions);
+        judge_interval(&j, p.positions, p.positions);
         for (uint32_t c = 0; c < cscd_mesh_component_count(p.mesh); c++)
             assert_true(cscd_mesh_component(p.mesh, c).closed_manifold);
-        dismiss(&j);
+        dismiss_judges(&j);
         ipc_solver_free(&p);
     }
     cscd_context_destroy(context);

@@ -39,7 +39,7 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-static bool exists(const char *path) {
+static bool file_exists(const char *path) {
     return access(path, F_OK) == 0;
 }
 
@@ -59,8 +59,8 @@ static void records_a_scene(void **state) {
     assert_non_null(strstr(run.out, "150 frames of 1710 triangles"));
     assert_non_null(strstr(run.out, "contacts in 0 of 149 intervals, crossing in 0 of 150 frames"));
     tool_run_free(&run);
-    assert_true(exists(model.text) && exists(frames.text) && exists(scenery.text));
-    assert_false(exists(temp_file_path(&folder, "dumbbell-stairs-free-scenery.pc2").text));
+    assert_true(file_exists(model.text) && file_exists(frames.text) && file_exists(scenery.text));
+    assert_false(file_exists(temp_file_path(&folder, "dumbbell-stairs-free-scenery.pc2").text));
 }
 
 /* The model is what the recorder begins with and the first frame of the cache, which has as many frames as it
@@ -143,7 +143,7 @@ static void unknown_scenes_are_refused(void **state) {
     temp_folder empty = temp_folder_make();
     REFUSED(2, "'pawn'", "pawn", empty.path);
     REFUSED(2, "'pawn-drop-fre'", scene_name, "pawn-drop-fre", empty.path);
-    assert_false(exists(temp_file_path(&empty, "dumbbell-stairs-free.obj").text));
+    assert_false(file_exists(temp_file_path(&empty, "dumbbell-stairs-free.obj").text));
     temp_folder_remove(&empty);
 }
 
@@ -154,7 +154,7 @@ static void what_cannot_be_written_is_an_error(void **state) {
     temp_path none = temp_file_path(&blocked, "none"),
               cache = temp_file_path(&blocked, "dumbbell-stairs-free.pc2");
     REFUSED(1, none.text, scene_name, none.text);
-    assert_false(exists(none.text));
+    assert_false(file_exists(none.text));
     assert_int_equal(mkdir(cache.text, 0700), 0);
     REFUSED(1, cache.text, scene_name, blocked.path);
     assert_int_equal(rmdir(cache.text), 0); /* still an empty folder */

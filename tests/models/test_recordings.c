@@ -42,7 +42,7 @@ static recorder open_scene(const char *name) {
     return r;
 }
 
-static void advance(recorder *r) {
+static void advance_recorder(recorder *r) {
     io_error error;
     if (!recorder_advance(r, &error)) fail_msg("%s", error.text);
 }
@@ -87,7 +87,7 @@ static uint64_t run_scene(const char *name, uint32_t frames, uint32_t hashed, bo
     uint64_t hash = add_to_hash(0xcbf29ce484222325u, r.frame, r.shape.vertex_count * (size_t)3);
     check_frame(&r, energy);
     for (uint32_t k = 1; k < frames; k++) {
-        advance(&r);
+        advance_recorder(&r);
         check_frame(&r, energy);
         *met_itself = *met_itself || (k < hashed && r.contacts.count > 0);
         if (k < hashed) hash = add_to_hash(hash, r.frame, r.shape.vertex_count * (size_t)3);

@@ -112,7 +112,7 @@ static void rings_add_up(void **state) {
 }
 
 /* A square with a rounded corner: corners are kept, and lengths add up. */
-static void outlines(void **state) {
+static void outlines_follow_their_pieces(void **state) {
     (void)state;
     outline o = {.end = {0.0, 0.0}};
     double point[2];
@@ -161,7 +161,7 @@ int main(void) {
         cmocka_unit_test(operations_keep_a_manifold),
         cmocka_unit_test(a_tetrahedron_stays),
         cmocka_unit_test(rings_add_up),
-        cmocka_unit_test(outlines),
+        cmocka_unit_test(outlines_follow_their_pieces),
         cmocka_unit_test(remeshing_reaches_counts),
     };
     return cmocka_run_group_tests_name("surfaces of shapes", tests, NULL, NULL);

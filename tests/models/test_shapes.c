@@ -93,7 +93,7 @@ static void check_body(body_kind kind, const body *b) {
 }
 
 /* The largest area over the mean, the longest edge over the shortest. */
-static void unevenness(const body *b, double *areas, double *lengths) {
+static void find_unevenness(const body *b, double *areas, double *lengths) {
     double sum = 0.0, most = 0.0, longest = 0.0, shortest = INFINITY;
     for (uint32_t t = 0; t < b->triangle_count; t++) {
         const uint32_t *v = b->triangles + (size_t)t * 3;
@@ -122,7 +122,7 @@ static void the_three_bodies(void **state) {
         assert_int_equal(b.triangle_count, counts[i]);
         assert_int_equal(b.vertex_count, counts[i] / 2 + 2);
         check_body((body_kind)i, &b);
-        unevenness(&b, &areas, &lengths);
+        find_unevenness(&b, &areas, &lengths);
         print_message(
             "  %s: least angle %.1f degrees, largest area %.2f of the mean, longest edge %.2f of the "
             "shortest\n",
@@ -150,7 +150,7 @@ static void all_bodies_at_several_counts(void **state) {
     }
 }
 
-static void extent(const body *b, double low[3], double high[3]) {
+static void find_extent(const body *b, double low[3], double high[3]) {
     for (int k = 0; k < 3; k++) {
         low[k] = INFINITY;
         high[k] = -INFINITY;
@@ -172,7 +172,7 @@ static void refinement_keeps_the_shape(void **state) {
         for (uint32_t level = 0; level < 3; level++) {
             body b = body_of(kind, body_nearest_count(kind, first << (2 * level)));
             volumes[level] = body_volume(&b);
-            extent(&b, low[level], high[level]);
+            find_extent(&b, low[level], high[level]);
             body_free(&b);
         }
         double first_step = fabs(volumes[1] - volumes[0]), second_step = fabs(volumes[2] - volumes[1]);
@@ -210,7 +210,7 @@ static void links_are_linked(void **state) {
     for (uint32_t i = 0; i < 5; i++) {
         body link = {100, 0, 0, 0, b.positions + (size_t)i * 300, NULL};
         double low[3], high[3];
-        extent(&link, low, high);
+        find_extent(&link, low, high);
         middles[i] = 0.5 * (low[0] + high[0]);
         uint32_t across = i % 2 == 0 ? 2 : 1;
         assert_true(high[across] - low[across] < 0.45 && high[0] - low[0] > 2.3);
@@ -220,7 +220,7 @@ static void links_are_linked(void **state) {
     body_free(&b);
 }
 
-static void repeatable(void **state) {
+static void bodies_are_repeatable(void **state) {
     (void)state;
     for (int kind = 0; kind < BODY_KIND_COUNT; kind++) {
         uint32_t count = body_nearest_count((body_kind)kind, 700);
@@ -256,7 +256,7 @@ static void refusals_name_the_nearest(void **state) {
     }
 }
 
-static void names(void **state) {
+static void names_lead_to_their_bodies(void **state) {
     (void)state;
     body_kind kind = BODY_TORUS;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
@@ -278,9 +278,9 @@ int main(void) {
         cmocka_unit_test(refinement_keeps_the_shape),
         cmocka_unit_test(bent_bodies_have_the_volume_of_straight_ones),
         cmocka_unit_test(links_are_linked),
-        cmocka_unit_test(repeatable),
+        cmocka_unit_test(bodies_are_repeatable),
         cmocka_unit_test(refusals_name_the_nearest),
-        cmocka_unit_test(names),
+        cmocka_unit_test(names_lead_to_their_bodies),
     };
     return cmocka_run_group_tests_name("shapes", tests, make_context, destroy_context);
 }

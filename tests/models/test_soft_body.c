@@ -32,7 +32,7 @@ static void assert_same_vector(const double a[3], const double b[3], double tole
     for (int k = 0; k < 3; k++) assert_near(a[k], b[k], tolerance);
 }
 
-static void advance(soft_body *b, obstacles *o, double seconds) {
+static void advance_body(soft_body *b, obstacles *o, double seconds) {
     simulation_advance(b, o, NULL, seconds, (uint32_t)(seconds * 800.0 + 0.5));
 }
 
@@ -157,7 +157,7 @@ static void damping_stills_vibrations(void **state) {
         soft_body b = soft_body_of(&sphere, 0.4, &m);
         obstacles nothing = {0};
         for (uint32_t n = 0; n < b.frame.node_count; n++) b.velocities[n * 3] += 0.8 * b.frame.rest[n * 3];
-        advance(&b, &nothing, 1.0);
+        advance_body(&b, &nothing, 1.0);
         energies[i] = soft_body_energy(&b, 0.0);
         soft_body_free(&b);
     }
@@ -175,7 +175,7 @@ static void free_fall_is_a_parabola(void **state) {
     memcpy(start, soft_momentum_of(&b).centre, sizeof start);
     for (int i = 1; i <= 10; i++) {
         double t = 0.1 * i, n = 80.0 * i;
-        advance(&b, &falling, 0.1);
+        advance_body(&b, &falling, 0.1);
         soft_momentum m = soft_momentum_of(&b);
         assert_near(m.centre[0], start[0] + 1.5 * t, 1e-10);
         assert_near(m.centre[1], start[1], 1e-10);
@@ -198,7 +198,7 @@ static void dropped_bodies_come_to_rest(void **state) {
     soft_body_lift(&b, 0.5 - lowest_vertex(&b));
     double start = soft_body_energy(&b, ground.gravity), last = start, lost = 0.0;
     for (int i = 0; i < 50; i++) {
-        advance(&b, &ground, 0.1);
+        advance_body(&b, &ground, 0.1);
         assert_true(lowest_vertex(&b) >= -1e-14);
         lost = last - soft_body_energy(&b, ground.gravity);
         assert_true(lost >= 0.0);
@@ -221,7 +221,7 @@ static void friction_alone_brakes(void **state) {
         obstacles ground = {.gravity = 10.0, .friction = frictions[i]};
         soft_body_lift(&b, 0.01 - lowest_vertex(&b));
         soft_body_throw(&b, (double[3]){2.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 0.0});
-        advance(&b, &ground, 0.25);
+        advance_body(&b, &ground, 0.25);
         soft_momentum m = soft_momentum_of(&b);
         speeds[i] = m.linear[0] / m.mass;
         assert_near(m.linear[1], 0.0, i == 0 ? 1e-10 : 0.01 * m.mass);
@@ -239,10 +239,10 @@ static void friction_is_coulombs(void **state) {
     soft_body b = soft_body_of(&box, 0.5, &stiff);
     obstacles ground = {.gravity = 10.0, .friction = 0.2};
     soft_body_lift(&b, -lowest_vertex(&b));
-    advance(&b, &ground, 1.0);
+    advance_body(&b, &ground, 1.0);
     soft_body_throw(&b, (double[3]){3.0, 0.0, 0.0}, (double[3]){0.0, 0.0, 0.0});
     double before = soft_momentum_of(&b).linear[0];
-    advance(&b, &ground, 0.5);
+    advance_body(&b, &ground, 0.5);
     soft_momentum m = soft_momentum_of(&b);
     print_message("braked by %.4g of mu g\n", (before - m.linear[0]) / m.mass / (0.2 * 10.0 * 0.5));
     assert_near((before - m.linear[0]) / m.mass, 0.2 * 10.0 * 0.5, 0.1);
@@ -263,7 +263,7 @@ static void balls_and_bodies_share_their_momentum(void **state) {
     soft_momentum before = soft_momentum_of(&b);
     double energy = soft_body_energy(&b, 0.0) + obstacles_energy(&o), last = energy;
     for (int i = 0; i < 40; i++) {
-        advance(&b, &o, 0.05);
+        advance_body(&b, &o, 0.05);
         soft_momentum now = soft_momentum_of(&b);
         const double *v = o.balls[0].velocity;
         for (int k = 0; k < 3; k++)
@@ -285,7 +285,7 @@ static void motion_is_repeatable(void **state) {
         ground.balls[0] = (ball){.centre = {0.5, 0.0, 0.5}, .radius = 0.5, .mass = 0.5};
         bodies[i] = soft_body_of(&sphere, 0.4, &rubber);
         soft_body_lift(&bodies[i], 1.5 - soft_fixture_height);
-        advance(&bodies[i], &ground, 1.0);
+        advance_body(&bodies[i], &ground, 1.0);
     }
     size_t bytes = (size_t)bodies[0].frame.node_count * 3 * sizeof(double);
     assert_memory_equal(bodies[0].nodes, bodies[1].nodes, bytes);

@@ -274,7 +274,7 @@ static void throw_block(two_parts *p, const double velocity[3]) {
                3 * sizeof *velocity);
 }
 
-static uint32_t crossings(two_parts *p) {
+static uint32_t count_intersections(two_parts *p) {
     cscd_intersections crossing;
     assert_int_equal(cscd_detector_check(p->detector, p->soft.vertices, &crossing), CSCD_OK);
     return (uint32_t)crossing.count;
@@ -302,7 +302,7 @@ static void check_bounce(two_parts *p) {
         run_interval(p, true);
         most_energy = fmax(most_energy, soft_body_energy(&p->soft, 0.0));
         most_pairs = p->contacts.count > most_pairs ? p->contacts.count : most_pairs;
-        crossing_at_end = crossings(p);
+        crossing_at_end = count_intersections(p);
     }
     soft_momentum after = soft_momentum_of(&p->soft);
     double lost[3];
@@ -331,7 +331,7 @@ static void without_a_response_parts_cross(void **state) {
     place_block(&p, 0.05, 0.0, 0.0);
     throw_block(&p, (double[3]){0.2, 0.0, -1.5});
     for (int i = 0; i < 10; i++) run_interval(&p, false);
-    assert_true(crossings(&p) > 0);
+    assert_true(count_intersections(&p) > 0);
     assert_true(height_above_slab(&p) < -0.1);
     free_parts(&p);
 }

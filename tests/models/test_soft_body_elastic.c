@@ -39,7 +39,7 @@ static double energy_under(double map[3][3]) {
     return tetrahedra_energy(soft.tetrahedra, tetrahedron_count, moved);
 }
 
-static double volume(void) {
+static double rest_volume(void) {
     return soft.frame.cell_count * pow(soft.frame.spacing, 3.0);
 }
 
@@ -68,7 +68,7 @@ static void rest_and_turned_shapes_have_no_energy(void **state) {
     double turn[3][3];
     for (int i = 0; i < 12; i++) {
         rotation_matrix((double[3]){1.0, 0.3 * i - 1.0, 0.5}, 0.6 * i, turn);
-        assert_close(energy_under(turn), 0.0, 1e-12 * rubber.young * volume());
+        assert_close(energy_under(turn), 0.0, 1e-12 * rubber.young * rest_volume());
     }
 }
 
@@ -81,7 +81,7 @@ static void energy_is_that_of_the_formula(void **state) {
                                           {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}}};
     rotation_matrix((double[3]){0.2, 1.0, -0.7}, 1.1, turn);
     for (int i = 0; i < 4; i++) {
-        double before[3][3], expected = volume() * energy_density(shapes[i]);
+        double before[3][3], expected = rest_volume() * energy_density(shapes[i]);
         for (int row = 0; row < 3; row++) {
             for (int k = 0; k < 3; k++)
                 before[row][k] = shapes[i][row][0] * turn[0][k] + shapes[i][row][1] * turn[1][k] +

@@ -100,7 +100,7 @@ static void balls_push_from_their_centres(void **state) {
     assert_true(fabs(hit.depth - 0.1) < 1e-15 && hit.pushed == &o.balls[1] && hit.normal[0] == 1.0);
 }
 
-static void run(obstacles *o, int steps) {
+static void run_steps(obstacles *o, int steps) {
     for (int i = 0; i < steps; i++) {
         obstacles_begin(o, step);
         obstacles_end(o, step);
@@ -112,12 +112,12 @@ static void balls_fall_and_come_to_rest(void **state) {
     (void)state;
     const ball high = {.centre = {0.0, 0.0, 5.0}, .velocity = {1.0, 0.0, 0.0}, .radius = 0.5, .mass = 2.0};
     obstacles o = {.ball_count = 1, .gravity = 10.0, .balls = {high}};
-    run(&o, 400);
+    run_steps(&o, 400);
     assert_true(fabs(o.balls[0].centre[2] - (5.0 - 10.0 * step * step * 0.5 * 400.0 * 401.0)) < 1e-10);
     assert_true(fabs(o.balls[0].centre[0] - 0.5) < 1e-10 && o.balls[0].centre[1] == 0.0);
     double energy = obstacles_energy(&o);
     assert_true(fabs(energy - 2.0 * (0.5 + 10.0 * 5.0)) < 0.1);
-    run(&o, 1200);
+    run_steps(&o, 1200);
     assert_true(fabs(o.balls[0].centre[2] - 0.5) < 1e-12 && fabs(o.balls[0].velocity[2]) < 1e-9);
     assert_true(fabs(o.balls[0].centre[0] - 2.0) < 1e-10); /* it slides */
     assert_true(obstacles_energy(&o) < energy);
@@ -130,7 +130,7 @@ static void balls_stay_on_the_stairs(void **state) {
     o.balls[0] = (ball){.centre = {0.0, 0.0, 2.0}, .velocity = {3.0, 0.0, 0.0}, .radius = 0.25, .mass = 1.0};
     double last = obstacles_energy(&o);
     for (int i = 0; i < 2400; i++) {
-        run(&o, 1);
+        run_steps(&o, 1);
         const ball *b = &o.balls[0];
         assert_true(b->centre[2] >= obstacles_height(&o, b->centre[0]) + b->radius);
         assert_true(obstacles_energy(&o) <= last + 1e-10);
@@ -147,7 +147,7 @@ static void colliding_balls_keep_their_momentum(void **state) {
     o.balls[1] = (ball){.centre = {1.0, 0.4, 9.1}, .velocity = {-1.0, 0.0, 0.5}, .radius = 0.7, .mass = 1.0};
     double energy = obstacles_energy(&o), apart[3], nearest = INFINITY;
     for (int i = 0; i < 1600; i++) {
-        run(&o, 1);
+        run_steps(&o, 1);
         vec3_subtract(o.balls[0].centre, o.balls[1].centre, apart);
         nearest = fmin(nearest, vec3_norm(apart));
         assert_true(obstacles_energy(&o) <= energy + 1e-12);

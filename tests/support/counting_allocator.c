@@ -7,7 +7,7 @@ counting_allocator counting_allocator_start(void) {
     return (counting_allocator){.fail_at = SIZE_MAX};
 }
 
-static void *allocate(void *user, size_t size, size_t alignment) {
+static void *count_and_allocate(void *user, size_t size, size_t alignment) {
     counting_allocator *counter = user;
     if (counter->calls++ == counter->fail_at) return NULL;
     void *block = aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
@@ -17,7 +17,7 @@ static void *allocate(void *user, size_t size, size_t alignment) {
     return block;
 }
 
-static void release(void *user, void *block, size_t size) {
+static void count_and_release(void *user, void *block, size_t size) {
     counting_allocator *counter = user;
     counter->live--;
     counter->bytes -= size;
@@ -25,5 +25,5 @@ static void release(void *user, void *block, size_t size) {
 }
 
 cscd_allocator counting_allocator_interface(counting_allocator *counter) {
-    return (cscd_allocator){allocate, release, counter};
+    return (cscd_allocator){count_and_allocate, count_and_release, counter};
 }

@@ -29,7 +29,7 @@ static uint32_t find_edges(const scene *s, edge *edges) {
     return kept;
 }
 
-static void add(oracle_list *list, cscd_contact_kind kind, uint32_t a, uint32_t b, double toi) {
+static void add_contact(oracle_list *list, cscd_contact_kind kind, uint32_t a, uint32_t b, double toi) {
     if (list->count == list->capacity) {
         list->capacity = list->capacity * 2 + 64;
         list->items = realloc(list->items, list->capacity * sizeof *list->items);
@@ -38,7 +38,7 @@ static void add(oracle_list *list, cscd_contact_kind kind, uint32_t a, uint32_t 
     list->items[list->count++] = (oracle_contact){kind, a, b, toi};
 }
 
-static elementary_query load(const scene *s, const uint32_t vertices[4]) {
+static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
     elementary_query query;
     for (int i = 0; i < 4; i++) {
         memcpy(query.x0[i], s->x0 + (size_t)vertices[i] * 3, sizeof query.x0[i]);
@@ -53,7 +53,7 @@ static void test_pair(const elementary_query *query, const separation *limit, cs
     bool vf = kind == CSCD_CONTACT_VF, bounded;
     bool found = limit == NULL ? (vf ? elementary_vf : elementary_ee)(query, &hit).touching
                                : (vf ? separation_vf : separation_ee)(query, limit, &hit, &bounded);
-    if (found) add(out, kind, a, b, hit.toi);
+    if (found) add_contact(out, kind, a, b, hit.toi);
 }
 
 static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
@@ -63,7 +63,7 @@ static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
         for (uint32_t t = 0; used[v] && t < s->triangle_count; t++) {
             const uint32_t *c = s->triangles + (size_t)t * 3;
             if (c[0] == v || c[1] == v || c[2] == v) continue;
-            elementary_query query = load(s, (uint32_t[4]){v, c[0], c[1], c[2]});
+            elementary_query query = load_query(s, (uint32_t[4]){v, c[0], c[1], c[2]});
             test_pair(&query, limit, CSCD_CONTACT_VF, v, t, out);
         }
     }
@@ -76,7 +76,7 @@ static void find_ee(const scene *s, const separation *limit, oracle_list *out) {
         for (uint32_t j = i + 1; j < count; j++) {
             const uint32_t *a = edges[i].ends, *b = edges[j].ends;
             if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
-            elementary_query query = load(s, (uint32_t[4]){a[0], a[1], b[0], b[1]});
+            elementary_query query = load_query(s, (uint32_t[4]){a[0], a[1], b[0], b[1]});
             test_pair(&query, limit, CSCD_CONTACT_EE, i, j, out);
         }
     }

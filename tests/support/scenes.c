@@ -20,7 +20,7 @@ const char *scene_family_name(scene_family family) {
 /* Maps a rest position to the position at one end of the interval; a: the family's random numbers. */
 typedef void deformation(const double rest[3], const double *a, double out[3]);
 
-static void deform(scene *s, deformation *d, const double *start, const double *end) {
+static void deform_scene(scene *s, deformation *d, const double *start, const double *end) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         double rest[3];
         memcpy(rest, s->x0 + (size_t)v * 3, sizeof rest);
@@ -29,7 +29,7 @@ static void deform(scene *s, deformation *d, const double *start, const double *
     }
 }
 
-static void jitter(scene *s, double size, random_stream *random) {
+static void jitter_vertices(scene *s, double size, random_stream *random) {
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
         double offset = size * stream_between(random, -1.0, 1.0);
         s->x0[i] += offset;
@@ -37,11 +37,11 @@ static void jitter(scene *s, double size, random_stream *random) {
     }
 }
 
-static void fill(double *a, int count, random_stream *random, double low, double high) {
+static void fill_parameters(double *a, int count, random_stream *random, double low, double high) {
     for (int i = 0; i < count; i++) a[i] = stream_between(random, low, high);
 }
 
-static void wave(const double rest[3], const double *a, double out[3]) {
+static void wave_radius(const double rest[3], const double *a, double out[3]) {
     double r = 1.0;
     for (int i = 0; i < 3; i++) r += a[i] * sin(3.0 * rest[i] + a[3 + i] * 4.0) + a[6] * sin(7.0 * rest[i]);
     for (int k = 0; k < 3; k++) out[k] = r * rest[k];
@@ -50,13 +50,13 @@ static void wave(const double rest[3], const double *a, double out[3]) {
 static void make_noisy_sphere(scene *s, random_stream *random) {
     double start[7], end[7], strength = stream_between(random, 0.0, 0.9);
     scene_add_sphere(s, origin, 1.0, 7, 11);
-    fill(start, 7, random, -strength, strength);
+    fill_parameters(start, 7, random, -strength, strength);
     for (int i = 0; i < 7; i++) end[i] = start[i] + 0.5 * strength * stream_between(random, -1.0, 1.0);
-    deform(s, wave, start, end);
+    deform_scene(s, wave_radius, start, end);
 }
 
 /* Bends the z axis to a circle of total angle a[0], then moves by a[1..3]. */
-static void bend(const double rest[3], const double *a, double out[3]) {
+static void bend_tube(const double rest[3], const double *a, double out[3]) {
     double length = 6.0, curvature = a[0] / length, angle = rest[2] * curvature;
     if (fabs(curvature) < 1e-6) curvature = 1e-6;
     double reach = 1.0 / curvature - rest[0];
@@ -69,19 +69,19 @@ static void make_bent_capsule(scene *s, random_stream *random) {
     double start[4] = {stream_between(random, 5.2, 6.2), 0, 0, 0}, end[4] = {0};
     end[0] = start[0] + stream_between(random, -0.4, 0.6);
     scene_add_capsule(s, 6.0, 0.35, 18, 8);
-    deform(s, bend, start, end);
+    deform_scene(s, bend_tube, start, end);
 }
 
 static void make_far_away(scene *s, random_stream *random) {
     double start[4] = {stream_between(random, 5.0, 6.2)}, end[4];
-    fill(start + 1, 3, random, -1e4, 1e4);
+    fill_parameters(start + 1, 3, random, -1e4, 1e4);
     end[0] = start[0] + stream_between(random, -0.3, 0.5);
     for (int k = 1; k < 4; k++) end[k] = start[k] + stream_between(random, -3.0, 3.0);
     scene_add_capsule(s, 6.0, 0.35, 14, 7);
-    deform(s, bend, start, end);
+    deform_scene(s, bend_tube, start, end);
 }
 
-static void squash(const double rest[3], const double *a, double out[3]) {
+static void squash_axes(const double rest[3], const double *a, double out[3]) {
     out[0] = rest[0] * (1.0 + 0.3 * a[1] * rest[1]);
     out[1] = rest[1] * a[0];
     out[2] = rest[2] * (1.0 + a[2] * rest[0]);
@@ -89,15 +89,15 @@ static void squash(const double rest[3], const double *a, double out[3]) {
 
 static void make_squashed_torus(scene *s, random_stream *random) {
     double start[3] = {stream_between(random, 0.2, 0.7)}, end[3];
-    fill(start + 1, 2, random, -0.5, 0.5);
+    fill_parameters(start + 1, 2, random, -0.5, 0.5);
     end[0] = start[0] + stream_between(random, -0.5, 0.2);
     for (int k = 1; k < 3; k++) end[k] = start[k] + stream_between(random, -0.3, 0.3);
     scene_add_torus(s, origin, 1.0, 0.35, 16, 7, false);
-    deform(s, squash, start, end);
+    deform_scene(s, squash_axes, start, end);
 }
 
 /* Rolls the x axis to a spiral whose radius grows by a[1] a turn. */
-static void roll(const double rest[3], const double *a, double out[3]) {
+static void roll_sheet(const double rest[3], const double *a, double out[3]) {
     double angle = rest[0] * a[0], radius = 1.0 / a[0] + a[1] * angle;
     out[0] = radius * sin(angle);
     out[1] = rest[1];
@@ -110,7 +110,7 @@ static void make_folded_sheet(scene *s, random_stream *random) {
     end[1] = start[1] + stream_between(random, -0.08, 0.03);
     end[2] = stream_between(random, -0.1, 0.1);
     scene_add_sheet(s, 6.0, 1.5, 24, 5);
-    deform(s, roll, start, end);
+    deform_scene(s, roll_sheet, start, end);
 }
 
 /* Moves the second half of the vertices by a and scales it by 1 + a[3]. */
@@ -126,8 +126,8 @@ static void move_second(scene *s, uint32_t first, const double start[4], const d
 
 static void make_two_spheres(scene *s, random_stream *random) {
     double start[4], end[4];
-    fill(start, 3, random, -2.0, 2.0);
-    fill(end, 3, random, -2.0, 2.0);
+    fill_parameters(start, 3, random, -2.0, 2.0);
+    fill_parameters(end, 3, random, -2.0, 2.0);
     start[3] = end[3] = 0.0;
     scene_add_sphere(s, origin, 0.9, 5, 8);
     uint32_t first = s->vertex_count;
@@ -137,8 +137,8 @@ static void make_two_spheres(scene *s, random_stream *random) {
 
 static void make_nested_spheres(scene *s, random_stream *random) {
     double start[4], end[4];
-    fill(start, 3, random, -0.2, 0.2);
-    fill(end, 3, random, -0.3, 0.3);
+    fill_parameters(start, 3, random, -0.2, 0.2);
+    fill_parameters(end, 3, random, -0.3, 0.3);
     start[3] = stream_between(random, -0.2, 0.3);
     end[3] = start[3] + stream_between(random, -0.3, 0.9);
     scene_add_sphere(s, origin, 1.0, 6, 9);
@@ -149,8 +149,8 @@ static void make_nested_spheres(scene *s, random_stream *random) {
 
 static void make_linked_tori(scene *s, random_stream *random) {
     double start[4] = {1.0}, end[4] = {1.0};
-    fill(start + 1, 2, random, -0.1, 0.1);
-    fill(end + 1, 2, random, -0.4, 0.4);
+    fill_parameters(start + 1, 2, random, -0.1, 0.1);
+    fill_parameters(end + 1, 2, random, -0.4, 0.4);
     end[0] = start[0] + stream_between(random, -0.3, 1.0);
     start[3] = end[3] = 0.0;
     scene_add_torus(s, origin, 1.0, 0.2, 14, 6, false);
@@ -167,7 +167,7 @@ static void make_spike(scene *s, random_stream *random) {
 }
 
 /* Tilts what lies above z = 0 by a[0] and below by a[1] about the y axis. */
-static void tilt(const double rest[3], const double *a, double out[3]) {
+static void tilt_halves(const double rest[3], const double *a, double out[3]) {
     double angle = rest[2] > 0 ? a[0] : a[1];
     out[0] = rest[0] * cos(angle) + rest[2] * sin(angle);
     out[1] = rest[1];
@@ -187,7 +187,7 @@ static void make_bow_tie(scene *s, random_stream *random) {
     }
     s->vertex_count--;
     (void)first;
-    deform(s, tilt, start, end);
+    deform_scene(s, tilt_halves, start, end);
 }
 
 static void make_triangles(scene *s, random_stream *random, uint32_t vertex_count, uint32_t triangle_count) {
@@ -205,7 +205,7 @@ static void make_soup(scene *s, random_stream *random) {
                    1 + stream_below(random, 2 + stream_below(random, 60)));
     double spread = stream_between(random, 2.0, 60.0);
     double centres[SCENE_VERTICES_MAX];
-    fill(centres, (int)s->vertex_count, random, -spread, spread);
+    fill_parameters(centres, (int)s->vertex_count, random, -spread, spread);
     for (uint32_t i = 0; i < s->vertex_count * 3; i++) {
         s->x0[i] = centres[i / 3] + stream_between(random, -1.0, 1.0);
         s->x1[i] = s->x0[i] + stream_between(random, -0.5, 0.5);
@@ -229,5 +229,5 @@ void scene_make(scene_family family, uint64_t seed, scene *out) {
     random_stream random = stream_start(seed * SCENE_FAMILY_COUNT + (uint64_t)family);
     scene_clear(out);
     makers[family](out, &random);
-    if (family != SCENE_GRID && family != SCENE_SOUP) jitter(out, 0.004, &random);
+    if (family != SCENE_GRID && family != SCENE_SOUP) jitter_vertices(out, 0.004, &random);
 }

@@ -29,7 +29,7 @@ static dent make_dent(const scene *s, random_stream *random) {
                   stream_between(random, 0.1, 0.6), 0.0};
 }
 
-static void press(const scene *s, const dent *d, double *x) {
+static void press_dent(const scene *s, const dent *d, double *x) {
     const double *from = s->x0 + (size_t)d->from * 3, *to = s->x0 + (size_t)d->to * 3;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         const double *p = s->x0 + (size_t)v * 3;
@@ -53,7 +53,7 @@ static void make_scene(sequence *q, random_stream *random) {
             double step = stream_between(random, -noise, noise);
             q->frames[f][i] = q->shape.x0[i] + at * (q->shape.x1[i] - q->shape.x0[i]) + step;
         }
-        for (int i = 0; i < DENTS; i++) press(&q->shape, &dents[i], q->frames[f]);
+        for (int i = 0; i < DENTS; i++) press_dent(&q->shape, &dents[i], q->frames[f]);
         if (stream_below(random, 8) == 0) continue; /* the mesh lies still, or almost */
         at += stream_between(random, -0.5, 0.5);
         if (at > 2.0 || at < -1.0) at = 0.5;

@@ -23,7 +23,7 @@ static char *read_all(FILE *pipe) {
     return text;
 }
 
-static char *run(int code, const char *format, va_list arguments) {
+static char *run_command(int code, const char *format, va_list arguments) {
     static const char both_outputs[] = "exec 2>&1; ";
     char command[COMMAND_MAX];
     int used = snprintf(command, sizeof command, "%s", both_outputs);
@@ -42,7 +42,7 @@ static char *run(int code, const char *format, va_list arguments) {
 char *shell_output(int code, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    char *text = run(code, format, arguments);
+    char *text = run_command(code, format, arguments);
     va_end(arguments);
     return text;
 }
@@ -50,6 +50,6 @@ char *shell_output(int code, const char *format, ...) {
 void shell(const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    free(run(0, format, arguments));
+    free(run_command(0, format, arguments));
     va_end(arguments);
 }

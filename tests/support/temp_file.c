@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static void require(bool done, const char *action, const char *path) {
+static void require_done(bool done, const char *action, const char *path) {
     if (done) return;
     fprintf(stderr, "cannot %s %s: %s\n", action, path, strerror(errno));
     abort();
@@ -20,34 +20,34 @@ temp_folder temp_folder_make(void) {
     const char *parent = getenv("TMPDIR");
     if (parent == NULL || strlen(parent) > sizeof folder.path / 2) parent = "/tmp";
     snprintf(folder.path, sizeof folder.path, "%s/cscd-test-XXXXXX", parent);
-    require(mkdtemp(folder.path) != NULL, "make", folder.path);
+    require_done(mkdtemp(folder.path) != NULL, "make", folder.path);
     return folder;
 }
 
 void temp_folder_remove(const temp_folder *folder) {
     DIR *entries = opendir(folder->path);
-    require(entries != NULL, "list", folder->path);
+    require_done(entries != NULL, "list", folder->path);
     for (struct dirent *entry = readdir(entries); entry != NULL; entry = readdir(entries)) {
         if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
         temp_path path = temp_file_path(folder, entry->d_name);
-        require(remove(path.text) == 0, "remove", path.text);
+        require_done(remove(path.text) == 0, "remove", path.text);
     }
     closedir(entries);
-    require(rmdir(folder->path) == 0, "remove", folder->path);
+    require_done(rmdir(folder->path) == 0, "remove", folder->path);
 }
 
 temp_path temp_file_path(const temp_folder *folder, const char *name) {
     temp_path path;
     int length = snprintf(path.text, sizeof path.text, "%s/%s", folder->path, name);
-    require(length > 0 && (size_t)length < sizeof path.text, "name", name);
+    require_done(length > 0 && (size_t)length < sizeof path.text, "name", name);
     return path;
 }
 
 temp_path temp_file_write(const temp_folder *folder, const char *name, const void *bytes, size_t size) {
     temp_path path = temp_file_path(folder, name);
     FILE *file = fopen(path.text, "wb");
-    require(file != NULL, "create", path.text);
-    require(fwrite(bytes, 1, size, file) == size, "write", path.text);
-    require(fclose(file) == 0, "close", path.text);
+    require_done(file != NULL, "create", path.text);
+    require_done(fwrite(bytes, 1, size, file) == size, "write", path.text);
+    require_done(fclose(file) == 0, "close", path.text);
     return path;
 }

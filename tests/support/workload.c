@@ -33,7 +33,7 @@ typedef struct run {
 } run;
 
 /* FNV-1a */
-static void digest(run *r, const void *data, size_t size) {
+static void add_digest(run *r, const void *data, size_t size) {
     const unsigned char *bytes = data;
     uint64_t *hash = &r->result.digests[r->result.call_count];
     for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
@@ -45,15 +45,15 @@ static void digest_counters(run *r) {
     r->result.rebuilds += counters.rebuilds;
     r->result.culled += counters.plus + counters.minus;
     counters.rebuilds = 0;
-    digest(r, &counters, sizeof counters);
+    add_digest(r, &counters, sizeof counters);
 }
 
-static bool again(run *r, cscd_status status) {
+static bool call_again(run *r, cscd_status status) {
     return r->w->again != NULL && r->w->again(r->w->user, r->context, status);
 }
 
 static void end_call(run *r, cscd_status status) {
-    digest(r, &status, sizeof status);
+    add_digest(r, &status, sizeof status);
     r->result.failed |= status != CSCD_OK && status != CSCD_IN_CONTACT;
     if (r->result.call_count + 1 < WORKLOAD_CALLS_MAX) r->result.call_count++;
 }
@@ -64,51 +64,51 @@ static void make_plan(run *r) {
     cscd_status status;
     do {
         status = cscd_plan_create(r->mesh, r->w->sequence->shape.x0, &options, &r->plan);
-    } while (again(r, status));
+    } while (call_again(r, status));
     for (uint32_t t = 0; status == CSCD_OK && t < r->w->sequence->shape.triangle_count; t++) {
         double charge = cscd_plan_triangle_charge(r->plan, t);
         uint32_t region = cscd_plan_triangle_region(r->plan, t);
-        digest(r, &charge, sizeof charge);
-        digest(r, &region, sizeof region);
+        add_digest(r, &charge, sizeof charge);
+        add_digest(r, &region, sizeof region);
     }
     end_call(r, status);
 }
 
-static void step(run *r, const double *x0, const double *x1) {
+static void run_step(run *r, const double *x0, const double *x1) {
     cscd_contacts found = {NULL, 0};
     cscd_status status;
     do {
         status = cscd_detector_step(r->detector, x0, x1, &found);
-    } while (again(r, status));
-    digest(r, found.items, found.count * sizeof *found.items);
+    } while (call_again(r, status));
+    add_digest(r, found.items, found.count * sizeof *found.items);
     digest_counters(r);
     for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
         cscd_guarantee g = cscd_detector_guarantee(r->detector, c);
-        digest(r, &g.complete, sizeof g.complete);
-        digest(r, &g.reason, sizeof g.reason);
+        add_digest(r, &g.complete, sizeof g.complete);
+        add_digest(r, &g.reason, sizeof g.reason);
     }
     r->result.contacts += found.count;
     end_call(r, status);
 }
 
-static void check(run *r, const double *x) {
+static void run_check(run *r, const double *x) {
     cscd_intersections found = {NULL, 0, 0, 0};
     cscd_status status;
     do {
         status = cscd_detector_check(r->detector, x, &found);
-    } while (again(r, status));
-    digest(r, found.items, found.count * sizeof *found.items);
-    digest(r, &found.zero_area_triangles, sizeof found.zero_area_triangles);
+    } while (call_again(r, status));
+    add_digest(r, found.items, found.count * sizeof *found.items);
+    add_digest(r, &found.zero_area_triangles, sizeof found.zero_area_triangles);
     end_call(r, status);
 }
 
-static void near(run *r, const double *x) {
+static void run_near(run *r, const double *x) {
     cscd_proximities found = {NULL, 0};
     cscd_status status;
     do {
         status = cscd_detector_near(r->detector, x, 0.05, &found);
-    } while (again(r, status));
-    digest(r, found.items, found.count * sizeof *found.items);
+    } while (call_again(r, status));
+    add_digest(r, found.items, found.count * sizeof *found.items);
     end_call(r, status);
 }
 
@@ -119,11 +119,11 @@ static void max_step(run *r, const double *x0, const double *x1) {
     if (method_traits_of(r->w->options.method)->loses_contacts) return; /* it refuses to certify */
     do {
         status = cscd_detector_max_step(r->detector, x0, x1, end, &found);
-    } while (again(r, status));
-    digest(r, &found.length, sizeof found.length);
+    } while (call_again(r, status));
+    add_digest(r, &found.length, sizeof found.length);
     if (status == CSCD_OK) {
         digest_counters(r);
-        digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
+        add_digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
     }
     end_call(r, status);
 }
@@ -132,9 +132,9 @@ static void begin_line(run *r, const double *x0, const double *x1) {
     cscd_status status;
     do {
         status = cscd_line_begin(r->line, x0, x1, 0.05);
-    } while (again(r, status));
+    } while (call_again(r, status));
     size_t count = cscd_line_candidate_count(r->line);
-    digest(r, &count, sizeof count);
+    add_digest(r, &count, sizeof count);
     end_call(r, status);
 }
 
@@ -147,14 +147,15 @@ static void ask_line(run *r) {
         cscd_status status;
         do {
             status = cscd_line_max_step(r->line, i == 0 ? 1.0 : 0.3, end, &step);
-        } while (again(r, status));
-        digest(r, &step.length, sizeof step.length);
-        if (status == CSCD_OK) digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
+        } while (call_again(r, status));
+        add_digest(r, &step.length, sizeof step.length);
+        if (status == CSCD_OK)
+            add_digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
         end_call(r, status);
         do {
             status = cscd_line_near(r->line, 0.6 * i, 0.05, &found);
-        } while (again(r, status));
-        digest(r, found.items, found.count * sizeof *found.items);
+        } while (call_again(r, status));
+        add_digest(r, found.items, found.count * sizeof *found.items);
         end_call(r, status);
     }
 }
@@ -164,9 +165,9 @@ static void run_intervals(run *r) {
     for (uint32_t i = 0; i + 1 < q->frame_count; i++) {
         const double *x0 = q->frames[i], *x1 = q->frames[i + 1];
         if (i % 4 == 3) max_step(r, x0, x1);
-        step(r, x0, x1);
-        if (i % 3 == 1) check(r, x1);
-        if (i % 5 == 2) near(r, x1);
+        run_step(r, x0, x1);
+        if (i % 3 == 1) run_check(r, x1);
+        if (i % 5 == 2) run_near(r, x1);
         if (i % 5 == 3) {
             begin_line(r, x0, x1);
             ask_line(r);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *variable(const char *name) {
+static const char *required_variable(const char *name) {
     const char *value = getenv(name);
     if (value == NULL) fail_msg("%s is not set; run the tests through tests/run.sh", name);
     return value;
@@ -17,8 +17,8 @@ static const char *variable(const char *name) {
 void model_program_use(const char *name) {
     static char tool[4096];
     char path[4096];
-    if (tool[0] == '\0') snprintf(tool, sizeof tool, "%s", variable("CSCD_TOOL"));
-    if (name != NULL) snprintf(path, sizeof path, "%s/%s", variable("CSCD_MODELS"), name);
+    if (tool[0] == '\0') snprintf(tool, sizeof tool, "%s", required_variable("CSCD_TOOL"));
+    if (name != NULL) snprintf(path, sizeof path, "%s/%s", required_variable("CSCD_MODELS"), name);
     setenv("CSCD_TOOL", name == NULL ? tool : path, 1);
 }
 
