@@ -44,7 +44,7 @@ typedef struct caller_kind {
 } caller_kind;
 
 static bool open_soft(const char *name, cscd_context *context, caller *out, io_error *error) {
-    if (!recorder_open(scene_find(name), context, &out->soft, error)) return false;
+    if (!recorder_open(soft_scene_find(name), context, &out->soft, error)) return false;
     out->triangle_count = out->soft.shape.triangle_count;
     return true;
 }
@@ -60,7 +60,7 @@ static void close_soft(caller *c) {
 }
 
 static uint32_t frames_soft(const char *name) {
-    return scene_find(name)->frame_count - 1;
+    return soft_scene_find(name)->frame_count - 1;
 }
 
 static bool open_cloth(const char *name, cscd_context *context, caller *out, io_error *error) {

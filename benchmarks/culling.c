@@ -16,27 +16,27 @@ static const char help[] =
     "single, kmeans:4, charge. Mode all; earliest after a '+'. Means per interval, proven: the mesh's only\n"
     "component, or all of them, began embedded for certain.\n";
 
-typedef struct recording {
+typedef struct culled_recording {
     cscd_context *context;
     cscd_mesh *mesh;
     mesh_file model;
     animation *frames;
     double *positions[2];
-} recording;
+} culled_recording;
 
 /* Sums over the intervals of one kind. */
-typedef struct tally {
+typedef struct interval_sums {
     double update, orientation, traversal, contact, proof, total;
     double pairs, contacts, lit; /* lit: triangles S+ or S- */
     uint32_t intervals, checks;
-} tally;
+} interval_sums;
 
 static bool print_failure(const char *text) {
     fprintf(stderr, "culling: %s\n", text);
     return false;
 }
 
-static void add_interval(tally *t, const cscd_timings *ms, const cscd_counters *n, size_t contacts) {
+static void add_interval(interval_sums *t, const cscd_timings *ms, const cscd_counters *n, size_t contacts) {
     t->update += ms->update_ms;
     t->orientation += ms->orientation_ms;
     t->traversal += ms->traversal_ms;
@@ -50,7 +50,7 @@ static void add_interval(tally *t, const cscd_timings *ms, const cscd_counters *
     t->intervals++;
 }
 
-static void print_tally(const char *name, const char *kind, const tally *t, uint32_t triangles) {
+static void print_tally(const char *name, const char *kind, const interval_sums *t, uint32_t triangles) {
     if (t->intervals == 0) return;
     double n = t->intervals;
     printf("%-11s %-8s %9u %9.0f %5.1f %9.1f %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %6u\n", name, kind,
@@ -58,15 +58,15 @@ static void print_tally(const char *name, const char *kind, const tally *t, uint
            t->orientation / n, t->traversal / n, t->contact / n, t->proof / n, t->total / n, t->checks);
 }
 
-static bool all_proven(const recording *r, const cscd_detector *detector) {
+static bool all_proven(const culled_recording *r, const cscd_detector *detector) {
     for (uint32_t c = 0; c < cscd_mesh_component_count(r->mesh); c++) {
         if (!cscd_detector_guarantee(detector, c).start_embedded) return false;
     }
     return true;
 }
 
-static bool replay_method(recording *r, cscd_detector *detector, const char *name) {
-    tally sums[2] = {{.intervals = 0}, {.intervals = 0}};
+static bool replay_method(culled_recording *r, cscd_detector *detector, const char *name) {
+    interval_sums sums[2] = {{.intervals = 0}, {.intervals = 0}};
     io_error error;
     uint32_t count = animation_frame_count(r->frames);
     for (uint32_t i = 0; i < count; i++) {
@@ -99,7 +99,7 @@ static bool parse_method(const char *name, cscd_plan_options *plan, cscd_detecto
     return cscd_method_from_name(method, &detector->method);
 }
 
-static bool run_method(recording *r, const char *name) {
+static bool run_method(culled_recording *r, const char *name) {
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
     cscd_plan_options plan_options = cscd_plan_defaults();
@@ -117,9 +117,9 @@ static bool run_method(recording *r, const char *name) {
     return ran;
 }
 
-static bool open_recording(const char *model, const char *frames, recording *out) {
+static bool open_recording(const char *model, const char *frames, culled_recording *out) {
     io_error error;
-    recording r = {0};
+    culled_recording r = {0};
     if (!mesh_file_read(model, &r.model, &error)) return print_failure(error.text);
     cscd_mesh_desc desc = {r.model.vertex_count, r.model.triangle_count, r.model.triangles};
     bool opened =
@@ -135,7 +135,7 @@ static bool open_recording(const char *model, const char *frames, recording *out
     return opened;
 }
 
-static void close_recording(recording *r) {
+static void close_recording(culled_recording *r) {
     free(r->positions[0]);
     free(r->positions[1]);
     cscd_mesh_destroy(r->mesh);
@@ -146,7 +146,7 @@ static void close_recording(recording *r) {
 
 int main(int argument_count, char **arguments) {
     static const char *const defaults[] = {"none", "single", "kmeans:4", "charge"};
-    recording r = {0};
+    culled_recording r = {0};
     if (argument_count < 3) {
         fputs(help, stderr);
         return 2;

@@ -20,15 +20,15 @@ static const char help[] =
     "the same with a new tree every interval. --threads, --simd and --data mean nothing here.\n"
     "\n";
 
-typedef struct box {
+typedef struct swept_bounds {
     float low[3], high[3];
-} box;
+} swept_bounds;
 
 /* What callbacks see. */
 typedef struct broad_phase {
     const deforming_body *b;
     const double *start, *end;
-    box *boxes;
+    swept_bounds *boxes;
     uint64_t reported, pairs;
     RTCDevice device;
     RTCScene scene;
@@ -44,10 +44,10 @@ static float round_up(double x) {
 }
 
 /* Of a swept triangle, rounded outward. */
-static box swept_box(const broad_phase *p, uint32_t triangle) {
+static swept_bounds swept_box(const broad_phase *p, uint32_t triangle) {
     const uint32_t *corners = p->b->triangles + (size_t)triangle * 3;
     double low[3], high[3];
-    box out;
+    swept_bounds out;
     for (int k = 0; k < 3; k++) low[k] = high[k] = p->start[(size_t)corners[0] * 3 + (size_t)k];
     for (int i = 0; i < 3; i++) {
         const double *ends[2] = {p->start + (size_t)corners[i] * 3, p->end + (size_t)corners[i] * 3};
@@ -67,7 +67,7 @@ static box swept_box(const broad_phase *p, uint32_t triangle) {
 static void give_bounds(const struct RTCBoundsFunctionArguments *arguments) {
     broad_phase *p = arguments->geometryUserPtr;
     struct RTCBounds *to = arguments->bounds_o;
-    box b = p->boxes[arguments->primID] = swept_box(p, arguments->primID);
+    swept_bounds b = p->boxes[arguments->primID] = swept_box(p, arguments->primID);
     to->lower_x = b.low[0];
     to->lower_y = b.low[1];
     to->lower_z = b.low[2];
@@ -76,7 +76,7 @@ static void give_bounds(const struct RTCBoundsFunctionArguments *arguments) {
     to->upper_z = b.high[2];
 }
 
-static bool boxes_overlap(const box *a, const box *b) {
+static bool boxes_overlap(const swept_bounds *a, const swept_bounds *b) {
     return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) &
            (b->low[1] <= a->high[1]) & (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }

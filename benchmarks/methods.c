@@ -28,13 +28,13 @@ static const char help[] =
     "  --data FOLDER    more recordings, NAME.obj with NAME.pc2 (default: sequences/ in\n"
     "                   CSCD_DATA, if that is set)\n";
 
-typedef struct options {
+typedef struct methods_options {
     bool quick;
     const char *json_path, *cache, *data;
     uint32_t thread_count;
     const char *scenes[SCENES_MAX];
     uint32_t scene_count;
-} options;
+} methods_options;
 
 static bool print_failure(const char *text) {
     fprintf(stderr, "methods: %s\n", text);
@@ -48,14 +48,15 @@ static bool refuse_argument(const char *argument, const char *why) {
 
 /* ---- what takes part --------------------------------------------------------------------------------- */
 
-static bool enter_contest(report *r, const entrant *e, uint32_t repeats, io_error *error) {
+static bool enter_contest(methods_report *r, const entrant *e, uint32_t repeats, io_error *error) {
     if (!contest_run(r->truth, e, repeats, &r->results[r->count], error)) return false;
     r->count++;
     return true;
 }
 
 /* Where nothing is closed there are no regions, and methods that want them do not take part. */
-static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t repeats, io_error *error) {
+static bool enter_method(methods_report *r, cscd_method method, cscd_mode mode, uint32_t repeats,
+                         io_error *error) {
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = mode};
     snprintf(e.name, sizeof e.name, "%s%s", cscd_method_name(method), mode == CSCD_MODE_EARLIEST ? "+" : "");
@@ -63,7 +64,7 @@ static bool enter_method(report *r, cscd_method method, cscd_mode mode, uint32_t
 }
 
 /* Trees of 14-DOPs: whether they pay is to be measured. */
-static bool enter_kdop14(report *r, cscd_method method, uint32_t repeats, io_error *error) {
+static bool enter_kdop14(methods_report *r, cscd_method method, uint32_t repeats, io_error *error) {
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = CSCD_MODE_ALL, .volume = CSCD_VOLUME_KDOP14};
     snprintf(e.name, sizeof e.name, "%s kdop14", cscd_method_name(method));
@@ -71,14 +72,14 @@ static bool enter_kdop14(report *r, cscd_method method, uint32_t repeats, io_err
 }
 
 /* Five seeded runs, as in the thesis. */
-static bool enter_kmeans(report *r, uint32_t k, cscd_mode mode, io_error *error) {
+static bool enter_kmeans(methods_report *r, uint32_t k, cscd_mode mode, io_error *error) {
     if (r->truth->recording->charge == NULL) return true;
     entrant e = {.method = CSCD_METHOD_KMEANS, .mode = mode, .k = k, .seed = 1};
     snprintf(e.name, sizeof e.name, "kmeans:%u%s", k, mode == CSCD_MODE_EARLIEST ? "+" : "");
     return enter_contest(r, &e, KMEANS_RUNS, error);
 }
 
-static bool enter_all(report *r, bool every_k, uint32_t repeats, io_error *error) {
+static bool enter_all(methods_report *r, bool every_k, uint32_t repeats, io_error *error) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_ICCD, CSCD_METHOD_SINGLE,
                                           CSCD_METHOD_CHARGE};
     uint32_t n = r->regions, from = every_k ? (n > 3 ? n - 2 : 1) : n, to = every_k ? n + 2 : n;
@@ -112,7 +113,7 @@ static int compare_names(const void *a, const void *b) {
 }
 
 /* Adds the recordings in the data folder, sorted by name. A folder that is given must have some. */
-static bool list_data(options *o) {
+static bool list_data(methods_options *o) {
     uint32_t first = o->scene_count;
     if (o->data == NULL) {
         printf("neither --data nor CSCD_DATA names a folder with recordings, so only our own\n");
@@ -135,17 +136,17 @@ static bool list_data(options *o) {
     return true;
 }
 
-static bool choose_scenes(options *o) {
+static bool choose_scenes(methods_options *o) {
     if (o->scene_count > 0) return true;
     for (size_t i = 0; i < sizeof own_scenes / sizeof *own_scenes; i += o->quick ? 2 : 1)
         o->scenes[o->scene_count++] = own_scenes[i];
     return o->quick || list_data(o);
 }
 
-static bool run_scene(const options *o, const char *scene, json *out, io_error *error) {
+static bool run_scene(const methods_options *o, const char *scene, json *out, io_error *error) {
     recording_data data;
     truth known;
-    report r = {.count = 0};
+    methods_report r = {.count = 0};
     bool own = is_own(scene);
     if (!own && o->data == NULL)
         return io_fail(error, "%s: neither --data nor CSCD_DATA names a folder with this recording", scene);
@@ -158,9 +159,9 @@ static bool run_scene(const options *o, const char *scene, json *out, io_error *
         r.truth = &known;
         r.regions = data.charge != NULL ? cscd_plan_region_count(data.charge) : 1;
         good = enter_all(&r, own && !o->quick, own && !o->quick ? REPEATS : 1, error);
-        if (good) report_print(&r);
+        if (good) methods_report_print(&r);
         if (good) thesis_numbers_print(scene);
-        if (good && out != NULL) report_write(&r, out, o->thread_count);
+        if (good && out != NULL) methods_report_write(&r, out, o->thread_count);
         truth_free(&known);
     }
     fflush(stdout);
@@ -170,7 +171,7 @@ static bool run_scene(const options *o, const char *scene, json *out, io_error *
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-static bool run_scenes(const options *o, int argument_count, char **arguments) {
+static bool run_scenes(const methods_options *o, int argument_count, char **arguments) {
     json out;
     io_error error;
     FILE *file = o->json_path != NULL ? fopen(o->json_path, "w") : NULL;
@@ -208,7 +209,7 @@ static bool parse_threads(const char *text, uint32_t *out) {
     return *out > 0;
 }
 
-static bool parse_arguments(int count, char **arguments, options *o) {
+static bool parse_arguments(int count, char **arguments, methods_options *o) {
     for (int i = 1; i < count; i++) {
         const char *name = arguments[i], *value = i + 1 < count ? arguments[i + 1] : NULL;
         const char **text = strcmp(name, "--json") == 0    ? &o->json_path
@@ -238,7 +239,7 @@ static bool parse_arguments(int count, char **arguments, options *o) {
 }
 
 int main(int argument_count, char **arguments) {
-    options o = {.cache = "build/models", .thread_count = 1};
+    methods_options o = {.cache = "build/models", .thread_count = 1};
     if (argument_count == 2 && strcmp(arguments[1], "--help") == 0) {
         fputs(help, stdout);
         return 0;

@@ -21,10 +21,10 @@ static const char help[] =
     "not.\n"
     "\n";
 
-typedef struct pair_set {
+typedef struct contact_pairs {
     cscd_contact *items;
     size_t count;
-} pair_set;
+} contact_pairs;
 
 /* ---- contacts as sets -------------------------------------------------------------------------------- */
 
@@ -35,15 +35,15 @@ static int compare_pairs(const void *a, const void *b) {
     return p->b < q->b ? -1 : p->b > q->b;
 }
 
-static pair_set sorted_pairs(const cscd_contacts *found) {
-    pair_set set = {body_allocate(found->count + 1, sizeof *set.items), found->count};
+static contact_pairs sorted_pairs(const cscd_contacts *found) {
+    contact_pairs set = {body_allocate(found->count + 1, sizeof *set.items), found->count};
     if (found->count > 0) memcpy(set.items, found->items, found->count * sizeof *set.items);
     qsort(set.items, set.count, sizeof *set.items, compare_pairs);
     return set;
 }
 
 /* How many are in one of them only, and how many in any. */
-static void add_difference(const pair_set *a, const pair_set *b, double *different, double *all) {
+static void add_difference(const contact_pairs *a, const contact_pairs *b, double *different, double *all) {
     size_t i = 0, j = 0;
     while (i < a->count || j < b->count) {
         int order = i == a->count ? 1 : j == b->count ? -1 : compare_pairs(&a->items[i], &b->items[j]);
@@ -63,14 +63,14 @@ typedef struct contest {
 
 static bool run_interval(const deforming_body *b, contest *c, uint32_t i, double *ends, io_error *error) {
     size_t size = (size_t)b->vertex_count * 3;
-    pair_set still = {NULL, 0};
+    contact_pairs still = {NULL, 0};
     bool good = true;
     for (int k = 0; good && k < LENGTH_COUNT; k++) {
         cscd_contacts found;
         deforming_body_interval(b, i, lengths[k] * b->length, ends, ends + size);
         good = subject_step(c->subjects[k], ends, ends + size, i > 0, &found, error);
         if (!good) break;
-        pair_set moving = sorted_pairs(&found);
+        contact_pairs moving = sorted_pairs(&found);
         if (k == 0) {
             still = moving;
             continue;

@@ -39,61 +39,61 @@ typedef struct frames {
     const double *ends[INTERVALS_MAX + 2];
 } frames;
 
-typedef struct rig {
+typedef struct task_rig {
     const frames *f;
     cscd_detector *detector;
     cscd_line *line;
     double distance;
     size_t found; /* what the last call listed */
-} rig;
+} task_rig;
 
 typedef struct task {
     cscd_method method;
-    double separation, distance, reach;                /* in edges */
-    cscd_status (*prepare)(rig *r, uint32_t interval); /* not timed; may be NULL */
-    cscd_status (*act)(rig *r, uint32_t interval);
+    double separation, distance, reach;                     /* in edges */
+    cscd_status (*prepare)(task_rig *r, uint32_t interval); /* not timed; may be NULL */
+    cscd_status (*act)(task_rig *r, uint32_t interval);
 } task;
 
 /* Per interval; refused: NAN. found: per call. */
-typedef struct result {
+typedef struct task_result {
     double ms[INTERVALS_MAX + 1], found;
     uint32_t refused;
-} result;
+} task_result;
 
 /* ---- what is timed ----------------------------------------------------------------------------------- */
 
-static cscd_status act_step(rig *r, uint32_t i) {
+static cscd_status act_step(task_rig *r, uint32_t i) {
     cscd_contacts found = {NULL, 0};
     cscd_status status = cscd_detector_step(r->detector, r->f->ends[i], r->f->ends[i + 1], &found);
     r->found = found.count;
     return status;
 }
 
-static cscd_status act_near(rig *r, uint32_t i) {
+static cscd_status act_near(task_rig *r, uint32_t i) {
     cscd_proximities found = {NULL, 0};
     cscd_status status = cscd_detector_near(r->detector, r->f->ends[i], r->distance, &found);
     r->found = found.count;
     return status;
 }
 
-static cscd_status act_max_step(rig *r, uint32_t i) {
+static cscd_status act_max_step(task_rig *r, uint32_t i) {
     cscd_free_step unused;
     return cscd_detector_max_step(r->detector, r->f->ends[i], r->f->ends[i + 1], NULL, &unused);
 }
 
-static cscd_status act_begin(rig *r, uint32_t i) {
+static cscd_status act_begin(task_rig *r, uint32_t i) {
     cscd_status status = cscd_line_begin(r->line, r->f->ends[i], r->f->ends[i + 1], r->distance);
     r->found = cscd_line_candidate_count(r->line);
     return status;
 }
 
-static cscd_status act_line_step(rig *r, uint32_t i) {
+static cscd_status act_line_step(task_rig *r, uint32_t i) {
     cscd_free_step unused;
     (void)i;
     return cscd_line_max_step(r->line, 1.0, NULL, &unused);
 }
 
-static cscd_status act_line_near(rig *r, uint32_t i) {
+static cscd_status act_line_near(task_rig *r, uint32_t i) {
     cscd_proximities found = {NULL, 0};
     (void)i;
     cscd_status status = cscd_line_near(r->line, 0.5, r->distance, &found);
@@ -103,7 +103,7 @@ static cscd_status act_line_near(rig *r, uint32_t i) {
 
 /* ---- timing ------------------------------------------------------------------------------------------ */
 
-static cscd_status run_once(rig *r, const task *t, bool counts, result *out) {
+static cscd_status run_once(task_rig *r, const task *t, bool counts, task_result *out) {
     for (uint32_t i = 0; i < r->f->interval_count; i++) {
         double took = 0.0;
         cscd_status status = t->prepare != NULL ? t->prepare(r, i) : CSCD_OK;
@@ -120,12 +120,13 @@ static cscd_status run_once(rig *r, const task *t, bool counts, result *out) {
 }
 
 /* The first run, which builds trees and makes buffers grow, is left out. */
-static bool measure_task(const frames *f, const task *t, uint32_t repeats, result *out, io_error *error) {
-    rig r = {.f = f, .distance = t->distance * f->edge};
+static bool measure_task(const frames *f, const task *t, uint32_t repeats, task_result *out,
+                         io_error *error) {
+    task_rig r = {.f = f, .distance = t->distance * f->edge};
     cscd_detector_options options = cscd_detector_defaults();
     options.method = t->method;
     options.min_separation = t->separation * f->edge;
-    *out = (result){.found = 0.0};
+    *out = (task_result){.found = 0.0};
     for (uint32_t i = 0; i < f->interval_count; i++) out->ms[i] = HUGE_VAL;
     cscd_status status = cscd_detector_create(f->mesh, f->plan, &options, &r.detector);
     if (status == CSCD_OK) status = cscd_line_create(r.detector, &r.line);
@@ -141,7 +142,7 @@ static bool measure_task(const frames *f, const task *t, uint32_t repeats, resul
 }
 
 /* Over the intervals that both have. */
-static double time_ratio(const frames *f, const result *a, const result *b) {
+static double time_ratio(const frames *f, const task_result *a, const task_result *b) {
     double sums[2] = {0.0, 0.0};
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) {
         if (isnan(a->ms[i]) || isnan(b->ms[i])) continue;
@@ -154,13 +155,14 @@ static double time_ratio(const frames *f, const result *a, const result *b) {
 /* ---- tables ------------------------------------------------------------------------------------------ */
 
 /* Nearness and separation by length. */
-static bool run_lengths(const frames *f, const result *plain, uint32_t repeats, json *out, io_error *error) {
+static bool run_lengths(const frames *f, const task_result *plain, uint32_t repeats, json *out,
+                        io_error *error) {
     static const double lengths[] = {0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0};
     double triangles = cscd_mesh_triangle_count(f->mesh), found = 0.0;
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths && found < crowded * triangles; i++) {
         const task near = {.method = CSCD_METHOD_NONE, .distance = lengths[i], .act = act_near};
         const task apart = {.method = CSCD_METHOD_NONE, .separation = lengths[i], .act = act_step};
-        result a, b;
+        task_result a, b;
         if (!measure_task(f, &near, repeats, &a, error) || !measure_task(f, &apart, repeats, &b, error))
             return false;
         found = a.found;
@@ -188,7 +190,8 @@ typedef struct named_task {
     task task;
 } named_task;
 
-static bool run_steps(const frames *f, const result *plain, uint32_t repeats, json *out, io_error *error) {
+static bool run_steps(const frames *f, const task_result *plain, uint32_t repeats, json *out,
+                      io_error *error) {
     static const named_task tasks[] = {
         {"step, with the plan", {.method = CSCD_METHOD_AUTO, .act = act_step}},
         {"max_step, none", {.method = CSCD_METHOD_NONE, .act = act_max_step}},
@@ -199,7 +202,7 @@ static bool run_steps(const frames *f, const result *plain, uint32_t repeats, js
         {"line_near, 1/4",
          {.method = CSCD_METHOD_NONE, .distance = 0.25, .prepare = act_begin, .act = act_line_near}}};
     for (size_t i = 0; i < sizeof tasks / sizeof *tasks; i++) {
-        result r;
+        task_result r;
         if (!measure_task(f, &tasks[i].task, repeats, &r, error)) return false;
         printf("  %-18s %-24s %8.2f %12.0f %8u\n", f->name, tasks[i].name, time_ratio(f, &r, plain), r.found,
                r.refused);
@@ -219,7 +222,7 @@ static bool run_steps(const frames *f, const result *plain, uint32_t repeats, js
 static bool run_tables(const frames *f, const bench_options *o, json *out, io_error *error) {
     const task step = {.method = CSCD_METHOD_NONE, .act = act_step};
     uint32_t repeats = o->quick ? 2 : REPEATS, count = f->interval_count - f->first_timed;
-    result plain;
+    task_result plain;
     double sum = 0.0;
     if (!measure_task(f, &step, repeats, &plain, error)) return false;
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) sum += plain.ms[i];

@@ -16,16 +16,16 @@ static const char help[] =
     "the machine was. Peak: bytes per triangle of all that the library held.\n"
     "\n";
 
-typedef struct row {
+typedef struct scaling_row {
     uint32_t triangles;
     cscd_method method;
     cscd_mode mode;
     double ms[STAGE_COUNT], boxes, pcp, features, tests, contacts, peak; /* per interval; peak in bytes */
     double loop;                                                         /* ms */
-} row;
+} scaling_row;
 
 typedef struct table {
-    row rows[ROWS_MAX];
+    scaling_row rows[ROWS_MAX];
     uint32_t count;
 } table;
 
@@ -48,22 +48,22 @@ static bool replay_body(const deforming_body *b, subject *s, uint32_t intervals,
     return good;
 }
 
-static bool measure_row(const deforming_body *b, const subject_options *options, uint32_t intervals, row *out,
-                        io_error *error) {
+static bool measure_row(const deforming_body *b, const subject_options *options, uint32_t intervals,
+                        scaling_row *out, io_error *error) {
     subject *s = subject_make(b, options, error);
     if (s == NULL) return false;
     double loop;
     bool good = replay_body(b, s, intervals, &loop, error);
-    row r = {.triangles = b->triangle_count,
-             .method = options->method,
-             .mode = options->mode,
-             .loop = loop,
-             .peak = (double)s->peak,
-             .boxes = s->samples.boxes / intervals,
-             .pcp = s->samples.pcp / intervals,
-             .features = s->samples.features / intervals,
-             .tests = s->samples.tests / intervals,
-             .contacts = s->samples.contacts / intervals};
+    scaling_row r = {.triangles = b->triangle_count,
+                     .method = options->method,
+                     .mode = options->mode,
+                     .loop = loop,
+                     .peak = (double)s->peak,
+                     .boxes = s->samples.boxes / intervals,
+                     .pcp = s->samples.pcp / intervals,
+                     .features = s->samples.features / intervals,
+                     .tests = s->samples.tests / intervals,
+                     .contacts = s->samples.contacts / intervals};
     for (int i = 0; i < STAGE_COUNT; i++) r.ms[i] = stage_median(&s->samples, i);
     subject_destroy(s);
     *out = r;
@@ -77,12 +77,12 @@ static void print_title(const char *unit) {
     for (int i = 0; i < STAGE_COUNT; i++) printf(" %8s", stage_name(i));
 }
 
-static void print_stages(const row *r, double scale) {
+static void print_stages(const scaling_row *r, double scale) {
     printf("  %9u %-7s %-8s", r->triangles, cscd_method_name(r->method), cscd_mode_name(r->mode));
     for (int i = 0; i < STAGE_COUNT; i++) printf(" %8.*f", scale == 1.0 ? 3 : 1, r->ms[i] * scale);
 }
 
-static void print_row(const row *r) {
+static void print_row(const scaling_row *r) {
     double n = r->triangles;
     print_stages(r, 1.0);
     printf(" %8.1f %9.0f %9.0f %9.0f %9.0f %8.0f %8.0f %6.2f\n", r->ms[STAGE_TOTAL] * 1e6 / n, r->boxes,
@@ -100,10 +100,10 @@ static void print_per_triangle(const table *t) {
 }
 
 /* The row of a method nearest in size to `triangles`; NULL: it took no part. */
-static const row *nearest_row(const table *t, const row *like, uint32_t triangles) {
-    const row *best = NULL;
+static const scaling_row *nearest_row(const table *t, const scaling_row *like, uint32_t triangles) {
+    const scaling_row *best = NULL;
     for (uint32_t i = 0; i < t->count; i++) {
-        const row *r = &t->rows[i];
+        const scaling_row *r = &t->rows[i];
         if (r->method != like->method || r->mode != like->mode) continue;
         if (best == NULL ||
             abs((int)r->triangles - (int)triangles) < abs((int)best->triangles - (int)triangles))
@@ -113,13 +113,13 @@ static const row *nearest_row(const table *t, const row *like, uint32_t triangle
 }
 
 static void print_growth(const table *t) {
-    const row *last = &t->rows[t->count - 1];
+    const scaling_row *last = &t->rows[t->count - 1];
     printf("\ncost per triangle at %u over that at %u\n", last->triangles,
            nearest_row(t, last, COMPARED_SIZE)->triangles);
     for (uint32_t i = 0; i < t->count; i++) {
-        const row *r = &t->rows[i];
+        const scaling_row *r = &t->rows[i];
         if (r->triangles != last->triangles) continue;
-        const row *small = nearest_row(t, r, COMPARED_SIZE);
+        const scaling_row *small = nearest_row(t, r, COMPARED_SIZE);
         double scale = (double)small->triangles / r->triangles;
         printf("  %-7s %-8s", cscd_method_name(r->method), cscd_mode_name(r->mode));
         for (int k = 0; k < STAGE_COUNT; k++) {
@@ -130,7 +130,7 @@ static void print_growth(const table *t) {
     }
 }
 
-static void write_row(json *out, const row *r, const bench_options *o) {
+static void write_row(json *out, const scaling_row *r, const bench_options *o) {
     if (out->file == NULL) return;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -168,7 +168,7 @@ static bool run_size(const bench_options *o, uint32_t size, table *t, json *out,
     bool good = true;
     for (uint32_t i = 0; good && i < 8; i++) {
         char text[96];
-        row *r = &t->rows[t->count];
+        scaling_row *r = &t->rows[t->count];
         subject_options options = {methods[i / 2], i % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST,
                                    o->thread_count, o->simd, o->volume};
         snprintf(text, sizeof text, "%u triangles, %s", b.triangle_count, cscd_method_name(options.method));

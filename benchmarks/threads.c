@@ -24,13 +24,13 @@ static const char help[] =
 
 static atomic_uint waiting;
 
-typedef struct worker {
+typedef struct loop_worker {
     double begin, end, result;
-} worker;
+} loop_worker;
 
 /* Starts when the last of all has come. */
 static void *run_worker(void *data) {
-    worker *w = data;
+    loop_worker *w = data;
     atomic_fetch_sub(&waiting, 1);
     while (atomic_load(&waiting) > 0) {
     }
@@ -50,7 +50,7 @@ typedef struct loop_times {
 } loop_times;
 
 static void time_loops(loop_times *least) {
-    worker w[3] = {{0.0, 0.0, 0.0}};
+    loop_worker w[3] = {{0.0, 0.0, 0.0}};
     pthread_t other;
     atomic_store(&waiting, 1);
     run_worker(&w[0]);

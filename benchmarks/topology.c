@@ -38,14 +38,14 @@ static const char *const part_names[PART_COUNT] = {"mesh",       "plan",      "d
                                                    "first step", "its proof", "steady step"};
 
 /* Carried over: what a plan of an earlier mesh said, in the numbers of the new one. */
-typedef struct carried {
+typedef struct carried_plan {
     uint32_t region_count, *regions;
     double *points;
-} carried;
+} carried_plan;
 
 typedef struct subject_set {
     const deforming_body *body;
-    const carried *carried; /* NULL: no such plan */
+    const carried_plan *carried; /* NULL: no such plan */
     cscd_method method;
     cscd_start start;
     double *ends[INTERVAL_COUNT][2];
@@ -161,7 +161,7 @@ static bool measure_set(subject_set *s, const bench_options *o, const char *plan
 
 /* ---- what is carried over ---------------------------------------------------------------------------- */
 
-static bool find_regions(subject_set *s, carried *out, io_error *error) {
+static bool find_regions(subject_set *s, carried_plan *out, io_error *error) {
     double unused[PART_COUNT];
     s->method = CSCD_METHOD_KMEANS;
     cscd_status status = make_subjects(s, unused);
@@ -185,7 +185,7 @@ static bool find_regions(subject_set *s, carried *out, io_error *error) {
 /* ---- the program ------------------------------------------------------------------------------------- */
 
 static bool run_rows(subject_set *s, const bench_options *o, json *out, io_error *error) {
-    carried kept = {0};
+    carried_plan kept = {0};
     s->method = CSCD_METHOD_NONE;
     bool good = measure_set(s, o, "none", out, error);
     s->method = CSCD_METHOD_SINGLE;

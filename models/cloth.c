@@ -11,9 +11,9 @@
 #include <string.h>
 
 /* The files of a recording, written side by side. */
-typedef struct outputs {
+typedef struct cloth_files {
     point_cache_writer *frames, *scenery_frames;
-} outputs;
+} cloth_files;
 
 static bool obstacles_move(const cloth_scene *s) {
     bool move = false;
@@ -31,7 +31,7 @@ static body make_scenery(const cloth_simulation *c) {
     return scenery;
 }
 
-static bool open_outputs(const char *folder, const cloth_simulation *c, outputs *out, io_error *error) {
+static bool open_outputs(const char *folder, const cloth_simulation *c, cloth_files *out, io_error *error) {
     const cloth_scene *s = c->scene;
     body scenery = make_scenery(c);
     bool good = recording_write_model(folder, s->name, ".obj", &c->garment, error) &&
@@ -45,14 +45,14 @@ static bool open_outputs(const char *folder, const cloth_simulation *c, outputs 
     return good;
 }
 
-static bool write_frame(const cloth_simulation *c, const outputs *out, io_error *error) {
+static bool write_frame(const cloth_simulation *c, const cloth_files *out, io_error *error) {
     return point_cache_writer_write(out->frames, c->positions, error) &&
            (out->scenery_frames == NULL ||
             point_cache_writer_write(out->scenery_frames, c->positions + c->garment.vertex_count * 3, error));
 }
 
 /* True if all that was opened is complete. */
-static bool close_outputs(outputs *out, io_error *error) {
+static bool close_outputs(cloth_files *out, io_error *error) {
     bool good = out->frames == NULL || point_cache_writer_close(out->frames, error);
     if (out->scenery_frames != NULL) good = point_cache_writer_close(out->scenery_frames, error) && good;
     return good;
@@ -81,7 +81,7 @@ static void print_summary(const cloth_simulation *c, uint64_t late_allocations) 
 
 static bool record_frames(cloth_simulation *c, const char *folder, const uint64_t *allocations,
                           io_error *error) {
-    outputs out = {NULL, NULL};
+    cloth_files out = {NULL, NULL};
     uint64_t early = 0;
     const cloth_scene *s = c->scene;
     bool good = open_outputs(folder, c, &out, error);

@@ -20,7 +20,7 @@ static double mean_of(uint64_t sum, uint32_t count) {
     return (double)sum / count;
 }
 
-static void print_summary(const ipc_solver *p, const motion *m) {
+static void print_summary(const ipc_solver *p, const recording_motion *m) {
     const ipc_statistics *s = &p->statistics;
     const ipc_scene *scene = p->scene;
     printf("%s: %s\n", scene->name, scene->text);
@@ -53,8 +53,8 @@ static cscd_status advance_frame(ipc_solver *p) {
 
 /* The frames, the first as the solver begins; a frame is measured as the files have it, in single precision.
  */
-static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writer *frames, motion *m,
-                          io_error *error) {
+static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writer *frames,
+                          recording_motion *m, io_error *error) {
     size_t bytes = (size_t)p->shape.vertex_count * 3 * sizeof(double);
     body rounded = {.vertex_count = p->shape.vertex_count, .positions = body_allocate(bytes, 1)};
     bool good = true;
@@ -64,8 +64,8 @@ static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writ
         memcpy(rounded.positions, p->positions, bytes);
         body_round(&rounded);
         if (status == CSCD_OK)
-            status =
-                frame > 0 ? motion_add(m, rounded.positions) : motion_begin(p->mesh, rounded.positions, m);
+            status = frame > 0 ? recording_motion_add(m, rounded.positions)
+                               : recording_motion_begin(p->mesh, rounded.positions, m);
         good = (status == CSCD_OK || io_fail(error, "%s: frame %u: %s: %s", p->scene->name, frame,
                                              cscd_status_string(status), cscd_context_detail(context))) &&
                point_cache_writer_write(frames, rounded.positions, error);
@@ -76,14 +76,14 @@ static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writ
 }
 
 static bool record_solver(ipc_solver *p, cscd_context *context, const char *folder, io_error *error) {
-    motion m = {.mesh = NULL};
+    recording_motion m = {.mesh = NULL};
     point_cache_writer *frames = NULL;
     bool good = open_outputs(folder, p, &frames, error) && record_frames(p, context, frames, &m, error);
     io_error closing;
     bool complete = frames == NULL || point_cache_writer_close(frames, &closing);
     if (good && !complete) *error = closing;
     if (good && complete) print_summary(p, &m);
-    if (m.mesh != NULL) motion_free(&m);
+    if (m.mesh != NULL) recording_motion_free(&m);
     return good && complete;
 }
 

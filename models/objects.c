@@ -11,16 +11,16 @@
 #include <stdio.h>
 
 /* A scene that goes by formula, or, with stage.scene NULL, the soft bodies. */
-typedef struct recording {
+typedef struct object_recording {
     const char *name, *text;
     uint32_t frame_count;
     object_stage stage;
     tumble bodies;
     const body *shape;
     const double *frame;
-} recording;
+} object_recording;
 
-static bool open_recording(uint32_t index, cscd_context *context, recording *r, io_error *error) {
+static bool open_recording(uint32_t index, cscd_context *context, object_recording *r, io_error *error) {
     if (index < object_scene_count) {
         const object_scene *s = &object_scenes[index];
         if (!object_stage_open(s, &r->stage, error)) return false;
@@ -40,20 +40,20 @@ static bool open_recording(uint32_t index, cscd_context *context, recording *r, 
     return true;
 }
 
-static void close_recording(recording *r) {
+static void close_recording(object_recording *r) {
     if (r->stage.scene != NULL)
         object_stage_close(&r->stage);
     else
         tumble_close(&r->bodies);
 }
 
-static bool go_to_frame(recording *r, uint32_t frame, io_error *error) {
+static bool go_to_frame(object_recording *r, uint32_t frame, io_error *error) {
     if (r->stage.scene == NULL) return frame == 0 || tumble_advance(&r->bodies, error);
     object_stage_go(&r->stage, frame);
     return true;
 }
 
-static bool write_scenery(const recording *r, const char *folder, io_error *error) {
+static bool write_scenery(const object_recording *r, const char *folder, io_error *error) {
     body scenery = {0};
     if (r->stage.scene != NULL) return true;
     bool good = scenery_make(&r->bodies.around, &scenery, error) &&
@@ -62,7 +62,7 @@ static bool write_scenery(const recording *r, const char *folder, io_error *erro
     return good;
 }
 
-static bool record_frames(recording *r, point_cache_writer *frames, census *c, cscd_context *context,
+static bool record_frames(object_recording *r, point_cache_writer *frames, census *c, cscd_context *context,
                           io_error *error) {
     bool good = true;
     for (uint32_t frame = 0; good && frame < r->frame_count; frame++) {
@@ -78,7 +78,7 @@ static bool record_frames(recording *r, point_cache_writer *frames, census *c, c
     return good;
 }
 
-static void print_summary(const recording *r, const census *c, double milliseconds) {
+static void print_summary(const object_recording *r, const census *c, double milliseconds) {
     printf("%s: %s\n", r->name, r->text);
     printf("  %u frames of %u objects, %u triangles; %.1f s\n", c->frame_count, c->object_count,
            r->shape->triangle_count, 1e-3 * milliseconds);
@@ -90,7 +90,7 @@ static void print_summary(const recording *r, const census *c, double millisecon
            c->largest_motion);
 }
 
-static bool record_census(recording *r, census *c, cscd_context *context, const char *folder,
+static bool record_census(object_recording *r, census *c, cscd_context *context, const char *folder,
                           io_error *error) {
     point_cache_writer *frames = NULL;
     double start = clock_now_ms();
@@ -106,7 +106,7 @@ static bool record_census(recording *r, census *c, cscd_context *context, const 
     return good && complete;
 }
 
-static bool record_opened(recording *r, cscd_context *context, const char *folder, io_error *error) {
+static bool record_opened(object_recording *r, cscd_context *context, const char *folder, io_error *error) {
     const cscd_mesh_desc desc = {r->shape->vertex_count, r->shape->triangle_count, r->shape->triangles};
     cscd_mesh *mesh = NULL;
     census c;
@@ -120,7 +120,7 @@ static bool record_opened(recording *r, cscd_context *context, const char *folde
 }
 
 static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
-    recording r = {.name = NULL};
+    object_recording r = {.name = NULL};
     cscd_context *context = NULL;
     (void)user;
     cscd_status status = cscd_context_create(NULL, &context);

@@ -10,15 +10,15 @@
 #include <stdio.h>
 
 /* The files of a recording, written side by side. */
-typedef struct outputs {
+typedef struct record_files {
     point_cache_writer *frames, *scenery_frames;
     body scenery;
-} outputs;
+} record_files;
 
 /* Scenery frames only where balls move. */
-static bool open_outputs(const char *folder, const recorder *r, outputs *out, io_error *error) {
+static bool open_outputs(const char *folder, const recorder *r, record_files *out, io_error *error) {
     if (!scenery_make(&r->around, &out->scenery, error)) return false;
-    const scene *s = r->scene;
+    const soft_scene *s = r->scene;
     return recording_write_model(folder, s->name, ".obj", &r->shape, error) &&
            recording_write_model(folder, s->name, "-scenery.obj", &out->scenery, error) &&
            recording_open_frames(folder, s->name, ".pc2", r->shape.vertex_count, s->frame_count, &out->frames,
@@ -28,7 +28,7 @@ static bool open_outputs(const char *folder, const recorder *r, outputs *out, io
                                   &out->scenery_frames, error));
 }
 
-static bool write_frame(const recorder *r, outputs *out, io_error *error) {
+static bool write_frame(const recorder *r, record_files *out, io_error *error) {
     if (!point_cache_writer_write(out->frames, r->frame, error)) return false;
     if (out->scenery_frames == NULL) return true;
     return scenery_follow(&r->around, &out->scenery, error) &&
@@ -36,19 +36,21 @@ static bool write_frame(const recorder *r, outputs *out, io_error *error) {
 }
 
 /* True if all that was opened is complete. */
-static bool close_outputs(outputs *out, io_error *error) {
+static bool close_outputs(record_files *out, io_error *error) {
     bool good = out->frames == NULL || point_cache_writer_close(out->frames, error);
     if (out->scenery_frames != NULL) good = point_cache_writer_close(out->scenery_frames, error) && good;
     body_free(&out->scenery);
     return good;
 }
 
-static bool measure_frame(const recorder *r, motion *m, io_error *error) {
-    cscd_status status = m->mesh == NULL ? motion_begin(r->mesh, r->frame, m) : motion_add(m, r->frame);
+static bool measure_frame(const recorder *r, recording_motion *m, io_error *error) {
+    cscd_status status =
+        m->mesh == NULL ? recording_motion_begin(r->mesh, r->frame, m) : recording_motion_add(m, r->frame);
     return status == CSCD_OK || io_fail(error, "%s: %s", r->scene->name, cscd_context_detail(r->context));
 }
 
-static void print_summary(const recorder *r, const motion *m, double start_energy, double most_energy) {
+static void print_summary(const recorder *r, const recording_motion *m, double start_energy,
+                          double most_energy) {
     printf("%s: %s\n", r->scene->name, r->scene->text);
     printf("  %u frames of %u triangles, %g s each; lattice of %u cells\n", m->frame_count,
            r->shape.triangle_count, r->scene->frame_seconds, r->soft.frame.cell_count);
@@ -61,11 +63,11 @@ static void print_summary(const recorder *r, const motion *m, double start_energ
 }
 
 static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
-    const scene *s = &scenes[index];
+    const soft_scene *s = &soft_scenes[index];
     (void)user;
     recorder r;
-    outputs out = {NULL, NULL, {0}};
-    motion m = {.mesh = NULL};
+    record_files out = {NULL, NULL, {0}};
+    recording_motion m = {.mesh = NULL};
     if (!recorder_open(s, NULL, &r, error)) return false;
     double start_energy = recorder_energy(&r), most_energy = start_energy;
     bool good = open_outputs(folder, &r, &out, error);
@@ -80,17 +82,17 @@ static bool record_scene(void *user, uint32_t index, const char *folder, io_erro
     bool complete = close_outputs(&out, &closing);
     if (good && !complete) *error = closing;
     if (good && complete) print_summary(&r, &m, start_energy, most_energy);
-    if (m.mesh != NULL) motion_free(&m);
+    if (m.mesh != NULL) recording_motion_free(&m);
     recorder_close(&r);
     return good && complete;
 }
 
 static const char *scene_name(uint32_t index) {
-    return scenes[index].name;
+    return soft_scenes[index].name;
 }
 
 static const char *scene_text(uint32_t index) {
-    return scenes[index].text;
+    return soft_scenes[index].text;
 }
 
 int main(int argument_count, char **arguments) {
@@ -104,7 +106,7 @@ int main(int argument_count, char **arguments) {
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
             "`all` stands for all scenes:\n"
             "\n",
-        .scene_count = scene_count,
+        .scene_count = soft_scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
         .record = record_scene};

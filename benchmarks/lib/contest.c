@@ -193,8 +193,8 @@ static bool replay_once(const truth *t, const entrant *e, cscd_detector *detecto
     return true;
 }
 
-bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out, io_error *error) {
-    result made = {.entrant = *e, .least_ms = INFINITY};
+bool contest_run(const truth *t, const entrant *e, uint32_t repeats, contest_result *out, io_error *error) {
+    contest_result made = {.entrant = *e, .least_ms = INFINITY};
     uint32_t intervals = t->recording->frame_count - 1;
     for (uint32_t repeat = 0; repeat < repeats; repeat++) {
         cscd_detector *detector = NULL;

@@ -37,16 +37,16 @@ enum { CLASS_PROVEN, CLASS_OTHER, CLASS_COUNT };
 
 /* Means over repeats, in intervals with a proven start and in others, and the repeats' least and greatest
  * time per interval over all of them. */
-typedef struct result {
+typedef struct contest_result {
     entrant entrant;
     score classes[CLASS_COUNT];
     double least_ms, most_ms;
-} result;
+} contest_result;
 
 /* Replays `repeats` times. False: *error says that a call failed, or which interval's contacts break the
  * guarantee that the method gave for it. Published methods may lose anything; none may add or alter a
  * contact. */
-bool contest_run(const truth *t, const entrant *e, uint32_t repeats, result *out, io_error *error);
+bool contest_run(const truth *t, const entrant *e, uint32_t repeats, contest_result *out, io_error *error);
 
 /* Of one class, or, where only is CLASS_COUNT, of both; means per interval, losses as they are. */
 score score_mean(const score classes[CLASS_COUNT], int only);

@@ -20,7 +20,7 @@ static void print_ratio(const score *reference, const score *s) {
            reference->ms.total_ms / (s->ms.update_ms + s->ms.contact_ms));
 }
 
-static void print_row(const result *r, const score *s, const score *none, const score *iccd) {
+static void print_row(const contest_result *r, const score *s, const score *none, const score *iccd) {
     printf("  %-16s", r->entrant.name);
     for (int i = 0; i < TIMING_STAGES; i++) print_stage(timing_ms(&s->ms, &timing_rows[i]));
     printf(" %8.0f %8.0f %8.1f %6.1f %6.1f %7.3f %6.3f-%-6.3f", s->pcp, s->tests, s->contacts,
@@ -30,7 +30,7 @@ static void print_row(const result *r, const score *s, const score *none, const 
     putchar('\n');
 }
 
-static void print_class(const report *r, int only, const char *title) {
+static void print_class(const methods_report *r, int only, const char *title) {
     score none = score_mean(r->results[0].classes, only), iccd = score_mean(r->results[1].classes, only);
     if (none.intervals == 0) return;
     printf("\n  %s\n  %-16s", title, "method");
@@ -43,7 +43,7 @@ static void print_class(const report *r, int only, const char *title) {
     }
 }
 
-void report_print(const report *r) {
+void methods_report_print(const methods_report *r) {
     const recording_data *data = r->truth->recording;
     uint32_t intervals = data->frame_count - 1, proven = r->truth->proven_count;
     char title[160];
@@ -68,7 +68,7 @@ static void write_stages(json *out, const cscd_timings *ms) {
     }
 }
 
-void report_write(const report *r, json *out, uint32_t thread_count) {
+void methods_report_write(const methods_report *r, json *out, uint32_t thread_count) {
     for (uint32_t i = 0; i < r->count; i++) {
         const entrant *e = &r->results[i].entrant;
         score s = score_mean(r->results[i].classes, CLASS_COUNT);

@@ -7,13 +7,13 @@
 enum { RESULTS_MAX = 32 };
 
 /* Of one recording; methods none and iccd first. */
-typedef struct report {
+typedef struct methods_report {
     const truth *truth;
-    result results[RESULTS_MAX];
+    contest_result results[RESULTS_MAX];
     uint32_t count, regions;
-} report;
+} methods_report;
 
-void report_print(const report *r);
+void methods_report_print(const methods_report *r);
 
 /* One object per method over all intervals: means per interval, but losses per run. */
-void report_write(const report *r, json *out, uint32_t thread_count);
+void methods_report_write(const methods_report *r, json *out, uint32_t thread_count);

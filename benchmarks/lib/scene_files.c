@@ -34,7 +34,7 @@ static bool record_frames(recorder *r, const char *path, io_error *error) {
 
 /* Does nothing where both files are there. */
 static bool make_recording(const char *model, const char *frames, const char *name, io_error *error) {
-    const scene *s = scene_find(name);
+    const soft_scene *s = soft_scene_find(name);
     recorder r;
     if ((access(model, F_OK) == 0 && access(frames, F_OK) == 0) || s == NULL) return true;
     if (!recorder_open(s, NULL, &r, error)) return false;

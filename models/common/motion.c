@@ -55,8 +55,8 @@ double rigid_residual(const double *from, const double *to, uint32_t point_count
     return sqrt(fmax(squares - 2.0 * largest_eigenvalue(n), 0.0) / point_count);
 }
 
-cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out) {
-    motion m = {.mesh = mesh};
+cscd_status recording_motion_begin(const cscd_mesh *mesh, const double *first, recording_motion *out) {
+    recording_motion m = {.mesh = mesh};
     uint32_t vertex_count = cscd_mesh_vertex_count(mesh), edge_count = cscd_mesh_edge_count(mesh);
     size_t bytes = (size_t)vertex_count * 3 * sizeof *first;
     double low[3], high[3];
@@ -78,15 +78,15 @@ cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out
         vec3_subtract(first + (size_t)v[1] * 3, first + (size_t)v[0] * 3, along);
         m.edge_length += vec3_norm(along) / edge_count;
     }
-    status = motion_add(&m, first);
+    status = recording_motion_add(&m, first);
     if (status == CSCD_OK)
         *out = m;
     else
-        motion_free(&m);
+        recording_motion_free(&m);
     return status;
 }
 
-static cscd_status add_contacts(motion *m, const double *frame) {
+static cscd_status add_contacts(recording_motion *m, const double *frame) {
     cscd_contacts contacts = {NULL, 0};
     cscd_intersections crossing;
     if (m->frame_count > 0) {
@@ -99,7 +99,7 @@ static cscd_status add_contacts(motion *m, const double *frame) {
     return status;
 }
 
-cscd_status motion_add(motion *m, const double *frame) {
+cscd_status recording_motion_add(recording_motion *m, const double *frame) {
     uint32_t vertex_count = cscd_mesh_vertex_count(m->mesh);
     cscd_status status = add_contacts(m, frame);
     if (status != CSCD_OK) return status;
@@ -116,9 +116,9 @@ cscd_status motion_add(motion *m, const double *frame) {
     return CSCD_OK;
 }
 
-void motion_free(motion *m) {
+void recording_motion_free(recording_motion *m) {
     cscd_detector_destroy(m->detector);
     free(m->first);
     free(m->last);
-    *m = (motion){0};
+    *m = (recording_motion){0};
 }

@@ -5,7 +5,7 @@
 
 /* What has been measured so far. Residuals are root mean squares over the vertices of what is left after the
  * best rigid motion from the first frame, as shares of the first frame's diagonal. */
-typedef struct motion {
+typedef struct recording_motion {
     const cscd_mesh *mesh;
     cscd_detector *detector;
     double *first, *last;
@@ -16,12 +16,12 @@ typedef struct motion {
     uint32_t contact_intervals; /* from frame to frame */
     double largest_residual;
     double largest_motion; /* of a vertex from frame to frame, in edge lengths */
-} motion;
+} recording_motion;
 
 /* At the first frame. On another status than CSCD_OK there is nothing to free. */
-cscd_status motion_begin(const cscd_mesh *mesh, const double *first, motion *out);
-cscd_status motion_add(motion *m, const double *frame);
-void motion_free(motion *m);
+cscd_status recording_motion_begin(const cscd_mesh *mesh, const double *first, recording_motion *out);
+cscd_status recording_motion_add(recording_motion *m, const double *frame);
+void recording_motion_free(recording_motion *m);
 
 /* Root mean square of what the best rigid motion leaves between two sets of points (Horn, "Closed-form
  * solution of absolute orientation using unit quaternions", 1987). */

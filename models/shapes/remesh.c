@@ -14,24 +14,24 @@ enum {
     NETS_MOST = 12000
 };
 
-typedef struct edge {
+typedef struct surface_edge {
     double squared_length;
     uint32_t half_edge;
-} edge;
+} surface_edge;
 
 static int by_length(const void *a, const void *b) {
-    const edge *e = a, *f = b;
+    const surface_edge *e = a, *f = b;
     if (e->squared_length != f->squared_length) return e->squared_length < f->squared_length ? -1 : 1;
     return (e->half_edge > f->half_edge) - (e->half_edge < f->half_edge);
 }
 
 /* The shortest first; to be freed. */
-static edge *sorted_edges(const surface *s, uint32_t *count) {
-    edge *edges = body_allocate((size_t)s->live_triangles * 3 / 2, sizeof *edges);
+static surface_edge *sorted_edges(const surface *s, uint32_t *count) {
+    surface_edge *edges = body_allocate((size_t)s->live_triangles * 3 / 2, sizeof *edges);
     *count = 0;
     for (uint32_t h = 0; h < s->mesh.triangle_count * 3; h++)
         if (!triangle_is_dead(s, h / 3) && h < s->twins[h])
-            edges[(*count)++] = (edge){surface_squared_length(s, h), h};
+            edges[(*count)++] = (surface_edge){surface_squared_length(s, h), h};
     qsort(edges, *count, sizeof *edges, by_length);
     return edges;
 }
@@ -56,7 +56,7 @@ static void touch_neighbours(const surface *s, uint8_t *touched, uint32_t v) {
 static uint32_t collapse_shortest(surface *s, const implicit *shape, uint32_t most, double scale,
                                   double below) {
     uint32_t count, done = 0;
-    edge *edges = sorted_edges(s, &count);
+    surface_edge *edges = sorted_edges(s, &count);
     uint8_t *touched = body_allocate(s->mesh.vertex_count, sizeof *touched);
     for (uint32_t i = 0; i < count && done < most; i++) {
         uint32_t h = edges[i].half_edge;
@@ -78,7 +78,7 @@ static uint32_t collapse_shortest(surface *s, const implicit *shape, uint32_t mo
 /* Up to `most` edges longer than `above`; returns how many. */
 static uint32_t split_longest(surface *s, const implicit *shape, uint32_t most, double scale, double above) {
     uint32_t count, done = 0;
-    edge *edges = sorted_edges(s, &count);
+    surface_edge *edges = sorted_edges(s, &count);
     uint8_t *touched = body_allocate(s->mesh.vertex_count + count, sizeof *touched);
     for (uint32_t i = count; i-- > 0 && done < most;) {
         uint32_t h = edges[i].half_edge, a = half_edge_from(s, h), b = half_edge_to(s, h);

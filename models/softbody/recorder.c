@@ -31,13 +31,13 @@ static void take_frame(recorder *r) {
     body_round(&rounded);
 }
 
-bool recorder_open(const scene *s, cscd_context *context, recorder *out, io_error *error) {
+bool recorder_open(const soft_scene *s, cscd_context *context, recorder *out, io_error *error) {
     recorder r = {.scene = s, .around = s->around, .context = context, .own_context = context == NULL};
     if (!body_make(s->kind, 0, &r.shape, error)) return false;
     size_t bytes = (size_t)r.shape.vertex_count * 3 * sizeof *r.frame;
     r.frame = body_allocate(bytes, 1);
     r.start = body_allocate(bytes, 1);
-    r.soft = scene_begin(s, &r.shape);
+    r.soft = soft_scene_begin(s, &r.shape);
     cscd_status status = open_detector(&r, r.shape.positions);
     if (status == CSCD_OK) {
         r.contacts = self_contacts_make(r.mesh, r.shape.positions, 2.0 * s->spacing);
@@ -65,7 +65,7 @@ void recorder_close(recorder *r) {
 }
 
 bool recorder_advance(recorder *r, io_error *error) {
-    const scene *s = r->scene;
+    const soft_scene *s = r->scene;
     for (uint32_t i = 0; i < s->checks; i++) {
         cscd_contacts found = {NULL, 0};
         memcpy(r->start, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->start);

@@ -6,7 +6,7 @@
 #include "models/softbody/simulation.h"
 
 typedef struct recorder {
-    const scene *scene;
+    const soft_scene *scene;
     body shape;    /* as the body begins, in single precision: the model that the frames belong to */
     double *frame; /* its vertices now, in single precision */
     obstacles around;
@@ -23,7 +23,7 @@ typedef struct recorder {
 
 /* At the first frame. context: NULL, for one of its own, or one that outlives it. recorder_close takes it
  * back; on false there is nothing to close, and *error says why. */
-bool recorder_open(const scene *s, cscd_context *context, recorder *out, io_error *error);
+bool recorder_open(const soft_scene *s, cscd_context *context, recorder *out, io_error *error);
 void recorder_close(recorder *r);
 
 /* On to the next frame. */

@@ -19,7 +19,7 @@
     }
 
 /* The free ones are stiffer and fall more softly, or lie across the stairs, so that nothing touches. */
-const scene scenes[] = {
+const soft_scene soft_scenes[] = {
     {
         .name = "pawn-drop",
         .text = "a pawn falls on its foot, bows and hits itself",
@@ -114,16 +114,16 @@ const scene scenes[] = {
     },
 };
 
-const uint32_t scene_count = sizeof scenes / sizeof *scenes;
+const uint32_t soft_scene_count = sizeof soft_scenes / sizeof *soft_scenes;
 
-const scene *scene_find(const char *name) {
-    for (uint32_t i = 0; i < scene_count; i++) {
-        if (strcmp(scenes[i].name, name) == 0) return &scenes[i];
+const soft_scene *soft_scene_find(const char *name) {
+    for (uint32_t i = 0; i < soft_scene_count; i++) {
+        if (strcmp(soft_scenes[i].name, name) == 0) return &soft_scenes[i];
     }
     return NULL;
 }
 
-soft_body scene_begin(const scene *s, const body *shape) {
+soft_body soft_scene_begin(const soft_scene *s, const body *shape) {
     double turn[3][3], low[3], high[3];
     soft_body b = soft_body_make(shape->positions, shape->vertex_count, shape->triangles,
                                  shape->triangle_count, s->spacing, &s->stuff);

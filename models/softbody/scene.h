@@ -6,7 +6,7 @@
 #include "models/softbody/soft_body.h"
 
 /* Lengths in the bodies' unit, times in seconds. */
-typedef struct scene {
+typedef struct soft_scene {
     const char *name, *text;
     body_kind kind;
     double spacing; /* of the lattice */
@@ -18,13 +18,13 @@ typedef struct scene {
     uint32_t frame_count;
     double frame_seconds;
     uint32_t checks, steps; /* per frame: detector steps; and in each of these, small steps */
-} scene;
+} soft_scene;
 
-extern const scene scenes[];
-extern const uint32_t scene_count;
+extern const soft_scene soft_scenes[];
+extern const uint32_t soft_scene_count;
 
 /* NULL: there is none of this name. */
-const scene *scene_find(const char *name);
+const soft_scene *soft_scene_find(const char *name);
 
 /* Places the body, which is at rest as catalogue.h says, as the scene begins. */
-soft_body scene_begin(const scene *s, const body *shape);
+soft_body soft_scene_begin(const soft_scene *s, const body *shape);

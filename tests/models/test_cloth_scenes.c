@@ -18,13 +18,13 @@ enum { RESOLUTION = 18 };
 
 /* A run of a scene beside detectors that know nothing of the solver's, on what a recording keeps: positions
  * in single precision. */
-typedef struct trial {
+typedef struct cloth_trial {
     cscd_context *context;
     cloth_simulation run;
     uint32_t vertex_count, garment_count;
     cscd_detector *judge, *brute; /* of the whole scene; both find what touches */
     double *before, *after;       /* rounded */
-} trial;
+} cloth_trial;
 
 static void round_positions(const double *from, uint32_t vertex_count, double *to) {
     body rounded = {.vertex_count = vertex_count, .positions = to};
@@ -42,8 +42,8 @@ static cscd_detector *make_detector(const cloth_simulation *run, cscd_method met
     return detector;
 }
 
-static trial begin_trial(const char *name, uint32_t thread_count) {
-    trial t = {0};
+static cloth_trial begin_trial(const char *name, uint32_t thread_count) {
+    cloth_trial t = {0};
     io_error error;
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = thread_count;
@@ -60,7 +60,7 @@ static trial begin_trial(const char *name, uint32_t thread_count) {
     return t;
 }
 
-static void end_trial(trial *t) {
+static void end_trial(cloth_trial *t) {
     cscd_detector_destroy(t->judge);
     cscd_detector_destroy(t->brute);
     cloth_close(&t->run);
@@ -69,7 +69,7 @@ static void end_trial(trial *t) {
     free(t->after);
 }
 
-static void advance_trial(trial *t) {
+static void advance_trial(cloth_trial *t) {
     io_error error;
     double *kept = t->before;
     if (!cloth_advance(&t->run, &error)) fail_msg("%s", error.text);
@@ -100,7 +100,7 @@ typedef struct meetings {
     size_t folds, obstacles[CLOTH_OBSTACLES_MAX];
 } meetings;
 
-static meetings count_meetings(trial *t) {
+static meetings count_meetings(cloth_trial *t) {
     meetings m = {0};
     cscd_proximities near;
     const double reach = 1.2 * cloth_thickness(&t->run);
@@ -123,7 +123,7 @@ static meetings count_meetings(trial *t) {
 }
 
 /* The largest motion of a vertex of the garment in the last frame. */
-static double largest_motion(const trial *t) {
+static double largest_motion(const cloth_trial *t) {
     double most = 0.0, between[3];
     for (uint32_t v = 0; v < t->garment_count; v++) {
         vec3_subtract(t->run.positions + v * 3, t->run.start + v * 3, between);
@@ -134,7 +134,7 @@ static double largest_motion(const trial *t) {
 
 /* No contact from frame to frame, and so no frame that crosses; no obstacle that had to wait. *most_folds: of
  * a frame. True if that was the whole scene, which ends nearly at rest. */
-static bool run_scene(trial *t, size_t *most_folds) {
+static bool run_scene(cloth_trial *t, size_t *most_folds) {
     *most_folds = 0;
     uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;
     expect_embedded(t->judge, t->after);
@@ -156,7 +156,7 @@ static bool run_scene(trial *t, size_t *most_folds) {
 /* It lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it. */
 static void the_sheet_drapes_over_the_ball(void **state) {
     (void)state;
-    trial t = begin_trial("cloth-drape", 1);
+    cloth_trial t = begin_trial("cloth-drape", 1);
     const cloth_obstacle *ball = &t.run.scene->obstacles[1];
     double top = ball->centre[2] + ball->rise + ball->size, highest = 0.0;
     size_t most_folds;
@@ -177,7 +177,7 @@ static void the_sheet_drapes_over_the_ball(void **state) {
 /* Flat on the floor, below the ball. */
 static void the_sleeve_lies_in_folds(void **state) {
     (void)state;
-    trial t = begin_trial("sleeve", 1);
+    cloth_trial t = begin_trial("sleeve", 1);
     double highest = 0.0;
     size_t most_folds;
     bool whole = run_scene(&t, &most_folds);
@@ -198,7 +198,7 @@ static void the_sleeve_lies_in_folds(void **state) {
  * for bit. */
 static void seams_hold(void **state) {
     (void)state;
-    trial t = begin_trial("bag", 1);
+    cloth_trial t = begin_trial("bag", 1);
     expect_embedded(t.judge, t.after);
     assert_true(t.run.seam_count > 3 * (RESOLUTION - 1));
     for (uint32_t frame = 1; frame < SEWN_FRAMES; frame++) {
@@ -217,7 +217,7 @@ static void seams_hold(void **state) {
 /* Steps of the garment alone, by a method that culls: of the open sheet nothing can be culled, and the sleeve
  * is known to be embedded throughout. */
 static void expect_reason(const char *name, cscd_reason reason, bool culls) {
-    trial t = begin_trial(name, 1);
+    cloth_trial t = begin_trial(name, 1);
     cscd_mesh *mesh;
     cscd_plan *plan;
     cscd_detector *detector;
@@ -252,7 +252,7 @@ static void guarantees_say_what_was_culled(void **state) {
 static void threads_change_nothing(void **state) {
     (void)state;
     for (uint32_t i = 0; i < cloth_scene_count; i++) {
-        trial one = begin_trial(cloth_scenes[i].name, 1), three = begin_trial(cloth_scenes[i].name, 3);
+        cloth_trial one = begin_trial(cloth_scenes[i].name, 1), three = begin_trial(cloth_scenes[i].name, 3);
         for (uint32_t frame = 1; frame < THREADED_FRAMES; frame++) {
             advance_trial(&one);
             advance_trial(&three);

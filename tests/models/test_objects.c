@@ -39,15 +39,15 @@ static void make_objects(uint64_t seed) {
     }
 }
 
-typedef struct setting {
+typedef struct object_setting {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
-} setting;
+} object_setting;
 
 /* obstacles: a bit per object. */
-static setting set_up(unsigned obstacles, cscd_method method, uint32_t thread_count) {
-    setting s;
+static object_setting set_up(unsigned obstacles, cscd_method method, uint32_t thread_count) {
+    object_setting s;
     cscd_object_desc descs[OBJECTS];
     for (int i = 0; i < OBJECTS; i++)
         descs[i] = (cscd_object_desc){
@@ -62,7 +62,7 @@ static setting set_up(unsigned obstacles, cscd_method method, uint32_t thread_co
     return s;
 }
 
-static void tear_down(setting *s) {
+static void tear_down(object_setting *s) {
     cscd_detector_destroy(s->detector);
     cscd_mesh_destroy(s->mesh);
     cscd_context_destroy(s->context);
@@ -73,7 +73,7 @@ static void tear_down(setting *s) {
 static void features_follow_each_other(void **state) {
     (void)state;
     make_objects(1);
-    setting s = set_up(2, CSCD_METHOD_NONE, 1);
+    object_setting s = set_up(2, CSCD_METHOD_NONE, 1);
     uint32_t vertices = 0, edges = 0, triangles = 0;
     assert_int_equal(cscd_mesh_object_count(s.mesh), OBJECTS);
     for (uint32_t i = 0; i < OBJECTS; i++) {
@@ -156,7 +156,7 @@ static bool between_obstacles(const cscd_mesh *mesh, unsigned obstacles, const c
     return of_obstacle(mesh, obstacles, s.vertices[0]) && of_obstacle(mesh, obstacles, s.vertices[3]);
 }
 
-static size_t compare_contacts(const setting *all, const setting *some, unsigned obstacles) {
+static size_t compare_contacts(const object_setting *all, const object_setting *some, unsigned obstacles) {
     cscd_contacts truth, found;
     size_t next = 0;
     assert_int_equal(cscd_detector_step(all->detector, joined.x0, joined.x1, &truth), CSCD_OK);
@@ -170,7 +170,7 @@ static size_t compare_contacts(const setting *all, const setting *some, unsigned
     return next;
 }
 
-static void compare_checks(const setting *all, const setting *some, unsigned obstacles) {
+static void compare_checks(const object_setting *all, const object_setting *some, unsigned obstacles) {
     cscd_intersections truth, found;
     size_t next = 0;
     assert_int_equal(cscd_detector_check(all->detector, joined.x0, &truth), CSCD_OK);
@@ -186,7 +186,7 @@ static void compare_checks(const setting *all, const setting *some, unsigned obs
     assert_int_equal(next, found.count);
 }
 
-static void check_guarantees(const setting *s, unsigned obstacles) {
+static void check_guarantees(const object_setting *s, unsigned obstacles) {
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(s->mesh); t++) {
         uint32_t corners[3];
         cscd_mesh_triangle(s->mesh, t, corners);
@@ -205,9 +205,9 @@ static void obstacles_meet_only_others(void **state) {
     for (unsigned seed = 0; seed < SCENES; seed++) {
         unsigned obstacles = seed % 8;
         make_objects(seed);
-        setting all = set_up(0, CSCD_METHOD_BRUTE, 1);
+        object_setting all = set_up(0, CSCD_METHOD_BRUTE, 1);
         for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
-            setting some = set_up(obstacles, method_or_none(methods[m]), 1 + (seed + (unsigned)m) % 3);
+            object_setting some = set_up(obstacles, method_or_none(methods[m]), 1 + (seed + (unsigned)m) % 3);
             compare_checks(&all, &some, obstacles);
             contacts += compare_contacts(&all, &some, obstacles);
             check_guarantees(&some, obstacles);
@@ -224,7 +224,7 @@ static void obstacles_cost_nothing(void **state) {
     (void)state;
     make_objects(3);
     cscd_contacts found;
-    setting s = set_up(7, CSCD_METHOD_NONE, 1);
+    object_setting s = set_up(7, CSCD_METHOD_NONE, 1);
     assert_int_equal(cscd_detector_step(s.detector, joined.x0, joined.x1, &found), CSCD_OK);
     cscd_counters counters = cscd_detector_counters(s.detector);
     assert_true(found.count == 0 && counters.boxes_tested == 0 && counters.pcp == 0);
@@ -241,7 +241,7 @@ static void obstacles_are_not_planned(void **state) {
         memcpy(x + vertices * 3, objects[i].x0, objects[i].vertex_count * sizeof(double[3]));
         vertices += objects[i].vertex_count;
     }
-    setting s = set_up(2, CSCD_METHOD_NONE, 1), all = set_up(0, CSCD_METHOD_NONE, 1);
+    object_setting s = set_up(2, CSCD_METHOD_NONE, 1), all = set_up(0, CSCD_METHOD_NONE, 1);
     cscd_plan *plan = NULL, *whole = NULL;
     assert_int_equal(cscd_plan_create(s.mesh, x, NULL, &plan), CSCD_OK);
     assert_int_equal(cscd_plan_create(all.mesh, x, NULL, &whole), CSCD_OK);
@@ -259,7 +259,7 @@ static void obstacles_are_not_planned(void **state) {
     cscd_plan_destroy(whole);
     tear_down(&s);
     tear_down(&all);
-    setting none = set_up(7, CSCD_METHOD_NONE, 1);
+    object_setting none = set_up(7, CSCD_METHOD_NONE, 1);
     assert_int_equal(cscd_plan_create(none.mesh, x, NULL, &plan), CSCD_OK);
     assert_int_equal(cscd_plan_region_count(plan), OBJECTS);
     cscd_plan_destroy(plan);
@@ -272,7 +272,7 @@ static void obstacles_are_not_planned(void **state) {
 static void positions_come_in_any_layout(void **state) {
     (void)state;
     make_objects(5);
-    setting s = set_up(0, CSCD_METHOD_NONE, 1);
+    object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
     static char floats[SCENE_VERTICES_MAX * 28 + 1];
     static double columns[3][SCENE_VERTICES_MAX], packed[SCENE_VERTICES_MAX * 3];
     for (uint32_t v = 0; v < objects[0].vertex_count; v++) {
@@ -298,7 +298,7 @@ static void positions_come_in_any_layout(void **state) {
 static void bad_views_are_named(void **state) {
     (void)state;
     make_objects(5);
-    setting s = set_up(0, CSCD_METHOD_NONE, 1);
+    object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
     static double packed[SCENE_VERTICES_MAX * 3];
     cscd_view views[OBJECTS] = {{.data = objects[0].x0}, {.data = objects[1].x0}, {.data = NULL}};
     assert_int_equal(cscd_mesh_pack(s.mesh, views, packed), CSCD_INVALID_ARGUMENT);

@@ -71,7 +71,7 @@ static void files_hold_the_recording(void **state) {
     io_error error;
     animation *cache;
     mesh_file mesh = read_mesh(model.text);
-    if (!recorder_open(scene_find(scene_name), NULL, &r, &error)) fail_msg("%s", error.text);
+    if (!recorder_open(soft_scene_find(scene_name), NULL, &r, &error)) fail_msg("%s", error.text);
     assert_int_equal(mesh.vertex_count, r.shape.vertex_count);
     assert_int_equal(mesh.triangle_count, r.shape.triangle_count);
     size_t bytes = (size_t)mesh.vertex_count * 3 * sizeof *mesh.positions;
@@ -122,9 +122,9 @@ static void help_lists_the_scenes(void **state) {
     tool_run run = RUN_TOOL("--help"), usage = run_tool((const char *const[]){NULL});
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
-    for (uint32_t i = 0; i < scene_count; i++) {
-        assert_non_null(strstr(run.out, scenes[i].name));
-        assert_non_null(strstr(run.out, scenes[i].text));
+    for (uint32_t i = 0; i < soft_scene_count; i++) {
+        assert_non_null(strstr(run.out, soft_scenes[i].name));
+        assert_non_null(strstr(run.out, soft_scenes[i].text));
     }
     assert_int_equal(usage.code, 2);
     assert_string_equal(usage.error, run.out);

@@ -15,7 +15,7 @@ enum { FRAMES = 150 };
 
 /* What was measured, and where the mesh crosses itself. */
 typedef struct measured {
-    motion totals;
+    recording_motion totals;
     bool crosses[FRAMES];
     double first_energy, most_energy, last_energy, lowest;
 } measured;
@@ -24,7 +24,7 @@ static measured m;
 
 static void measure_frame(const recorder *r, uint32_t frame) {
     uint32_t crossing_before = m.totals.crossing_frames;
-    if (frame > 0) assert_int_equal(motion_add(&m.totals, r->frame), CSCD_OK);
+    if (frame > 0) assert_int_equal(recording_motion_add(&m.totals, r->frame), CSCD_OK);
     m.crosses[frame] = m.totals.crossing_frames > crossing_before;
     m.last_energy = recorder_energy(r);
     m.most_energy = fmax(m.most_energy, m.last_energy);
@@ -35,17 +35,17 @@ static int record_pawn(void **state) {
     (void)state;
     recorder r;
     io_error error;
-    const scene *s = scene_find("pawn-drop");
+    const soft_scene *s = soft_scene_find("pawn-drop");
     if (s == NULL || s->frame_count < FRAMES || !recorder_open(s, NULL, &r, &error)) return -1;
-    if (motion_begin(r.mesh, r.frame, &m.totals) != CSCD_OK) return -1;
+    if (recording_motion_begin(r.mesh, r.frame, &m.totals) != CSCD_OK) return -1;
     m.first_energy = recorder_energy(&r);
     measure_frame(&r, 0);
     for (uint32_t frame = 1; frame < FRAMES; frame++) {
         if (!recorder_advance(&r, &error)) return -1;
         measure_frame(&r, frame);
     }
-    motion counts = m.totals;
-    motion_free(&m.totals);
+    recording_motion counts = m.totals;
+    recording_motion_free(&m.totals);
     m.totals = counts; /* its numbers; what it pointed to is gone */
     recorder_close(&r);
     return 0;

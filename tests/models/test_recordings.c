@@ -36,7 +36,7 @@ static uint64_t add_to_hash(uint64_t hash, const double *values, size_t count) {
 static recorder open_scene(const char *name) {
     recorder r;
     io_error error;
-    const scene *s = scene_find(name);
+    const soft_scene *s = soft_scene_find(name);
     if (s == NULL) fail_msg("no scene is called %s", name);
     if (!recorder_open(s, NULL, &r, &error)) fail_msg("%s", error.text);
     return r;
@@ -59,7 +59,7 @@ static void check_frame(const recorder *r, double start_energy) {
 /* Frame 0 is the model, has no intersection, and is above what it falls onto. */
 static void scenes_begin_embedded(void **state) {
     (void)state;
-    assert_int_equal(scene_count, SCENE_COUNT);
+    assert_int_equal(soft_scene_count, SCENE_COUNT);
     for (int i = 0; i < SCENE_COUNT; i++) {
         recorder r = open_scene(extents[i].name);
         cscd_intersections crossing;
@@ -114,13 +114,13 @@ static void first_frames_are_repeatable(void **state) {
 /* No two scenes are the same, and names are found, others not. */
 static void scenes_have_their_names(void **state) {
     (void)state;
-    for (uint32_t i = 0; i < scene_count; i++) {
-        assert_ptr_equal(scene_find(scenes[i].name), &scenes[i]);
-        assert_true(scenes[i].text[0] != '\0');
+    for (uint32_t i = 0; i < soft_scene_count; i++) {
+        assert_ptr_equal(soft_scene_find(soft_scenes[i].name), &soft_scenes[i]);
+        assert_true(soft_scenes[i].text[0] != '\0');
     }
-    assert_null(scene_find("pawn"));
-    assert_null(scene_find(""));
-    assert_null(scene_find("pawn-drop-free-"));
+    assert_null(soft_scene_find("pawn"));
+    assert_null(soft_scene_find(""));
+    assert_null(soft_scene_find("pawn-drop-free-"));
 }
 
 int main(void) {

@@ -107,17 +107,17 @@ static void counts_contacts_and_crossings(void **state) {
     enum { FRAMES = 8 };
     recorded flight = recorded_tetrahedra(FRAMES);
     cscd_context *context;
-    motion m;
+    recording_motion m;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     cscd_mesh *mesh = mesh_of(context, flight.vertex_count, flight.triangle_count, flight.triangles);
-    assert_int_equal(motion_begin(mesh, recorded_position(&flight, 0, 0), &m), CSCD_OK);
+    assert_int_equal(recording_motion_begin(mesh, recorded_position(&flight, 0, 0), &m), CSCD_OK);
     for (uint32_t k = 1; k < FRAMES; k++) {
-        assert_int_equal(motion_add(&m, recorded_position(&flight, k, 0)), CSCD_OK);
+        assert_int_equal(recording_motion_add(&m, recorded_position(&flight, k, 0)), CSCD_OK);
         assert_int_equal(m.contact_intervals, k < 4 ? 0 : k < 6 ? 1 : 2);
         assert_int_equal(m.crossing_frames, k < 4 ? 0 : k - 3);
     }
     assert_int_equal(m.frame_count, FRAMES);
-    motion_free(&m);
+    recording_motion_free(&m);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     recorded_free(&flight);
@@ -130,23 +130,23 @@ static void measures_softness_and_speed(void **state) {
     double diagonal = sqrt(6.0), frame[24],
            edge_length = (4.0 * 2.0 + 8.0 + 4.0 * sqrt(5.0) + 2.0 * sqrt(2.0)) / 18.0;
     cscd_context *context;
-    motion m;
+    recording_motion m;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     cscd_mesh *mesh = mesh_of(context, box.vertex_count, box.triangle_count, box.triangles);
-    assert_int_equal(motion_begin(mesh, box.positions, &m), CSCD_OK);
+    assert_int_equal(recording_motion_begin(mesh, box.positions, &m), CSCD_OK);
     assert_near(m.diagonal, diagonal, 1e-15);
     assert_near(m.edge_length, edge_length, 1e-14);
     const double factors[] = {1.05, 1.08, 1.2, 1.0};
     for (uint32_t i = 0; i < 4; i++) { /* 3 % of the diagonal are 7.3 % of half of the length */
         double scale[3][3] = {{factors[i], 0, 0}, {0, 1, 0}, {0, 0, 1}};
         affine_map(scale, no_offset, box.positions, 8, frame);
-        assert_int_equal(motion_add(&m, frame), CSCD_OK);
+        assert_int_equal(recording_motion_add(&m, frame), CSCD_OK);
         assert_int_equal(m.soft_frames, i == 0 ? 0 : i == 1 ? 1 : 2);
         assert_near(m.largest_residual, (fmin(i, 2) < i ? 0.2 : factors[i] - 1.0) / diagonal, 1e-7);
     }
     assert_near(m.largest_motion, 0.2 / edge_length, 1e-14);
     assert_int_equal(m.crossing_frames, 0);
-    motion_free(&m);
+    recording_motion_free(&m);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
     body_free(&box);
@@ -156,17 +156,17 @@ static void measures_softness_and_speed(void **state) {
 static void bad_positions_are_refused(void **state) {
     (void)state;
     cscd_context *context;
-    motion m;
+    recording_motion m;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     cscd_mesh *mesh = mesh_of(context, figure.vertex_count, figure.triangle_count, figure.triangles);
     memcpy(moved, figure.positions, figure.vertex_count * 3 * sizeof *moved);
     moved[5] = NAN;
-    assert_int_equal(motion_begin(mesh, moved, &m), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(motion_begin(mesh, figure.positions, &m), CSCD_OK);
-    assert_int_equal(motion_add(&m, moved), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(recording_motion_begin(mesh, moved, &m), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(recording_motion_begin(mesh, figure.positions, &m), CSCD_OK);
+    assert_int_equal(recording_motion_add(&m, moved), CSCD_INVALID_ARGUMENT);
     assert_int_equal(m.frame_count, 1);
-    assert_int_equal(motion_add(&m, figure.positions), CSCD_OK);
-    motion_free(&m);
+    assert_int_equal(recording_motion_add(&m, figure.positions), CSCD_OK);
+    recording_motion_free(&m);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
 }

@@ -22,7 +22,7 @@ void workload_tube(sequence *out, int rings, int segments, uint32_t frame_count)
     }
 }
 
-typedef struct run {
+typedef struct workload_state {
     const workload *w;
     cscd_context *context;
     cscd_mesh *mesh;
@@ -30,17 +30,17 @@ typedef struct run {
     cscd_detector *detector;
     cscd_line *line;
     workload_result result;
-} run;
+} workload_state;
 
 /* FNV-1a */
-static void add_digest(run *r, const void *data, size_t size) {
+static void add_digest(workload_state *r, const void *data, size_t size) {
     const unsigned char *bytes = data;
     uint64_t *hash = &r->result.digests[r->result.call_count];
     for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
 }
 
 /* But rebuilds: trees that a failed call has built anew are there when it is repeated. */
-static void digest_counters(run *r) {
+static void digest_counters(workload_state *r) {
     cscd_counters counters = cscd_detector_counters(r->detector);
     r->result.rebuilds += counters.rebuilds;
     r->result.culled += counters.plus + counters.minus;
@@ -48,17 +48,17 @@ static void digest_counters(run *r) {
     add_digest(r, &counters, sizeof counters);
 }
 
-static bool call_again(run *r, cscd_status status) {
+static bool call_again(workload_state *r, cscd_status status) {
     return r->w->again != NULL && r->w->again(r->w->user, r->context, status);
 }
 
-static void end_call(run *r, cscd_status status) {
+static void end_call(workload_state *r, cscd_status status) {
     add_digest(r, &status, sizeof status);
     r->result.failed |= status != CSCD_OK && status != CSCD_IN_CONTACT;
     if (r->result.call_count + 1 < WORKLOAD_CALLS_MAX) r->result.call_count++;
 }
 
-static void make_plan(run *r) {
+static void make_plan(workload_state *r) {
     cscd_plan_options options = cscd_plan_defaults();
     options.method = r->w->plan;
     cscd_status status;
@@ -74,7 +74,7 @@ static void make_plan(run *r) {
     end_call(r, status);
 }
 
-static void run_step(run *r, const double *x0, const double *x1) {
+static void run_step(workload_state *r, const double *x0, const double *x1) {
     cscd_contacts found = {NULL, 0};
     cscd_status status;
     do {
@@ -91,7 +91,7 @@ static void run_step(run *r, const double *x0, const double *x1) {
     end_call(r, status);
 }
 
-static void run_check(run *r, const double *x) {
+static void run_check(workload_state *r, const double *x) {
     cscd_intersections found = {NULL, 0, 0, 0};
     cscd_status status;
     do {
@@ -102,7 +102,7 @@ static void run_check(run *r, const double *x) {
     end_call(r, status);
 }
 
-static void run_near(run *r, const double *x) {
+static void run_near(workload_state *r, const double *x) {
     cscd_proximities found = {NULL, 0};
     cscd_status status;
     do {
@@ -112,7 +112,7 @@ static void run_near(run *r, const double *x) {
     end_call(r, status);
 }
 
-static void max_step(run *r, const double *x0, const double *x1) {
+static void max_step(workload_state *r, const double *x0, const double *x1) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     cscd_free_step found = {.length = 0.0};
     cscd_status status;
@@ -128,7 +128,7 @@ static void max_step(run *r, const double *x0, const double *x1) {
     end_call(r, status);
 }
 
-static void begin_line(run *r, const double *x0, const double *x1) {
+static void begin_line(workload_state *r, const double *x0, const double *x1) {
     cscd_status status;
     do {
         status = cscd_line_begin(r->line, x0, x1, 0.05);
@@ -139,7 +139,7 @@ static void begin_line(run *r, const double *x0, const double *x1) {
 }
 
 /* Two lengths and two moments of the line begun last. */
-static void ask_line(run *r) {
+static void ask_line(workload_state *r) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     for (int i = 0; i < 2; i++) {
         cscd_free_step step = {.length = 0.0};
@@ -160,7 +160,7 @@ static void ask_line(run *r) {
     }
 }
 
-static void run_intervals(run *r) {
+static void run_intervals(workload_state *r) {
     const sequence *q = r->w->sequence;
     for (uint32_t i = 0; i + 1 < q->frame_count; i++) {
         const double *x0 = q->frames[i], *x1 = q->frames[i + 1];
@@ -176,7 +176,7 @@ static void run_intervals(run *r) {
 }
 
 workload_result workload_run(cscd_context *context, const workload *w) {
-    run r = {.w = w, .context = context};
+    workload_state r = {.w = w, .context = context};
     const scene *shape = &w->sequence->shape;
     cscd_mesh_desc desc = {shape->vertex_count, shape->triangle_count, shape->triangles};
     r.result.failed = cscd_mesh_create(context, &desc, &r.mesh) != CSCD_OK;
