@@ -1,5 +1,6 @@
-/* What sensors find of what the detector finds, on random scenes. A contact that they report is one; that
- * they report all is not promised, and the shares are printed. */
+/* Compares what sensors find with what the detector finds, on random scenes. Every contact that they report
+ * is one. They do not promise to report all; the test asserts a share, below what they reach by a margin, and
+ * prints what they reach. */
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -21,8 +22,9 @@ static void positions_at(int frame, int frames, double *x) {
     for (uint32_t i = 0; i < s.vertex_count * 3; i++) x[i] = s.x0[i] + t * (s.x1[i] - s.x0[i]);
 }
 
-/* Frames in which two objects touch, warned of, of these with a contact found, and of these the earliest;
- * and frames warned of in which they do not touch. */
+/* Numbers of frames in which two objects touch; of these, those with a warning, with a contact that was
+ * found, and with the earliest contact found; and of frames with a warning in which the objects do not touch.
+ * */
 typedef struct shares {
     uint32_t frames, touching, warned, found, earliest, false_alarms, apart, part_pairs;
 } shares;
@@ -83,7 +85,7 @@ static bool count_apart(const sensor_rig *r, shares *sum) {
     return touching == 0;
 }
 
-static void look(const sensor_rig *r, cscd_detector *detector, shares *sum) {
+static void look_at_frame(const sensor_rig *r, cscd_detector *detector, shares *sum) {
     cscd_warnings warnings = sensor_rig_step(r, x0, x1);
     const cscd_warning *warning = find_warning(&warnings, 0, 1), *found = find_contact(&warnings, 0, 1);
     double toi = true_toi(r, detector);
@@ -98,7 +100,19 @@ static void look(const sensor_rig *r, cscd_detector *detector, shares *sum) {
     sum->false_alarms += !touching && warning != NULL;
 }
 
-static void count_family(scene_family family, const sensor_setup *setup, const char *how) {
+/* Shares, in percent, that a method reaches on every family. */
+typedef struct recall_bound {
+    uint32_t warned, found, earliest;
+} recall_bound;
+
+static void assert_recall(const shares *sum, recall_bound least) {
+    assert_true(100 * sum->warned >= least.warned * sum->touching);
+    assert_true(100 * sum->found >= least.found * sum->touching);
+    assert_true(100 * sum->earliest >= least.earliest * sum->touching);
+}
+
+static void count_family(scene_family family, const sensor_setup *setup, const char *how,
+                         recall_bound least) {
     shares sum = {0};
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         cscd_detector *detector;
@@ -108,32 +122,35 @@ static void count_family(scene_family family, const sensor_setup *setup, const c
         for (int f = 0; f < FRAMES; f++) {
             positions_at(f, FRAMES, x0);
             positions_at(f + 1, FRAMES, x1);
-            look(&r, detector, &sum);
+            look_at_frame(&r, detector, &sum);
         }
         cscd_detector_destroy(detector);
         sensor_rig_destroy(&r);
     }
-    assert_true(sum.touching > 10);
+    assert_true(sum.touching > 30);
     print_message("%-14s %-6s of %u frames %3u touch, of these %3u warned of, %3u found, %3u earliest; %3u "
                   "false alarms; of %u pairs of parts %u certainly apart\n",
                   scene_family_name(family), how, sum.frames, sum.touching, sum.warned, sum.found,
                   sum.earliest, sum.false_alarms, sum.part_pairs, sum.apart);
+    assert_recall(&sum, least);
 }
 
-static void contacts_that_are_found_are_true(void **state) {
+/* At the time of writing, sensors in cells reached 100 % of all three, random ones at least 95, 68 and 43 %.
+ * */
+static void most_contacts_are_found_and_all_are_true(void **state) {
     (void)state;
     static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};
     cscd_sensor_options random = cscd_sensor_defaults();
     random.method = CSCD_SENSORS_RANDOM;
     sensor_setup with_plan = {8, NULL, NULL}, older = {0, NULL, &random};
     for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
-        count_family(families[f], NULL, "cells");
-        count_family(families[f], &with_plan, "plan");
-        count_family(families[f], &older, "random");
+        count_family(families[f], NULL, "cells", (recall_bound){98, 95, 90});
+        count_family(families[f], &with_plan, "plan", (recall_bound){98, 95, 90});
+        count_family(families[f], &older, "random", (recall_bound){85, 55, 30});
     }
 }
 
-/* The default mu misses no contact, however fast they fly, where every vertex has a particle. */
+/* With a particle on every vertex, the default mu misses no contact, however fast objects fly. */
 static bool expect_found(const sensor_rig *r) {
     cscd_detector *detector;
     assert_int_equal(cscd_detector_create(r->mesh, NULL, NULL, &detector), CSCD_OK);
@@ -174,7 +191,7 @@ static void mu_is_sound(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contacts_that_are_found_are_true),
+        cmocka_unit_test(most_contacts_are_found_and_all_are_true),
         cmocka_unit_test(mu_is_sound),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
