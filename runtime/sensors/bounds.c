@@ -3,52 +3,34 @@
 
 #include "src/core/vec3.h"
 
+#include <assert.h>
 #include <float.h>
 
+static array_list list_arrays(sensor_bounds *b) {
+    size_t vertices = b->mesh->vertex_count, triangles = b->mesh->triangle_count, parts = b->part_count;
+    return (array_list){{ARRAY(b->offsets, vertices + 1), ARRAY(b->corners, 3 * triangles),
+                         ARRAY(b->homes, triangles), ARRAY(b->last, vertices), ARRAY(b->cursor, vertices),
+                         ARRAY(b->middles, vertices), ARRAY(b->unbounded, parts), ARRAY(b->balls, vertices),
+                         ARRAY(b->boxes, parts)}};
+}
+
 cscd_status sensor_bounds_create(const cscd_partition *partition, sensor_bounds *out) {
-    const cscd_mesh *mesh = partition->mesh;
-    cscd_context *context = mesh->context;
-    size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count, parts = partition->part_count;
-    sensor_bounds bounds = {
-        .mesh = mesh,
-        .offsets = context_allocate(context, vertices + 1, sizeof(uint32_t)),
-        .corners = context_allocate(context, triangles, 3 * sizeof(uint32_t)),
-        .homes = context_allocate(context, triangles, sizeof(uint32_t)),
-        .last = context_allocate(context, vertices, sizeof(uint32_t)),
-        .cursor = context_allocate(context, vertices, sizeof(uint32_t)),
-        .middles = context_allocate(context, vertices, sizeof(uint32_t)),
-        .unbounded = context_allocate(context, parts, sizeof(bool)),
-        .balls = context_allocate(context, vertices, sizeof(cell_ball)),
-        .boxes = context_allocate(context, parts, sizeof(part_box)),
-    };
-    if (bounds.offsets == NULL || bounds.corners == NULL || bounds.homes == NULL || bounds.last == NULL ||
-        bounds.cursor == NULL || bounds.middles == NULL || bounds.unbounded == NULL || bounds.balls == NULL ||
-        bounds.boxes == NULL) {
-        sensor_bounds_destroy(&bounds);
-        return context_out_of_memory(context);
-    }
+    sensor_bounds bounds = {.mesh = partition->mesh, .part_count = partition->part_count};
+    cscd_context *context = partition->mesh->context;
+    if (!context_allocate_all(context, list_arrays(&bounds))) return context_out_of_memory(context);
     *out = bounds;
     return CSCD_OK;
 }
 
 void sensor_bounds_destroy(sensor_bounds *bounds) {
     if (bounds->mesh == NULL) return;
-    cscd_context *context = bounds->mesh->context;
-    context_free(context, bounds->offsets);
-    context_free(context, bounds->corners);
-    context_free(context, bounds->homes);
-    context_free(context, bounds->last);
-    context_free(context, bounds->cursor);
-    context_free(context, bounds->middles);
-    context_free(context, bounds->unbounded);
-    context_free(context, bounds->balls);
-    context_free(context, bounds->boxes);
+    context_free_all(bounds->mesh->context, list_arrays(bounds));
     *bounds = (sensor_bounds){0};
 }
 
-/* ---- which cell answers for a triangle ----------------------------------------------------------------- */
+/* ---- the cell whose ball holds a triangle -------------------------------------------------------------- */
 
-/* The cell of the first corner that is of the triangle's own part. */
+/* Returns the cell of the first corner that belongs to the triangle's own part. */
 static uint32_t home_by_corner(const cscd_partition *partition, uint32_t triangle) {
     for (int k = 0; k < 3; k++) {
         uint32_t vertex = partition->mesh->triangles[triangle][k];
@@ -58,8 +40,8 @@ static uint32_t home_by_corner(const cscd_partition *partition, uint32_t triangl
     return PARTITION_NONE;
 }
 
-/* For a triangle all of whose corners are of other parts: the cell of one beyond an edge, or else any of its
- * part. Either is right; the first makes a smaller ball. */
+/* Chooses the cell of a triangle whose corners all belong to other parts: that of a neighbour across an edge,
+ * or else any cell of its part. Either is right; the first makes a smaller ball. */
 static uint32_t home_by_neighbour(const sensor_bounds *bounds, const cscd_partition *partition,
                                   uint32_t triangle) {
     const cscd_mesh *mesh = bounds->mesh;
@@ -84,7 +66,7 @@ static void find_homes(sensor_bounds *bounds, const cscd_partition *partition) {
     }
 }
 
-/* Corners of the triangles, cell by cell. */
+/* Lists the corners of the triangles cell by cell. */
 static void list_corners(sensor_bounds *bounds, uint32_t cell_count) {
     const cscd_mesh *mesh = bounds->mesh;
     memset(bounds->offsets, 0, ((size_t)cell_count + 1) * sizeof *bounds->offsets);
@@ -103,7 +85,7 @@ static void list_corners(sensor_bounds *bounds, uint32_t cell_count) {
     }
 }
 
-/* Each vertex of a cell's list but once. */
+/* Leaves each vertex only once in the list of a cell. */
 static void drop_repeated(sensor_bounds *bounds, uint32_t cell_count) {
     uint32_t kept = 0, begin = 0;
     for (uint32_t v = 0; v < bounds->mesh->vertex_count; v++) bounds->last[v] = PARTITION_NONE;
@@ -121,7 +103,7 @@ static void drop_repeated(sensor_bounds *bounds, uint32_t cell_count) {
     bounds->offsets[cell_count] = kept;
 }
 
-/* The cell's vertex next to the mean of them all. */
+/* Returns the cell's vertex that is nearest to the mean of its vertices. */
 static uint32_t middle_of(const cscd_partition *partition, const double *positions, uint32_t cell) {
     uint32_t begin = partition->cell_offsets[cell], end = partition->cell_offsets[cell + 1];
     uint32_t middle = partition->cell_vertices[begin];
@@ -138,7 +120,9 @@ static uint32_t middle_of(const cscd_partition *partition, const double *positio
     return middle;
 }
 
-static void follow(sensor_bounds *bounds, const cscd_partition *partition, const double *positions) {
+/* Brings the lists up to date with the partition. */
+static void follow_partition(sensor_bounds *bounds, const cscd_partition *partition,
+                             const double *positions) {
     if (bounds->generation == partition->generation) return;
     find_homes(bounds, partition);
     list_corners(bounds, partition->cell_count);
@@ -146,15 +130,16 @@ static void follow(sensor_bounds *bounds, const cscd_partition *partition, const
     for (uint32_t c = 0; c < partition->cell_count; c++)
         bounds->middles[c] = middle_of(partition, positions, c);
     bounds->generation = partition->generation;
+    assert(bounds->offsets[partition->cell_count] <= 3 * bounds->mesh->triangle_count);
 }
 
 /* ---- balls --------------------------------------------------------------------------------------------- */
 
 /* Rounding: u = DBL_EPSILON / 2. A difference of two doubles has a relative error of u at most, wherever they
- * lie. Lengths below come from a sum of three squares of such differences, whose relative error is at most
- * 7 u as long as nothing underflows, so the root's is at most 5 u: a factor of 1 + 4 DBL_EPSILON = 1 + 8 u,
- * its product rounded, covers it. What squares lose by underflow, at most 3 * 2^-1075 in their sum, is at
- * most 1e-160 in the root. An overflow gives infinity, or NaN, and then parts are not found to be apart. */
+ * lie. Lengths below come from a sum of three squares of such differences, whose relative error is at most 7
+ * u as long as nothing underflows, so the root's is at most 5 u: a factor of 1 + 4 DBL_EPSILON = 1 + 8 u, its
+ * product rounded, covers it. What squares lose by underflow, at most 3 * 2^-1075 in their sum, is at most
+ * 1e-160 in the root. After an overflow, which gives infinity or NaN, parts are not found to be apart. */
 #define LENGTH_SLACK     (1.0 + 4.0 * DBL_EPSILON)
 #define LENGTH_UNDERFLOW 1e-150
 
@@ -162,8 +147,8 @@ static double length_at_most(double squared) {
     return sqrt(squared) * LENGTH_SLACK + LENGTH_UNDERFLOW;
 }
 
-/* The distance of two points that move linearly is convex in time, so the larger one of both ends bounds it,
- * and a triangle is nowhere farther from a point than its corners. */
+/* The distance of two points that move linearly is convex in time, so it is largest at one of the two ends,
+ * and no point of a triangle is farther from a point than the farthest corner. */
 static double radius_of(const sensor_bounds *bounds, uint32_t cell, uint32_t centre, const double *start,
                         const double *end) {
     double largest = 0.0;
@@ -177,7 +162,7 @@ static double radius_of(const sensor_bounds *bounds, uint32_t cell, uint32_t cen
 
 void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                           const double *end, const uint32_t *centres) {
-    follow(bounds, partition, start);
+    follow_partition(bounds, partition, start);
     if (centres == NULL) centres = bounds->middles;
     for (uint32_t c = 0; c < partition->cell_count; c++) {
         cell_ball *ball = &bounds->balls[c];
@@ -187,12 +172,13 @@ void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition
     }
 }
 
-/* Do the balls stay apart? With d(t) = (1 - t) d0 + t d1 the way between the centres and any vector m,
- * |m| |d(t)| >= m . d(t) >= min(m . d0, m . d1), so they do where the last exceeds |m| times both radii:
- * whatever m is, and best where it is the shortest d(t). In doubles d0 and d1 have a relative error of u in
- * every coordinate, their products with m in all one of at most 4 u |m| |d| against the exact d; 8 u |m| |d|
- * is subtracted, which covers the rounding of that, too. Where m is so short that products underflow, it
- * is not answered. */
+/* Do the balls stay apart? Let d(t) = (1 - t) d0 + t d1 be the offset between the centres, and m any vector.
+ * Then |m| |d(t)| >= m . d(t) >= min(m . d0, m . d1), so the balls stay apart when this minimum exceeds |m|
+ * times the sum of the radii. That holds for every m; the shortest d(t) is the best choice.
+ *
+ * In doubles d0 and d1 have a relative error of u in every coordinate, and their products with m are off by
+ * at most 4 u |m| |d| in all. The code subtracts 8 u |m| |d|, which covers the rounding of that term, too.
+ * When m is so short that products underflow, the answer is no. */
 static bool balls_apart(const cell_ball *a, const cell_ball *b) {
     double d0[3], d1[3], change[3], m[3];
     vec3_subtract(b->start, a->start, d0);
@@ -237,7 +223,7 @@ static void add_to_box(const double *point, part_box *box) {
 
 void sensor_bounds_update_boxes(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                                 const double *end) {
-    follow(bounds, partition, start);
+    follow_partition(bounds, partition, start);
     for (uint32_t p = 0; p < partition->part_count; p++) {
         const cscd_part *part = &partition->parts[p];
         part_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

@@ -1,4 +1,5 @@
-/* The exact check: the features of two areas, paired by sweep and prune, given to the elementary tests. */
+/* The exact check: pairs the features of two areas by sweep and prune, and gives them to the elementary
+ * tests. */
 #include "runtime/sensors/exact_check.h"
 
 #include "src/core/sort.h"
@@ -7,53 +8,42 @@
 
 enum { SIDE_A = 1, SIDE_B = 2, SIDE_BOTH = 3 };
 
-static cscd_status create_list(cscd_context *context, uint32_t count, area_list *list) {
-    list->sides = context_allocate(context, count, sizeof *list->sides);
-    list->members = context_allocate(context, count, sizeof *list->members);
-    return list->sides == NULL || list->members == NULL ? CSCD_OUT_OF_MEMORY : CSCD_OK;
+static array_list list_arrays(exact_check *check) {
+    const cscd_mesh *mesh = check->mesh;
+    area_list *vertices = &check->vertices, *edges = &check->edges, *triangles = &check->triangles;
+    return (array_list){{ARRAY(check->lane, 1), ARRAY(vertices->sides, mesh->vertex_count),
+                         ARRAY(vertices->members, mesh->vertex_count), ARRAY(edges->sides, mesh->edge_count),
+                         ARRAY(edges->members, mesh->edge_count),
+                         ARRAY(triangles->sides, mesh->triangle_count),
+                         ARRAY(triangles->members, mesh->triangle_count)}};
 }
 
-cscd_status sensor_areas_create(const cscd_mesh *mesh, sensor_areas *out) {
-    cscd_context *context = mesh->context;
-    sensor_areas areas = {.mesh = mesh};
-    areas.lane = context_allocate(context, 1, sizeof *areas.lane);
-    if (areas.lane == NULL || create_list(context, mesh->vertex_count, &areas.vertices) != CSCD_OK ||
-        create_list(context, mesh->edge_count, &areas.edges) != CSCD_OK ||
-        create_list(context, mesh->triangle_count, &areas.triangles) != CSCD_OK) {
-        sensor_areas_destroy(&areas);
-        return context_out_of_memory(context);
-    }
-    *out = areas;
+static array_list list_item_arrays(area_items *items, size_t capacity) {
+    return (array_list){
+        {ARRAY(items->items, capacity), ARRAY(items->scratch, capacity), ARRAY(items->boxes, capacity)}};
+}
+
+cscd_status exact_check_create(const cscd_mesh *mesh, exact_check *out) {
+    exact_check check = {.mesh = mesh};
+    if (!context_allocate_all(mesh->context, list_arrays(&check)))
+        return context_out_of_memory(mesh->context);
+    *out = check;
     return CSCD_OK;
 }
 
-static void destroy_list(cscd_context *context, area_list *list) {
-    context_free(context, list->sides);
-    context_free(context, list->members);
-}
-
-static void destroy_items(cscd_context *context, area_items *items) {
-    context_free(context, items->items);
-    context_free(context, items->scratch);
-    context_free(context, items->boxes);
-}
-
-void sensor_areas_destroy(sensor_areas *areas) {
-    if (areas->mesh == NULL) return;
-    cscd_context *context = areas->mesh->context;
-    destroy_list(context, &areas->vertices);
-    destroy_list(context, &areas->edges);
-    destroy_list(context, &areas->triangles);
-    destroy_items(context, &areas->first);
-    destroy_items(context, &areas->second);
-    if (areas->lane != NULL) context_free(context, areas->lane->contacts);
-    context_free(context, areas->lane);
-    *areas = (sensor_areas){0};
+void exact_check_destroy(exact_check *check) {
+    if (check->mesh == NULL) return;
+    cscd_context *context = check->mesh->context;
+    context_free_all(context, list_item_arrays(&check->first, 0));
+    context_free_all(context, list_item_arrays(&check->second, 0));
+    if (check->lane != NULL) context_free(context, check->lane->contacts);
+    context_free_all(context, list_arrays(check));
+    *check = (exact_check){0};
 }
 
 /* ---- the features of the two sides --------------------------------------------------------------------- */
 
-/* Returns whether the feature was not of this side before. */
+/* Returns whether the feature is new on this side. */
 static bool add_to_side(area_list *list, uint32_t feature, uint8_t side) {
     if ((list->sides[feature] & side) != 0) return false;
     if (list->sides[feature] == 0) list->members[list->count++] = feature;
@@ -61,31 +51,31 @@ static bool add_to_side(area_list *list, uint32_t feature, uint8_t side) {
     return true;
 }
 
-static void add_cell(sensor_areas *areas, const cscd_partition *partition, uint32_t cell, uint8_t side) {
-    const cscd_mesh *mesh = areas->mesh;
+static void add_cell(exact_check *check, const cscd_partition *partition, uint32_t cell, uint8_t side) {
+    const cscd_mesh *mesh = check->mesh;
     for (uint32_t i = partition->cell_offsets[cell]; i < partition->cell_offsets[cell + 1]; i++) {
         uint32_t vertex = partition->cell_vertices[i];
         for (uint32_t s = mesh->vertex_star_offsets[vertex]; s < mesh->vertex_star_offsets[vertex + 1]; s++) {
             uint32_t triangle = mesh->vertex_stars[s];
-            if (!add_to_side(&areas->triangles, triangle, side)) continue;
+            if (!add_to_side(&check->triangles, triangle, side)) continue;
             for (int k = 0; k < 3; k++) {
-                add_to_side(&areas->vertices, mesh->triangles[triangle][k], side);
-                add_to_side(&areas->edges, mesh->triangle_edges[triangle][k], side);
+                add_to_side(&check->vertices, mesh->triangles[triangle][k], side);
+                add_to_side(&check->edges, mesh->triangle_edges[triangle][k], side);
             }
         }
     }
 }
 
-static void forget(area_list *list) {
+static void clear_sides(area_list *list) {
     for (uint32_t i = 0; i < list->count; i++) list->sides[list->members[i]] = 0;
     list->count = 0;
 }
 
-/* Where both sides reach: whatever touches does so there. Empty when low is beyond high. Boxes of linear
- * motions are exact, as rounding plays no part in a minimum. */
-static swept_box common_region(const sensor_areas *areas, const swept_interval *interval) {
+/* The box that both sides reach, in which all their contacts lie; it is empty when low is beyond high. Boxes
+ * of linear motions are exact, since a minimum is not rounded. */
+static swept_box common_region(const exact_check *check, const swept_interval *interval) {
     swept_box sides[2] = {swept_box_of(interval, NULL, 0), swept_box_of(interval, NULL, 0)};
-    const area_list *vertices = &areas->vertices;
+    const area_list *vertices = &check->vertices;
     for (uint32_t i = 0; i < vertices->count; i++) {
         uint32_t vertex = vertices->members[i];
         if ((vertices->sides[vertex] & SIDE_A) != 0) swept_box_add(interval, vertex, &sides[0]);
@@ -109,7 +99,7 @@ static int longest_axis(const swept_box *region) {
 
 /* ---- sweep and prune ----------------------------------------------------------------------------------- */
 
-/* What one sweep is about. */
+/* One sweep along an axis. */
 typedef struct sweep {
     const swept_interval *interval;
     const swept_box *region;
@@ -117,24 +107,20 @@ typedef struct sweep {
     uint64_t tests;
 } sweep;
 
-/* Unsigned, in the order of the doubles. */
+/* Maps doubles to unsigned integers of the same order. */
 static uint64_t key_of(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return bits >> 63 != 0 ? ~bits : bits | (uint64_t)1 << 63;
 }
 
-static cscd_status reserve(cscd_context *context, area_items *items, uint32_t count) {
+static cscd_status reserve_items(cscd_context *context, area_items *items, uint32_t count) {
     if (count <= items->capacity) return CSCD_OK;
     size_t capacity = (size_t)count + count / 2;
     if (capacity > UINT32_MAX) capacity = UINT32_MAX;
-    destroy_items(context, items);
-    *items = (area_items){
-        .items = context_allocate(context, capacity, sizeof *items->items),
-        .scratch = context_allocate(context, capacity, sizeof *items->scratch),
-        .boxes = context_allocate(context, capacity, sizeof *items->boxes),
-    };
-    if (items->items == NULL || items->scratch == NULL || items->boxes == NULL)
+    context_free_all(context, list_item_arrays(items, 0));
+    items->capacity = 0;
+    if (!context_allocate_all(context, list_item_arrays(items, capacity)))
         return context_out_of_memory(context);
     items->capacity = (uint32_t)capacity;
     return CSCD_OK;
@@ -146,10 +132,10 @@ static const uint32_t *corners_of(const cscd_mesh *mesh, const uint32_t *feature
     return corner_count == 2 ? mesh->edges[*feature] : mesh->triangles[*feature];
 }
 
-static cscd_status gather(const sweep *s, const area_list *list, uint8_t side, int corner_count,
-                          area_items *out) {
+static cscd_status gather_items(const sweep *s, const area_list *list, uint8_t side, int corner_count,
+                                area_items *out) {
     const cscd_mesh *mesh = s->interval->mesh;
-    cscd_status status = reserve(mesh->context, out, list->count);
+    cscd_status status = reserve_items(mesh->context, out, list->count);
     if (status != CSCD_OK) return status;
     out->count = 0;
     for (uint32_t i = 0; i < list->count; i++) {
@@ -166,36 +152,36 @@ static cscd_status gather(const sweep *s, const area_list *list, uint8_t side, i
 }
 
 /* Tests a pair unless it shares a vertex; returns whether it was tested. */
-typedef bool pair_test(sensor_areas *areas, const swept_interval *interval, uint32_t a, uint32_t b);
+typedef bool pair_test(exact_check *check, const swept_interval *interval, uint32_t a, uint32_t b);
 
-static bool of_both(const area_list *list, uint32_t feature) {
+static bool on_both_sides(const area_list *list, uint32_t feature) {
     return list->sides[feature] == SIDE_BOTH;
 }
 
-static bool test_vertex_face(sensor_areas *areas, const swept_interval *interval, uint32_t vertex,
+static bool test_vertex_face(exact_check *check, const swept_interval *interval, uint32_t vertex,
                              uint32_t triangle) {
-    if (triangle_contains(areas->mesh->triangles[triangle], vertex)) return false;
-    narrow_phase_test_vf(interval, vertex, triangle, areas->lane);
+    if (triangle_contains(check->mesh->triangles[triangle], vertex)) return false;
+    narrow_phase_test_vf(interval, vertex, triangle, check->lane);
     return true;
 }
 
-/* The sweep with the vertices of the other side comes second, and leaves out what both sweeps meet. */
-static bool test_vertex_face_once(sensor_areas *areas, const swept_interval *interval, uint32_t vertex,
+/* The second sweep, with the vertices of the other side, leaves out the pairs that both sweeps find. */
+static bool test_vertex_face_once(exact_check *check, const swept_interval *interval, uint32_t vertex,
                                   uint32_t triangle) {
-    if (of_both(&areas->vertices, vertex) && of_both(&areas->triangles, triangle)) return false;
-    return test_vertex_face(areas, interval, vertex, triangle);
+    if (on_both_sides(&check->vertices, vertex) && on_both_sides(&check->triangles, triangle)) return false;
+    return test_vertex_face(check, interval, vertex, triangle);
 }
 
-/* Two edges of both sides are met twice. */
-static bool test_edges(sensor_areas *areas, const swept_interval *interval, uint32_t a, uint32_t b) {
-    if (edges_share_vertex(areas->mesh->edges[a], areas->mesh->edges[b])) return false;
-    if (a > b && of_both(&areas->edges, a) && of_both(&areas->edges, b)) return false;
-    narrow_phase_test_ee(interval, a, b, areas->lane);
+/* A pair of edges that both lie on both sides is found twice; the second time it is left out. */
+static bool test_edges(exact_check *check, const swept_interval *interval, uint32_t a, uint32_t b) {
+    if (edges_share_vertex(check->mesh->edges[a], check->mesh->edges[b])) return false;
+    if (a > b && on_both_sides(&check->edges, a) && on_both_sides(&check->edges, b)) return false;
+    narrow_phase_test_ee(interval, a, b, check->lane);
     return true;
 }
 
-/* All items of `others` from `next` on that begin before the pivot's end. */
-static void test_pivot(sensor_areas *areas, sweep *s, const area_items *pivots, uint32_t pivot,
+/* Tests the pivot with all items of `others` from `next` on that begin before its end. */
+static void test_pivot(exact_check *check, sweep *s, const area_items *pivots, uint32_t pivot,
                        const area_items *others, uint32_t next, bool swapped, pair_test *test) {
     const swept_box *box = &pivots->boxes[pivots->items[pivot].box];
     uint32_t feature = pivots->items[pivot].feature;
@@ -205,43 +191,43 @@ static void test_pivot(sensor_areas *areas, sweep *s, const area_items *pivots, 
         if (!swept_boxes_within(box, other, 0.0)) continue;
         uint32_t partner = others->items[next].feature;
         bool tested =
-            swapped ? test(areas, s->interval, partner, feature) : test(areas, s->interval, feature, partner);
+            swapped ? test(check, s->interval, partner, feature) : test(check, s->interval, feature, partner);
         s->tests += tested;
     }
 }
 
-/* Whichever of two boxes begins first is the pivot that meets the other one. */
-static void sweep_items(sensor_areas *areas, sweep *s, pair_test *test) {
-    const area_items *first = &areas->first, *second = &areas->second;
+/* Of two boxes that overlap, the one that begins first is the pivot. */
+static void sweep_items(exact_check *check, sweep *s, pair_test *test) {
+    const area_items *first = &check->first, *second = &check->second;
     uint32_t i = 0, j = 0;
-    while (i < first->count && j < second->count && !areas->lane->out_of_memory) {
+    while (i < first->count && j < second->count && !check->lane->out_of_memory) {
         if (first->items[i].key <= second->items[j].key) {
-            test_pivot(areas, s, first, i, second, j, false, test);
+            test_pivot(check, s, first, i, second, j, false, test);
             i++;
         } else {
-            test_pivot(areas, s, second, j, first, i, true, test);
+            test_pivot(check, s, second, j, first, i, true, test);
             j++;
         }
     }
 }
 
-static cscd_status sweep_pairs(sensor_areas *areas, sweep *s, uint8_t side, const area_list *firsts,
+static cscd_status sweep_pairs(exact_check *check, sweep *s, uint8_t side, const area_list *firsts,
                                const area_list *seconds, pair_test *test) {
     bool edges = firsts == seconds;
-    cscd_status status = gather(s, firsts, side, edges ? 2 : 1, &areas->first);
-    if (status == CSCD_OK) status = gather(s, seconds, SIDE_BOTH - side, edges ? 2 : 3, &areas->second);
-    if (status == CSCD_OK) sweep_items(areas, s, test);
+    cscd_status status = gather_items(s, firsts, side, edges ? 2 : 1, &check->first);
+    if (status == CSCD_OK) status = gather_items(s, seconds, SIDE_BOTH - side, edges ? 2 : 3, &check->second);
+    if (status == CSCD_OK) sweep_items(check, s, test);
     return status;
 }
 
-static cscd_status test_all(sensor_areas *areas, sweep *s) {
-    const area_list *vertices = &areas->vertices, *edges = &areas->edges, *triangles = &areas->triangles;
-    cscd_status status = sweep_pairs(areas, s, SIDE_A, vertices, triangles, test_vertex_face);
-    if (status == CSCD_OK) status = sweep_pairs(areas, s, SIDE_B, vertices, triangles, test_vertex_face_once);
-    if (status == CSCD_OK) status = sweep_pairs(areas, s, SIDE_A, edges, edges, test_edges);
+static cscd_status test_all(exact_check *check, sweep *s) {
+    const area_list *vertices = &check->vertices, *edges = &check->edges, *triangles = &check->triangles;
+    cscd_status status = sweep_pairs(check, s, SIDE_A, vertices, triangles, test_vertex_face);
+    if (status == CSCD_OK) status = sweep_pairs(check, s, SIDE_B, vertices, triangles, test_vertex_face_once);
+    if (status == CSCD_OK) status = sweep_pairs(check, s, SIDE_A, edges, edges, test_edges);
     if (status != CSCD_OK) return status;
-    narrow_phase_finish(s->interval, areas->lane);
-    return areas->lane->out_of_memory ? context_out_of_memory(areas->mesh->context) : CSCD_OK;
+    narrow_phase_finish(s->interval, check->lane);
+    return check->lane->out_of_memory ? context_out_of_memory(check->mesh->context) : CSCD_OK;
 }
 
 /* ---- the check ----------------------------------------------------------------------------------------- */
@@ -255,21 +241,21 @@ static area_verdict verdict_of(const contact_lane *lane, uint64_t tests) {
     return verdict;
 }
 
-cscd_status sensor_areas_check(sensor_areas *areas, const cscd_partition *partition, const area_query *query,
-                               area_verdict *out) {
-    swept_interval interval = {.mesh = areas->mesh, .x0 = query->start, .x1 = query->end};
+cscd_status exact_check_run(exact_check *check, const cscd_partition *partition, const area_query *query,
+                            area_verdict *out) {
+    swept_interval interval = {.mesh = check->mesh, .x0 = query->start, .x1 = query->end};
     cscd_status status = CSCD_OK;
-    contact_lane_reset(areas->lane);
-    for (uint32_t i = 0; i < query->count_a; i++) add_cell(areas, partition, query->cells_a[i], SIDE_A);
-    for (uint32_t i = 0; i < query->count_b; i++) add_cell(areas, partition, query->cells_b[i], SIDE_B);
-    swept_box region = common_region(areas, &interval);
+    contact_lane_reset(check->lane);
+    for (uint32_t i = 0; i < query->count_a; i++) add_cell(check, partition, query->cells_a[i], SIDE_A);
+    for (uint32_t i = 0; i < query->count_b; i++) add_cell(check, partition, query->cells_b[i], SIDE_B);
+    swept_box region = common_region(check, &interval);
     sweep s = {.interval = &interval, .region = &region, .axis = longest_axis(&region)};
-    bool meet =
+    bool overlap =
         region.low[0] <= region.high[0] && region.low[1] <= region.high[1] && region.low[2] <= region.high[2];
-    if (meet) status = test_all(areas, &s);
-    forget(&areas->vertices);
-    forget(&areas->edges);
-    forget(&areas->triangles);
-    if (status == CSCD_OK) *out = verdict_of(areas->lane, s.tests);
+    if (overlap) status = test_all(check, &s);
+    clear_sides(&check->vertices);
+    clear_sides(&check->edges);
+    clear_sides(&check->triangles);
+    if (status == CSCD_OK) *out = verdict_of(check->lane, s.tests);
     return status;
 }

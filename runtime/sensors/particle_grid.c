@@ -1,12 +1,15 @@
-/* Particles by where they are: a hashed uniform grid, built anew for every round by counting sort. */
+/* A hashed uniform grid that finds particles by their places; every round builds it again by counting sort.
+ * */
 #include "runtime/sensors/particle_grid.h"
 
 #include "src/core/vec3.h"
 
+#include <assert.h>
+
 enum { BUCKETS_LEAST = 8 };
 
-/* Grid cells are numbered from 0 to this, so that a quotient's rounding stays far below one cell; a scene
- * that is larger has larger cells. */
+/* Grid cells are numbered from 0 to this, so that the rounding of a quotient stays far below one cell; a
+ * larger scene gets larger cells. */
 static const double cells_most = 0x1p30;
 
 static uint32_t buckets_for(uint32_t count) {
@@ -15,35 +18,27 @@ static uint32_t buckets_for(uint32_t count) {
     return buckets;
 }
 
+static array_list list_arrays(particle_grid *grid) {
+    return (array_list){{ARRAY(grid->first, (size_t)grid->mask + 2), ARRAY(grid->buckets, grid->capacity),
+                         ARRAY(grid->entries, grid->capacity)}};
+}
+
 cscd_status particle_grid_reserve(cscd_context *context, particle_grid *grid, uint32_t count) {
     if (count <= grid->capacity && grid->first != NULL) return CSCD_OK;
     uint32_t buckets = buckets_for(count);
-    uint32_t *first = context_allocate(context, (size_t)buckets + 1, sizeof *first);
-    uint32_t *of = context_allocate(context, count, sizeof *of);
-    grid_entry *entries = context_allocate(context, count, sizeof *entries);
-    if (first == NULL || of == NULL || entries == NULL) {
-        context_free(context, first);
-        context_free(context, of);
-        context_free(context, entries);
-        return CSCD_OUT_OF_MEMORY;
-    }
+    particle_grid wider = {.capacity = count, .mask = buckets - 1};
+    if (!context_allocate_all(context, list_arrays(&wider))) return CSCD_OUT_OF_MEMORY;
     particle_grid_free(context, grid);
-    grid->first = first;
-    grid->buckets = of;
-    grid->entries = entries;
-    grid->capacity = count;
-    grid->mask = buckets - 1;
+    *grid = wider;
     return CSCD_OK;
 }
 
 void particle_grid_free(cscd_context *context, particle_grid *grid) {
-    context_free(context, grid->first);
-    context_free(context, grid->buckets);
-    context_free(context, grid->entries);
+    context_free_all(context, list_arrays(grid));
     *grid = (particle_grid){0};
 }
 
-/* The number of the cell along one axis; -2 is before all and cells_most + 2 behind. */
+/* The number of the cell along one axis; -2 lies before all cells, cells_most + 2 behind all. */
 static uint32_t cell_along(const particle_grid *grid, const double x[3], int axis) {
     double cell = floor((x[axis] - grid->origin[axis]) * grid->cells_per_length);
     return (uint32_t)(int64_t)min_of(max_of(cell, -2.0), cells_most + 2.0);
@@ -51,8 +46,8 @@ static uint32_t cell_along(const particle_grid *grid, const double x[3], int axi
 
 /* Two particles nearer than radius lie in the same or in adjoining cells: cells are wider than the radius by
  * far more than the rounding of a cell's number. */
-static void lay(particle_grid *grid, const double *x, const uint32_t *vertices, uint32_t count,
-                double radius) {
+static void fit_grid(particle_grid *grid, const double *x, const uint32_t *vertices, uint32_t count,
+                     double radius) {
     double low[3] = {0}, high[3] = {0}, extent = 0.0;
     for (uint32_t i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) {
@@ -68,7 +63,8 @@ static void lay(particle_grid *grid, const double *x, const uint32_t *vertices, 
 
 void particle_grid_build(particle_grid *grid, const double *x, const uint32_t *vertices,
                          const uint32_t *groups, uint32_t count, double radius) {
-    lay(grid, x, vertices, count, radius);
+    assert(count <= grid->capacity);
+    fit_grid(grid, x, vertices, count, radius);
     grid->count = count;
     memset(grid->first, 0, ((size_t)grid->mask + 2) * sizeof *grid->first);
     for (uint32_t i = 0; i < count; i++) {

@@ -1,4 +1,5 @@
-/* Particles by where they are: a hashed uniform grid, built anew for every round by counting sort. */
+/* A hashed uniform grid that finds particles by their places; every round builds it again by counting sort.
+ * */
 #pragma once
 
 #include "src/core/context.h"
@@ -6,7 +7,7 @@
 typedef struct grid_entry {
     double x[3];
     uint32_t particle, group; /* particles of one group ignore each other */
-    uint32_t y, z;            /* of its grid cell */
+    uint32_t y, z;            /* the row of its grid cell */
 } grid_entry;
 
 /* Cells that differ in x only lie in consecutive buckets, so the 27 cells around a point are 9 short runs of
@@ -25,16 +26,16 @@ typedef struct particle_grid {
 cscd_status particle_grid_reserve(cscd_context *context, particle_grid *grid, uint32_t count);
 void particle_grid_free(cscd_context *context, particle_grid *grid);
 
-/* Particle i lies at vertices[i] of x and is of groups[i]. Entries nearer than radius to a point are found
- * around it. count is at most what was reserved. */
+/* Builds the grid of particles i at vertices[i] of x, in groups[i]. Searches around a point find all entries
+ * nearer than radius. count is at most the number that was reserved. */
 void particle_grid_build(particle_grid *grid, const double *x, const uint32_t *vertices,
                          const uint32_t *groups, uint32_t count, double radius);
 
-/* Where to look around a point; begin with particle_grid_around. */
+/* A search around a point, which particle_grid_around begins. */
 typedef struct grid_search {
     const particle_grid *grid;
     uint32_t x, y, z;     /* the first of its 27 cells */
-    uint32_t row, column; /* now: 9 rows of 3 cells */
+    uint32_t row, column; /* the current one of 9 rows of 3 cells */
     uint32_t row_y, row_z, bucket;
     uint32_t next, end; /* entries of that bucket */
 } grid_search;
@@ -47,7 +48,7 @@ static inline void grid_search_open(grid_search *s) {
     s->end = s->grid->first[bucket + 1];
 }
 
-/* The buckets of a row begin here. */
+/* The bucket at which a row begins. */
 static inline uint32_t grid_row_bucket(uint32_t y, uint32_t z) {
     uint64_t h = ((uint64_t)z << 32 | y) * UINT64_C(0x9E3779B97F4A7C15);
     return (uint32_t)(h >> 32);
@@ -59,7 +60,7 @@ static inline void grid_search_row(grid_search *s) {
     s->bucket = grid_row_bucket(s->row_y, s->row_z) + s->x;
 }
 
-/* The next entry that may be within the radius, NULL at the end. Each comes once. */
+/* Returns the next entry that may be within the radius, each once, and NULL at the end. */
 static inline const grid_entry *grid_search_next(grid_search *s) {
     for (;;) {
         while (s->next < s->end) {

@@ -1,5 +1,5 @@
-/* The closest particles of every pair of watched parts: gathered over moments, then sorted, with no table of
- * parts by parts. */
+/* Gathers the near particles of watched parts over several moments and sorts them by pairs of parts, without
+ * a table of all pairs of parts. */
 #include "runtime/sensors/particle_pairs.h"
 
 #include "src/core/sort.h"
@@ -13,7 +13,7 @@ void particle_pairs_free(cscd_context *context, particle_pairs *pairs) {
     *pairs = (particle_pairs){0};
 }
 
-static cscd_status make_room(cscd_context *context, particle_pairs *pairs) {
+static cscd_status reserve_pairs(cscd_context *context, particle_pairs *pairs) {
     if (pairs->count < pairs->capacity) return CSCD_OK;
     size_t capacity = pairs->capacity > 0 ? 2 * pairs->capacity : CAPACITY_LEAST;
     near_particles *scratch = context_allocate(context, capacity, sizeof *scratch);
@@ -57,7 +57,7 @@ cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const csc
             nearest = min_of(nearest, distance);
             near_particles pair = pair_of(partition, p->vertices[i], p->vertices[e->particle]);
             if (!(distance < sensor_reach_mu(reach, pair.part_a, pair.part_b))) continue;
-            if (make_room(p->context, pairs) != CSCD_OK) return CSCD_OUT_OF_MEMORY;
+            if (reserve_pairs(p->context, pairs) != CSCD_OK) return CSCD_OUT_OF_MEMORY;
             pair.distance = distance;
             pair.moment = moment;
             pairs->items[pairs->count++] = pair;
@@ -67,21 +67,21 @@ cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const csc
     return CSCD_OK;
 }
 
-static int order(uint32_t a, uint32_t b) {
+static int order_of(uint32_t a, uint32_t b) {
     return (a > b) - (a < b);
 }
 
-static int compare(const void *first, const void *second) {
+static int compare_pairs(const void *first, const void *second) {
     const near_particles *a = first, *b = second;
-    int by_parts = order(a->part_a, b->part_a);
-    if (by_parts == 0) by_parts = order(a->part_b, b->part_b);
+    int by_parts = order_of(a->part_a, b->part_a);
+    if (by_parts == 0) by_parts = order_of(a->part_b, b->part_b);
     if (by_parts != 0) return by_parts;
     if (a->distance != b->distance) return a->distance < b->distance ? -1 : 1;
-    if (a->moment != b->moment) return order(a->moment, b->moment);
-    int by_vertex = order(a->vertex_a, b->vertex_a);
-    return by_vertex != 0 ? by_vertex : order(a->vertex_b, b->vertex_b);
+    if (a->moment != b->moment) return order_of(a->moment, b->moment);
+    int by_vertex = order_of(a->vertex_a, b->vertex_a);
+    return by_vertex != 0 ? by_vertex : order_of(a->vertex_b, b->vertex_b);
 }
 
 void particle_pairs_sort(particle_pairs *pairs) {
-    sort_items(pairs->items, pairs->scratch, pairs->count, sizeof *pairs->items, compare);
+    sort_items(pairs->items, pairs->scratch, pairs->count, sizeof *pairs->items, compare_pairs);
 }

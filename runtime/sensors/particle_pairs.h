@@ -1,11 +1,11 @@
-/* The closest particles of every pair of watched parts: gathered over moments, then sorted, with no table of
- * parts by parts. */
+/* Gathers the near particles of watched parts over several moments and sorts them by pairs of parts, without
+ * a table of all pairs of parts. */
 #pragma once
 
 #include "runtime/sensors/particles.h"
 #include "runtime/sensors/reach.h"
 
-/* Two particles of watched parts nearer than their mu. Part and cell a are of the smaller part. */
+/* Two particles of watched parts that are nearer than their mu. Part a is the one with the smaller number. */
 typedef struct near_particles {
     uint32_t part_a, part_b, cell_a, cell_b;
     uint32_t vertex_a, vertex_b;
@@ -20,9 +20,9 @@ typedef struct particle_pairs {
 
 void particle_pairs_free(cscd_context *context, particle_pairs *pairs);
 
-/* Adds those of the particles as they are at positions x; *closest is the smallest distance of particles that
- * attract each other within the reach's largest mu, INFINITY when there is none. The particles' grid is built
- * anew. */
+/* Adds the pairs of particles that are near each other at positions x. *closest is the smallest distance of
+ * two particles that attract each other, within the largest mu; INFINITY if there is none. Builds the grid of
+ * the particles again. */
 cscd_status particle_pairs_gather(particle_pairs *pairs, particles *p, const cscd_partition *partition,
                                   const sensor_reach *reach, const double *x, uint32_t moment,
                                   double *closest);

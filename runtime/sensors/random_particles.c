@@ -3,7 +3,7 @@
 
 #include "runtime/sensors/cell_particles.h"
 
-/* vertices by object, as listed by parts. */
+/* Lists vertices by object, in the order of their parts. */
 static void list_objects(const cscd_partition *partition, random_particles *r) {
     for (uint32_t p = 0; p < partition->part_count; p++) {
         uint32_t count = partition->part_vertex_offsets[p + 1] - partition->part_vertex_offsets[p];
@@ -33,31 +33,29 @@ static void list_neighbours(const cscd_mesh *mesh, random_particles *r) {
     offsets[mesh->vertex_count] = 2 * mesh->edge_count;
 }
 
+static array_list list_arrays(random_particles *r) {
+    return (array_list){
+        {ARRAY(r->object_offsets, (size_t)r->object_count + 1), ARRAY(r->object_vertices, r->vertex_count),
+         ARRAY(r->neighbour_offsets, (size_t)r->vertex_count + 1), ARRAY(r->neighbours, r->neighbour_count)}};
+}
+
 cscd_status random_particles_create(const cscd_partition *partition, random_particles *out) {
     const cscd_mesh *mesh = partition->mesh;
-    cscd_context *context = partition->context;
     out->object_count = partition->object_count;
-    out->object_offsets =
-        context_allocate(context, (size_t)partition->object_count + 1, sizeof *out->object_offsets);
-    out->object_vertices = context_allocate(context, mesh->vertex_count, sizeof *out->object_vertices);
-    out->neighbour_offsets =
-        context_allocate(context, (size_t)mesh->vertex_count + 1, sizeof *out->neighbour_offsets);
-    out->neighbours = context_allocate(context, (size_t)mesh->edge_count * 2, sizeof *out->neighbours);
-    if (out->object_offsets == NULL || out->object_vertices == NULL || out->neighbour_offsets == NULL ||
-        out->neighbours == NULL)
-        return CSCD_OUT_OF_MEMORY;
+    out->neighbour_count = (size_t)mesh->edge_count * 2;
+    out->vertex_count = mesh->vertex_count;
+    if (!context_allocate_all(partition->context, list_arrays(out))) return CSCD_OUT_OF_MEMORY;
     list_objects(partition, out);
     list_neighbours(mesh, out);
     return CSCD_OK;
 }
 
 void random_particles_free(cscd_context *context, random_particles *r) {
-    void *blocks[] = {r->object_offsets, r->object_vertices, r->neighbour_offsets, r->neighbours};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, list_arrays(r));
 }
 
 /* A number below count, from SplitMix64 (Steele et al. 2014). */
-static uint32_t draw(uint64_t *state, uint32_t count) {
+static uint32_t draw_below(uint64_t *state, uint32_t count) {
     uint64_t z = *state += UINT64_C(0x9E3779B97F4A7C15);
     z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
     z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
@@ -80,7 +78,7 @@ cscd_status random_particles_place(const random_particles *r, const cscd_partiti
         uint32_t *vertices = r->object_vertices + r->object_offsets[o];
         uint32_t left = r->object_offsets[o + 1] - r->object_offsets[o];
         for (uint32_t i = particles_of(r, o, per_object); i-- > 0;) {
-            uint32_t k = draw(&state, left--), drawn = vertices[k];
+            uint32_t k = draw_below(&state, left--), drawn = vertices[k];
             vertices[k] = vertices[left];
             vertices[left] = drawn; /* behind those that can still be drawn */
             p->vertices[p->count] = drawn;

@@ -4,17 +4,18 @@
 #include "runtime/sensors/particles.h"
 #include "src/mesh/partition.h"
 
-/* Where they walk: on whole objects, along all edges. */
+/* The objects and edges that these particles walk on. */
 typedef struct random_particles {
     uint32_t *object_offsets, *object_vertices; /* vertices with a triangle */
     uint32_t *neighbour_offsets, *neighbours;   /* per vertex, ascending */
-    uint32_t object_count;
+    uint32_t object_count, vertex_count;
+    size_t neighbour_count;
 } random_particles;
 
 cscd_status random_particles_create(const cscd_partition *partition, random_particles *out);
-/* Of zeros: does nothing. */
+/* A structure of zeros is left as it is. */
 void random_particles_free(cscd_context *context, random_particles *r);
 
-/* Puts as many particles as asked for, or all that there are, on different vertices of every object. */
+/* Puts per_object particles, or as many as there are vertices, on different vertices of every object. */
 cscd_status random_particles_place(const random_particles *r, const cscd_partition *partition,
                                    uint32_t per_object, uint32_t seed, particles *p);

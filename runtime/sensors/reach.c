@@ -1,21 +1,11 @@
-/* How near particles have to come for a warning, mu, and how far they feel each other, R_eff.
- *
- * Two features that touch at time t in a point p have vertices, one of each, that are near each other then:
- *   edges of lengths la and lb: choose an end X of the one at random, such that its mean is p, and so an end
- * Y of the other. E |X - Y|^2 = Var X + Var Y <= la^2 / 4 + lb^2 / 4, since s (l - s) <= l^2 / 4. Some pair
- * of ends is no farther apart than the mean: sqrt(la^2 + lb^2) / 2, which is 0.71 edges where all are equal;
- *   a vertex and a triangle with sides up to l: the corners, weighted so that their mean is p, have a
- * variance of sum over i < j of w_i w_j l_ij^2 <= l^2 / 3, so some corner is within l / sqrt(3). Vertices
- * move on lines, so lengths of edges are convex in t, and are longest at the start or at the end. And the two
- * vertices' difference changes by at most D over the interval, so at the start or at the end, whichever is
- * nearer to t, it is longer by at most D / 2. That is mu: it does not say that particles find these vertices.
- */
+/* How near particles have to come for a warning, mu, and how far they feel each other, R_eff. Both are
+ * derived in docs/theory/sensor-reach.md, whose lemmas are cited below. */
 #include "runtime/sensors/reach.h"
 
 #include "src/core/check.h"
 #include "src/core/vec3.h"
 
-/* Sums and roots above lose less than this. */
+/* The sums and roots of mu lose less than this to rounding. */
 static const double rounding = 1.0 + 0x1p-40;
 
 cscd_status sensor_reach_create(const cscd_partition *partition, double mu_given, sensor_reach *reach) {
@@ -32,7 +22,7 @@ static double squared_distance(const double *x, uint32_t a, uint32_t b) {
     return vec3_squared_distance(x + (size_t)a * 3, x + (size_t)b * 3);
 }
 
-/* Longest sides, squared for now. */
+/* Finds the longest sides of each part's triangles, as squares. */
 static void measure_edges(sensor_reach *reach, const cscd_partition *partition, const double *x0,
                           const double *x1) {
     const cscd_mesh *mesh = partition->mesh;
@@ -71,7 +61,7 @@ static void measure_motion(part_reach *part, const cscd_partition *partition, ui
     }
 }
 
-/* What it takes for edges up to a and b, and displacements in two boxes. */
+/* mu for two parts with these longest edges and boxes of displacements: Lemma 3. */
 static double mu_of(const part_reach *a, const part_reach *b) {
     double squares = a->longest_edge * a->longest_edge + b->longest_edge * b->longest_edge;
     double longest = max_of(a->longest_edge, b->longest_edge), relative = 0.0;
@@ -79,7 +69,7 @@ static double mu_of(const part_reach *a, const part_reach *b) {
         double most = max_of(a->high[k] - b->low[k], b->high[k] - a->low[k]);
         relative += most * most;
     }
-    double nearest = max_of(sqrt(squares) / 2.0, longest / sqrt(3.0));
+    double nearest = max_of(sqrt(squares) / 2.0, longest / sqrt(3.0)); /* Lemmas 1 and 2 */
     return (nearest + sqrt(relative) / 2.0) * rounding;
 }
 
@@ -88,7 +78,7 @@ double sensor_reach_mu(const sensor_reach *reach, uint32_t part_a, uint32_t part
     return mu_of(&reach->parts[part_a], &reach->parts[part_b]);
 }
 
-/* All parts as one: it moves relative to itself as much as any two do. */
+/* Takes all parts as one, which moves relative to itself as much as any two of them do. */
 static double largest_mu(const sensor_reach *reach, const cscd_partition *partition) {
     if (reach->mu_given > 0.0) return reach->mu_given;
     part_reach all = {0};
@@ -108,7 +98,8 @@ static double largest_mu(const sensor_reach *reach, const cscd_partition *partit
 
 /* ---- R_eff -------------------------------------------------------------------------------------------- */
 
-/* An upper bound for a diameter: twice the distance of the vertex farthest from the box's centre. */
+/* Returns an upper bound of the diameter: twice the distance of the farthest vertex from the centre of the
+ * box. */
 static double diameter_bound(const uint32_t *vertices, uint32_t count, const double *x) {
     double low[3] = {0}, high[3] = {0}, centre[3], farthest = 0.0;
     for (uint32_t i = 0; i < count; i++) {

@@ -3,50 +3,53 @@
 
 #include "src/mesh/partition.h"
 
-/* A part's measures: when its cells were made, or now. */
+/* The measures of a part, when its cells were made or now. */
 typedef struct part_measures {
-    double area, estimate; /* the largest of its cells */
-    double edge_squared;   /* of the longest edge at its vertices */
-    double concave;        /* share of the concave ones in the length of its inner edges */
+    double area, estimate; /* of its largest cell, each */
+    double edge_squared;   /* the squared length of the longest edge at its vertices */
+    double concave;        /* the share of concave edges in the length of its inner edges */
 } part_measures;
 
-/* Of a triangle: the cross product of two sides, and its length, twice the area. */
+/* The cross product of two sides of a triangle, and its length, which is twice the area. */
 typedef struct facing {
     double normal[3], length;
 } facing;
 
-/* Workspace. */
-typedef struct sensor_upkeep {
+/* Workspace, kept from step to step. */
+typedef struct sensor_renewal {
     const cscd_mesh *mesh;
-    uint64_t generation;        /* of the partition that `first` is of; 0: of none */
-    uint64_t *part_generations; /* of each part's cells */
+    uint32_t part_count;
+    uint64_t generation;        /* the generation of the partition that `first` belongs to; 0: none yet */
+    uint64_t *part_generations; /* per part: the generation of its cells */
     part_measures *first, *now; /* per part */
     double *inner, *concave;    /* per part: lengths of edges */
-    double *cell_areas;         /* room for one per vertex */
+    double *cell_areas;         /* per cell, of which there are at most as many as vertices */
     facing *facings;            /* per triangle */
-    bool *inside_out;           /* per component: closed, and its triangles face inwards */
-} sensor_upkeep;
+    double *volumes;            /* per component: six times the enclosed volume */
+    bool *inside_out;           /* per component: it is closed, and its triangles face inwards */
+} sensor_renewal;
 
-typedef struct upkeep_limits {
+typedef struct renewal_limits {
     double area_factor;
-    double edge_length; /* 0: any */
-} upkeep_limits;
+    double edge_length; /* 0: no limit */
+} renewal_limits;
 
-cscd_status sensor_upkeep_create(const cscd_partition *partition, sensor_upkeep *out);
-/* Of zeros: does nothing. */
-void sensor_upkeep_destroy(sensor_upkeep *upkeep);
+cscd_status sensor_renewal_create(const cscd_partition *partition, sensor_renewal *out);
+/* A structure of zeros is left as it is. */
+void sensor_renewal_destroy(sensor_renewal *renewal);
 
-/* Before each step: takes the measure of parts whose cells are new since the last call. Their first estimate
- * is the largest from any vertex of a cell, or of a large cell any of 64, so that particles that walk about
- * do not change it much. */
-void sensor_upkeep_follow(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions);
+/* Measures, before each step, the parts whose cells are new since the last call. Their first estimate is the
+ * largest one from any vertex of a cell, or from 64 vertices of a large cell, so that walking particles do
+ * not change it much. */
+void sensor_renewal_follow(sensor_renewal *renewal, const cscd_partition *partition, const double *positions);
 
-/* particles: the vertex of each cell's; NULL: areas are not estimated. Writes a reason for every part, the
- * first that holds of AREA, CONCAVE and EDGE, and returns how many of them are not NONE. Allocates nothing,
- * as the call above. */
-uint32_t sensor_upkeep_check(sensor_upkeep *upkeep, const cscd_partition *partition, const double *positions,
-                             const uint32_t *particles, const upkeep_limits *limits, cscd_renewal *renewals);
+/* Writes for every part the first reason that holds of AREA, CONCAVE and EDGE, and returns how many are not
+ * NONE. particles[c] is the vertex of the particle in cell c; with NULL areas are not estimated. Neither this
+ * call nor the one above allocates. */
+uint32_t sensor_renewal_check(sensor_renewal *renewal, const cscd_partition *partition,
+                              const double *positions, const uint32_t *particles,
+                              const renewal_limits *limits, cscd_renewal *renewals);
 
-/* The area of the rectangle that walks in four directions span from a vertex within its cell (section 3.6).
- */
-double sensor_upkeep_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex);
+/* Returns the area of the rectangle that four walks from a vertex span within its cell (section 3.6).
+ * External for its test, which compares it with walks done by hand. */
+double sensor_renewal_estimate(const cscd_partition *partition, const double *positions, uint32_t vertex);

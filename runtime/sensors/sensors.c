@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Where attractions are added, particles nearer than this share of a typical edge pull no harder. */
+/* When attractions are added, particles nearer than this share of a typical edge pull no harder. */
 static const double closest_share = 1e-3;
 
 cscd_sensor_options cscd_sensor_defaults(void) {
@@ -61,34 +61,31 @@ static cscd_status check_options(cscd_context *context, const cscd_sensor_option
 
 /* ---- creation ----------------------------------------------------------------------------------------- */
 
-static bool allocate_arrays(cscd_sensors *s) {
+static array_list list_arrays(cscd_sensors *s) {
     size_t cells_most = s->mesh->vertex_count;
-    s->renewals = context_allocate(s->context, s->partition->part_count, sizeof *s->renewals);
-    s->cells_a = context_allocate(s->context, cells_most, sizeof *s->cells_a);
-    s->cells_b = context_allocate(s->context, cells_most, sizeof *s->cells_b);
-    s->cell_checks = context_allocate(s->context, cells_most, sizeof *s->cell_checks);
-    return s->renewals != NULL && s->cells_a != NULL && s->cells_b != NULL && s->cell_checks != NULL;
+    return (array_list){{ARRAY(s->renewals, s->partition->part_count), ARRAY(s->cells_a, cells_most),
+                         ARRAY(s->cells_b, cells_most), ARRAY(s->cell_checks, cells_most)}};
 }
 
 static cscd_status create_random(cscd_sensors *s) {
     cscd_status status = random_particles_create(s->partition, &s->random);
     if (status != CSCD_OK) return status;
     s->particles.rule = PARTICLE_POTENTIAL;
-    s->particles.ways = (vertex_ways){s->random.neighbour_offsets, s->random.neighbours};
+    s->particles.steps = (vertex_steps){s->random.neighbour_offsets, s->random.neighbours};
     return random_particles_place(&s->random, s->partition, s->options.particles, s->options.seed,
                                   &s->particles);
 }
 
 static cscd_status create_parts(cscd_sensors *s) {
-    cscd_status status = allocate_arrays(s) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    cscd_status status = context_allocate_all(s->context, list_arrays(s)) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
     s->particles.context = s->context;
     s->particles.rule = PARTICLE_STRONGEST;
-    s->particles.ways = (vertex_ways){s->partition->neighbour_offsets, s->partition->neighbours};
+    s->particles.steps = (vertex_steps){s->partition->neighbour_offsets, s->partition->neighbours};
     if (status == CSCD_OK)
         status = sensor_reach_create(s->partition, s->options.collision_distance, &s->reach);
     if (status == CSCD_OK && s->options.method == CSCD_SENSORS_RANDOM) status = create_random(s);
-    if (status == CSCD_OK) status = sensor_areas_create(s->mesh, &s->areas);
-    if (status == CSCD_OK) status = sensor_upkeep_create(s->partition, &s->upkeep);
+    if (status == CSCD_OK) status = exact_check_create(s->mesh, &s->exact);
+    if (status == CSCD_OK) status = sensor_renewal_create(s->partition, &s->renewal);
     if (status == CSCD_OK) status = sensor_bounds_create(s->partition, &s->bounds);
     return status;
 }
@@ -127,17 +124,19 @@ void cscd_sensors_destroy(cscd_sensors *s) {
     random_particles_free(context, &s->random);
     sensor_reach_free(context, &s->reach);
     particle_pairs_free(context, &s->pairs);
-    sensor_areas_destroy(&s->areas);
-    sensor_upkeep_destroy(&s->upkeep);
+    exact_check_destroy(&s->exact);
+    sensor_renewal_destroy(&s->renewal);
     sensor_bounds_destroy(&s->bounds);
-    void *blocks[] = {s->before, s->renewals, s->cells_a, s->cells_b, s->cell_checks, s->warnings, s};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, list_arrays(s));
+    context_free(context, s->before);
+    context_free(context, s->warnings);
+    context_free(context, s);
 }
 
 /* ---- one interval ------------------------------------------------------------------------------------- */
 
-/* Where particles are is put back by a step that fails, so that a repetition does the same. */
-static cscd_status remember(cscd_sensors *s) {
+/* A step that fails puts its particles back to the vertices of before, so that a repetition does the same. */
+static cscd_status remember_vertices(cscd_sensors *s) {
     uint32_t count = s->particles.count;
     if (count > s->before_capacity) {
         uint32_t *before = context_allocate(s->context, count, sizeof *before);
@@ -157,29 +156,29 @@ static walk_areas areas_of(const cscd_sensors *s) {
     return (walk_areas){partition->cell_offsets, partition->cell_vertices, partition->cell_count};
 }
 
-/* Takes up new cells, and measures the interval. */
-static cscd_status begin(cscd_sensors *s, const double *start, const double *end) {
+/* Places particles in new cells, and measures the interval. */
+static cscd_status begin_step(cscd_sensors *s, const double *start, const double *end) {
     cscd_status status = CSCD_OK;
     if (s->options.method == CSCD_SENSORS_CELLS)
         status = cell_particles_place(&s->particles, s->partition, &s->generation, start);
-    if (status == CSCD_OK) status = remember(s);
+    if (status == CSCD_OK) status = remember_vertices(s);
     if (status != CSCD_OK) return status;
-    sensor_upkeep_follow(&s->upkeep, s->partition, start);
+    sensor_renewal_follow(&s->renewal, s->partition, start);
     walk_areas areas = areas_of(s);
     sensor_reach_measure(&s->reach, s->partition, &areas, start, end, s->options.effective_radius);
     s->particles.radius = s->reach.radius;
     bool inside = s->options.method == CSCD_SENSORS_CELLS;
-    s->particles.longest_way = inside ? s->reach.longest_inside : s->reach.longest_edge;
+    s->particles.longest_step = inside ? s->reach.longest_inside : s->reach.longest_edge;
     s->particles.closest = s->reach.typical_edge * closest_share;
     s->particles.counters = (particle_counters){0};
     s->pairs.count = 0;
     return CSCD_OK;
 }
 
-/* Particles walk at one moment, and what is near is gathered: of a cycle of states in all of them. They stay
- * in the state in which two were nearest. */
-static cscd_status watch(cscd_sensors *s, const double *x, uint32_t moment, cscd_sensor_timings *timings,
-                         cscd_sensor_counters *counters) {
+/* Lets particles walk at one moment, and gathers those that are near each other: in a cycle of states, in all
+ * of them. The particles stay in the state in which two were nearest. */
+static cscd_status watch_moment(cscd_sensors *s, const double *x, uint32_t moment,
+                                cscd_sensor_timings *timings, cscd_sensor_counters *counters) {
     particles *p = &s->particles;
     double since = timer_now_ms(), least = INFINITY, closest;
     particles_begin(p);
@@ -200,24 +199,25 @@ static cscd_status watch(cscd_sensors *s, const double *x, uint32_t moment, cscd
     return CSCD_OK;
 }
 
-/* When new cells are due, and what certified answers are taken from. */
-static uint32_t look_after(cscd_sensors *s, const double *start, const double *end) {
+/* Updates which cells are due for renewal, and the bounds behind cscd_sensors_apart. */
+static uint32_t update_certificates(cscd_sensors *s, const double *start, const double *end) {
     const uint32_t *at = s->options.method == CSCD_SENSORS_CELLS ? s->particles.vertices : NULL;
-    upkeep_limits limits = {s->options.area_factor, s->options.collision_distance};
-    uint32_t due = sensor_upkeep_check(&s->upkeep, s->partition, end, at, &limits, s->renewals);
+    renewal_limits limits = {s->options.area_factor, s->options.collision_distance};
+    uint32_t due = sensor_renewal_check(&s->renewal, s->partition, end, at, &limits, s->renewals);
     sensor_bounds_update(&s->bounds, s->partition, start, end, NULL);
     sensor_bounds_update_boxes(&s->bounds, s->partition, start, end);
     return due;
 }
 
-static cscd_status run(cscd_sensors *s, const double *start, const double *end, cscd_sensor_timings *timings,
-                       cscd_sensor_counters *counters, cscd_warnings *found) {
+static cscd_status run_step(cscd_sensors *s, const double *start, const double *end,
+                            cscd_sensor_timings *timings, cscd_sensor_counters *counters,
+                            cscd_warnings *found) {
     double since = timer_now_ms();
-    cscd_status status = begin(s, start, end);
+    cscd_status status = begin_step(s, start, end);
     timer_lap(&since, &timings->walk_ms);
     if (status != CSCD_OK) return status;
-    status = watch(s, start, 0, timings, counters);
-    if (status == CSCD_OK) status = watch(s, end, 1, timings, counters);
+    status = watch_moment(s, start, 0, timings, counters);
+    if (status == CSCD_OK) status = watch_moment(s, end, 1, timings, counters);
     if (status == CSCD_OK) status = sensor_verdict(s, start, end, &found->count, timings, counters);
     if (status != CSCD_OK) {
         memcpy(s->particles.vertices, s->before, s->particles.count * sizeof *s->before);
@@ -225,7 +225,7 @@ static cscd_status run(cscd_sensors *s, const double *start, const double *end, 
     }
     since = timer_now_ms();
     found->items = s->warnings;
-    found->renewals_due = look_after(s, start, end);
+    found->renewals_due = update_certificates(s, start, end);
     timer_lap(&since, &timings->renewal_ms);
     return CSCD_OK;
 }
@@ -244,7 +244,7 @@ cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *start, const 
     cscd_sensor_timings timings = {0};
     cscd_sensor_counters counters = {0};
     cscd_warnings found = {0};
-    status = run(sensors, start, end, &timings, &counters, &found);
+    status = run_step(sensors, start, end, &timings, &counters, &found);
     if (status != CSCD_OK) return context_explain(context, status);
     const particle_counters *walked = &sensors->particles.counters;
     counters.rounds = walked->rounds;
@@ -257,14 +257,14 @@ cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *start, const 
     return CSCD_OK;
 }
 
-/* ---- what the last step has left ---------------------------------------------------------------------- */
+/* ---- results of the last step ------------------------------------------------------------------------- */
 
 cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
     return sensors->renewals[part];
 }
 
-/* After a renewal balls and cells would not fit each other. Boxes are asked first: they know more, and answer
- * at once. */
+/* After a renewal the balls belong to cells of before. Boxes are asked first: they separate more pairs, and
+ * answer at once. */
 bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
     const cscd_partition *partition = sensors->partition;
     if (part_a == part_b || sensors->bounds.generation != partition->generation) return false;

@@ -1,4 +1,4 @@
-/* The sensors' inside: particles, what they are measured against, and buffers that live from step to step. */
+/* Internal state of particle sensors: particles, bounds, and buffers that are kept from step to step. */
 #pragma once
 
 #include "runtime/sensors/bounds.h"
@@ -15,21 +15,22 @@ struct cscd_sensors {
     cscd_partition *partition;
     cscd_sensor_options options;
 
-    uint64_t generation; /* of the partition that particles are of, with CELLS; 0: before the first step */
+    uint64_t
+        generation; /* CELLS: the partition's generation that particles belong to; 0: before the first step */
     particles particles;
     random_particles random; /* RANDOM */
-    uint32_t *before;        /* where particles were before the step: a step that fails puts them back */
+    uint32_t *before;        /* the vertices of particles before the step, for a step that fails */
     uint32_t before_capacity;
 
     sensor_reach reach;
     particle_pairs pairs;
-    sensor_areas areas;
-    sensor_upkeep upkeep;
+    exact_check exact;
+    sensor_renewal renewal;
     sensor_bounds bounds;
     cscd_renewal *renewals; /* per part */
 
-    uint32_t *cells_a, *cells_b; /* of the pair of parts that is checked */
-    uint64_t *cell_checks;       /* per cell: the number of the check that it was last put in */
+    uint32_t *cells_a, *cells_b; /* the cells of the pair of parts that is checked */
+    uint64_t *cell_checks;       /* per cell: the last check that it took part in */
     uint64_t checks;
 
     cscd_warning *warnings;
@@ -38,7 +39,7 @@ struct cscd_sensors {
     cscd_sensor_counters counters;
 };
 
-/* Warnings of the step's pairs, sorted already. *count of them are in s->warnings, with the exact check done
- * where the options ask for it. */
+/* Writes the warnings of the step's pairs to s->warnings, sorted, and their number to *count; with the exact
+ * check done if the options ask for it. */
 cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *end, size_t *count,
                            cscd_sensor_timings *timings, cscd_sensor_counters *counters);

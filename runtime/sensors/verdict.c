@@ -1,4 +1,5 @@
-/* From near particles to warnings: the nearest of every pair of parts, and the exact check of their cells. */
+/* Turns near particles into warnings: the nearest two of every pair of parts, and the exact check of their
+ * cells. */
 #include "runtime/sensors/sensors.h"
 
 #include "src/core/timer.h"
@@ -7,14 +8,14 @@ static bool same_parts(const near_particles *a, const near_particles *b) {
     return a->part_a == b->part_a && a->part_b == b->part_b;
 }
 
-/* Pairs of the same two parts from begin on, to the returned one. */
+/* Returns the end of the pairs of the same two parts that begin at `begin`. */
 static size_t end_of_parts(const particle_pairs *pairs, size_t begin) {
     size_t end = begin + 1;
     while (end < pairs->count && same_parts(&pairs->items[end], &pairs->items[begin])) end++;
     return end;
 }
 
-static cscd_status make_room(cscd_sensors *s, size_t count) {
+static cscd_status reserve_warnings(cscd_sensors *s, size_t count) {
     if (count <= s->warning_capacity) return CSCD_OK;
     size_t capacity = count + count / 2;
     cscd_warning *warnings = context_allocate(s->context, capacity, sizeof *warnings);
@@ -43,16 +44,16 @@ static void add_cell(cscd_sensors *s, uint32_t cell, uint32_t *cells, uint32_t *
     cells[(*count)++] = cell;
 }
 
-/* Each cell once, however many of its pairs there are. */
-static cscd_status check(cscd_sensors *s, size_t begin, size_t end, const double *x0, const double *x1,
-                         area_verdict *verdict) {
+/* Checks the cells of the pairs from begin to end, each cell once. */
+static cscd_status check_cells(cscd_sensors *s, size_t begin, size_t end, const double *x0, const double *x1,
+                               area_verdict *verdict) {
     area_query query = {x0, x1, s->cells_a, s->cells_b, 0, 0};
     s->checks++;
     for (size_t i = begin; i < end; i++) {
         add_cell(s, s->pairs.items[i].cell_a, s->cells_a, &query.count_a);
         add_cell(s, s->pairs.items[i].cell_b, s->cells_b, &query.count_b);
     }
-    return sensor_areas_check(&s->areas, s->partition, &query, verdict);
+    return exact_check_run(&s->exact, s->partition, &query, verdict);
 }
 
 cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *end, size_t *count,
@@ -62,7 +63,7 @@ cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *e
     particle_pairs_sort(&s->pairs);
     size_t warnings = 0;
     for (size_t i = 0; i < pairs->count; i = end_of_parts(pairs, i)) warnings++;
-    if (make_room(s, warnings) != CSCD_OK) return CSCD_OUT_OF_MEMORY;
+    if (reserve_warnings(s, warnings) != CSCD_OK) return CSCD_OUT_OF_MEMORY;
     *count = 0;
     for (size_t i = 0; i < pairs->count; i = end_of_parts(pairs, i))
         s->warnings[(*count)++] = warning_of(s, &pairs->items[i]);
@@ -72,7 +73,7 @@ cscd_status sensor_verdict(cscd_sensors *s, const double *start, const double *e
     cscd_warning *warning = s->warnings;
     for (size_t i = 0; i < pairs->count; i = end_of_parts(pairs, i), warning++) {
         area_verdict verdict = {false, 0.0, 0};
-        cscd_status status = check(s, i, end_of_parts(pairs, i), start, end, &verdict);
+        cscd_status status = check_cells(s, i, end_of_parts(pairs, i), start, end, &verdict);
         if (status != CSCD_OK) return status;
         warning->contact = verdict.contact;
         warning->toi = verdict.toi;

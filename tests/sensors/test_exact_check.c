@@ -92,9 +92,9 @@ static area_verdict brute_force(const cscd_partition *p, const area_query *query
     return verdict;
 }
 
-static area_verdict check(sensor_areas *areas, const cscd_partition *p, const area_query *query) {
+static area_verdict run_check(exact_check *exact, const cscd_partition *p, const area_query *query) {
     area_verdict verdict;
-    assert_int_equal(sensor_areas_check(areas, p, query, &verdict), CSCD_OK);
+    assert_int_equal(exact_check_run(exact, p, query, &verdict), CSCD_OK);
     return verdict;
 }
 
@@ -133,18 +133,18 @@ static void equals_brute_force(void **state) {
         rig r = rig_create(&interval, 1, NULL);
         choose_parts(&interval, 3, triangle_parts);
         cscd_partition *p = hand_partition_create(r.mesh, interval.x0, triangle_parts, 3, 6);
-        sensor_areas areas;
-        assert_int_equal(sensor_areas_create(r.mesh, &areas), CSCD_OK);
+        exact_check exact;
+        assert_int_equal(exact_check_create(r.mesh, &exact), CSCD_OK);
         for (int k = 0; k < 3; k++) {
             area_query query = {interval.x0, interval.x1, cells_a, cells_b, 0, 0};
             query.count_a = choose_cells(p, k == 0 ? 1 : 0, cells_a);
             query.count_b = choose_cells(p, k == 2 ? 1 : 2, cells_b);
-            area_verdict found = check(&areas, p, &query), expected = brute_force(p, &query);
+            area_verdict found = run_check(&exact, p, &query), expected = brute_force(p, &query);
             assert_same(&found, &expected);
             contacts += found.contact;
             none += found.tests > 0 && !found.contact;
         }
-        sensor_areas_destroy(&areas);
+        exact_check_destroy(&exact);
         hand_partition_destroy(p);
         rig_destroy(&r);
     }
@@ -179,15 +179,15 @@ static void equals_detector(void **state) {
         cscd_partition *p = hand_partition_create(r.mesh, interval.x0, NULL, 2, 9);
         uint32_t count = p->parts[0].cell_count;
         area_query query = {interval.x0, interval.x1, cells, cells + count, count, p->parts[1].cell_count};
-        sensor_areas areas;
-        assert_int_equal(sensor_areas_create(r.mesh, &areas), CSCD_OK);
-        area_verdict found = check(&areas, p, &query);
+        exact_check exact;
+        assert_int_equal(exact_check_create(r.mesh, &exact), CSCD_OK);
+        area_verdict found = run_check(&exact, p, &query);
         const cscd_contact *first = first_between(&r, rig_step(&r, &interval));
         assert_int_equal(found.contact, first != NULL);
         if (first != NULL) assert_memory_equal(&found.toi, &first->toi, sizeof found.toi);
         contacts += found.contact;
         none += !found.contact;
-        sensor_areas_destroy(&areas);
+        exact_check_destroy(&exact);
         hand_partition_destroy(p);
         rig_destroy(&r);
     }
@@ -206,20 +206,20 @@ static void order_and_reuse_do_not_matter(void **state) {
     uint32_t count = p->parts[0].cell_count, others = p->parts[1].cell_count;
     for (uint32_t i = 0; i < count + others; i++) cells[i] = i;
     for (uint32_t i = 0; i < count; i++) reversed[i] = count - 1 - i;
-    sensor_areas areas;
-    assert_int_equal(sensor_areas_create(r.mesh, &areas), CSCD_OK);
+    exact_check exact;
+    assert_int_equal(exact_check_create(r.mesh, &exact), CSCD_OK);
     area_query query = {interval.x0, interval.x1, cells, cells + count, count, others};
     area_query swapped = {interval.x0, interval.x1, cells + count, reversed, others, count};
     area_query empty = {interval.x0, interval.x1, cells, NULL, count, 0};
-    area_verdict first = check(&areas, p, &query), second = check(&areas, p, &swapped);
-    area_verdict none = check(&areas, p, &empty), again = check(&areas, p, &query);
+    area_verdict first = run_check(&exact, p, &query), second = run_check(&exact, p, &swapped);
+    area_verdict none = run_check(&exact, p, &empty), again = run_check(&exact, p, &query);
     assert_true(first.tests > 0);
     assert_same(&second, &first);
     assert_same(&again, &first);
     assert_false(none.contact);
     assert_int_equal(none.tests, 0);
-    sensor_areas_destroy(&areas);
-    sensor_areas_destroy(&areas);
+    exact_check_destroy(&exact);
+    exact_check_destroy(&exact);
     hand_partition_destroy(p);
     rig_destroy(&r);
 }
@@ -227,22 +227,22 @@ static void order_and_reuse_do_not_matter(void **state) {
 /* Creates, checks twice; after a failure for want of memory the same call has to succeed. */
 static cscd_status check_with(counting_allocator *counter, const cscd_mesh *mesh, const cscd_partition *p,
                               const area_query *query, const area_verdict *expected) {
-    sensor_areas areas;
+    exact_check exact;
     area_verdict verdict = {.tests = 4711};
-    cscd_status status = sensor_areas_create(mesh, &areas);
+    cscd_status status = exact_check_create(mesh, &exact);
     if (status != CSCD_OK) return status;
-    status = sensor_areas_check(&areas, p, query, &verdict);
+    status = exact_check_run(&exact, p, query, &verdict);
     if (status != CSCD_OK) {
         assert_int_equal(verdict.tests, 4711);
         counter->fail_at = SIZE_MAX;
-        verdict = check(&areas, p, query);
+        verdict = run_check(&exact, p, query);
     }
     assert_same(&verdict, expected);
     size_t calls = counter->calls;
-    verdict = check(&areas, p, query);
+    verdict = run_check(&exact, p, query);
     assert_same(&verdict, expected);
     assert_int_equal(counter->calls, calls);
-    sensor_areas_destroy(&areas);
+    exact_check_destroy(&exact);
     return status;
 }
 

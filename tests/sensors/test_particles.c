@@ -78,10 +78,10 @@ static void the_grid_finds_each_neighbour_once(void **state) {
 
 /* ---- forces ------------------------------------------------------------------------------------------- */
 
-/* A walk's world: particles on some points, and ways from every point to a few others, of the same number
+/* A walk's world: particles on some points, and steps from every point to a few others, of the same number
  * modulo `worlds`. */
 enum { WAYS = 5, WALKERS = POINTS / 4 };
-static uint32_t way_offsets[POINTS + 1], way_targets[POINTS * WAYS];
+static uint32_t step_offsets[POINTS + 1], step_targets[POINTS * WAYS];
 
 static int by_number(const void *a, const void *b) {
     uint32_t i = *(const uint32_t *)a, j = *(const uint32_t *)b;
@@ -89,13 +89,13 @@ static int by_number(const void *a, const void *b) {
 }
 
 static particles world(particle_rule rule, double radius, int worlds) {
-    particles p = {.context = context, .rule = rule, .ways = {way_offsets, way_targets}};
+    particles p = {.context = context, .rule = rule, .steps = {step_offsets, step_targets}};
     for (uint32_t i = 0; i < POINTS; i++) {
-        way_offsets[i + 1] = (i + 1) * WAYS;
+        step_offsets[i + 1] = (i + 1) * WAYS;
         for (uint32_t k = 0; k < WAYS; k++)
-            way_targets[i * WAYS + k] =
+            step_targets[i * WAYS + k] =
                 (uint32_t)(random_integer(0, POINTS / worlds - 1) * worlds) + i % (uint32_t)worlds;
-        qsort(way_targets + (size_t)i * WAYS, WAYS, sizeof *way_targets, by_number);
+        qsort(step_targets + (size_t)i * WAYS, WAYS, sizeof *step_targets, by_number);
     }
     assert_int_equal(particles_reserve(&p, WALKERS), CSCD_OK);
     p.count = WALKERS;
@@ -104,7 +104,7 @@ static particles world(particle_rule rule, double radius, int worlds) {
         p.groups[i] = p.objects[i] = i % 5;
     }
     p.radius = radius;
-    p.longest_way = 4.0;
+    p.longest_step = 4.0;
     p.closest = 1e-3;
     return p;
 }
@@ -138,7 +138,7 @@ static void expect_best(const particles *p, const uint32_t *before, uint32_t i) 
     assert_true(chosen >= plain_worth(p, before, i, before[i]) - slack);
     bool there = p->vertices[i] == before[i];
     for (uint32_t k = 0; k < WAYS; k++) {
-        uint32_t target = way_targets[before[i] * WAYS + k];
+        uint32_t target = step_targets[before[i] * WAYS + k];
         there |= target == p->vertices[i];
         assert_true(chosen >= plain_worth(p, before, i, target) - slack);
     }
@@ -195,17 +195,17 @@ static void counters_count(void **state) {
 /* A particle of group i / 2 on a path of its own with `length` points from first on. */
 static void lay_paths(particles *p, uint32_t paths, uint32_t length) {
     *p = (particles){.context = context,
-                     .ways = {way_offsets, way_targets},
+                     .steps = {step_offsets, step_targets},
                      .radius = 100.0,
-                     .longest_way = 2.0,
+                     .longest_step = 2.0,
                      .closest = 1e-3};
-    uint32_t ways = 0;
+    uint32_t steps = 0;
     for (uint32_t v = 0; v < paths * length; v++) {
-        way_offsets[v] = ways;
-        if (v % length > 0) way_targets[ways++] = v - 1;
-        if (v % length < length - 1) way_targets[ways++] = v + 1;
+        step_offsets[v] = steps;
+        if (v % length > 0) step_targets[steps++] = v - 1;
+        if (v % length < length - 1) step_targets[steps++] = v + 1;
     }
-    way_offsets[paths * length] = ways;
+    step_offsets[paths * length] = steps;
     assert_int_equal(particles_reserve(p, paths), CSCD_OK);
     p->count = paths;
     for (uint32_t i = 0; i < paths; i++) p->groups[i] = p->objects[i] = i;
@@ -291,20 +291,20 @@ static void repulsion_spreads(void **state) {
     enum { RING = 24 };
     particles p = {.context = context,
                    .rule = PARTICLE_POTENTIAL,
-                   .ways = {way_offsets, way_targets},
+                   .steps = {step_offsets, step_targets},
                    .radius = 1e3,
-                   .longest_way = 1.0,
+                   .longest_step = 1.0,
                    .closest = 1e-3};
     assert_int_equal(particles_reserve(&p, 2), CSCD_OK);
     p.count = 2;
     for (uint32_t v = 0; v < RING; v++) {
         double angle = 2.0 * 3.14159265358979 * v / RING;
         put(v, cos(angle), sin(angle));
-        way_offsets[v] = 2 * v;
-        way_targets[2 * v] = (v + RING - 1) % RING;
-        way_targets[2 * v + 1] = (v + 1) % RING;
+        step_offsets[v] = 2 * v;
+        step_targets[2 * v] = (v + RING - 1) % RING;
+        step_targets[2 * v + 1] = (v + 1) % RING;
     }
-    way_offsets[RING] = 2 * RING;
+    step_offsets[RING] = 2 * RING;
     for (uint32_t i = 0; i < 2; i++) p.groups[i] = p.objects[i] = 0;
     p.vertices[0] = 0;
     p.vertices[1] = 1;

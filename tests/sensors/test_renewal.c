@@ -20,35 +20,35 @@ static uint32_t particles[SCENE_VERTICES_MAX];
 static cscd_renewal renewals[SCENE_TRIANGLES_MAX];
 
 static const double origin[3] = {0.0, 0.0, 0.0};
-static const upkeep_limits usual = {.area_factor = 2.0, .edge_length = 0.0};
+static const renewal_limits usual = {.area_factor = 2.0, .edge_length = 0.0};
 
 /* The body's mesh with its workspaces. */
 typedef struct bench {
     rig rig;
     cscd_partition *partition;
-    sensor_upkeep upkeep;
+    sensor_renewal renewal;
 } bench;
 
-/* Parts are the components; cells of body.x0, which the upkeep knows. */
+/* Parts are the components; cells of body.x0, which the renewal knows. */
 static bench bench_create(uint32_t cells_max) {
     bench b = {.rig = rig_create(&body, 1, NULL)};
     b.partition = hand_partition_create(b.rig.mesh, body.x0, NULL, b.rig.mesh->component_count, cells_max);
-    assert_int_equal(sensor_upkeep_create(b.partition, &b.upkeep), CSCD_OK);
-    sensor_upkeep_follow(&b.upkeep, b.partition, body.x0);
+    assert_int_equal(sensor_renewal_create(b.partition, &b.renewal), CSCD_OK);
+    sensor_renewal_follow(&b.renewal, b.partition, body.x0);
     hand_partition_particles(b.partition, particles);
     return b;
 }
 
 static void bench_destroy(bench *b) {
-    sensor_upkeep_destroy(&b->upkeep);
-    sensor_upkeep_destroy(&b->upkeep);
+    sensor_renewal_destroy(&b->renewal);
+    sensor_renewal_destroy(&b->renewal);
     hand_partition_destroy(b->partition);
     rig_destroy(&b->rig);
 }
 
 /* How many are due at `moved`, by the limits. */
-static uint32_t due(bench *b, const upkeep_limits *limits) {
-    return sensor_upkeep_check(&b->upkeep, b->partition, moved, particles, limits, renewals);
+static uint32_t due(bench *b, const renewal_limits *limits) {
+    return sensor_renewal_check(&b->renewal, b->partition, moved, particles, limits, renewals);
 }
 
 /* Undoes the half step that every second ring of a building block is turned by, which makes its quads fold
@@ -111,7 +111,7 @@ static void rest_and_rigid_motion_need_nothing(void **state) {
     random_seed(1);
     make_two_bodies();
     bench b = bench_create(12);
-    upkeep_limits narrow = {.area_factor = 1.0 + 1e-9, .edge_length = 0.0};
+    renewal_limits narrow = {.area_factor = 1.0 + 1e-9, .edge_length = 0.0};
     for (int i = 0; i < ROUNDS; i++) {
         hand_partition_particles(b.partition, particles);
         memcpy(moved, body.x0, sizeof moved);
@@ -145,13 +145,13 @@ static void growth_is_estimated(void **state) {
     random_seed(3);
     make_two_bodies();
     bench b = bench_create(12);
-    for (uint32_t p = 0; p < 2; p++) b.upkeep.first[p].area = INFINITY;
+    for (uint32_t p = 0; p < 2; p++) b.renewal.first[p].area = INFINITY;
     move(false, grow, 1.3);
     assert_int_equal(due(&b, &usual), 0);
     move(false, grow, 3.0);
     assert_int_equal(due(&b, &usual), 1);
     assert_int_equal(renewals[1], CSCD_RENEWAL_AREA);
-    assert_int_equal(sensor_upkeep_check(&b.upkeep, b.partition, moved, NULL, &usual, renewals), 0);
+    assert_int_equal(sensor_renewal_check(&b.renewal, b.partition, moved, NULL, &usual, renewals), 0);
     bench_destroy(&b);
 }
 
@@ -160,9 +160,9 @@ static void long_edges_are_seen(void **state) {
     random_seed(4);
     make_two_bodies();
     bench b = bench_create(12);
-    double longest = sqrt(b.upkeep.first[1].edge_squared);
-    upkeep_limits limits = {.area_factor = 4.0, .edge_length = 1.2 * longest};
-    assert_true(sqrt(b.upkeep.first[0].edge_squared) < limits.edge_length);
+    double longest = sqrt(b.renewal.first[1].edge_squared);
+    renewal_limits limits = {.area_factor = 4.0, .edge_length = 1.2 * longest};
+    assert_true(sqrt(b.renewal.first[0].edge_squared) < limits.edge_length);
     move(false, stretch, 1.1);
     assert_int_equal(due(&b, &limits), 0);
     move(false, stretch, 2.0);
@@ -179,7 +179,7 @@ static void bending_is_told_before_long_edges(void **state) {
     random_seed(10);
     make_two_bodies();
     bench b = bench_create(12);
-    upkeep_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.upkeep.first[1].edge_squared)};
+    renewal_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.renewal.first[1].edge_squared)};
     move(false, bend, 0.05);
     due(&b, &limits);
     assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
@@ -205,7 +205,7 @@ static void bending_is_seen(void **state) {
         make_two_bodies();
         if (flipped != 0) flip_triangles();
         bench b = bench_create(12);
-        assert_true(b.upkeep.first[1].concave < 0.01);
+        assert_true(b.renewal.first[1].concave < 0.01);
         move(false, bend, 0.05);
         assert_int_equal(due(&b, &usual), 0);
         move(false, bend, 3.0);
@@ -225,7 +225,7 @@ static void renewal_settles_one_part(void **state) {
     assert_int_equal(due(&b, &usual), 2);
     b.partition->generation++;
     b.partition->part_generations[1] = b.partition->generation;
-    sensor_upkeep_follow(&b.upkeep, b.partition, moved);
+    sensor_renewal_follow(&b.renewal, b.partition, moved);
     assert_int_equal(due(&b, &usual), 1);
     assert_int_equal(renewals[0], CSCD_RENEWAL_AREA);
     assert_int_equal(renewals[1], CSCD_RENEWAL_NONE);
@@ -251,10 +251,10 @@ static void estimates_are_rectangles(void **state) {
     random_seed(7);
     make_cross();
     bench b = bench_create(1);
-    assert_true(fabs(sensor_upkeep_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
     for (uint32_t v = 1; v < 5; v++) b.partition->vertex_cells[v] = 1; /* the edge out of a cell counts */
-    assert_true(fabs(sensor_upkeep_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
-    assert_true(fabs(b.upkeep.first[0].area - 12.0) < 1e-12);
+    assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
+    assert_true(fabs(b.renewal.first[0].area - 12.0) < 1e-12);
     bench_destroy(&b);
 }
 
@@ -268,7 +268,7 @@ static void estimates_are_near_areas(void **state) {
         bench b = bench_create(cells);
         double sum = 0.0, area = 12.566 / b.partition->cell_count;
         for (uint32_t v = 0; v < body.vertex_count; v++)
-            sum += sensor_upkeep_estimate(b.partition, body.x0, v) / body.vertex_count;
+            sum += sensor_renewal_estimate(b.partition, body.x0, v) / body.vertex_count;
         assert_in_range((unsigned long)(100.0 * sum / area), 50, 250);
         bench_destroy(&b);
     }
@@ -286,7 +286,7 @@ static void walks_end_on_any_mesh(void **state) {
             moved[k] = i % 4 == 0 ? 0.0 : i % 4 == 1 ? round(x) : i % 4 == 2 ? x + random_unit() : x * 1e200;
         }
         for (uint32_t v = 0; v < body.vertex_count; v++) {
-            double estimate = sensor_upkeep_estimate(b.partition, moved, v);
+            double estimate = sensor_renewal_estimate(b.partition, moved, v);
             assert_true(i % 4 == 3 || (estimate >= 0.0 && isfinite(estimate)));
         }
         due(&b, &usual);

@@ -24,20 +24,20 @@ static const double origin[3] = {0.0, 0.0, 0.0};
 typedef struct bench {
     rig rig;
     cscd_partition *partition;
-    sensor_areas areas;
+    exact_check exact;
     sensor_bounds bounds;
 } bench;
 
 static bench bench_create(const uint32_t *triangle_parts, uint32_t part_count, uint32_t cells_max) {
     bench b = {.rig = rig_create(&interval, 1, NULL)};
     b.partition = hand_partition_create(b.rig.mesh, interval.x0, triangle_parts, part_count, cells_max);
-    assert_int_equal(sensor_areas_create(b.rig.mesh, &b.areas), CSCD_OK);
+    assert_int_equal(exact_check_create(b.rig.mesh, &b.exact), CSCD_OK);
     assert_int_equal(sensor_bounds_create(b.partition, &b.bounds), CSCD_OK);
     return b;
 }
 
 static void bench_destroy(bench *b) {
-    sensor_areas_destroy(&b->areas);
+    exact_check_destroy(&b->exact);
     sensor_bounds_destroy(&b->bounds);
     hand_partition_destroy(b->partition);
     rig_destroy(&b->rig);
@@ -59,7 +59,7 @@ static bool touching(bench *b) {
     area_query query = {interval.x0, interval.x1, cells, cells + count, count, 0};
     query.count_b = b->partition->cell_count - count;
     area_verdict verdict;
-    assert_int_equal(sensor_areas_check(&b->areas, b->partition, &query, &verdict), CSCD_OK);
+    assert_int_equal(exact_check_run(&b->exact, b->partition, &query, &verdict), CSCD_OK);
     return verdict.contact;
 }
 
@@ -68,13 +68,13 @@ static bool touching(bench *b) {
 /* Two small bodies, moved to anywhere: slowly or fast, near the origin or far from it. */
 static void move_bodies(const scene *rest, uint32_t first_of_second) {
     double far_away = random_integer(0, 2) == 0 ? 1e9 : 0.0, speed = random_integer(0, 1) ? 0.3 : 20.0;
-    double centre[3], places[2][3], ways[2][3];
+    double centre[3], places[2][3], offsets[2][3];
     for (int k = 0; k < 3; k++) {
         centre[k] = far_away * random_unit();
         for (int i = 0; i < 2; i++) {
             double middle = 2.2 * random_unit();
-            ways[i][k] = speed * random_unit();
-            places[i][k] = middle - 0.5 * ways[i][k];
+            offsets[i][k] = speed * random_unit();
+            places[i][k] = middle - 0.5 * offsets[i][k];
         }
     }
     for (uint32_t v = 0; v < rest->vertex_count; v++) {
@@ -82,7 +82,7 @@ static void move_bodies(const scene *rest, uint32_t first_of_second) {
         for (uint32_t k = 0; k < 3; k++) {
             double x = rest->x0[v * 3 + k] + places[body][k] + centre[k];
             interval.x0[v * 3 + k] = x + 0.02 * random_unit();
-            interval.x1[v * 3 + k] = x + ways[body][k] + 0.2 * random_unit();
+            interval.x1[v * 3 + k] = x + offsets[body][k] + 0.2 * random_unit();
         }
     }
 }
@@ -133,12 +133,12 @@ static void make_touch(double offset, double gap) {
     for (uint32_t k = 0; k < 3; k++) {
         double corner[2] = {offset, offset + gap * n[k]}, sides[2] = {-1.0 * reach_a, 1.0 * reach_b};
         for (uint32_t i = 0; i < 2; i++) {
-            double way = i == 0 ? 0.0 : speed * w[k];
+            double travel = i == 0 ? 0.0 : speed * w[k];
             double points[3] = {corner[i] + sides[i] * n[k], corner[i], corner[i] + 0.5 * sides[i] * n[k]};
             points[2] += k == 0 ? 0.25 * sides[i] : 0.0;
             for (uint32_t c = 0; c < 3; c++) {
-                interval.x0[(i * 3 + c) * 3 + k] = points[c] - t * way;
-                interval.x1[(i * 3 + c) * 3 + k] = points[c] + (1.0 - t) * way;
+                interval.x0[(i * 3 + c) * 3 + k] = points[c] - t * travel;
+                interval.x1[(i * 3 + c) * 3 + k] = points[c] + (1.0 - t) * travel;
             }
         }
     }

@@ -8,10 +8,10 @@ enum { FRAMES = 24, OBJECTS_MAX = 3, ALL_REGIONS_MAX = 12 };
 
 static scene s; /* large; one test at a time */
 
-/* Objects, and the way that each goes until it touches another one. */
+/* Objects, and the offset that each goes until it touches another one. */
 typedef struct meeting {
     uint32_t count, first_vertices[OBJECTS_MAX + 1];
-    double ways[OBJECTS_MAX][3];
+    double offsets[OBJECTS_MAX][3];
 } meeting;
 
 static meeting begin_meeting(void) {
@@ -19,17 +19,17 @@ static meeting begin_meeting(void) {
     return (meeting){0};
 }
 
-/* The object added last to the scene comes in along -way. */
+/* The object added last to the scene comes in along -offset. */
 static void add_object(meeting *m, double x, double y, double z) {
-    double way[3] = {x, y, z};
-    memcpy(m->ways[m->count++], way, sizeof way);
+    double offset[3] = {x, y, z};
+    memcpy(m->offsets[m->count++], offset, sizeof offset);
     m->first_vertices[m->count] = s.vertex_count;
 }
 
-static void add_sphere(meeting *m, double x, double radius, double way) {
+static void add_sphere(meeting *m, double x, double radius, double offset) {
     const double centre[3] = {x, 0.0, 0.0};
     scene_add_sphere(&s, centre, radius, 9, 14);
-    add_object(m, way, 0.0, 0.0);
+    add_object(m, offset, 0.0, 0.0);
 }
 
 /* Opens to +y, or with sign -1 to -y; 2 wide and 2 high. */
@@ -40,18 +40,18 @@ static void add_u(meeting *m, double x, double y, double z, double sign, double 
     add_object(m, 0.0, way_y, 0.0);
 }
 
-/* At share 1 of its ways, each object is where it was made. */
+/* At share 1 of its offsets, each object is where it was made. */
 static void positions_at(const meeting *m, double share, double *x) {
     memcpy(x, s.x0, s.vertex_count * 3 * sizeof *x);
     for (uint32_t o = 0; o < m->count; o++) {
         double by[3];
-        for (int k = 0; k < 3; k++) by[k] = m->ways[o][k] * (share - 1.0);
+        for (int k = 0; k < 3; k++) by[k] = m->offsets[o][k] * (share - 1.0);
         shift_vertices(m->first_vertices[o], m->first_vertices[o + 1], by, x);
     }
 }
 
-/* All objects go on until the end of their ways and beyond it. The first frame with a contact of the two is
- * of the detector, and of the sensors. */
+/* All objects go on until the end of their offsets and beyond it. The first frame with a contact of the two
+ * is of the detector, and of the sensors. */
 typedef struct first_frames {
     int truly, sensed;
     double toi, sensed_toi;

@@ -52,9 +52,9 @@ static void list_part_vertices(cscd_partition *p) {
 }
 
 static double squared_distance(const double *positions, uint32_t a, uint32_t b) {
-    double way[3];
-    vec3_subtract(positions + (size_t)a * 3, positions + (size_t)b * 3, way);
-    return vec3_dot(way, way);
+    double offset[3];
+    vec3_subtract(positions + (size_t)a * 3, positions + (size_t)b * 3, offset);
+    return vec3_dot(offset, offset);
 }
 
 /* Of the part's vertices, the first of the centres that is nearest to each. */
