@@ -1,6 +1,7 @@
 /* One method on one recording, held against the method that leaves out no pair. */
 #include "benchmarks/lib/contest.h"
 
+#include "src/core/methods.h"
 #include "src/tool/common/stages.h"
 
 #include <math.h>
@@ -109,10 +110,6 @@ static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
            memcmp(a->normal, b->normal, sizeof a->normal) == 0;
 }
 
-static bool is_published(const entrant *e) {
-    return e->method == CSCD_METHOD_PUBLISHED || e->method == CSCD_METHOD_ICCD_PUBLISHED;
-}
-
 /* Counts what is missing; false if the lists differ in a way that is not allowed. No method may report what
  * method none does not; a published one may lose anything, mode earliest what its guarantee leaves out. */
 static bool compare_contacts(const truth *t, uint32_t interval, const cscd_detector *detector,
@@ -137,7 +134,7 @@ static bool compare_contacts(const truth *t, uint32_t interval, const cscd_detec
         s->earliest_lost += 1.0;
         kept = false;
     }
-    return next == found->count && (kept || is_published(e));
+    return next == found->count && (kept || method_traits_of(e->method)->loses_contacts);
 }
 
 static void add_step(score *s, const cscd_detector *detector, size_t contacts) {

@@ -2,6 +2,7 @@
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/tool/common/command.h"
+#include "src/tool/common/methods.h"
 #include "src/tool/common/option_table.h"
 #include "src/tool/common/option_values.h"
 #include "src/tool/common/output_path.h"
@@ -29,9 +30,7 @@ typedef struct preprocess_options {
 
 static bool read_plan_method(const char *text, void *place) {
     cscd_plan_options *plan = place;
-    return parse_method(text, &plan->method, &plan->k) &&
-           (plan->method == CSCD_METHOD_CHARGE || plan->method == CSCD_METHOD_KMEANS ||
-            plan->method == CSCD_METHOD_SINGLE);
+    return parse_method(text, &plan->method, &plan->k) && method_facts_of(plan->method)->makes_plan;
 }
 
 static bool read_share(const char *text, void *place) {

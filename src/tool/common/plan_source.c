@@ -3,6 +3,7 @@
 
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
+#include "src/tool/common/methods.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,26 +28,20 @@ const char *plan_source_name(plan_source source) {
     return names[source];
 }
 
-/* By orientation, for which it needs regions. */
-static bool culls(cscd_method method) {
-    return method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE && method != CSCD_METHOD_ICCD &&
-           method != CSCD_METHOD_ICCD_PUBLISHED;
+static bool insists_on_plan(const plan_request *request) {
+    return request->insists_on_plan || method_facts_of(request->method)->insists_on_plan;
 }
 
-static bool makes_plans(cscd_method method) {
-    return culls(method) && method != CSCD_METHOD_PUBLISHED && method != CSCD_METHOD_AUTO;
-}
-
-/* AUTO and PUBLISHED take a plan of any method. */
+/* A method that makes no plans takes one of any method. */
 static bool method_fits(const plan_request *request, const cscd_plan *plan) {
-    return !makes_plans(request->method) || cscd_plan_method(plan) == request->method;
+    return !method_facts_of(request->method)->makes_plan || cscd_plan_method(plan) == request->method;
 }
 
 /* Takes the path over. */
 static void choose_plan(plan_choice *choice, const plan_request *request, cscd_plan *plan, char *path) {
     choice->plan = plan;
     choice->method =
-        request->method == CSCD_METHOD_PUBLISHED ? CSCD_METHOD_PUBLISHED : cscd_plan_method(plan);
+        method_facts_of(request->method)->insists_on_plan ? request->method : cscd_plan_method(plan);
     choice->source = path != NULL ? PLAN_FROM_FILE : PLAN_FROM_MEMORY;
     choice->path = path;
 }
@@ -125,7 +120,7 @@ static void remark(plan_choice *choice, const char *text) {
  * that fails too nothing is culled. */
 static bool make_best(const plan_request *request, const recording *r, plan_choice *choice, io_error *error) {
     bool small = cscd_mesh_triangle_count(r->mesh) <= PLAN_IN_MEMORY_TRIANGLES;
-    if (request->method != CSCD_METHOD_PUBLISHED && !any_closed(r->mesh)) {
+    if (!insists_on_plan(request) && !any_closed(r->mesh)) {
         remark(choice, "no component is a closed surface, so there is nothing to cull");
         return true;
     }
@@ -135,8 +130,7 @@ static bool make_best(const plan_request *request, const recording *r, plan_choi
     } else {
         remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
     }
-    return make_plan(request, CSCD_METHOD_SINGLE, r, choice, error) ||
-           request->method != CSCD_METHOD_PUBLISHED;
+    return make_plan(request, CSCD_METHOD_SINGLE, r, choice, error) || !insists_on_plan(request);
 }
 
 static bool make_requested(const plan_request *request, const recording *r, plan_choice *choice,
@@ -151,16 +145,17 @@ static bool make_requested(const plan_request *request, const recording *r, plan
 }
 
 bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error) {
-    plan_choice choice = {.method = culls(request->method) ? CSCD_METHOD_NONE : request->method};
+    const method_facts *facts = method_facts_of(request->method);
+    plan_choice choice = {.method = facts->by_regions ? CSCD_METHOD_NONE : request->method};
     bool chosen = true;
-    if (!culls(request->method)) {
+    if (!facts->by_regions) {
         /* as asked for */
     } else if (request->min_separation > 0.0) {
         remark(&choice, "with --min-separation nothing is culled");
     } else if (request->plan_path != NULL) {
         chosen = read_named(request, r, &choice, error);
     } else {
-        bool any_plan = !makes_plans(request->method);
+        bool any_plan = !facts->makes_plan;
         if (any_plan || request->method == CSCD_METHOD_CHARGE) try_model_plan(request, r, &choice);
         if (choice.plan == NULL)
             chosen =

@@ -15,6 +15,7 @@ typedef struct plan_request {
     cscd_method method;    /* AUTO: whatever is best */
     uint32_t k;            /* with KMEANS; 0: the default */
     double min_separation;
+    bool insists_on_plan; /* AUTO: makes a plan even where nothing can be culled */
 } plan_request;
 
 typedef enum plan_source { PLAN_FROM_NONE, PLAN_FROM_FILE, PLAN_FROM_MEMORY } plan_source;

@@ -1,6 +1,8 @@
 /* The stages and counters of a step, a row each, as summaries, tables and benchmarks name them. */
 #include "src/tool/common/stages.h"
 
+#include "src/tool/common/methods.h"
+
 #include <string.h>
 
 #define TIME_OF(member)  offsetof(cscd_timings, member)
@@ -42,9 +44,9 @@ static void set_timing(cscd_timings *timings, const timing_row *row, double valu
 }
 
 bool timing_applies(const timing_row *row, cscd_method method) {
-    bool contours = method == CSCD_METHOD_ICCD || method == CSCD_METHOD_ICCD_PUBLISHED;
-    bool regions = method != CSCD_METHOD_NONE && method != CSCD_METHOD_BRUTE && !contours;
-    return (row->kind != TIMING_OF_CONTOURS || contours) && (row->kind != TIMING_OF_REGIONS || regions);
+    const method_facts *facts = method_facts_of(method);
+    return (row->kind != TIMING_OF_CONTOURS || facts->by_contours) &&
+           (row->kind != TIMING_OF_REGIONS || facts->by_regions);
 }
 
 void timings_add(cscd_timings *sum, cscd_timings *max, const cscd_timings *timings) {

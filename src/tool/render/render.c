@@ -16,7 +16,8 @@ static bool paint_plan(const render_options *o, const recording *r, contact_pict
     if (!by_charge && o->colouring != COLOUR_REGION) return true;
     plan_request request = {.model_path = o->source.model_path,
                             .plan_path = o->plan_path,
-                            .method = by_charge ? CSCD_METHOD_CHARGE : CSCD_METHOD_PUBLISHED};
+                            .method = by_charge ? CSCD_METHOD_CHARGE : CSCD_METHOD_AUTO,
+                            .insists_on_plan = true};
     plan_choice choice;
     if (!plan_choose(&request, r, &choice, error)) return false;
     bool painted = plan_picture_paint(picture, legend, r, choice.plan, by_charge, error) &&

@@ -2,6 +2,7 @@
 #include "src/tool/common/command.h"
 #include "src/tool/common/frame_list.h"
 #include "src/tool/common/ignore_pairs.h"
+#include "src/tool/common/methods.h"
 #include "src/tool/common/output_path.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/common/terminal.h"
@@ -61,7 +62,11 @@ static bool prepare_ignored(replay *r, io_error *error) {
 
 static bool prepare_plan(replay *r, io_error *error) {
     const replay_options *o = r->options;
-    plan_request request = {o->source.model_path, o->plan_path, o->method, o->k, o->min_separation};
+    plan_request request = {.model_path = o->source.model_path,
+                            .plan_path = o->plan_path,
+                            .method = o->method,
+                            .k = o->k,
+                            .min_separation = o->min_separation};
     terminal_progress_begin(&r->progress, o->quiet);
     terminal_progress_say(&r->progress, "preprocessing");
     bool chosen = plan_choose(&request, &r->recording, &r->plan, error);
@@ -143,18 +148,13 @@ static interval_state state_of(const replay *r, size_t contact_count) {
     return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
 }
 
-/* Loses contacts, for comparison only. */
-static bool is_published(cscd_method method) {
-    return method == CSCD_METHOD_PUBLISHED || method == CSCD_METHOD_ICCD_PUBLISHED;
-}
-
 /* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
  */
 static void alarm_contradiction(replay *r, const interval_result *result) {
     bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
-    if (is_published(r->plan.method)) return; /* as is known of them */
+    if (method_facts_of(r->plan.method)->loses_contacts) return; /* as is known of them */
     warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
          "lost, "
          "please report this recording",
@@ -226,12 +226,11 @@ static void print_results(const replay *r) {
     }
     printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
+    bool by_method = method_facts_of(r->plan.method)->loses_contacts;
     if (t->intervals_complete < t->intervals)
         printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
-               is_published(r->plan.method) ? "method" : "mode",
-               is_published(r->plan.method) ? cscd_method_name(r->plan.method) : "earliest",
-               t->intervals - t->intervals_complete, t->intervals,
-               is_published(r->plan.method) ? "" : "later ");
+               by_method ? "method" : "mode", by_method ? cscd_method_name(r->plan.method) : "earliest",
+               t->intervals - t->intervals_complete, t->intervals, by_method ? "" : "later ");
     if (t->contradictions > 0) printf("intervals that lost all their contacts: %u\n", t->contradictions);
     plan_choice_print(&r->plan);
     totals_print_table(t, r->plan.method);

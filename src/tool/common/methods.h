@@ -1,0 +1,14 @@
+/* What the commands need to know of each method. */
+#pragma once
+
+#include <cscd/cscd.h>
+
+typedef struct method_facts {
+    bool by_regions;      /* culls by the orientation of triangles, for which it needs regions */
+    bool by_contours;     /* culls by the contours of patches */
+    bool makes_plan;      /* `cscd preprocess` makes plans by it, and a step by it takes no other plan */
+    bool insists_on_plan; /* takes a plan of any method, but does not go without one */
+    bool loses_contacts;  /* culls as published */
+} method_facts;
+
+const method_facts *method_facts_of(cscd_method method);
