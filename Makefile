@@ -286,7 +286,7 @@ help:
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
 	@echo 'make fuzz-elementary   elementary tests against exact answers, [SECONDS=60] [QUERIES=0] [SEED=1] [KIND=both]'
 	@echo 'make template  bundle the page of the reports, after changes in src/tool/report/web (needs node and npm)'
-	@echo 'make lint      format, layering, file sizes, exported symbols'
+	@echo 'make lint      format, file sizes, rooms, names, exported symbols'
 	@echo 'make examples  compile and run the examples of README and docs'
 	@echo 'make format    clang-format all sources; make clean removes build/'
 
