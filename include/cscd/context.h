@@ -1,5 +1,5 @@
-/* Status, allocator, threads, instruction sets. Part of cscd/cscd.h, which says what holds for every
- * function. */
+/* The context: what everything is created from. It holds the allocator, the threads, the instruction set
+ * and the sentence behind the last failure. Part of cscd/cscd.h, which says what holds for every function. */
 #ifndef CSCD_CONTEXT_API_H
 #define CSCD_CONTEXT_API_H
 
@@ -19,90 +19,103 @@
 extern "C" {
 #endif
 
+/* How a call ended. */
 typedef enum cscd_status {
     CSCD_OK = 0,
-    CSCD_OUT_OF_MEMORY,    /* an allocation failed; every object is still valid, the call may be repeated */
-    CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options not made by _defaults() */
-    CSCD_INVALID_MESH, /* empty, too large, an index past vertex_count, a triangle that repeats a vertex */
-    CSCD_SYSTEM_ERROR, /* the system refused a thread */
-    CSCD_CANCELLED,    /* cscd_progress said so; every object is still valid, the call may be repeated */
-    CSCD_IN_CONTACT    /* no step is free of contact, for the start is not: cscd_detector_max_step */
+    CSCD_OUT_OF_MEMORY,    /* an allocation failed */
+    CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options that no _defaults() function made */
+    CSCD_INVALID_MESH,     /* no triangle, too many, an index beyond vertex_count, a triangle with a vertex
+                            * twice */
+    CSCD_SYSTEM_ERROR,     /* the system refused a thread */
+    CSCD_CANCELLED,        /* the callback in cscd_progress returned false */
+    CSCD_IN_CONTACT        /* no step is free of contact, because the start is not: cscd_detector_max_step */
 } cscd_status;
 
-/* One short English phrase, static storage, never NULL. */
+/* A short English phrase for a status; static storage, never NULL. */
 CSCD_API const char *cscd_status_string(cscd_status status);
 
 /* ---- context: allocator, threads, progress ---------------------------------------------------------- */
 
+/* Allocator, threads, instruction set and the last failure's sentence. */
 typedef struct cscd_context cscd_context;
 
-/* Set both functions or neither. allocate returns NULL on failure; alignment is a power of two;
- * release gets the size that was asked for. Calls are serialised by the context. */
+/* The host's allocator. Set both functions, or neither for aligned_alloc and free. allocate returns NULL
+ * when it fails; alignment is a power of two. release is given the size that was asked for. The context
+ * never calls them from two threads at once. */
 typedef struct cscd_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);
     void (*release)(void *user, void *block, size_t size);
     void *user;
 } cscd_allocator;
 
-/* Vector instructions. Results are the same on every level, bit for bit. */
+/* Which vector instructions are used. Results are the same on every level, bit for bit. */
 typedef enum cscd_simd {
     CSCD_SIMD_AUTO,   /* the best that the processor has */
-    CSCD_SIMD_SCALAR, /* what the compiler takes for granted */
+    CSCD_SIMD_SCALAR, /* what every processor of the architecture has */
     CSCD_SIMD_AVX2,
-    CSCD_SIMD_AVX512 /* F, VL, DQ and BW */
+    CSCD_SIMD_AVX512 /* AVX-512 F, VL, DQ and BW */
 } cscd_simd;
 
-/* "auto", "scalar", "avx2", "avx512"; static storage, never NULL. from_name leaves *out untouched when it
- * returns false. */
+/* The names are "auto", "scalar", "avx2" and "avx512"; static storage, never NULL. cscd_simd_from_name
+ * returns false for any other text and then leaves *out untouched. */
 CSCD_API const char *cscd_simd_name(cscd_simd simd);
 CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);
 
-/* The host's own parallel loop, so that cscd starts no threads beside the host's: calls task(data, index) for
- * every index below task_count, each once, in any order, on any threads, and returns when all have returned.
- * Tasks never wait for each other, so one after the other will do. A thread that waits in run must not be
- * lent to another call into cscd with objects of the same context. */
+/* The host's own parallel loop, for hosts that have a thread pool: cscd then starts no threads. run calls
+ * task(data, index) once for every index below task_count, in any order, on any threads, and returns when
+ * all of these calls have returned. Tasks never wait for each other, so calling them one after the other
+ * is correct. While a thread waits in run, the pool must not give it work that calls cscd with objects of
+ * the same context. */
 typedef struct cscd_parallel_for {
     void (*run)(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index), void *data);
     void *user;
 } cscd_parallel_for;
 
-/* Called now and then, at most every few milliseconds, by functions that take long (cscd_plan_create,
- * of the detector _step, _check, _near and _max_step, of a line _begin, _near and _max_step), on the thread
- * that called them; a call that is sooner done is not heard of. stage is a word or two of static storage;
- * fraction, in [0,1], an estimate of how much of the call is done, which never falls during it. False cancels
- * the call, which then fails with CSCD_CANCELLED. It must not call cscd with objects of the same context. */
+/* A callback that shows how far a long call is, and may cancel it. cscd_plan_create, cscd_detector_step,
+ * _check, _near and _max_step, and cscd_line_begin, _near and _max_step call it every few milliseconds, on
+ * the thread that called them; calls that end sooner do not call it at all. stage: a word or two, static
+ * storage. fraction: an estimate in [0,1] of how much of the call is done, which never falls during a
+ * call. When report returns false, the call ends with CSCD_CANCELLED. report must not call cscd with
+ * objects of the same context. */
 typedef struct cscd_progress {
     bool (*report)(void *user, const char *stage, double fraction);
     void *user;
 } cscd_progress;
 
+/* Options of a context; start from cscd_context_defaults. */
 typedef struct cscd_context_options {
     uint32_t struct_size;           /* set by cscd_context_defaults */
-    uint32_t thread_count;          /* 0 = one per processor; default 1; at most 256. With parallel_for: into
-                                     * how many tasks long work is cut, so set it, too; no thread is started */
-    cscd_simd simd;                 /* default AUTO; INVALID_ARGUMENT where the processor has it not */
-    cscd_allocator allocator;       /* default: aligned_alloc and free */
-    cscd_parallel_for parallel_for; /* default NULL: threads of the context's own */
-    cscd_progress progress;         /* default NULL: none, and nothing can be cancelled */
+    uint32_t thread_count;          /* 1 by default, 256 at most; 0: one per processor. With parallel_for
+                                     * no thread is started, and this says into how many tasks long work is
+                                     * cut */
+    cscd_simd simd;                 /* AUTO by default; a level that the processor lacks is
+                                     * INVALID_ARGUMENT */
+    cscd_allocator allocator;       /* aligned_alloc and free by default */
+    cscd_parallel_for parallel_for; /* none by default: the context has its own threads */
+    cscd_progress progress;         /* none by default: nothing is shown, and nothing can be cancelled */
 } cscd_context_options;
 
+/* The default options. */
 CSCD_API cscd_context_options cscd_context_defaults(void);
 
-/* Fails without a sentence, there being no context: INVALID_ARGUMENT, OUT_OF_MEMORY or SYSTEM_ERROR. */
+/* Creates a context; options may be NULL. SYSTEM_ERROR: the system refused a thread. A failure has no
+ * sentence, because there is no context that could hold it. */
 CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
 
-/* After all that was created from it. */
+/* Frees the context. Call it after everything that was created from it has been destroyed. */
 CSCD_API void cscd_context_destroy(cscd_context *context);
 
-/* The sentence behind the last failure in this context, "" if none. Valid until the next call. */
+/* The sentence behind the last failure in this context, "" if there was none. It lives until the next call
+ * with an object of the context. */
 CSCD_API const char *cscd_context_detail(const cscd_context *context);
 
+/* The number of threads, or with parallel_for of tasks, that long work is shared by. */
 CSCD_API uint32_t cscd_context_thread_count(const cscd_context *context);
 
-/* The level in use, never AUTO. */
+/* The instruction set in use, never AUTO. */
 CSCD_API cscd_simd cscd_context_simd(const cscd_context *context);
 
-/* Bytes now held through this context's allocator. */
+/* How many bytes the context and its objects hold at present through the allocator. */
 CSCD_API size_t cscd_context_bytes(const cscd_context *context);
 
 #ifdef __cplusplus

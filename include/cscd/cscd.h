@@ -1,28 +1,54 @@
 /*
  * cscd - continuous self-collision detection for deforming triangle meshes.
  *
- * One mesh, two sets of vertex positions (start and end of an interval), every vertex moving in a
- * straight line between them: cscd reports every vertex-face and edge-edge pair of the mesh that touches.
+ * You give a mesh and two sets of vertex positions, the start and the end of an interval in which every vertex
+ * moves in a straight line. You get every contact: every pair of a vertex and a face, or of two edges, that
+ * touches on the way, and when it first does.
  *
- * Conventions, true for every function below:
- *   positions   packed x,y,z doubles, vertex_count * 3 values, in any one unit of length; each value is
- *               0 or has a magnitude in [2^-300, 2^300]
- *   time        fraction of the interval, 0 = start, 1 = end
- *   contact     two features that touch, or come within min_separation; features that share a vertex are
- *               never reported, features in contact at the start already are reported at time 0
- *   timings     milliseconds of wall clock
- *   errors      functions that can fail return cscd_status and leave *out untouched unless CSCD_OK;
- *               cscd_context_detail then says in a sentence what is wrong, where, and what to do (a NULL
- *               context, mesh, detector or line has no place for a sentence). Functions that cannot fail
- *               want an object, and numbers below its counts
- *   ownership   the library copies what it is given; a _create has one _destroy; destroy in reverse
- *               order of creation; destroying NULL does nothing
- *   threads     an object, and what was created from it, is used by one thread at a time; separate
- *               contexts are independent
- *   defaults    a NULL options pointer means the matching _defaults(); start from those, never from {0}
- *   complete    a list is whole or the call failed
- *   repeatable  one build, the same inputs: the same contacts in the same order, bit for bit,
- *               for any thread count
+ * What holds for every function:
+ *   positions   packed doubles x, y, z, vertex_count * 3 of them. Each is 0 or has a magnitude from 2^-300 to
+ *               2^300; a function that is given another one fails and names array, vertex and coordinate
+ *   units       any one unit of length; nothing inside depends on it. A length is 0 or from 2^-300 to 2^300
+ *   time        fraction of the interval: 0 is its start, 1 its end. Timings are milliseconds of wall clock
+ *   features    vertices, edges and faces (triangles), borders included; indices begin at 0
+ *   contact     two features without a common vertex touch during the interval or, with a minimum separation,
+ *               come within it. Features in contact at the start are reported at time 0
+ *   ownership   the library copies what it is given. What a _create function makes, one _destroy call frees;
+ *               destroy in the reverse order of creation. Destroying NULL does nothing
+ *   results     lists that a function gives out belong to the object that was asked; each says how long they live
+ *   threads     one thread at a time uses a context and all that was created from it. Separate contexts are
+ *               independent
+ *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
+ *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do. (A NULL context,
+ *               mesh, detector or line has no place for a sentence.) All may return CSCD_INVALID_ARGUMENT and
+ *               CSCD_OUT_OF_MEMORY; other statuses are named at the function. Objects stay valid after any
+ *               failure, and the call may be repeated
+ *   unchecked   functions that do not return cscd_status are given a valid object and indices below its counts;
+ *               they check nothing
+ *   defaults    options come from the matching _defaults() function and are then changed; {0} is refused. A NULL
+ *               options pointer means the defaults
+ *   complete    a list is whole, or the call fails
+ *   repeatable  one build and the same inputs give the same results in the same order, bit for bit, for any
+ *               number of threads and on every instruction set
+ *
+ * What a solver needs, 27 of the functions:
+ *   create      cscd_context_create(), cscd_mesh_create() or cscd_mesh_create_scene() for several objects,
+ *               cscd_detector_defaults(), cscd_detector_create(); if the mesh is closed and deforms for long,
+ *               cscd_plan_create() first, which makes steps faster
+ *   contacts    cscd_detector_step(): all contacts of a motion; cscd_mesh_stencil(): the vertices and weights
+ *               behind each
+ *   barrier     cscd_detector_near(): all pairs within a distance at one moment
+ *   certified   cscd_detector_max_step(): how far the vertices may go without contact;
+ *               cscd_detector_set_separation()
+ *   search      cscd_line_create(), cscd_line_begin(), cscd_line_max_step(), cscd_line_near(): the same two,
+ *               many times along one line
+ *   state       cscd_detector_check(): intersections at one moment; cscd_detector_guarantee(): what the last list
+ *               promises; cscd_detector_timings()
+ *   helpers     cscd_mesh_pack(), cscd_mesh_edge(), cscd_status_string(), cscd_context_detail()
+ *   destroy     cscd_line_destroy(), cscd_detector_destroy(), cscd_plan_destroy(), cscd_mesh_destroy(),
+ *               cscd_context_destroy()
+ *
+ * docs/guarantees.md has the promises and their reasons, docs/tutorials/ three complete programs.
  */
 #ifndef CSCD_H
 #define CSCD_H
@@ -42,7 +68,7 @@
 extern "C" {
 #endif
 
-/* "1.1.0", static storage. */
+/* The version of the library in use, as "1.1.0"; static storage. */
 CSCD_API const char *cscd_version_string(void);
 
 #ifdef __cplusplus

@@ -1,5 +1,7 @@
-/* A plan: what is found out about a mesh once, at rest. Part of cscd/cscd.h, which says what holds for every
- * function. */
+/* A plan: how a mesh is cut into regions, and the point inside each from which the detector tells which
+ * triangles cannot touch. It is made once, from the mesh at rest, and makes steps faster; contacts are the
+ * same with any plan and with none. Part of cscd/cscd.h, which says what holds for every function.
+ * docs/theory/charge.md has the method. */
 #ifndef CSCD_PLAN_API_H
 #define CSCD_PLAN_API_H
 
@@ -9,91 +11,107 @@
 extern "C" {
 #endif
 
-/* How pairs are left out that need no test. Methods differ in time only: in one mode every method keeps the
- * same guarantee, but for those as published. */
+/* How triangle pairs that need no test are found and left out. Methods differ in time only: every method
+ * promises what the mode says, except the two published ones, which lose contacts. */
 typedef enum cscd_method {
-    CSCD_METHOD_AUTO,      /* the plan's, or NONE without a plan */
-    CSCD_METHOD_NONE,      /* bounding volumes, no culling */
-    CSCD_METHOD_BRUTE,     /* every pair of features: the reference, O(n^2) */
-    CSCD_METHOD_SINGLE,    /* one region per component */
-    CSCD_METHOD_KMEANS,    /* regions by k-means */
-    CSCD_METHOD_CHARGE,    /* regions by charge density */
-    CSCD_METHOD_PUBLISHED, /* the thesis's culling as published; loses contacts, for comparison only */
-    CSCD_METHOD_ICCD,      /* normal cones and contour tests (Tang et al. 2009), corrected: to compare with */
-    CSCD_METHOD_ICCD_PUBLISHED /* the same as published; loses contacts, for comparison only */
+    CSCD_METHOD_AUTO,          /* the method of the plan, or NONE without a plan */
+    CSCD_METHOD_NONE,          /* bounding volumes only */
+    CSCD_METHOD_BRUTE,         /* none: every pair of features is tested. The reference, quadratic in time */
+    CSCD_METHOD_SINGLE,        /* culling by orientation, one region for each component */
+    CSCD_METHOD_KMEANS,        /* culling by orientation, regions by k-means */
+    CSCD_METHOD_CHARGE,        /* culling by orientation, regions by charge density */
+    CSCD_METHOD_PUBLISHED,     /* culling by orientation as published (Yeh 2012). Loses contacts: to compare
+                            * with */
+    CSCD_METHOD_ICCD,          /* culling by normal cones and contours (Tang et al. 2009), corrected: to
+                            * compare with */
+    CSCD_METHOD_ICCD_PUBLISHED /* the same as published. Loses contacts: to compare with */
 } cscd_method;
 
-/* "auto", "none", "brute", "single", "kmeans", "charge", "published", "iccd", "iccd-published"; static
- * storage, never NULL. from_name leaves *out untouched when it returns false. */
+/* The names are "auto", "none", "brute", "single", "kmeans", "charge", "published", "iccd" and
+ * "iccd-published"; static storage, never NULL. cscd_method_from_name returns false for any other text and
+ * then leaves *out untouched. */
 CSCD_API const char *cscd_method_name(cscd_method method);
 CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
 
+/* The regions of a mesh and their detector points. */
 typedef struct cscd_plan cscd_plan;
 
+/* Options of a plan; start from cscd_plan_defaults. */
 typedef struct cscd_plan_options {
     uint32_t struct_size; /* set by cscd_plan_defaults */
-    cscd_method method;   /* CHARGE (default), KMEANS or SINGLE */
-    uint32_t k;           /* KMEANS: how many regions, shared out over the components; default 4 */
-    uint32_t seed;        /* KMEANS; default 1 */
-    double threshold;     /* CHARGE: share of the triangles, by density, that cuts start from; default 0.1 */
-    bool published;       /* CHARGE: equalize with 256 bins as published; default false */
-    size_t memory_limit;  /* CHARGE: in bytes, for the dense system; 0 (default): what the system has */
+    cscd_method method;   /* CHARGE by default, or KMEANS, or SINGLE */
+    uint32_t k;           /* KMEANS: how many regions all components have together, 4 by default */
+    uint32_t seed;        /* KMEANS: of the random starts, 1 by default */
+    double threshold;     /* CHARGE: the share of the triangles, those of least density, from which cuts
+                           * grow; in (0,1), 0.1 by default */
+    bool published;       /* CHARGE: equalize densities with 256 bins, as published, instead of exact ranks */
+    size_t memory_limit;  /* CHARGE: bytes that the dense system may take; 0, the default: what the system
+                           * has */
 } cscd_plan_options;
 
+/* The default options. */
 CSCD_API cscd_plan_options cscd_plan_defaults(void);
 
-/* Cuts the mesh, at rest in positions, into regions. CHARGE solves a dense system: 4 bytes per pair of
- * triangles of a component, and time with the cube. OUT_OF_MEMORY: the sentence gives the amount. Obstacles
- * are neither charged nor cut. */
+/* Cuts a mesh into regions. positions: the mesh at rest. options may be NULL. CHARGE solves a dense
+ * system: it takes 4 bytes for each pair of triangles of the largest component, and time with the cube of
+ * their number. OUT_OF_MEMORY: the sentence gives the amount. CANCELLED: see cscd_progress. Obstacles are
+ * left whole. */
 CSCD_API cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions,
                                       const cscd_plan_options *options, cscd_plan **out);
 
-/* A detector keeps nothing of its plan, so this may be before or after the detector's end. */
+/* Frees the plan. Detectors made with it keep what they need, so it may go before them. */
 CSCD_API void cscd_plan_destroy(cscd_plan *plan);
 
-/* A region: connected triangles of one component, and the point that they are seen from. */
+/* A region: connected triangles of one component, and the detector point from which most of them are seen. */
 typedef struct cscd_region {
     uint32_t component, triangle_count;
-    double area;          /* of its triangles at rest */
-    double visible_share; /* of that area, what faces the detector point, in [0,1] */
-    double detector_point[3];
+    double area;              /* of its triangles at rest */
+    double visible_share;     /* the share of that area that the detector point sees from inside, in [0,1] */
+    double detector_point[3]; /* at rest */
 } cscd_region;
 
-/* A plan from what an earlier one held, for the same mesh: triangle_regions per triangle, region_count
- * detector points of 3 doubles, and with CHARGE also charges per triangle and capacitances per component
- * (else both NULL). INVALID_ARGUMENT names what does not fit. */
+/* What a plan consists of, for programs that save and load plans themselves. */
 typedef struct cscd_plan_parts {
     cscd_method method; /* CHARGE, KMEANS or SINGLE */
     uint32_t region_count;
-    const uint32_t *triangle_regions;
-    const double *detector_points, *charges, *capacitances;
+    const uint32_t *triangle_regions; /* the region of each triangle */
+    const double *detector_points;    /* region_count * 3 doubles */
+    const double *charges;            /* with CHARGE one for each triangle, else NULL */
+    const double *capacitances;       /* with CHARGE one for each component, else NULL */
 } cscd_plan_parts;
 
+/* Creates a plan from the parts of an earlier one of the same mesh. positions: the mesh at rest.
+ * INVALID_ARGUMENT: the sentence names what does not fit. */
 CSCD_API cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
                                                  const cscd_plan_parts *parts, cscd_plan **out);
 
-/* The method that its regions are of. */
+/* The method that made the regions: CHARGE, KMEANS or SINGLE. */
 CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
 
-/* Regions of all components together; region < region_count. */
+/* The number of regions of all components together. */
 CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
+
+/* A region. */
 CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
 
-/* The region of a triangle. */
+/* The region that a triangle belongs to. */
 CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
 
-/* Charge per area at potential 1 of the triangle's component, in Gaussian units; 0 without CHARGE. */
+/* The charge density of a triangle, in Gaussian units, when its component is a conductor at potential 1; 0
+ * without CHARGE. */
 CSCD_API double cscd_plan_triangle_charge(const cscd_plan *plan, uint32_t triangle);
 
-/* Of a component, in units of length (Gaussian); 0 without CHARGE. */
+/* The capacitance of a component as a conductor, a length in Gaussian units; 0 without CHARGE. */
 CSCD_API double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component);
 
+/* Milliseconds that making a plan took. */
 typedef struct cscd_preprocess_timings {
-    double assembly_ms, solve_ms; /* CHARGE */
+    double assembly_ms, solve_ms; /* CHARGE: of the dense system */
     double regions_ms;            /* cuts or k-means, detector points, visible shares */
     double total_ms;
 } cscd_preprocess_timings;
 
+/* How long each stage of cscd_plan_create took. */
 CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
 
 #ifdef __cplusplus

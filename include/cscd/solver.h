@@ -1,5 +1,6 @@
-/* For solvers: what is near, how far a step may go, and both again along a line search. Part of cscd/cscd.h,
- * which says what holds for every function. */
+/* What solvers ask beside contacts: which features are close at one moment, how far a step may go without
+ * contact, and both again many times along one line. Part of cscd/cscd.h, which says what holds for every
+ * function. docs/tutorials/line-search.md has a complete program. */
 #ifndef CSCD_SOLVER_API_H
 #define CSCD_SOLVER_API_H
 
@@ -11,91 +12,104 @@ extern "C" {
 
 /* ---- the vertices behind a pair ---------------------------------------------------------------------- */
 
-/* The point that u and v name on a, minus the one on b, is the sum of weights[i] * x[vertices[i]].
- *   VF  a; the triangle's three vertices       1, -(1-u-v), -u, -v
- *   EE  a's two vertices, b's two vertices     1-u, u, -(1-v), -v */
+/* The four vertices of a pair of features, with weights: the sum of weights[i] * x[vertices[i]] is the
+ * vector to the point that u and v name on a from the one on b.
+ *   VF  the vertex a, then the triangle's three vertices; weights 1, -(1-u-v), -u, -v
+ *   EE  the two vertices of a, then those of b; weights 1-u, u, -(1-v), -v */
 typedef struct cscd_stencil {
     uint32_t vertices[4];
     double weights[4];
 } cscd_stencil;
 
-/* Of a contact's or proximity's kind, a, b, u, v. */
+/* The stencil of a contact or a proximity with this kind, a, b, u and v. */
 CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
                                         double u, double v);
 
 /* ---- proximity at one moment -------------------------------------------------------------------------- */
 
-/* Two features without a common vertex, and their nearest points, named by u and v as in cscd_contact. */
+/* Two features without a common vertex that are close at one moment, and their nearest points, which u and
+ * v name as in cscd_contact. */
 typedef struct cscd_proximity {
     cscd_contact_kind kind;
-    uint32_t a, b;
-    double distance;
-    double u, v;
-    double point[3];  /* midpoint of the nearest points */
-    double normal[3]; /* unit, from b's nearest point to a's; where they touch, across both, or 0 */
+    uint32_t a, b;    /* vertex and triangle, or two edges a < b */
+    double distance;  /* between the nearest points */
+    double u, v;      /* in [0,1]; exactly 0 or 1 where a nearest point lies on the border of a feature */
+    double point[3];  /* the middle between the nearest points */
+    double normal[3]; /* unit vector from b's nearest point to a's; if they touch, across both features, or
+                       * 0 */
 } cscd_proximity;
 
-/* Sorted by (kind, a, b). Owned by the detector, also if a line asked: valid until the next call of the
- * detector or of one of its lines. */
+/* Proximities, sorted by (kind, a, b). The list belongs to the detector, also when one of its lines was
+ * asked, and lives until the next call of the detector or of one of its lines. */
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
 } cscd_proximities;
 
-/* Every pair of features whose distance is at most `distance`, a length above 0; none whose distance is more
- * than (1 + 1e-6) times that (or, by rounding, 2^-42 of the pair's extent above it). What the options say of
- * pairs to leave out holds; min_separation takes no part. Where the nearest point lies on the boundary of a
- * feature, the features that share it are near, too, and in the list: u and v tell. Timings, counters and
- * guarantees of the last step stay as they are. */
+/* Finds every pair of features whose distance at `positions` is at most `distance`, a length above 0. No
+ * listed pair is farther apart than (1 + 1e-6) times that or, where rounding is coarser, than 2^-42 of the
+ * pair's extent beyond it. Seams and pairs to leave out count as in the options; min_separation has no
+ * part in it. Where a nearest point lies on the border of a feature, the features that share this border
+ * are listed, too; u and v show it. CANCELLED: see cscd_progress. Timings, counters and guarantees stay
+ * those of the last step. */
 CSCD_API cscd_status cscd_detector_near(cscd_detector *detector, const double *positions, double distance,
                                         cscd_proximities *out);
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
 
+/* How far a motion may go without contact. */
 typedef struct cscd_free_step {
-    double length;      /* in (0,1]; 1: the end is x1, bit for bit */
-    bool limited;       /* below the longest asked for, because of: */
-    cscd_contact limit; /* a first contact of the whole motion; length <= step_factor * limit.toi, but where
-                         * that is 0, or so near it that rounding decides */
+    double length;      /* in (0,1]; with 1 the end is x1, bit for bit */
+    bool limited;       /* the length is below the longest that was asked for, because of this contact: */
+    cscd_contact limit; /* a first contact of the whole motion; length <= step_factor * limit.toi, unless
+                         * toi is 0 or so small that rounding decides */
 } cscd_free_step;
 
-/* How far the vertices may go from x0 towards x1 without any contact (with min_separation: without coming
- * within it): a step in (0,1], certified. The positions reached, x0 + length (x1 - x0) rounded, are written
- * to `end`, vertex_count * 3 doubles (x1 itself will do; NULL: nowhere), and are what was verified: vertices
- * that move from x0 to these, each in a straight line, meet nothing on the way, at both ends included. So a
- * closed body that is free of self-contact at x0 is so at `end`, and the detector knows: the next step from
- * there needs no check of its start. IN_CONTACT: x0 touches itself already, or with min_separation is not
- * farther apart than that and its tolerance; the sentence names a pair, and nothing is written. Culls, as
- * _step does in mode EARLIEST; methods PUBLISHED and ICCD_PUBLISHED certify nothing and are refused. Timings
- * and counters are of the whole call, guarantees of the motion tried last, which is the one returned. */
+/* Finds how far the vertices may go from x0 towards x1 without any contact (with min_separation: without
+ * coming within it), and certifies it. The positions reached, x0 + length (x1 - x0), rounded, are written
+ * to `end`: vertex_count * 3 doubles, which may be x1 itself, or NULL if they are not wanted. It is the
+ * motion to these very doubles that was searched: there is no contact on the way, both ends included. A
+ * component that is embedded at x0 is therefore embedded at `end`, and the next step from there need not
+ * prove its start. IN_CONTACT: the features of a pair, which the sentence names, touch at x0 or, with
+ * min_separation, are not farther apart than that and its tolerance; nothing is written. INVALID_ARGUMENT
+ * also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing. CANCELLED: see cscd_progress.
+ * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
+ * guarantees those of the motion that was certified. */
 CSCD_API cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, const double *x1,
                                             double *end, cscd_free_step *out);
 
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
-/* One motion, looked at more than once: the pairs that can come near each other anywhere on it, the
- * candidates, are collected once and serve every shorter step and every moment on the line. Nothing is
- * culled, so for a single step cscd_detector_max_step is the faster. It uses the detector's trees and
- * options: neither is called while the other runs, and the detector is destroyed after its lines. */
+/* One motion that is asked about many times, as in the line search of an implicit solver (Li et al. 2020).
+ * The feature pairs that can come near each other anywhere on it, the candidates, are collected once;
+ * every shorter step and every moment on the line is then answered from them. Nothing is culled, so for a
+ * single step cscd_detector_max_step is faster. A line uses the trees and options of its detector, so the
+ * two are never called at the same time. */
 typedef struct cscd_line cscd_line;
 
+/* Creates a line. The detector must live as long. */
 CSCD_API cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out);
+
+/* Frees the line. */
 CSCD_API void cscd_line_destroy(cscd_line *line);
 
-/* Collects the candidates from x0 to x1, which are copied, and forgets those before. reach: 0, or the largest
- * distance that cscd_line_near will be asked for. */
+/* Collects the candidates of the motion from x0 to x1, which are copied, in place of those before. reach:
+ * the largest distance that cscd_line_near will be asked for, or 0. CANCELLED: see cscd_progress. */
 CSCD_API cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1, double reach);
 
-/* VF and EE pairs collected: those whose volumes come near each other. */
+/* The number of candidates: VF and EE pairs whose volumes come near each other. */
 CSCD_API size_t cscd_line_candidate_count(const cscd_line *line);
 
-/* Where the vertices are at `length` in [0,1]: x0 + length (x1 - x0), rounded; at 0 and 1 exactly. */
+/* Writes the positions at `length` in [0,1], vertex_count * 3 doubles: x0 + length (x1 - x0), rounded; x0
+ * and x1 themselves at 0 and 1. */
 CSCD_API cscd_status cscd_line_positions(const cscd_line *line, double length, double *positions);
 
-/* As cscd_detector_max_step, but no farther than `longest` in (0,1]. */
+/* Does what cscd_detector_max_step does, for the motion of the line and no farther than `longest` in
+ * (0,1]. end may be NULL. */
 CSCD_API cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out);
 
-/* As cscd_detector_near, at cscd_line_positions of `length`; distance at most the line's reach. */
+/* Does what cscd_detector_near does, at the positions that cscd_line_positions gives for `length`.
+ * distance: above 0, and at most the reach of the line. */
 CSCD_API cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd_proximities *out);
 
 #ifdef __cplusplus
