@@ -102,7 +102,8 @@ static bool open_recording(recording *r, io_error *error) {
     if (cscd_context_create(NULL, &r->context) != CSCD_OK) return io_fail(error, "no context");
     if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
         cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
-        upkeep_move(r->detector, r->start.positions, r->end.positions, 0.0) != CSCD_OK)
+        bvh_rebuild_move(&r->detector->rebuild, &r->detector->bvh, r->start.positions, r->end.positions, 0.0,
+                         0.0) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
     bvh_refit(&r->detector->bvh, r->start.positions, r->end.positions, 0.0);
     r->lane = &r->detector->contact_lanes[0];

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "runtime/bvh/bvh_kernels.h"
-#include "runtime/bvh/orientation.h"
 #include "src/mesh/mesh.h"
 
 /* 8^10 leaves hold more triangles than there may be, and 8^11 more parts. */
@@ -118,10 +117,20 @@ static inline bool bvh_can_hide(const bvh *f) {
 /* Whose pairs of adjacent triangles are left out: per component; NULL: nobody's. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
 
-/* Which orientations count, and whence triangles are seen. */
+/* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that
+ * (p0 - d) . n > 0 (< 0) at every moment, with n = (p1 - p0) x (p2 - p0); ZERO is everything else. */
+enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
+
+/* May two triangles of one region with these orientations, or any of two sets of triangles, be the first to touch? Not
+ * if all are PLUS, and not if all are MINUS (docs/theory/culling.md). */
+static inline bool orientations_may_touch(uint8_t a, uint8_t b) {
+    return (a | b) == ORIENTATION_ZERO;
+}
+
+/* Which triangles are oriented, and from where. */
 typedef struct orientation_query {
-    const bool *culled;                  /* per component: do its triangles' orientations count? */
-    const uint8_t *states;               /* triangle_state of each: only of clean ones; NULL: of all */
+    const bool *culled;                  /* per component: only triangles of these are oriented */
+    const bool *clean;                   /* per triangle: all others are ZERO; NULL: all are clean */
     const double (*detector_offsets)[3]; /* per region: from the weighted mean to the detector point */
     bool still;                          /* detector points stay where they are at the start */
 } orientation_query;

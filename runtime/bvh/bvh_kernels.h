@@ -31,10 +31,10 @@ typedef struct bvh_kernels {
     /* How far leaves, and their triangles, extend at the start. */
     extents (*extents_at_start)(const struct bvh *f);
 
-    /* Flags of leaves begin to end - 1 of a part, and orientations of their triangles; states: triangle_state
-     * of each triangle of the mesh, of which only the clean ones have an orientation; NULL: all. */
+    /* Writes the flags of leaves begin to end - 1 of a part, and the orientations of their triangles. clean: per
+     * triangle of the mesh; all others are ZERO; NULL: all are clean. */
     void (*orient)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
-                   const uint8_t *states, uint8_t *orientations);
+                   const bool *clean, uint8_t *orientations);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for
      * what another visit may add. */

@@ -60,7 +60,7 @@ static void orient_task(void *data, uint32_t index) {
         if (!now->view->culled[component_of(f, p)]) continue;
         uint32_t stop = p->first_leaf + p->leaf_count;
         f->kernels->orient(f, p, begin > p->first_leaf ? begin : p->first_leaf, end < stop ? end : stop,
-                           now->view->states, now->orientations);
+                           now->view->clean, now->orientations);
     }
 }
 

@@ -1,19 +1,19 @@
-/* The detector's trees: built when they are first needed, moved, and built anew when they have decayed. */
+/* Trees that follow a motion: built when they are first needed, refitted, and rebuilt when they have decayed. */
 #include "runtime/bvh/bvh_rebuild.h"
 
 #include <math.h>
 
-enum { LOOK_EVERY = 16, USELESS_MAX = 4 };
+enum { MEASURE_EVERY = 16, USELESS_MAX = 4 };
 
+/* A spread that has grown by more than the one factor asks for a rebuild, and a rebuild that shrinks it by more than
+ * the other was of use. */
 static const double decayed = 1.25, of_use = 1.1;
 
-static cscd_status build(const cscd_detector *d, const double *positions, bvh *out) {
-    int axis_count = d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES;
-    bvh_regions regions = {d->culling.triangle_regions, d->culling.triangle_weights, d->culling.region_count};
-    return bvh_build(d->mesh, regions, positions, axis_count, out);
+static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bvh *out) {
+    return bvh_build(r->mesh, r->regions, positions, r->axis_count, out);
 }
 
-/* How far blocks of parts extend, as a multiple of their parts; 0: there is one block. */
+/* How far blocks of parts extend, as a multiple of their parts; 0 where there is one block only. */
 static double spread_of_parts(const bvh *f) {
     const bvh_level *level = &f->levels[f->part_level];
     const size_t stride = (size_t)f->axis_count * 2 * LANES;
@@ -33,63 +33,64 @@ static double spread_of_parts(const bvh *f) {
     return of_parts > 0.0 ? whole / of_parts : 0.0;
 }
 
-static tree_spread spread_of(const bvh *f) {
+static bvh_spread spread_of(const bvh *f) {
     extents sum = f->kernels->extents_at_start(f);
-    return (tree_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_parts(f)};
+    return (bvh_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_parts(f)};
 }
 
-static bool beyond(tree_spread now, tree_spread before, double factor) {
+static bool is_beyond(bvh_spread now, bvh_spread before, double factor) {
     return now.leaves > factor * before.leaves || now.parts > factor * before.parts;
 }
 
-/* Without memory for new trees the old ones stay. */
-static bool rebuild(cscd_detector *d, const double *positions) {
-    bvh fresh;
-    if (build(d, positions, &fresh) != CSCD_OK) return false;
-    bvh_free(&d->bvh);
-    d->bvh = fresh;
-    d->rebuilt = true;
+static bool replace_trees(bvh_rebuild *r, bvh *f, const double *positions) {
+    bvh built;
+    if (build_trees(r, positions, &built) != CSCD_OK) return false;
+    bvh_free(f);
+    *f = built;
+    r->rebuilt = true;
     return true;
 }
 
-static cscd_status move(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    bool fresh = d->bvh.mesh == NULL;
-    if (fresh) {
-        cscd_status status = build(d, x0, &d->bvh);
+/* The first volumes are those of a step, so that the first spread is compared with others like it. */
+static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
+                                  double step_distance) {
+    if (f->mesh == NULL) {
+        cscd_status status = build_trees(r, x0, f);
         if (status != CSCD_OK) return status;
+        bvh_refit(f, x0, x1, step_distance);
+        r->spread_when_built = spread_of(f);
+        if (distance == step_distance) return CSCD_OK;
     }
-    if (fresh) { /* judged by volumes as wide as those of steps */
-        bvh_refit(&d->bvh, x0, x1, d->limit.distance);
-        d->spread_when_built = spread_of(&d->bvh);
-        if (distance == d->limit.distance) return CSCD_OK;
-    }
-    bvh_refit(&d->bvh, x0, x1, distance);
+    bvh_refit(f, x0, x1, distance);
     return CSCD_OK;
 }
 
-cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance) {
-    return move(d, positions, positions, distance);
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, double distance,
+                                double step_distance) {
+    return refit_or_build(r, f, positions, positions, distance, step_distance);
 }
 
-/* Compares the trees, moved as for a step, with what they were when they were built, and builds them anew if
- * need be. */
-static void look(cscd_detector *d, const double *x0, const double *x1) {
-    tree_spread spread = spread_of(&d->bvh);
-    d->intervals_unlooked = 0;
-    if (!beyond(spread, d->spread_when_built, decayed) || !rebuild(d, x0)) return;
-    bvh_refit(&d->bvh, x0, x1, d->limit.distance);
-    d->spread_when_built = spread_of(&d->bvh);
-    if (beyond(spread, d->spread_when_built, of_use))
-        d->useless_rebuilds = 0;
-    else if (d->useless_rebuilds < USELESS_MAX)
-        d->useless_rebuilds++;
+/* Compares the trees, refitted as for a step, with what they were when they were built, and rebuilds them if they have
+ * decayed. */
+static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double step_distance) {
+    bvh_spread spread = spread_of(f);
+    r->intervals_unmeasured = 0;
+    if (!is_beyond(spread, r->spread_when_built, decayed) || !replace_trees(r, f, x0)) return;
+    bvh_refit(f, x0, x1, step_distance);
+    r->spread_when_built = spread_of(f);
+    if (is_beyond(spread, r->spread_when_built, of_use))
+        r->useless_rebuilds = 0;
+    else if (r->useless_rebuilds < USELESS_MAX)
+        r->useless_rebuilds++;
 }
 
-cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance) {
-    bool due = ++d->intervals_unlooked >= (uint32_t)LOOK_EVERY << d->useless_rebuilds;
-    cscd_status status = move(d, x0, x1, due ? d->limit.distance : distance);
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
+                             double step_distance) {
+    r->rebuilt = false;
+    bool due = ++r->intervals_unmeasured >= (uint32_t)MEASURE_EVERY << r->useless_rebuilds;
+    cscd_status status = refit_or_build(r, f, x0, x1, due ? step_distance : distance, step_distance);
     if (status != CSCD_OK || !due) return status;
-    look(d, x0, x1);
-    if (distance != d->limit.distance) bvh_refit(&d->bvh, x0, x1, distance);
+    measure_trees(r, f, x0, x1, step_distance);
+    if (distance != step_distance) bvh_refit(f, x0, x1, distance);
     return CSCD_OK;
 }

@@ -1,16 +1,36 @@
-/* The detector's trees: built when they are first needed, moved, and built anew when they have decayed. */
+/* Trees that follow a motion: built when they are first needed, refitted, and rebuilt when they have decayed. */
 #pragma once
 
-#include "runtime/detector/detector.h"
+#include "runtime/bvh/bvh.h"
 
-/* Moves the BVH, built from x0 if there is none, on to the interval from x0 to x1.
+/* How far leaves extend, as a multiple of their triangles, and blocks of parts, as a multiple of their parts. */
+typedef struct bvh_spread {
+    double leaves, parts;
+} bvh_spread;
+
+/* What trees are built from, and how they have fared since. */
+typedef struct bvh_rebuild {
+    const cscd_mesh *mesh;
+    bvh_regions regions;
+    int axis_count;
+
+    bvh_spread spread_when_built;
+    uint32_t intervals_unmeasured; /* since the spread was measured last */
+    uint32_t useless_rebuilds;     /* in a row, at most 4: each doubles the time to the next measurement */
+    bool rebuilt;                  /* by the last call of bvh_rebuild_move */
+} bvh_rebuild;
+
+/* Builds the trees from x0 if there are none, and refits them to the interval from x0 to x1, with volumes widened for
+ * distance (see bvh_refit).
  *
- * A refit keeps together what was near when the trees were built. Every 16th interval the extents of leaves
- * are compared with those of their triangles, and those of blocks of parts with those of their parts; where
- * one or the other has grown by a quarter, the trees are built anew from x0. Where that was of no use the
- * next look waits twice as long. Volumes are compared as wide as those of steps, whatever the distance asked
- * for. All this depends on positions alone. */
-cscd_status upkeep_move(cscd_detector *d, const double *x0, const double *x1, double distance);
+ * A refit keeps together what was near when the trees were built. So the spread is measured every 16th interval; where
+ * it has grown by a quarter, the trees are rebuilt from x0. After a rebuild that was of no use the next measurement
+ * waits twice as long. Spreads are compared with volumes that are widened for step_distance, whatever the distance.
+ * All this depends on positions alone. Without memory for new trees the old ones stay. */
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
+                             double step_distance);
 
-/* To a moment. */
-cscd_status upkeep_move_to(cscd_detector *d, const double *positions, double distance);
+/* Refits the trees, which are built if there are none, to a moment. Nothing is measured, because only intervals count.
+ */
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, double distance,
+                                double step_distance);

@@ -16,7 +16,6 @@
 #include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
-#include "runtime/culling/start_state.h"
 
 static f32x8 largest_component(f32x8 (*v)[3]) {
     f32x8 largest = f32x8_abs(v[0][0]);
@@ -62,14 +61,13 @@ static void orient(const bvh_tree *p, f32x8 (*corners)[2][3], uint32_t *plus, ui
     *minus = f32x8_below(greatest, -bound);
 }
 
-/* Of the triangles used, those that are clean. */
-static uint32_t clean_lanes(const bvh_leaf *l, uint32_t used, const uint8_t *states) {
-    uint32_t clean = 0;
+static uint32_t clean_lanes(const bvh_leaf *l, uint32_t used, const bool *clean) {
+    uint32_t lanes = 0;
     for (int lane = 0; lane < LANES; lane++) {
         uint32_t triangle = l->triangles[(used >> lane & 1) != 0 ? lane : 0];
-        clean |= (uint32_t)(states[triangle] == TRIANGLE_CLEAN) << lane;
+        lanes |= (uint32_t)clean[triangle] << lane;
     }
-    return clean & used;
+    return lanes & used;
 }
 
 _Static_assert((ORIENTATION_ZERO ^ 2) == ORIENTATION_PLUS && (ORIENTATION_ZERO ^ 1) == ORIENTATION_MINUS,
@@ -85,22 +83,22 @@ static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, 
     }
 }
 
-static void orient_leaf(const bvh *f, const bvh_tree *p, uint32_t index, const uint8_t *states,
+static void orient_leaf(const bvh *f, const bvh_tree *p, uint32_t index, const bool *clean,
                         uint8_t *orientations) {
     const bvh_leaf *l = &f->leaves[index];
     uint32_t plus, minus, used = f->leaf_flags[index].used;
-    uint32_t clean = states != NULL ? clean_lanes(l, used, states) : used;
+    uint32_t counted = clean != NULL ? clean_lanes(l, used, clean) : used;
     leaf_corners corners;
     load_corners(f, l, corners);
     orient(p, corners, &plus, &minus);
-    plus &= clean;
-    minus &= clean;
+    plus &= counted;
+    minus &= counted;
     f->leaf_flags[index].plus = (uint8_t)plus;
     f->leaf_flags[index].minus = (uint8_t)minus;
     store_orientations(l, used, plus, minus, orientations);
 }
 
-void SIMD_NAME(orient)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const uint8_t *states,
+void SIMD_NAME(orient)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const bool *clean,
                        uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, states, orientations);
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, clean, orientations);
 }

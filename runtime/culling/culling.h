@@ -1,7 +1,7 @@
 /* Culling by orientation: regions, their detector points, the triangles' flags of an interval. */
 #pragma once
 
-#include "runtime/bvh/orientation.h"
+#include "runtime/bvh/bvh.h"
 #include "src/mesh/plan.h"
 
 typedef struct culling {

@@ -1,47 +1,43 @@
-/* What is known of the triangles at the start of an interval: which are clean, and from where. */
+/* What is known of the triangles at the start of an interval: which are clean, and at which positions. */
 #include "runtime/culling/start_state.h"
 
-#include "runtime/culling/clean_patch.h"
-
+#include <assert.h>
 #include <stdatomic.h>
 #include <string.h>
 
-/* By measurement (docs/theory/culling.md). */
+/* Measured (docs/theory/culling.md). */
 static const double share_worth_it = 0.9;
 
-enum { PATIENCE_MAX = 16, VERTICES_PER_TASK = 2048 };
+enum { BACKOFF_MAX = 16, VERTICES_PER_TASK = 2048 };
+
+static array_list list_arrays(start_states *s) {
+    size_t triangles = s->mesh->triangle_count, components = s->mesh->component_count;
+    return (array_list){{ARRAY(s->positions, (size_t)s->mesh->vertex_count * 3),
+                         ARRAY(s->triangles, triangles), ARRAY(s->saved, triangles),
+                         ARRAY(s->clean, triangles), ARRAY(s->queue, triangles), ARRAY(s->of, components),
+                         ARRAY(s->component_scratch, components), ARRAY(s->largest, components)}};
+}
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
     start_states s = {.context = mesh->context, .mesh = mesh, .share_worth_it = share_worth_it};
-    s.positions = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
-    s.moved = context_allocate(mesh->context, mesh->component_count, sizeof *s.moved);
-    s.triangles = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.triangles);
-    s.saved = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.saved);
-    s.of = context_allocate(mesh->context, mesh->component_count, sizeof *s.of);
-    s.queue = context_allocate(mesh->context, mesh->triangle_count, sizeof *s.queue);
-    s.largest = context_allocate(mesh->context, mesh->component_count, sizeof *s.largest);
-    if (s.positions == NULL || s.moved == NULL || s.triangles == NULL || s.saved == NULL || s.of == NULL ||
-        s.queue == NULL || s.largest == NULL) {
-        start_states_destroy(&s);
-        return CSCD_OUT_OF_MEMORY;
-    }
+    if (!context_allocate_all(s.context, list_arrays(&s))) return CSCD_OUT_OF_MEMORY;
     *out = s;
     return CSCD_OK;
 }
 
 void start_states_destroy(start_states *s) {
-    void *blocks[] = {s->positions, s->moved, s->triangles, s->saved, s->of, s->queue, s->largest};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(s->context, blocks[i]);
+    context_free_all(s->context, list_arrays(s));
     *s = (start_states){0};
 }
 
-/* ---- the positions seen last ------------------------------------------------------------------------ */
+/* ---- the positions seen last ------------------------------------------------------------------------- */
 
-typedef struct comparison {
+/* All tasks of a comparison with x, or of a copy of x. */
+typedef struct position_work {
     start_states *s;
     const double *x;
     atomic_bool differ;
-} comparison;
+} position_work;
 
 static size_t task_begin(uint32_t index) {
     return (size_t)index * VERTICES_PER_TASK * 3;
@@ -53,38 +49,38 @@ static size_t task_bytes(const start_states *s, uint32_t index) {
 }
 
 static void compare_task(void *data, uint32_t index) {
-    comparison *c = data;
+    position_work *work = data;
     size_t begin = task_begin(index);
-    if (memcmp(c->s->positions + begin, c->x + begin, task_bytes(c->s, index)) != 0)
-        atomic_store(&c->differ, true);
+    if (memcmp(work->s->positions + begin, work->x + begin, task_bytes(work->s, index)) != 0)
+        atomic_store(&work->differ, true);
 }
 
 static void copy_task(void *data, uint32_t index) {
-    comparison *c = data;
+    position_work *work = data;
     size_t begin = task_begin(index);
-    memcpy(c->s->positions + begin, c->x + begin, task_bytes(c->s, index));
+    memcpy(work->s->positions + begin, work->x + begin, task_bytes(work->s, index));
 }
 
-static void run_over_vertices(parallel_task *task, comparison *c) {
-    uint32_t tasks = c->s->mesh->vertex_count / VERTICES_PER_TASK;
-    tasks += c->s->mesh->vertex_count % VERTICES_PER_TASK != 0;
-    parallel_run(c->s->context->threads, tasks, task, c);
+static void run_over_vertices(parallel_task *task, position_work *work) {
+    uint32_t tasks = work->s->mesh->vertex_count / VERTICES_PER_TASK;
+    tasks += work->s->mesh->vertex_count % VERTICES_PER_TASK != 0;
+    parallel_run(work->s->context->threads, tasks, task, work);
 }
 
-static void remember(start_states *s, const double *x) {
-    comparison c = {.s = s, .x = x};
-    run_over_vertices(copy_task, &c);
+static void remember_positions(start_states *s, const double *x) {
+    position_work work = {.s = s, .x = x};
+    run_over_vertices(copy_task, &work);
     s->known = true;
 }
 
 bool start_states_hold(start_states *s, const double *x) {
     if (!s->known) return false;
-    comparison c = {.s = s, .x = x};
-    run_over_vertices(compare_task, &c);
-    return !atomic_load(&c.differ);
+    position_work work = {.s = s, .x = x};
+    run_over_vertices(compare_task, &work);
+    return !atomic_load(&work.differ);
 }
 
-/* Bit for bit, but for the sign of zero. */
+/* 0 and -0 are the same place; otherwise every bit counts. */
 static bool vertex_moved(const start_states *s, const double *x, uint32_t vertex) {
     const double *a = s->positions + (size_t)vertex * 3, *b = x + (size_t)vertex * 3;
     return a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
@@ -92,19 +88,20 @@ static bool vertex_moved(const start_states *s, const double *x, uint32_t vertex
 
 void start_states_begin(start_states *s, const double *x) {
     const cscd_mesh *mesh = s->mesh;
-    for (uint32_t c = 0; c < mesh->component_count; c++) s->moved[c] = !s->known;
+    bool *moved = s->component_scratch;
+    for (uint32_t c = 0; c < mesh->component_count; c++) moved[c] = !s->known;
     for (uint32_t t = 0; s->known && t < mesh->triangle_count; t++) {
         for (int i = 0; i < 3; i++)
-            s->moved[mesh->triangle_components[t]] |= vertex_moved(s, x, mesh->triangles[t][i]);
+            moved[mesh->triangle_components[t]] |= vertex_moved(s, x, mesh->triangles[t][i]);
     }
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        if (s->moved[mesh->triangle_components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
+        if (moved[mesh->triangle_components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
     }
     s->counted = false;
-    remember(s, x);
+    remember_positions(s, x);
 }
 
-/* ---- states ------------------------------------------------------------------------------------------ */
+/* ---- numbers per component --------------------------------------------------------------------------- */
 
 static void count_run(component_start *start, const uint8_t *states, uint32_t count) {
     uint32_t unknown = 0, crossing = 0, clean = 0;
@@ -118,7 +115,7 @@ static void count_run(component_start *start, const uint8_t *states, uint32_t co
     start->clean += clean;
 }
 
-/* A component's triangles mostly follow each other. */
+/* Counts runs of triangles of one component, because most triangles follow one of their own component. */
 void start_states_count(start_states *s) {
     const uint32_t *components = s->mesh->triangle_components;
     uint32_t count = s->mesh->triangle_count;
@@ -132,44 +129,163 @@ void start_states_count(start_states *s) {
     s->counted = true;
 }
 
-uint32_t start_states_suspect(start_states *s, bool *suspects) {
+static void count_again(start_states *s) {
+    s->counted = false;
+    start_states_count(s);
+}
+
+const bool *start_states_clean(const start_states *s) {
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) s->clean[t] = s->triangles[t] == TRIANGLE_CLEAN;
+    return s->clean;
+}
+
+/* ---- which free triangles are clean ------------------------------------------------------------------- */
+
+/* The state of a triangle while its patch is gathered; no triangle has it when a function below returns to the
+ * outside. */
+enum { TRIANGLE_GATHERED = TRIANGLE_CLEAN + 1 };
+
+/* Appends the free triangles across the edges of one to the queue, in their new state. */
+static uint32_t append_neighbours(start_states *s, uint32_t triangle, uint8_t state, uint32_t end) {
     const cscd_mesh *mesh = s->mesh;
-    bool *wanted = s->moved, any = false;
+    for (int i = 0; i < 3; i++) {
+        uint32_t edge = mesh->triangle_edges[triangle][i];
+        for (uint32_t j = mesh->edge_star_offsets[edge]; j < mesh->edge_star_offsets[edge + 1]; j++) {
+            uint32_t neighbour = mesh->edge_stars[j];
+            if (s->triangles[neighbour] != TRIANGLE_FREE) continue;
+            s->triangles[neighbour] = state;
+            s->queue[end++] = neighbour;
+        }
+    }
+    return end;
+}
+
+/* Gives all free triangles that can be reached from the queue's triangles begin to end - 1 a new state; returns
+ * the queue's new end. */
+static uint32_t spread_state(start_states *s, uint8_t state, uint32_t begin, uint32_t end) {
+    while (begin < end) end = append_neighbours(s, s->queue[begin++], state, end);
+    assert(end <= s->mesh->triangle_count);
+    return end;
+}
+
+/* Makes all triangles of a component clean if all of them are free. */
+static void settle_embedded(start_states *s) {
+    count_again(s);
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+        const component_start *start = &s->of[s->mesh->triangle_components[t]];
+        if (start->unknown == 0 && start->crossing == 0) s->triangles[t] = TRIANGLE_CLEAN;
+    }
+}
+
+static void spread_clean(start_states *s) {
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+        bool reached = false;
+        for (int i = 0; i < 3 && s->triangles[t] == TRIANGLE_FREE; i++) {
+            uint32_t edge = s->mesh->triangle_edges[t][i];
+            for (uint32_t j = s->mesh->edge_star_offsets[edge]; j < s->mesh->edge_star_offsets[edge + 1]; j++)
+                reached |= s->triangles[s->mesh->edge_stars[j]] == TRIANGLE_CLEAN;
+        }
+        if (!reached) continue;
+        s->triangles[t] = TRIANGLE_CLEAN;
+        s->queue[0] = t;
+        spread_state(s, TRIANGLE_CLEAN, 0, 1);
+    }
+    count_again(s);
+}
+
+static bool mostly_clean(const start_states *s, uint32_t component) {
+    return s->of[component].clean >= s->mesh->components[component].triangle_count - s->of[component].clean;
+}
+
+/* Gathers the patches of free triangles that are not clean, and notes the largest one of each component, the
+ * first of these if there are several. */
+static void gather_patches(start_states *s) {
+    uint32_t end = 0;
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) s->largest[c] = (free_patch){0, 0};
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+        uint32_t component = s->mesh->triangle_components[t], begin = end;
+        if (s->triangles[t] != TRIANGLE_FREE || mostly_clean(s, component)) continue;
+        s->triangles[t] = TRIANGLE_GATHERED;
+        s->queue[end] = t;
+        end = spread_state(s, TRIANGLE_GATHERED, begin, begin + 1);
+        if (end - begin > s->largest[component].count)
+            s->largest[component] = (free_patch){begin, end - begin};
+    }
+}
+
+/* Where the largest patch has more triangles than were clean, it becomes the clean one instead of these. */
+static void choose_patches(start_states *s) {
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+        uint32_t component = s->mesh->triangle_components[t];
+        bool demoted = s->largest[component].count > s->of[component].clean;
+        if (s->triangles[t] == TRIANGLE_GATHERED || (demoted && s->triangles[t] == TRIANGLE_CLEAN))
+            s->triangles[t] = TRIANGLE_FREE;
+    }
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) {
+        free_patch patch = s->largest[c];
+        if (patch.count <= s->of[c].clean) continue;
+        for (uint32_t i = 0; i < patch.count; i++) s->triangles[s->queue[patch.begin + i]] = TRIANGLE_CLEAN;
+        s->of[c].clean = patch.count;
+    }
+}
+
+/* Free triangles become clean where they are connected, over edges and through free triangles, to clean ones.
+ * Where less than half of a component is clean then, and its largest patch of other free triangles is larger,
+ * that patch becomes the clean one instead. All triangles of a component without crossing and unknown ones are
+ * clean. Takes linear time. */
+static void find_clean_patches(start_states *s) {
+    bool all_mostly_clean = true;
+    settle_embedded(s);
+    spread_clean(s);
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) all_mostly_clean &= mostly_clean(s, c);
+    if (!all_mostly_clean) {
+        gather_patches(s);
+        choose_patches(s);
+    }
+    s->counted = false;
+}
+
+/* ---- static checks ------------------------------------------------------------------------------------- */
+
+uint32_t start_states_suspect(start_states *s, bool *unproven) {
+    const cscd_mesh *mesh = s->mesh;
+    bool *wanted = s->component_scratch, any = false;
     uint32_t count = 0;
     start_states_count(s);
     for (uint32_t c = 0; c < mesh->component_count; c++) {
         component_start *start = &s->of[c];
-        bool culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c);
-        wanted[c] = culled && start->unknown > 0 && start->waiting == 0;
+        bool may_be_culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c);
+        wanted[c] = may_be_culled && start->unknown > 0 && start->waiting == 0;
         if (start->unknown > 0 && start->waiting > 0) start->waiting--;
         any |= wanted[c];
     }
     for (uint32_t t = 0; any && t < mesh->triangle_count; t++) {
-        suspects[t] = wanted[mesh->triangle_components[t]] && s->triangles[t] < TRIANGLE_FREE;
-        count += suspects[t];
+        unproven[t] = wanted[mesh->triangle_components[t]] && s->triangles[t] < TRIANGLE_FREE;
+        count += unproven[t];
     }
     return count;
 }
 
-/* Does the next check pay? Not if its outcome leaves too much to be tested. */
-static void lose_patience(const start_states *s, component_start *start, uint32_t triangle_count) {
+/* Exponential backoff (1, 2, 4, 8, 16 intervals) while checks leave too few clean triangles for culling to
+ * pay. */
+static void back_off(const start_states *s, component_start *start, uint32_t triangle_count) {
     if (start_states_pay(s, start->clean, triangle_count)) {
-        start->patience = start->waiting = 0;
+        start->backoff = start->waiting = 0;
     } else if (start->waiting == 0) {
-        start->patience = start->patience == 0             ? 1
-                          : start->patience < PATIENCE_MAX ? start->patience * 2
-                                                           : PATIENCE_MAX;
-        start->waiting = start->patience;
+        start->backoff = start->backoff == 0            ? 1
+                         : start->backoff < BACKOFF_MAX ? start->backoff * 2
+                                                        : BACKOFF_MAX;
+        start->waiting = start->backoff;
     }
 }
 
-void start_states_checked(start_states *s, const bool *suspects, const bool *crossing) {
+void start_states_checked(start_states *s, const bool *unproven, const bool *crossing) {
     const cscd_mesh *mesh = s->mesh;
-    bool *checked = s->moved;
+    bool *checked = s->component_scratch;
     for (uint32_t c = 0; c < mesh->component_count; c++) checked[c] = false;
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         if (s->vouched && s->triangles[t] == TRIANGLE_CLEAN) s->triangles[t] = TRIANGLE_FREE;
-        if (!suspects[t]) continue;
+        if (!unproven[t]) continue;
         checked[mesh->triangle_components[t]] = true;
         if (crossing[t])
             s->triangles[t] = TRIANGLE_CROSSING;
@@ -177,10 +293,9 @@ void start_states_checked(start_states *s, const bool *suspects, const bool *cro
             s->triangles[t] = TRIANGLE_FREE;
     }
     s->vouched = false;
-    clean_patches_find(s);
-    s->counted = false;
+    find_clean_patches(s);
     for (uint32_t c = 0; c < mesh->component_count; c++) {
-        if (checked[c]) lose_patience(s, &s->of[c], mesh->components[c].triangle_count);
+        if (checked[c]) back_off(s, &s->of[c], mesh->components[c].triangle_count);
     }
 }
 
@@ -195,15 +310,17 @@ void start_states_vouch(start_states *s) {
     s->counted = false;
 }
 
-void start_states_end(start_states *s, const double *x, const bool *lost) {
+/* ---- from one interval to the next --------------------------------------------------------------------- */
+
+void start_states_end(start_states *s, const double *x, const bool *incomplete) {
     bool any = false;
-    for (uint32_t c = 0; c < s->mesh->component_count; c++) any |= lost[c] || s->of[c].crossing > 0;
+    for (uint32_t c = 0; c < s->mesh->component_count; c++) any |= incomplete[c] || s->of[c].crossing > 0;
     for (uint32_t t = 0; any && t < s->mesh->triangle_count; t++) {
-        if (lost[s->mesh->triangle_components[t]] || s->triangles[t] == TRIANGLE_CROSSING)
+        if (incomplete[s->mesh->triangle_components[t]] || s->triangles[t] == TRIANGLE_CROSSING)
             s->triangles[t] = TRIANGLE_UNKNOWN;
     }
     s->counted &= !any;
-    remember(s, x);
+    remember_positions(s, x);
 }
 
 void start_states_save(start_states *s) {

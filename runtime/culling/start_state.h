@@ -1,12 +1,12 @@
-/* What is known of the triangles at the start of an interval: which are clean, and from where. */
+/* What is known of the triangles at the start of an interval: which are clean, and at which positions. */
 #pragma once
 
 #include "src/mesh/mesh.h"
 
-/* Of a triangle at one moment. Free: nothing of its component meets it but its neighbours in shared features,
- * and it has an area. Clean: free, and of those free triangles of its component that, as far as is proven,
- * have one winding number on their outer sides (docs/theory/culling.md). A component is embedded when all are clean.
- */
+/* The state of a triangle at one moment. A free triangle has an area, and no triangle of its component intersects
+ * it, except for its neighbours in the features that they share. Clean are those free triangles of a component that,
+ * as far as is proven, have one winding number in common on their outer sides (docs/theory/culling.md). A
+ * component is embedded when all its triangles are clean. */
 typedef enum triangle_state {
     TRIANGLE_UNKNOWN,
     TRIANGLE_CROSSING,
@@ -14,10 +14,10 @@ typedef enum triangle_state {
     TRIANGLE_CLEAN
 } triangle_state;
 
-/* What is known of one component at the start of the interval at hand, and how long its next check waits. */
+/* What is known of one component at the start of the interval, and how long its next check waits. */
 typedef struct component_start {
-    uint32_t unknown, crossing, clean; /* triangles in these states */
-    uint32_t waiting, patience;
+    uint32_t unknown, crossing, clean; /* numbers of triangles in these states */
+    uint32_t waiting, backoff;         /* intervals: until the next check, and between the last two */
 } component_start;
 
 /* A run of start_states.queue: free triangles that are connected over edges. */
@@ -30,20 +30,21 @@ typedef struct start_states {
     cscd_context *context;
     const cscd_mesh *mesh;
     double *positions;
-    bool known;            /* positions holds something */
-    bool vouched;          /* clean is, of some triangles, the caller's word */
-    bool *moved;           /* scratch, per component */
-    uint8_t *triangles;    /* triangle_state, of each */
-    component_start *of;   /* per component; up to date after start_states_count */
-    bool counted;          /* they are */
-    uint8_t *saved;        /* states as they were when start_states_save was called */
-    uint32_t *queue;       /* scratch, per triangle */
-    free_patch *largest;   /* scratch, per component */
-    double share_worth_it; /* of a component, clean: with less neither culling nor a check pays */
+    bool known;          /* positions have been seen */
+    bool vouched;        /* some triangles are clean only because the caller says so */
+    uint8_t *triangles;  /* the triangle_state of each */
+    component_start *of; /* per component; its numbers of triangles are right if counted is set */
+    bool counted;        /* by start_states_count, since states changed last */
+    uint8_t *saved;      /* the states when start_states_save was called */
+    bool *clean;         /* per triangle: the outcome of start_states_clean */
+    uint32_t *queue;     /* scratch, per triangle */
+    free_patch *largest; /* scratch, per component */
+    bool *component_scratch;
+    double share_worth_it; /* with a smaller share of clean triangles neither culling nor a check pays */
 } start_states;
 
-/* Are so many clean triangles of a component enough for culling to pay? Below, the pairs of all others, their
- * neighbours among them, cost more than all pairs do without. */
+/* Do so many clean triangles of a component suffice for culling to pay? With fewer, the pairs of all other triangles,
+ * their neighbours among them, cost more than all pairs do without culling. */
 static inline bool start_states_pay(const start_states *s, uint32_t clean, uint32_t triangle_count) {
     return clean > 0 && (double)clean >= s->share_worth_it * (double)triangle_count;
 }
@@ -54,39 +55,44 @@ void start_states_destroy(start_states *s);
 /* Is x, bit for bit, where the vertices were seen last? */
 bool start_states_hold(start_states *s, const double *x);
 
-/* An interval begins at x, which is elsewhere: triangles of components whose vertices are not where they were
- * seen last become UNKNOWN. */
+/* Begins an interval at x, which is not where the vertices were seen last: triangles of components with vertices that
+ * have moved become UNKNOWN. */
 void start_states_begin(start_states *s, const double *x);
 
-/* Marks the triangles that a static check has to compare with one another, and returns how many: those not
- * known to be free, of closed manifold components that hold unknown ones and wait no longer; those that wait
- * do so for one interval less. After a check that leaves too little of a component clean (start_states_pay),
- * its next one waits 1 interval, then 2, 4, 8 and 16. */
-uint32_t start_states_suspect(start_states *s, bool *suspects);
+/* Marks the triangles that a static check has to compare with one another, and returns how many they are: those not
+ * known to be free, of closed manifold components that hold unknown ones and need not wait. Components that wait do so
+ * for one interval less from now on. After a check that leaves too little of a component clean (start_states_pay), its
+ * next one waits for 1 interval, then for 2, 4, 8 and always 16. Where nothing is marked, unproven is not written. */
+uint32_t start_states_suspect(start_states *s, bool *unproven);
 
-/* The suspects were compared with one another: crossing says which meet another one, or have no area. */
-void start_states_checked(start_states *s, const bool *suspects, const bool *crossing);
+/* The unproven triangles were compared with one another; crossing marks those that intersect another one of them, or
+ * have no area. */
+void start_states_checked(start_states *s, const bool *unproven, const bool *crossing);
 
-/* The caller says that all components are embedded; what a check of these positions found stands. */
+/* Makes all triangles clean, because the caller says that all components are embedded, except in components of which a
+ * check of these positions found the contrary. */
 void start_states_vouch(start_states *s);
 
 /* Fills in the numbers of triangles per component. */
 void start_states_count(start_states *s);
 
-/* A feature of the triangle's closure takes part in a contact with its component. */
+/* Which triangles are clean; valid until the next call. */
+const bool *start_states_clean(const start_states *s);
+
+/* A feature of the triangle, or of one that shares the feature, is in contact with its own component. */
 static inline void start_states_taint(start_states *s, uint32_t triangle) {
     s->triangles[triangle] = TRIANGLE_UNKNOWN;
     s->counted = false;
 }
 
-/* The interval ends at x, and all triangles in contact were tainted, but for components that are lost: what
- * becomes of those is UNKNOWN. All others that were free or clean still are. */
-void start_states_end(start_states *s, const double *x, const bool *lost);
+/* Ends the interval at x, after all triangles in contact were tainted. Those that were free or clean and not tainted
+ * still are; but all triangles of components whose contacts are incomplete become UNKNOWN. */
+void start_states_end(start_states *s, const double *x, const bool *incomplete);
 
-/* For an interval whose end may not be where the vertices go: before its contacts are looked at, and, if they
- * do not go there, afterwards; then what the contacts have tainted is as before. */
+/* For an interval whose end the vertices may not reach: save before its contacts are looked at, and restore if the
+ * vertices do not go there. Then what the contacts have tainted is as before. */
 void start_states_save(start_states *s);
 void start_states_restore(start_states *s);
 
-/* Nothing is known of the end of the interval. */
+/* Makes all triangles UNKNOWN, because nothing is known of the end of the interval. */
 void start_states_forget(start_states *s);

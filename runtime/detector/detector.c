@@ -87,10 +87,13 @@ static bool allocate_per_component(cscd_detector *d) {
            d->incomplete != NULL && d->skipped != NULL && d->guarantees != NULL;
 }
 
-static bool allocate_per_triangle(cscd_detector *d) {
-    d->suspects = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->suspects);
-    d->crossing = context_allocate(d->context, d->mesh->triangle_count, sizeof *d->crossing);
-    return d->suspects != NULL && d->crossing != NULL;
+static void choose_regions(cscd_detector *d) {
+    const culling *c = &d->culling;
+    d->rebuild = (bvh_rebuild){
+        .mesh = d->mesh,
+        .regions = {c->triangle_regions, c->triangle_weights, c->region_count},
+        .axis_count = d->options.volume == CSCD_VOLUME_KDOP14 ? KDOP_AXES : BOX_AXES,
+    };
 }
 
 static cscd_status create_hider(cscd_detector *d) {
@@ -106,16 +109,16 @@ static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
     cscd_status status = traversal_create(context, &d->traversal);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
+    if (status == CSCD_OK) choose_regions(d);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
+    if (status == CSCD_OK) status = static_check_create(d->mesh, d->traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
     if (status == CSCD_OK) status = create_hider(d);
     if (status == CSCD_OK) status = call_create(d);
     if (status != CSCD_OK) return status;
     d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
-    d->intersection_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->intersection_lanes);
     d->contacts_seen = context_allocate(context, d->traversal.lane_count, sizeof *d->contacts_seen);
-    bool allocated = d->contact_lanes != NULL && d->intersection_lanes != NULL && d->contacts_seen != NULL &&
-                     allocate_per_component(d) && allocate_per_triangle(d);
+    bool allocated = d->contact_lanes != NULL && d->contacts_seen != NULL && allocate_per_component(d);
     return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -155,10 +158,8 @@ static void free_lanes(cscd_detector *d) {
             context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_VF].pairs);
             context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_EE].pairs);
         }
-        if (d->intersection_lanes != NULL) context_free(d->context, d->intersection_lanes[i].items);
     }
     context_free(d->context, d->contact_lanes);
-    context_free(d->context, d->intersection_lanes);
 }
 
 void cscd_detector_destroy(cscd_detector *d) {
@@ -169,6 +170,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     if (d->traversal.lanes != NULL) traversal_destroy(&d->traversal);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
+    static_check_destroy(&d->check);
     bvh_free(&d->bvh);
     exclusions_free(context, &d->exclusions);
     representatives_free(context, &d->representatives);
@@ -183,8 +185,6 @@ void cscd_detector_destroy(cscd_detector *d) {
                       d->wants_all_contacts,
                       d->incomplete,
                       d->skipped,
-                      d->suspects,
-                      d->crossing,
                       d->contacts_seen,
                       d->guarantees,
                       d->reached,

@@ -1,6 +1,7 @@
 /* The detector's inside: trees, lanes and buffers that live from one interval to the next. */
 #pragma once
 
+#include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/bvh/traversal.h"
 #include "runtime/culling/culling.h"
 #include "runtime/culling/start_state.h"
@@ -17,11 +18,6 @@ typedef struct result_buffer {
     void *items, *scratch;
     size_t capacity;
 } result_buffer;
-
-/* How far leaves extend, as a multiple of their triangles, and blocks of parts, of their parts. */
-typedef struct tree_spread {
-    double leaves, parts;
-} tree_spread;
 
 struct cscd_detector {
     cscd_context *context;
@@ -42,22 +38,19 @@ struct cscd_detector {
     bool *skipped;            /* its pairs of adjacent triangles are not traversed */
     bool *incomplete;         /* some of its contacts may be missing */
 
-    bool *suspects, *crossing;  /* per triangle, at the moment checked last */
     size_t *contacts_seen;      /* per lane: those that have tainted triangles */
     cscd_guarantee *guarantees; /* per component, of the last step */
 
-    void *hider_state;             /* of stages->hider */
-    bvh bvh;                       /* of the interval or moment at hand */
-    tree_spread spread_when_built; /* and how good it is: see upkeep.h */
-    uint32_t intervals_unlooked, useless_rebuilds;
-    bool rebuilt; /* in the interval at hand */
+    void *hider_state; /* of stages->hider */
+    bvh bvh;           /* of the current interval or moment */
+    bvh_rebuild rebuild;
     call_memory before;
     representatives representatives;
     orphan_pairs orphans; /* once an interval without culling has come, unless there are too many */
     bool orphans_known, orphans_usable;
     traversal traversal;
     contact_lane *contact_lanes; /* one per thread, as are the traversal's */
-    intersection_lane *intersection_lanes;
+    static_check check;
 
     result_buffer contacts, intersections;
     double *reached; /* positions, of the step that cscd_detector_max_step tries; NULL before the first */

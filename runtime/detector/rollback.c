@@ -27,7 +27,7 @@ void call_begin(cscd_detector *d) {
     memcpy(before->triangles, s->triangles, d->mesh->triangle_count * sizeof *s->triangles);
     memcpy(before->of, s->of, d->mesh->component_count * sizeof *s->of);
     before->vouched = s->vouched;
-    before->intervals_unlooked = d->intervals_unlooked;
+    before->intervals_unmeasured = d->rebuild.intervals_unmeasured;
 }
 
 static void put_back(cscd_detector *d) {
@@ -37,7 +37,7 @@ static void put_back(cscd_detector *d) {
     memcpy(s->of, before->of, d->mesh->component_count * sizeof *s->of);
     s->vouched = before->vouched;
     s->counted = false;
-    d->intervals_unlooked = before->intervals_unlooked;
+    d->rebuild.intervals_unmeasured = before->intervals_unmeasured;
 }
 
 cscd_status call_fail(cscd_detector *d, cscd_status status) {

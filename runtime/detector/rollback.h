@@ -13,7 +13,7 @@ typedef struct call_memory {
     uint8_t *triangles;         /* states at the start, and */
     struct component_start *of; /* what goes with them, per component */
     bool vouched;
-    uint32_t intervals_unlooked;
+    uint32_t intervals_unmeasured;
 } call_memory;
 
 cscd_status call_create(cscd_detector *d);

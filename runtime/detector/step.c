@@ -1,7 +1,6 @@
 /* One interval through the stages of the pipeline. */
 #include "runtime/detector/step.h"
 
-#include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/interval_search.h"
@@ -22,10 +21,11 @@ typedef struct step_work {
 
 static void begin_interval(step_work *work) {
     cscd_detector *d = work->search.detector;
-    d->rebuilt = false;
+    d->rebuild.rebuilt = false;
     culling_clear(&d->culling);
-    tainting_begin(d);
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->culled[c] = d->wants_all_contacts[c] = false;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++)
+        d->culled[c] = d->wants_all_contacts[c] = d->touched[c] = false;
+    for (uint32_t i = 0; i < d->traversal.lane_count; i++) d->contacts_seen[i] = 0;
     if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
     start_states_count(&d->starts);
     if (work->rehearsal) start_states_save(&d->starts);
@@ -40,10 +40,13 @@ enum { UNPROVEN_SHARE = 16 };
 /* Finds out which unproven triangles are clean, by the volumes that the trees have. */
 static cscd_status check_start(step_work *work) {
     cscd_detector *d = work->search.detector;
-    cscd_status status = static_check_suspects(d, work->search.interval.x0);
+    progress_stage(&d->context->progress, "start", 0.0, 0.3);
+    cscd_status status = static_check_unproven(&d->check, &d->traversal, &d->bvh, work->search.interval.x0);
     work->unproven = 0;
-    if (status == CSCD_OK && work->rehearsal) start_states_save(&d->starts);
-    return status;
+    if (status != CSCD_OK) return status;
+    start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
+    if (work->rehearsal) start_states_save(&d->starts);
+    return CSCD_OK;
 }
 
 static cscd_status prove_starts(step_work *work) {
@@ -51,10 +54,10 @@ static cscd_status prove_starts(step_work *work) {
     if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
     double since = timer_now_ms();
     cscd_status status = CSCD_OK;
-    work->unproven = start_states_suspect(&d->starts, d->suspects);
+    work->unproven = start_states_suspect(&d->starts, d->check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
-        status = upkeep_move_to(d, work->search.interval.x0, 0.0);
+        status = bvh_rebuild_move_to(&d->rebuild, &d->bvh, work->search.interval.x0, 0.0, d->limit.distance);
         if (status == CSCD_OK) status = check_start(work);
     }
     timer_lap(&since, &work->search.timings.proof_ms);
@@ -65,7 +68,8 @@ static cscd_status refit_trees(step_work *work) {
     cscd_detector *d = work->search.detector;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status = upkeep_move(d, interval->x0, interval->x1, d->limit.distance);
+    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->bvh, interval->x0, interval->x1, d->limit.distance,
+                                          d->limit.distance);
     timer_lap(&since, &work->search.timings.update_ms);
     return status;
 }
@@ -128,7 +132,7 @@ static cscd_status choose_culled(step_work *work) {
 static orientation_query orientation_query_of(const step_work *work) {
     const cscd_detector *d = work->search.detector;
     bool all = work->all_clean || d->rules.assumes_clean;
-    return (orientation_query){d->culled, all ? NULL : d->starts.triangles,
+    return (orientation_query){d->culled, all ? NULL : start_states_clean(&d->starts),
                                (const double(*)[3])d->culling.detector_offsets, d->rules.still_points};
 }
 
@@ -159,6 +163,21 @@ static cscd_status traverse_pairs(step_work *work) {
     return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
 }
 
+/* Looks at the contacts that the lanes have gained since the last look; returns how many triangles these have tainted
+ * whose pairs were culled. */
+static uint32_t taint_by_contacts(const step_work *work) {
+    cscd_detector *d = work->search.detector;
+    const tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
+    uint32_t newly_kept = 0;
+    for (uint32_t i = 0; detector_culls(d) && i < d->traversal.lane_count; i++) {
+        const contact_lane *lane = &d->contact_lanes[i];
+        newly_kept +=
+            tainting_look(&t, lane->contacts + d->contacts_seen[i], lane->count - d->contacts_seen[i]);
+        d->contacts_seen[i] = lane->count;
+    }
+    return newly_kept;
+}
+
 /* Tests the pairs that contacts have uncovered until these bring no more contacts. Then all contacts of the components
  * that want them all are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
@@ -168,7 +187,7 @@ static cscd_status close_contacts(step_work *work) {
     for (;;) {
         double since = timer_now_ms();
         culling_pass_done(&d->culling);
-        if (tainting_look(d) == 0) return CSCD_OK;
+        if (taint_by_contacts(work) == 0) return CSCD_OK;
         bvh_mark_fresh(&d->bvh, d->culling.earlier, d->culling.orientations);
         timer_lap(&since, &work->search.timings.orientation_ms);
         cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_FRESH);
@@ -187,8 +206,8 @@ static cscd_status search_every_feature_pair(step_work *work) {
 
 static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->search.detector;
-    work->search.counters.rebuilds = d->rebuilt;
-    tainting_look(d);
+    work->search.counters.rebuilds = d->rebuild.rebuilt;
+    taint_by_contacts(work);
     double since = timer_now_ms();
     cscd_status status = contact_list_collect(d, &work->search.counters, &work->contacts);
     timer_lap(&since, &work->search.timings.contact_ms);

@@ -1,17 +1,35 @@
-/* Is the surface embedded at one moment? All meeting triangle pairs, by exact predicates. */
+/* All pairs of triangles that intersect at one moment, by exact predicates. */
 #pragma once
 
-#include "src/mesh/mesh.h"
+#include "runtime/bvh/traversal.h"
 
 /* What one thread finds. */
 typedef struct intersection_lane {
     _Alignas(CACHE_LINE_SIZE) cscd_intersection *items;
     size_t count, capacity;
-    uint32_t zero_area_triangles, first_zero_area;
+    uint32_t zero_area_triangles, first_zero_area; /* UINT32_MAX: none */
     bool out_of_memory;
 } intersection_lane;
 
-/* Compares the triangles that detector->suspects marks with one another, as they are at positions, in the
- * component that they share, and tells the detector's start states. The tree's volumes contain the triangles
- * at that moment: of the moment, or of an interval that it is part of. */
-cscd_status static_check_suspects(cscd_detector *detector, const double *positions);
+/* The outcome of the last check, and the memory of all checks. */
+typedef struct static_check {
+    const cscd_mesh *mesh;
+    bool *unproven; /* per triangle: is it compared with the others? */
+    bool *
+        crossing; /* per triangle: it intersects another one of its component, or has no area; only of unproven ones */
+    intersection_lane
+        *lanes; /* one per lane of the traversal; pairs that the caller ignores are among theirs */
+    uint32_t lane_count;
+} static_check;
+
+/* On failure *out holds nothing. */
+cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out);
+void static_check_destroy(static_check *c);
+
+/* Compares the triangles that are marked as unproven with one another, each with those of its own component. The
+ * volumes of the trees contain the triangles at positions: they are of that moment, or of an interval that it is part
+ * of. CANCELLED, here and below: not all pairs have been compared. */
+cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions);
+
+/* Compares all triangles with one another, and marks them all as unproven. */
+cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions);

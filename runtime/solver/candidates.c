@@ -31,7 +31,7 @@ cscd_status candidates_collect(cscd_detector *d, const double *x0, const double 
                                candidates *out) {
     interval_search search = interval_search_begin(d, x0, x1, (separation){distance, distance});
     search.interval.collecting = true;
-    cscd_status status = upkeep_move(d, x0, x1, distance);
+    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->bvh, x0, x1, distance, d->limit.distance);
     if (status == CSCD_OK) status = interval_search_everything(&search);
     if (status != CSCD_OK) return status;
     bool taken = take(d, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&

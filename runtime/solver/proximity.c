@@ -122,7 +122,7 @@ static cscd_status find_near(cscd_detector *d, const double *positions, double d
     if (d->stages->brute_force) {
         status = interval_search_by_brute_force(&search);
     } else {
-        status = upkeep_move_to(d, positions, distance);
+        status = bvh_rebuild_move_to(&d->rebuild, &d->bvh, positions, distance, d->limit.distance);
         if (status == CSCD_OK) status = interval_search_everything(&search);
     }
     return status == CSCD_OK ? proximity_collect(d, positions, out) : status;

@@ -1,5 +1,5 @@
 /* Orientation signs against exact arithmetic: one wrong S+ or S- fails. And where detector points are. */
-#include "runtime/bvh/orientation.h"
+#include "runtime/bvh/bvh.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
