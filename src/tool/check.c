@@ -59,7 +59,7 @@ typedef struct check_run {
     terminal_progress progress;
     frame_range frames;
     uint32_t frames_checked;
-    frame_list crossing;
+    frame_list intersecting;
 } check_run;
 
 /* As in MODEL, the smaller first: welding keeps the order. */
@@ -88,9 +88,9 @@ static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     if (cscd_detector_check(c->detector, c->positions, &found) != CSCD_OK)
         return io_fail(error, "frame %u: %s", frame, cscd_context_detail(c->recording.context));
     c->frames_checked++;
-    if (found.count > 0 && !frame_list_add(&c->crossing, frame)) return io_fail(error, "out of memory");
+    if (found.count > 0 && !frame_list_add(&c->intersecting, frame)) return io_fail(error, "out of memory");
     if (found.count > 0 && !c->options->quiet)
-        printf("frame %u: %zu triangle pairs meet, the first %u and %u\n", frame, found.count,
+        printf("frame %u: %zu triangle pairs intersect or touch, the first %u and %u\n", frame, found.count,
                recording_file_triangle(&c->recording, found.items[0].a),
                recording_file_triangle(&c->recording, found.items[0].b));
     if (c->out.file != NULL) write_frame(c, frame, &found);
@@ -154,19 +154,19 @@ static int run_check(const check_options *options) {
     terminal_progress_end(&c.progress);
     bool closed = close_json(&c, ran ? (interrupted() ? "interrupted" : NULL) : error.text, &close_error);
     if (c.frames_checked > 0 && !options->quiet) {
-        printf("%s: %u of %u frames cross or touch themselves", options->source.model_path,
-               frame_list_frames(&c.crossing), c.frames_checked);
-        frame_list_print(&c.crossing, ": ");
+        printf("%s: %u of %u frames intersect or touch themselves", options->source.model_path,
+               frame_list_frames(&c.intersecting), c.frames_checked);
+        frame_list_print(&c.intersecting, ": ");
     }
     int code = !ran                                               ? fail_input("%s", error.text)
                : !closed                                          ? fail_input("%s", close_error.text)
                : interrupted()                                    ? EXIT_INTERRUPTED
-               : options->fail_on_contact && c.crossing.count > 0 ? EXIT_CONTACT
+               : options->fail_on_contact && c.intersecting.count > 0 ? EXIT_CONTACT
                                                                   : EXIT_RAN;
     cscd_detector_destroy(c.detector);
     ignore_pairs_free(&c.ignored);
     recording_close(&c.recording);
-    frame_list_free(&c.crossing);
+    frame_list_free(&c.intersecting);
     free(c.positions);
     return code;
 }

@@ -15,10 +15,10 @@ typedef struct command {
 
 static const command commands[] = {
     {"preprocess", "cut a mesh into regions by charge, once, so that replays are faster", command_preprocess},
-    {"replay", "find every self-collision of a recorded animation", command_replay},
+    {"replay", "find every contact of a recorded mesh with itself", command_replay},
     {"report", "put summaries of replays side by side on one page for a browser", command_report},
     {"sense", "warn with particles where objects come near each other", command_sense},
-    {"check", "find where a mesh crosses or touches itself, frame by frame", command_check},
+    {"check", "find where a mesh intersects or touches itself, frame by frame", command_check},
     {"info", "counts, components, holes, bounds of a mesh", command_info},
     {"render", "draw frames to a PNG", command_render},
 };

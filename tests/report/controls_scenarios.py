@@ -72,6 +72,11 @@ def buttons_step_and_jump(context):
         expect_frame(page, frame, name)
 
 
+def state_in_words(interval):
+    """The page's word for the state that the summary gives an interval."""
+    return "intersecting" if interval["state"] == "penetrating" else interval["state"]
+
+
 def status_tells_state_and_counts(context):
     made, page = open_pawn(context)
     intervals = made.summary()["intervals"]
@@ -79,7 +84,8 @@ def status_tells_state_and_counts(context):
         page.go_to(interval["frame"])
         text = page.status()
         expect(text.startswith(f"Frame {interval['frame']} of 0 to {len(intervals)}"), text)
-        expect(interval["state"] in text, f"no {interval['state']} in {text!r}")
+        words = state_in_words(interval)
+        expect(words in text, f"no {words} in {text!r}")
         counts = f"{interval['vf']} VF, {interval['ee']} EE"
         if interval["vf"] + interval["ee"] > 0:
             expect(counts in text, f"no {counts} in {text!r}")

@@ -3,7 +3,7 @@ import json
 import os
 
 from charts_scenarios import check_drawn
-from controls_scenarios import busiest, open_pawn
+from controls_scenarios import busiest, open_pawn, state_in_words
 from page import CELLS, expect, expect_equal
 from report_file import Report
 
@@ -38,7 +38,8 @@ def check_interval(header, row, interval):
     for title, key in INTERVAL_COLUMNS.items():
         expect_equal(row[column(header, title)], interval[key], f"{title} of interval {interval['frame']}")
     expect_equal(row[column(header, "ms")], interval["ms"]["total"], f"ms of interval {interval['frame']}")
-    expect(interval["state"] in str(row[column(header, "state")]), f"{row} is not {interval['state']}")
+    words = state_in_words(interval)
+    expect(words in str(row[column(header, "state")]), f"{row} is not {words}")
     if interval["earliest_toi"] is not None:
         expect_equal(row[column(header, "earliest")], interval["earliest_toi"], "earliest toi")
 
@@ -76,7 +77,7 @@ def intervals_are_filtered_and_lead_to_frames(context):
     made, page = open_pawn(context)
     intervals = made.summary()["intervals"]
     tests = {"With contacts": lambda interval: interval["vf"] + interval["ee"] > 0,
-             "Penetrating": lambda interval: interval["state"] == "penetrating"}
+             "Intersecting": lambda interval: interval["state"] == "penetrating"}
     for name, test in tests.items():
         page.click("radio", name)
         expected = [interval["frame"] for interval in intervals if test(interval)]

@@ -1,4 +1,4 @@
-/* The tool on a capsule whose ends meet in a known interval: a formula, brute force and all outputs agree. */
+/* The tool on a capsule whose ends touch in a known interval: a formula, brute force and all outputs agree. */
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
@@ -65,7 +65,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The ends meet where the generator's formula says, and between the ends. */
+/* The ends touch where the generator's formula says, and between the ends. */
 static void first_contact_is_where_the_formula_says(void **state) {
     (void)state;
     assert_true(rows.count > 0);
@@ -114,7 +114,7 @@ static void csv_json_and_table_agree(void **state) {
     assert_int_equal(printed[3], 59);
 }
 
-/* Frames up to the first contact are clean, those after it cross: the ends go into each other. */
+/* Frames up to the first contact are clean; in those after it the ends intersect. */
 static void frames_cross_after_the_first_contact(void **state) {
     (void)state;
     const json_node *states = json_node_member(json, "frames");

@@ -190,7 +190,7 @@ static void check_table(const char *out, const json_node *root) {
              json_node_number(total, "vf"), json_node_number(total, "ee"),
              json_node_number(total, "intervals_with_contact"), json_node_number(total, "intervals"));
     if (strstr(out, line) == NULL) fail_msg("expected '%s' in: %s", line, out);
-    snprintf(line, sizeof line, "intervals: %.0f clean, %.0f with contact, %.0f penetrating, %.0f unknown",
+    snprintf(line, sizeof line, "intervals: %.0f clean, %.0f with contact, %.0f intersecting, %.0f unknown",
              json_node_number(total, "clean"), json_node_number(total, "contact"),
              json_node_number(total, "penetrating"), json_node_number(total, "unknown"));
     if (strstr(out, line) == NULL) fail_msg("expected '%s' in: %s", line, out);

@@ -39,15 +39,15 @@ static void check_lists_crossing_frames(void **state) {
     tool_run run = RUN_TOOL("check", model.text, cache.text);
     assert_int_equal(run.code, 0);
     assert_string_equal(run.error, "");
-    expect_in(run.out, "frame 4: 3 triangle pairs meet, the first 0 and ");
-    expect_in(run.out, "4 of 8 frames cross or touch themselves: 4-7\n");
+    expect_in(run.out, "frame 4: 3 triangle pairs intersect or touch, the first 0 and ");
+    expect_in(run.out, "4 of 8 frames intersect or touch themselves: 4-7\n");
     tool_run_free(&run);
     EXPECT_TOOL(3, "check", model.text, cache.text, "--fail-on-contact");
     EXPECT_TOOL(0, "check", model.text, cache.text, "--fail-on-contact", "--frames", ":3");
     EXPECT_TOOL(3, "check", model.text, cache.text, "--fail-on-contact", "--frames", "4");
     EXPECT_TOOL(0, "check", model.text, "--fail-on-contact");
     run = RUN_TOOL("check", model.text, cache.text, "--frames", "1::3");
-    expect_in(run.out, "2 of 3 frames cross or touch themselves: 4, 7\n");
+    expect_in(run.out, "2 of 3 frames intersect or touch themselves: 4, 7\n");
     tool_run_free(&run);
     static const char *const wrong[] = {":", "1:2:", "1:2:0", "1:2:x", "1:2:3:4", "5:2", "::", ""};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
@@ -96,7 +96,7 @@ static void check_keeps_what_precedes_a_bad_frame(void **state) {
     tool_run run = RUN_TOOL("check", model.text, pattern.text, "--json", json.text);
     assert_int_equal(run.code, 1);
     expect_in(run.error, "f_05.ply");
-    expect_in(run.out, "1 of 5 frames cross or touch themselves: 4\n");
+    expect_in(run.out, "1 of 5 frames intersect or touch themselves: 4\n");
     tool_run_free(&run);
     json_node *root = json_node_read_file(json.text);
     assert_false(json_node_boolean(root, "complete"));
@@ -130,7 +130,7 @@ static void info_describes_closed_meshes(void **state) {
     expect_info(&torus, "components  1\n", NULL);
     expect_info(&torus, "96 vertices, 288 edges, 192 triangles, Euler characteristic 0, closed, genus 1\n",
                 NULL);
-    expect_info(&torus, "zero area   0 triangles\nmeeting     0 triangle pairs", NULL);
+    expect_info(&torus, "zero area   0 triangles\ntouching    0 triangle pairs", NULL);
     recorded_free(&flight);
     recorded_free(&torus);
 }

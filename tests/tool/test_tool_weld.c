@@ -264,7 +264,7 @@ static void a_list_means_the_triangles_of_the_file(void **state) {
     contact_rows_free(&none);
 }
 
-/* From a crossing first frame on, without the pairs that cross there. */
+/* Replays from a frame that intersects itself, without the pairs that intersect there. */
 static void ignores_what_meets_at_rest(void **state) {
     (void)state;
     recorded flight = recorded_tetrahedra(8);
@@ -275,8 +275,8 @@ static void ignores_what_meets_at_rest(void **state) {
     tool_run run =
         RUN_TOOL("replay", model.text, inside.text, apart.text, "--fail-on-contact", "--ignore-rest");
     assert_int_equal(run.code, 0);
-    assert_non_null(strstr(run.out, "3 triangle pairs that meet in frame 0 are left out"));
-    assert_non_null(strstr(run.out, "intervals: 1 clean, 0 with contact, 0 penetrating, 0 unknown"));
+    assert_non_null(strstr(run.out, "3 triangle pairs that intersect or touch in frame 0 are left out"));
+    assert_non_null(strstr(run.out, "intervals: 1 clean, 0 with contact, 0 intersecting, 0 unknown"));
     tool_run_free(&run);
     EXPECT_TOOL(3, "check", inside.text, "--fail-on-contact");
     EXPECT_TOOL(0, "check", inside.text, "--fail-on-contact", "--ignore-rest");

@@ -1,5 +1,5 @@
-/* Triangle pairs that the user wants left out: those that meet in the first frame, and those of a list file.
- */
+/* Triangle pairs that the user wants left out: those that intersect or touch in the first frame, and those of a
+ * list file. */
 #include "src/tool/common/ignore_pairs.h"
 
 #include <errno.h>

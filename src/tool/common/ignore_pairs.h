@@ -1,5 +1,5 @@
-/* Triangle pairs that the user wants left out: those that meet in the first frame, and those of a list file.
- */
+/* Triangle pairs that the user wants left out: those that intersect or touch in the first frame, and those of a
+ * list file. */
 #pragma once
 
 #include "src/tool/common/recording.h"
@@ -17,7 +17,7 @@ typedef struct ignore_pairs {
  * polygon's fan counting as many; components as `cscd info` lists them. */
 bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path, io_error *error);
 
-/* Adds the pairs that touch or cross in frame 0. */
+/* Adds the pairs that intersect or touch in frame 0. */
 bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
 
 /* For cscd_detector_options.ignore; user is the ignore_pairs. */

@@ -7,11 +7,11 @@
 #include <string.h>
 
 static const uint8_t plain_colour[3] = {176, 190, 207};
-static const uint8_t touching_colour[3] = {255, 176, 66};
+static const uint8_t contact_colour[3] = {255, 176, 66};
 static const uint8_t kind_colours[2][4] = {{0, 90, 181, 255}, {220, 50, 32, 255}};
 static const picture_legend legend[] = {{{0, 90, 181}, "vertex-face contact"},
                                         {{220, 50, 32}, "edge-edge contact"},
-                                        {{255, 176, 66}, "triangles that touch"}};
+                                        {{255, 176, 66}, "triangles in contact"}};
 
 bool contact_picture_load(contact_picture *p, const recording *r, io_error *error) {
     const cscd_mesh *mesh = r->mesh;
@@ -32,7 +32,7 @@ bool contact_picture_load(contact_picture *p, const recording *r, io_error *erro
     return true;
 }
 
-/* Colours the triangles that contain a touching feature. */
+/* Colours the triangles that contain a feature in contact. */
 static bool colour_features(contact_picture *p, const cscd_mesh *mesh, const cscd_contacts *contacts,
                             io_error *error) {
     unsigned char *vertices = calloc(cscd_mesh_vertex_count(mesh), 1);
@@ -50,7 +50,7 @@ static bool colour_features(contact_picture *p, const cscd_mesh *mesh, const csc
         bool touches = faces[t] != 0;
         for (int i = 0; i < 3; i++)
             touches |= vertices[v[i]] != 0 || edges[recording_find_edge(mesh, v[i], v[(i + 1) % 3])] != 0;
-        if (touches) memcpy(p->colours + (size_t)t * 3, touching_colour, 3);
+        if (touches) memcpy(p->colours + (size_t)t * 3, contact_colour, 3);
     }
     free(vertices);
     free(edges);

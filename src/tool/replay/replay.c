@@ -1,4 +1,4 @@
-/* `cscd replay`: every self-collision of a recorded animation, interval by interval. */
+/* `cscd replay`: finds every contact of a recorded mesh with itself, interval by interval. */
 #include "src/tool/common/command.h"
 #include "src/tool/common/frame_list.h"
 #include "src/tool/common/ignore_pairs.h"
@@ -56,7 +56,7 @@ static bool prepare_ignored(replay *r, io_error *error) {
     size_t listed = r->ignored.triangle_count;
     if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
     if (!r->options->quiet)
-        printf("%zu triangle pairs that meet in frame 0 are left out\n", r->ignored.triangle_count - listed);
+        printf("%zu triangle pairs that intersect or touch in frame 0 are left out\n", r->ignored.triangle_count - listed);
     return true;
 }
 
@@ -148,16 +148,15 @@ static interval_state state_of(const replay *r, size_t contact_count) {
     return r->start_state == FRAME_EMBEDDED ? INTERVAL_CLEAN : INTERVAL_UNKNOWN;
 }
 
-/* From an embedded start to a crossing end there is a contact in between, always. Pairs left out may hide it.
- */
+/* A mesh that is embedded at the start and intersects itself at the end had a contact in between. Pairs that are
+ * left out may hide it. */
 static void alarm_contradiction(replay *r, const interval_result *result) {
     bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
     if (method_facts_of(r->plan.method)->loses_contacts) return; /* as is known of them */
-    warn("interval %u starts free of crossings and ends with one, but no contact was found: a contact was "
-         "lost, "
-         "please report this recording",
+    warn("interval %u starts free of intersections and ends with one, but no contact was found: a "
+         "contact was lost, please report this recording",
          result->frame);
 }
 
@@ -221,10 +220,10 @@ static void print_results(const replay *r) {
         printf("minimum separation: %g; contacts whose time is a bound only: %llu\n",
                r->options->min_separation, (unsigned long long)t->counter_sum.bounded);
     if (t->frames_checked > 0) {
-        printf("crossing: %u of %u frames", t->frames_crossing, t->frames_checked);
+        printf("intersecting or touching: %u of %u frames", t->frames_crossing, t->frames_checked);
         frame_list_print(&r->crossing_frames, "; ");
     }
-    printf("intervals: %u clean, %u with contact, %u penetrating, %u unknown\n", t->states[INTERVAL_CLEAN],
+    printf("intervals: %u clean, %u with contact, %u intersecting, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
     bool by_method = method_facts_of(r->plan.method)->loses_contacts;
     if (t->intervals_complete < t->intervals)

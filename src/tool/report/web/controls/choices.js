@@ -1,4 +1,4 @@
-/** What the view shows: one colouring, and the marks over it. */
+/** Controls of the view: one colouring, and the marks over it. */
 
 import { element } from '../page/dom.js';
 

@@ -1,4 +1,4 @@
-/** What the page shows at the moment, and who wants to know when it changes. */
+/** The state of the page, and the functions to call when it changes. */
 
 /**
  * @typedef {object} State

@@ -53,7 +53,7 @@ function orientationOf(bytes, scene) {
   const unpacked = new Uint8Array(count);
   let shown = -1;
   return {
-    /** Where the last kept interval at or before this one begins: the one that `at` tells of. */
+    /** The start of the last kept interval at or before this one: the interval that `at` describes. */
     interval: (interval) => intervals[Math.max(0, lastAtOrBefore(intervals, interval))],
     at(interval) {
       const i = Math.max(0, lastAtOrBefore(intervals, interval));

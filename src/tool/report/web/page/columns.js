@@ -16,7 +16,7 @@ export function columnsOf(begin, end, width) {
   }));
 }
 
-/** Of the numbers from begin to end, the first of those with the most weight. */
+/** The number from begin to end that has the most weight; the first of several. */
 export function heaviest(begin, end, weight) {
   let best = begin;
   for (let i = begin + 1; i < end; i++) if (!(weight(i) <= weight(best))) best = i;

@@ -1,4 +1,4 @@
-/** Which interval a moment belongs to, and what the summary says of it. */
+/** Finds the interval of a moment, and what the summary says of it. */
 
 /** @typedef {{first: number, last: number}} Extent in frames; a scene is one, too */
 

@@ -1,4 +1,4 @@
-/** What replays, and the page, are called. */
+/** The names of replays and of the page. */
 
 const SHORT = 60; // characters of a title
 

@@ -51,7 +51,7 @@ export function agreement(report) {
   return sentences;
 }
 
-/* What changes contacts, then what changes times only. */
+/* Options that change contacts, then options that change times only. */
 const GRAVE = ['model', 'recording', 'frames', 'mode', 'least separation'];
 
 /** what -> its value in one replay. */

@@ -10,7 +10,7 @@ import { createStateBand } from './stateband.js';
 const ZOOMED_FROM = 60; /* fewer intervals need no zoom */
 const MOST = 5e6; /* intervals, gaps between replays included */
 
-/** What is shown of a long recording, as numbers of intervals. */
+/** How many intervals a chart shows of a long recording. */
 function createRange(count, changed) {
   let [begin, end] = [0, count];
   const clamp = (from, length) => {

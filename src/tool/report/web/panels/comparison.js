@@ -1,4 +1,4 @@
-/** What several replays have in common and where they differ. */
+/** The table that compares several replays. */
 import { agreement, differences } from './agreement.js';
 import { element, heading, numberCell, scrollable } from '../page/dom.js';
 import { counted, decimal, integer } from '../page/format.js';

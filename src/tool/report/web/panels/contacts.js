@@ -1,4 +1,4 @@
-/** The contacts of the current interval: which features meet, when and where. */
+/** The contacts of the current interval: which features touch, when and where. */
 import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from '../page/dom.js';
 import { coordinates, counted, decimal, integer, positionDecimals } from '../page/format.js';
@@ -89,7 +89,7 @@ function choose(contacts, [begin, end], { kind, descending }) {
   return descending ? chosen.reverse() : chosen;
 }
 
-/** What stands in place of the list when the interval has none. */
+/** The sentence in place of the list when the interval has no contact. */
 function createEmpty(player) {
   const text = element('p');
   const next = element('button', {

@@ -1,4 +1,4 @@
-/** Which charts there are, and their numbers. */
+/** The charts and their numbers. */
 import { counted, decimal, integer, milliseconds, significant } from '../page/format.js';
 import { nameOf } from '../page/names.js';
 import { lineOf, lineStyle } from './palette.js';
@@ -83,7 +83,7 @@ function pairFigure({ summary: { summary } }, first, last, find) {
   };
 }
 
-/** Of one replay. Values that an interval lacks, of a replay that was stopped, count as 0 in a stack. */
+/** The charts of one replay. If it was stopped, missing values count as 0 in a stack. */
 export function replayFigures(report, first, last, [find]) {
   return [stageFigure, contactFigure, pairFigure].map((make) => make(report.summaries[0], first, last, find));
 }
@@ -99,7 +99,7 @@ function compareFigure(report, first, last, finders, { title, value, read, words
   return { title, summary: '', stacked: false, height: 190, read, format: tick, series };
 }
 
-/** Of several: a line each. */
+/** The charts of several replays, a line for each. */
 export function compareFigures(report, first, last, finders) {
   return [
     {

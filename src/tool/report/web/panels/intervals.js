@@ -3,13 +3,13 @@ import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from '../page/dom.js';
 import { counted, decimal, integer, milliseconds } from '../page/format.js';
 import { extentOf, intervalAt } from '../page/intervals.js';
-import { STATE_MEANING } from '../page/states.js';
+import { STATE_MEANING, STATE_NAME } from '../page/states.js';
 import { createRows } from './rows.js';
 import { guaranteeInWords } from './stages.js';
 
 const COLUMNS = [
   ['frame', 'The interval goes from this frame to the next'],
-  ['state', 'Whether the mesh crosses itself at the start, and whether there is contact'],
+  ['state', 'Whether the mesh intersects itself at the start, and whether there is contact'],
   ['VF', 'Contacts of a vertex and a face', true],
   ['EE', 'Contacts of two edges', true],
   ['earliest toi', 'Time of impact of the first contact, 0 to 1 within the interval', true],
@@ -54,7 +54,7 @@ function fillRow(row, interval) {
   frame.firstChild.setAttribute('aria-label', `Frame ${interval.frame}`);
   state.firstChild.className = `state ${interval.state}`;
   state.firstChild.title = STATE_MEANING[interval.state] ?? '';
-  setText(state.firstChild.lastChild, interval.state);
+  setText(state.firstChild.lastChild, STATE_NAME[interval.state] ?? interval.state);
   setNumber(vf, interval.vf, integer(interval.vf));
   setNumber(ee, interval.ee, integer(interval.ee));
   setNumber(
@@ -126,7 +126,7 @@ export function create(container, report, store, player) {
         [
           ['all', 'All intervals'],
           ['contacts', 'With contacts'],
-          ['penetrating', 'Penetrating'],
+          ['penetrating', 'Intersecting'],
         ],
         'all',
         list,

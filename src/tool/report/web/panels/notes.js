@@ -1,4 +1,4 @@
-/** What a reader must know before trusting the rest: what is missing, and what was lost. */
+/** Notes on what is missing or was lost, which a reader must know before trusting the rest. */
 import { element } from '../page/dom.js';
 import { counted, integer, ranges } from '../page/format.js';
 import { nameOf } from '../page/names.js';
@@ -30,14 +30,14 @@ function notesOfRun(summary, intervals) {
     notes.push([
       'alarm',
       counted(summary.contradictions, 'contradiction'),
-      'Intervals that start free of crossings and end with one, without a contact: contacts were lost.',
+      'Intervals that start free of intersections and end with one, without a contact: contacts were lost.',
     ]);
   }
   if (summary.unknown > 0 || (summary.frames_checked === 0 && intervals.length > 0))
     notes.push([
       '',
       'frames were not checked',
-      'Whether the mesh crosses itself at the start of an interval is not known.',
+      'Whether the mesh intersects itself at the start of an interval is not known.',
     ]);
   if (summary.bounded > 0) {
     notes.push([

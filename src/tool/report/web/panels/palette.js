@@ -1,7 +1,7 @@
 /** Colours and dashes that tell replays apart. */
 import { picture } from '../page/dom.js';
 
-/* Of Okabe and Ito's, without the yellow, which is lost on white. */
+/* The colours of Okabe and Ito without yellow, which can hardly be seen on white. */
 const LINES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8a94a0'];
 const DASHES = [[], [7, 3], [2, 2], [9, 3, 2, 3], [4, 4]];
 

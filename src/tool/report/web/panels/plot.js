@@ -13,7 +13,7 @@ const token = (name) => getComputedStyle(document.documentElement).getPropertyVa
 /** A colour or the name of one of the page's own. */
 const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
 
-/** What 98 % of the intervals stay below: without the peaks the rest can be seen. */
+/** The value that 98 % of the intervals stay below, so that a few peaks do not flatten the rest. */
 function usualLimit({ first, last, series, stacked }) {
   const heights = Float64Array.from({ length: last - first }, (_, i) => {
     const values = series.map((one) => one.values[i] ?? 0);
@@ -92,7 +92,7 @@ function axes(format, logarithmic) {
  * @param {{first: number, last: number, height: number, stacked: boolean, format: (value: number) => string,
  *          series: {label: string, colour: string, dash?: number[], values: ArrayLike<number|null>}[]}} plot
  *   values: of interval first, first + 1, ...
- * @param {(surface: HTMLElement) => void} attach is given what lies over the plot, each time it is made anew
+ * @param {(surface: HTMLElement) => void} attach is called with the layer over the plot, each time the plot is made
  */
 export function createPlot(host, plot, attach) {
   const { first, last, height } = plot;
@@ -109,7 +109,7 @@ export function createPlot(host, plot, attach) {
   const width = () => Math.max(160, host.clientWidth);
   const data = () => stepsOf(plot, range[0], range[1], Math.floor((width() - LEFT - RIGHT) * 1.5));
 
-  /** Of the scale, where the highest value shown is `high`. */
+  /** The labels of the scale when the highest value shown is `high`. */
   function topOf(high) {
     const top = cut && usual > 0 ? Math.min(high, usual) : high;
     return top > 0 ? top * 1.04 : 1;

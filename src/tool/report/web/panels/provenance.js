@@ -1,4 +1,4 @@
-/** Where the results come from: version, machine, inputs; and how exactly this page shows them. */
+/** Names the origin of the results (version, machine, inputs), and how exactly this page shows them. */
 import { element, heading } from '../page/dom.js';
 import { counted, integer, significant } from '../page/format.js';
 import { nameOf } from '../page/names.js';
@@ -64,7 +64,7 @@ function factsOfMethod(summary) {
       'Least separation',
       lines([
         summary.min_separation === 0
-          ? '0: a contact is touching'
+          ? '0: features in contact touch'
           : `${summary.min_separation}: a contact is coming within it`,
       ]),
     ],
@@ -79,7 +79,7 @@ function factsOfMethod(summary) {
   ];
 }
 
-/** How far what is drawn may be from what was computed. */
+/** The largest distance between what is drawn and what was computed. */
 function factsOfPicture(scene) {
   const all = scene.last - scene.first + 1;
   const kept = scene.frames.length;

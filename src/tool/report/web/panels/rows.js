@@ -79,13 +79,13 @@ export function createRows(box, table, { columns, height, printed, make, fill })
   }
 
   return {
-    /** Shows this many rows, filled anew. */
+    /** Shows this many rows and fills them again. */
     show(rows) {
       count = rows;
       table.setAttribute('aria-rowcount', String(rows + 1));
       draw();
     },
-    /** Fills the rows that are there anew. */
+    /** Fills the rows again that are in the document. */
     refresh: place,
     toTop() {
       box.scrollTop = 0;

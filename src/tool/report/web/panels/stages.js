@@ -11,7 +11,7 @@ export const STAGES = [
 
 export const OTHER = { key: 'other', label: 'other', colour: '#8a94a0' };
 
-/** As the tool's own table: X stands where the method has no such stage. */
+/** Does the method have the stage? The tool's table has an X where it does not. */
 export function hasStage(method, key) {
   const contours = method === 'iccd' || method === 'iccd-published';
   const oriented = method !== 'none' && method !== 'brute' && !contours;
@@ -23,7 +23,7 @@ export function stagesOf(method) {
   return STAGES.filter(({ key }) => hasStage(method, key));
 }
 
-/** What of an interval's total is no stage's: checks of the input and the steps between. */
+/** The part of an interval's total that belongs to no stage: checks of the input, and the work between stages. */
 export function otherMilliseconds(ms) {
   return Math.max(
     0,

@@ -1,12 +1,12 @@
 /** A band over the charts that shows every interval's state. */
 import { element } from '../page/dom.js';
 import { counted } from '../page/format.js';
-import { countStates, drawStates, STATE_MEANING } from '../page/states.js';
+import { countStates, drawStates, STATE_MEANING, STATE_NAME } from '../page/states.js';
 
 function key(counts) {
   const list = element('ul', { class: 'chart-keys' });
   for (const [state, count] of counts) {
-    const words = element('span', { text: `${state} ${count}` });
+    const words = element('span', { text: `${STATE_NAME[state]} ${count}` });
     const mark = element('span', { class: `state ${state}` }, element('i'), words);
     list.append(element('li', { title: STATE_MEANING[state] }, mark));
   }
@@ -16,7 +16,7 @@ function key(counts) {
 /** @param {(object|undefined)[]} intervals from the first on */
 export function createStateBand(intervals) {
   const counts = countStates(intervals);
-  const words = counts.map(([state, count]) => `${counted(count, 'interval')} ${state}`).join(', ');
+  const words = counts.map(([state, count]) => `${counted(count, 'interval')} ${STATE_NAME[state]}`).join(', ');
   const canvas = element('canvas', { role: 'img', 'aria-label': `States of the intervals: ${words}` });
   const timeLine = element('div', { class: 'time-line' });
   const track = element('div', { class: 'track' }, canvas, timeLine);

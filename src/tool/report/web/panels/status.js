@@ -3,6 +3,7 @@ import { onCalmly } from '../controls/calm.js';
 import { setText } from '../page/dom.js';
 import { counted, integer, moment } from '../page/format.js';
 import { extentOf, finder, intervalAt } from '../page/intervals.js';
+import { STATE_NAME } from '../page/states.js';
 
 function ofStill(report) {
   if (report.kind === 'compare') return `${counted(report.summaries.length, 'replay')} compared`;
@@ -24,7 +25,7 @@ export function create(container, report, store) {
     container.setAttribute('aria-live', playing ? 'off' : 'polite');
     const parts = [`Frame ${moment(time)} of ${first} to ${last}`];
     const interval = find(intervalAt(time, extent));
-    if (interval) parts.push(interval.state, `${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
+    if (interval) parts.push(STATE_NAME[interval.state] ?? interval.state, `${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
     setText(container, parts.join(' · '));
   }
 

@@ -1,4 +1,4 @@
-/** Where the reader looks from: turning, panning, zooming, framing. */
+/** The camera: turning, panning, zooming, framing. */
 
 import { MOUSE, PerspectiveCamera, TOUCH, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';

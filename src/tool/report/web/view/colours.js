@@ -30,7 +30,7 @@ const TONES = [
   [0, 112],
 ];
 
-/** As in the tool's pictures. @returns {number[]} 0..255 */
+/** The colour map of the tool's pictures. @returns {number[]} 0..255 */
 export function regionColour(region) {
   const [target, share] = TONES[Math.floor(region / HUES.length) % TONES.length];
   return HUES[region % HUES.length].map((value) => Math.trunc((value * (256 - share) + target * share) / 256));

@@ -1,4 +1,4 @@
-/** What the colours and marks mean, in words and numbers, over the view. */
+/** The legend over the view: what colours and marks mean, in words and numbers. */
 
 import { onCalmly } from '../controls/calm.js';
 import { element, swatch } from '../page/dom.js';
@@ -96,9 +96,9 @@ function marksLegend(scene, state, find) {
     const row = find(interval);
     const count = (kind, all) => (kept[kind] < all ? `${integer(kept[kind])} of ${integer(all)}` : integer(kept[kind]));
     const mark = (name) => element('span', { class: name, 'aria-hidden': 'true' });
-    rows.push(item(mark('mark-vf'), `VF, a vertex meets a face: ${count(0, row?.vf)}`));
-    rows.push(item(mark('mark-ee'), `EE, two edges meet: ${count(1, row?.ee)}`));
-    const how = state.colour === 'plain' ? 'triangles that touch' : 'outlined: triangles that touch';
+    rows.push(item(mark('mark-vf'), `VF, a vertex touches a face: ${count(0, row?.vf)}`));
+    rows.push(item(mark('mark-ee'), `EE, two edges touch: ${count(1, row?.ee)}`));
+    const how = state.colour === 'plain' ? 'triangles in contact' : 'outlined: triangles in contact';
     if (end > begin) rows.push(item(swatch(css(TOUCHING)), how));
   }
   return rows.length > 0 ? [items(...rows)] : [];

@@ -1,8 +1,8 @@
-/** Where on the canvas the marks are: for the pointer, and for tests. */
+/** Positions of the marks on the canvas, for the pointer and for tests. */
 
 import { Vector3 } from 'three';
 
-/** What is marked, and where on the canvas (CSS pixels). */
+/** The marks and their positions on the canvas, in CSS pixels. */
 export function markersOnScreen(viewer) {
   const { data, size, space, store, view } = viewer;
   viewer.update(store.get());

@@ -1,4 +1,4 @@
-/** Which colour each triangle has, and which of its edges are drawn. */
+/** Gives each triangle its colour, and says which of its edges are drawn. */
 
 import { intervalAt } from '../page/intervals.js';
 import { HEAT, ORIENTATIONS, PLAIN, TOUCHING, VIRIDIS, heatPlace, limitsOf, regionColour, step } from './colours.js';
@@ -111,7 +111,7 @@ export class Painter {
     return lines;
   }
 
-  /** What the painting depends on: nothing need be painted while it stays the same. */
+  /** Everything that the painting depends on; while it stays the same, nothing is painted again. */
   key(state) {
     const { scene } = this;
     const moving = state.colour === 'orientation' || (state.contacts && scene.contacts !== null);

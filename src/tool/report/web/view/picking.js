@@ -1,11 +1,11 @@
-/** Which contact or triangle lies under a point of the picture. */
+/** Finds the contact or triangle under a point of the picture. */
 
 import { Raycaster, Vector2 } from 'three';
 import { markersOnScreen } from './onscreen.js';
 
 const NEAR = 9; // CSS pixels
 
-/** The nearest triangle that a ray hits, in the mesh's own coordinates; null where there is none. */
+/** The nearest triangle on a ray, in the mesh's own coordinates; null where there is none. */
 function pickTriangle(local, triangles, origin, direction) {
   let best = Infinity;
   let picked = null;

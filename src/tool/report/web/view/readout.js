@@ -1,4 +1,4 @@
-/** What is known about the triangle that was clicked. */
+/** Shows what is known about the triangle that was clicked. */
 
 import { onCalmly } from '../controls/calm.js';
 import { element } from '../page/dom.js';

@@ -1,4 +1,4 @@
-/** How many pixels are drawn: all of the screen's at rest, fewer in motion where that is too slow. */
+/** Chooses how many pixels are drawn: all of the screen at rest, fewer in motion if all would be too slow. */
 
 const LEAST = 0.7; // pixels of the buffer for one of the page
 const SLOW_MS = 30;

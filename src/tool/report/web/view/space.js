@@ -1,4 +1,4 @@
-/** From the report's coordinates (in double) to the view's: about 1 across, near 0, z up. */
+/** Converts the report's coordinates (in double) to those of the view, which is about 1 across, near 0, with z up. */
 
 import { Box3, Quaternion, Sphere, Vector3 } from 'three';
 

@@ -1,4 +1,4 @@
-/** Which triangles meet at vertices and edges. */
+/** Which triangles share each vertex and each edge. */
 
 /** Triangles around each vertex, as compressed rows. */
 export function trianglesOfVertices({ triangles, vertexCount }) {

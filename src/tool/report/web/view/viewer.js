@@ -96,7 +96,7 @@ export class Viewer {
     window.addEventListener('beforeprint', () => this.drawNow());
   }
 
-  /** What there is to see, as far as frames have been read. */
+  /** The scene, as far as frames have been read. */
   measure() {
     const { data, space } = this;
     const bodies = data.positions;
