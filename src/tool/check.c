@@ -158,11 +158,11 @@ static int run_check(const check_options *options) {
                frame_list_frames(&c.intersecting), c.frames_checked);
         frame_list_print(&c.intersecting, ": ");
     }
-    int code = !ran                                               ? fail_input("%s", error.text)
-               : !closed                                          ? fail_input("%s", close_error.text)
-               : interrupted()                                    ? EXIT_INTERRUPTED
+    int code = !ran                                                   ? fail_input("%s", error.text)
+               : !closed                                              ? fail_input("%s", close_error.text)
+               : interrupted()                                        ? EXIT_INTERRUPTED
                : options->fail_on_contact && c.intersecting.count > 0 ? EXIT_CONTACT
-                                                                  : EXIT_RAN;
+                                                                      : EXIT_RAN;
     cscd_detector_destroy(c.detector);
     ignore_pairs_free(&c.ignored);
     recording_close(&c.recording);

@@ -69,8 +69,9 @@ static bool print_zero_area(recording *r, io_error *error) {
                     cscd_detector_check(detector, positions, &found) != CSCD_OK))
         checked = io_fail(error, "%s", cscd_context_detail(r->context));
     if (checked) {
-        printf("zero area   %u triangles\ntouching    %zu triangle pairs intersect or touch (see cscd check)\n",
-               found.zero_area_triangles, found.count);
+        printf(
+            "zero area   %u triangles\ntouching    %zu triangle pairs intersect or touch (see cscd check)\n",
+            found.zero_area_triangles, found.count);
     }
     cscd_detector_destroy(detector);
     free(positions);

@@ -33,7 +33,7 @@ static void print_help(void) {
            "exit: 0 ran, 1 bad input, 2 usage, 3 contacts found (with --fail-on-contact), 130 interrupted\n");
 }
 
-static int run(int argument_count, char **arguments) {
+static int run_command(int argument_count, char **arguments) {
     if (argument_count < 2) return fail_usage("", "no command given");
     const char *name = arguments[1];
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
@@ -52,7 +52,7 @@ static int run(int argument_count, char **arguments) {
 
 int main(int argument_count, char **arguments) {
     signal(SIGPIPE, SIG_IGN); /* a closed pipe is a write error like any other: files still get finished */
-    int code = run(argument_count, arguments);
+    int code = run_command(argument_count, arguments);
     if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT)
         code = fail_input("standard output: %s", strerror(errno));
     return code;

@@ -23,12 +23,12 @@ void *io_realloc(void *memory, size_t size) {
 enum { VERTICES = 50, FRAMES = 24, VALUES = VERTICES * 3 };
 
 /* What a recording does in its frames. */
-typedef struct motion {
+typedef struct frame_motion {
     const char *name;
     void (*place)(uint32_t frame, double *positions);
     uint32_t vertex_count, keys_max;
     double scale;
-} motion;
+} frame_motion;
 
 /* The same body in every frame. */
 static void body_point(uint32_t vertex, double out[3]) {
@@ -45,41 +45,41 @@ static void place_body(double *positions, const double size[3], const double cen
     }
 }
 
-static void place(double *positions, double size, double x) {
+static void place_vertices(double *positions, double size, double x) {
     place_body(positions, (double[]){size, size, size}, (double[]){x, -x / 2.0, 0.0});
 }
 
-static void still(uint32_t frame, double *positions) {
+static void still_motion(uint32_t frame, double *positions) {
     (void)frame;
-    place(positions, 1.0, 0.0);
+    place_vertices(positions, 1.0, 0.0);
 }
 
-static void wobbling(uint32_t frame, double *positions) {
+static void wobbling_motion(uint32_t frame, double *positions) {
     place_body(positions, (double[]){1.0 + 0.1 * sin(frame), 1.0, 2.0}, (double[]){0.0, 0.01 * frame, 0.0});
 }
 
 static void flying_far(uint32_t frame, double *positions) {
-    place(positions, 1.0, pow(10.0, frame % 12));
+    place_vertices(positions, 1.0, pow(10.0, frame % 12));
 }
 
-static void shrinking(uint32_t frame, double *positions) {
-    place(positions, pow(10.0, -1.0 * frame), 0.0);
+static void shrinking_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, pow(10.0, -1.0 * frame), 0.0);
 }
 
-static void exploding(uint32_t frame, double *positions) {
-    place(positions, pow(10.0, frame), 3.0);
+static void exploding_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, pow(10.0, frame), 3.0);
 }
 
 /* Grows slowly enough for the first grid, which becomes very fine for it. */
-static void swelling(uint32_t frame, double *positions) {
-    place(positions, pow(1.7, frame), 0.0);
+static void swelling_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, pow(1.7, frame), 0.0);
 }
 
 static void from_a_point(uint32_t frame, double *positions) {
-    place(positions, frame < 3 || frame == 10 ? 0.0 : 1.0, 5.0);
+    place_vertices(positions, frame < 3 || frame == 10 ? 0.0 : 1.0, 5.0);
 }
 
-static void flat(uint32_t frame, double *positions) {
+static void flat_motion(uint32_t frame, double *positions) {
     place_body(positions, (double[]){1.0, 0.0, 1e-9}, (double[]){frame, frame, 1e9});
 }
 
@@ -87,52 +87,52 @@ static void one_vertex(uint32_t frame, double *positions) {
     for (int k = 0; k < 3; k++) positions[k] = frame * 1.1 + k;
 }
 
-static void huge(uint32_t frame, double *positions) {
-    place(positions, 0x1p299, frame * 0x1p298);
+static void huge_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, 0x1p299, frame * 0x1p298);
 }
 
 static void huge_with_zeros(uint32_t frame, double *positions) {
-    place(positions, 0x1p298, 0.0);
+    place_vertices(positions, 0x1p298, 0.0);
     for (uint32_t v = 0; v < VERTICES; v += 2) memset(positions + v * 3, 0, sizeof(double[3]));
     positions[4] = frame * 0x1p-300;
 }
 
-static void tiny(uint32_t frame, double *positions) {
-    place(positions, 0x1p-250, frame * 0x1p-260);
+static void tiny_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, 0x1p-250, frame * 0x1p-260);
 }
 
 static void coarse_doubles(uint32_t frame, double *positions) {
-    place(positions, 4.0, 0x1p52 + frame);
+    place_vertices(positions, 4.0, 0x1p52 + frame);
     for (uint32_t i = 0; i < VALUES; i++) positions[i] = rint(positions[i]);
 }
 
-static void jumping(uint32_t frame, double *positions) {
-    place(positions, 1.0, frame % 2 == 0 ? 16000.0 : -16000.0);
+static void jumping_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, 1.0, frame % 2 == 0 ? 16000.0 : -16000.0);
 }
 
 /* Beyond all that a page can show: what is stated is still true. */
-static void bursting(uint32_t frame, double *positions) {
-    place(positions, frame < 5 ? 1.0 : frame % 2 == 0 ? 1e80 : 1e-60, 0.0);
-    if (frame == 20) place(positions, 0.0, 1e80);
+static void bursting_motion(uint32_t frame, double *positions) {
+    place_vertices(positions, frame < 5 ? 1.0 : frame % 2 == 0 ? 1e80 : 1e-60, 0.0);
+    if (frame == 20) place_vertices(positions, 0.0, 1e80);
 }
 
-static const motion bursts = {"bursting", bursting, VERTICES, FRAMES, 1.0};
+static const frame_motion bursts = {"bursting", bursting_motion, VERTICES, FRAMES, 1.0};
 
-static const motion motions[] = {
-    {"still", still, VERTICES, 1, 1.0},
-    {"wobbling", wobbling, VERTICES, 1, 1.0},
+static const frame_motion motions[] = {
+    {"still", still_motion, VERTICES, 1, 1.0},
+    {"wobbling", wobbling_motion, VERTICES, 1, 1.0},
     {"flying far", flying_far, VERTICES, FRAMES, 1.0},
-    {"shrinking", shrinking, VERTICES, FRAMES, 1.0},
-    {"exploding", exploding, VERTICES, 8, 1.0},
-    {"swelling", swelling, VERTICES, 2, 1.0},
+    {"shrinking", shrinking_motion, VERTICES, FRAMES, 1.0},
+    {"exploding", exploding_motion, VERTICES, 8, 1.0},
+    {"swelling", swelling_motion, VERTICES, 2, 1.0},
     {"from a point", from_a_point, VERTICES, 6, 1.0},
-    {"flat", flat, VERTICES, 1, 1.0},
+    {"flat", flat_motion, VERTICES, 1, 1.0},
     {"one vertex", one_vertex, 1, FRAMES, 1.0},
-    {"huge", huge, VERTICES, 1, 0x1p-300},
+    {"huge", huge_motion, VERTICES, 1, 0x1p-300},
     {"huge with zeros", huge_with_zeros, VERTICES, 1, 0x1p-298},
-    {"tiny", tiny, VERTICES, 1, 0x1p250},
+    {"tiny", tiny_motion, VERTICES, 1, 0x1p250},
     {"coarse doubles", coarse_doubles, VERTICES, 1, 1.0},
-    {"jumping", jumping, VERTICES, 2, 1.0},
+    {"jumping", jumping_motion, VERTICES, 2, 1.0},
 };
 
 /* The stream's bytes, as a page has them. */
@@ -149,7 +149,8 @@ static page_bytes bytes_of(frame_stream *stream) {
 }
 
 /* The largest error of a coordinate, and the longest side. */
-static void compare(const double *shown, const double *given, const motion *m, double *error, double *side) {
+static void compare_positions(const double *shown, const double *given, const frame_motion *m, double *error,
+                              double *side) {
     *error = *side = 0.0;
     for (uint32_t k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
@@ -163,7 +164,7 @@ static void compare(const double *shown, const double *given, const motion *m, d
 }
 
 /* Below relative_max, a share of the longest side. */
-static void check_motion(const motion *m, double relative_max) {
+static void check_motion(const frame_motion *m, double relative_max) {
     frame_stream stream;
     double given[VALUES], *shown;
     uint32_t keys;
@@ -177,7 +178,7 @@ static void check_motion(const motion *m, double relative_max) {
     double max_error = 0.0, relative_error = 0.0, error, side;
     for (uint32_t f = 0; f < FRAMES; f++) {
         m->place(f, given);
-        compare(shown + (size_t)f * m->vertex_count * 3, given, m, &error, &side);
+        compare_positions(shown + (size_t)f * m->vertex_count * 3, given, m, &error, &side);
         max_error = fmax(max_error, error);
         if (error > 0.0) relative_error = fmax(relative_error, side > 0.0 ? error / side : 1.0);
     }
@@ -208,7 +209,7 @@ static void still_frames_are_small(void **state) {
     double given[VALUES];
     char *text = NULL;
     size_t size;
-    still(0, given);
+    still_motion(0, given);
     assert_true(frame_stream_create(VERTICES, 1.0, &stream));
     for (int f = 0; f < 1000; f++) assert_true(frame_stream_add(&stream, given));
     FILE *memory = open_memstream(&text, &size);
@@ -240,7 +241,7 @@ static void bytes_come_back(void **state) {
 static void memory_that_runs_out_is_told(void **state) {
     (void)state;
     double given[VALUES];
-    still(0, given);
+    still_motion(0, given);
     int failures = 0;
     for (bool done = false; !done; failures++) {
         frame_stream stream = {0};

@@ -32,7 +32,7 @@ static page write_page(report *r) {
     return page_read(path.text);
 }
 
-static report *create(const report_options *options) {
+static report *create_report(const report_options *options) {
     io_error error = {""};
     report *r = NULL;
     if (!report_create(options, &r, &error)) fail_msg("%s", error.text);
@@ -58,8 +58,8 @@ static bool has_edge(const uint32_t *corners, uint32_t a, uint32_t b) {
     return have == 2;
 }
 
-/* By looking at every triangle. */
-static void heat(const report_rig *rig, const cscd_contact *contact, const uint32_t *v) {
+/* Finds the triangles of a contact by looking at every triangle. */
+static void heat_triangles(const report_rig *rig, const cscd_contact *contact, const uint32_t *v) {
     for (uint32_t t = 0; t < rig->shape.triangle_count; t++) {
         const uint32_t *c = rig->shape.triangles + (size_t)t * 3;
         bool takes_part = contact->kind == CSCD_CONTACT_VF
@@ -83,7 +83,7 @@ static void expect_contact(const report_rig *rig, uint32_t interval, const cscd_
     found.kind[i] = contact->kind == CSCD_CONTACT_EE;
     found.toi[i] = contact->toi;
     memcpy(found.point[i], contact->point, sizeof contact->point);
-    heat(rig, contact, v);
+    heat_triangles(rig, contact, v);
 }
 
 static void expect_marks(const report_rig *rig) {
@@ -154,7 +154,7 @@ static void expect_contacts(const page *p) {
 static void check_replay(recorded shape, recorded again, cscd_method method) {
     report_rig rig = report_rig_create(shape, method), own = report_rig_create(again, method);
     report_options options = report_rig_options(&rig);
-    report *r = create(&options);
+    report *r = create_report(&options);
     assert_true(report_rig_replay(&rig, r, NULL));
     page p = write_page(r);
     expect_replay(&own);
@@ -194,7 +194,7 @@ static void of_long_recordings_few_frames_are_kept(void **state) {
     report_options options = report_rig_options(&rig);
     options.first = 100;
     options.last = 100 + 2100000;
-    report *r = create(&options);
+    report *r = create_report(&options);
     assert_true(report_rig_replay(&rig, r, NULL));
     assert_int_equal(report_frame_count(r), 4);
     for (uint32_t i = 0; i < 4; i++) assert_int_equal(report_frame(r, i), kept[i]);
@@ -223,13 +223,13 @@ static void moving_scenery_takes_room(void **state) {
     report_rig rig = report_rig_create(recorded_tetrahedra(FRAMES), CSCD_METHOD_SINGLE);
     report_options options = report_rig_options(&rig);
     options.scenery = (report_scenery){REPORT_POSITIONS_MAX - 5, 1, triangle, true};
-    report *r = create(&options);
+    report *r = create_report(&options);
     assert_true(report_rig_replay(&rig, r, NULL));
     assert_int_equal(report_frame_count(r), 2);
     assert_int_equal(report_frame(r, 1), FRAMES - 1);
     report_destroy(r);
     options.scenery.moves = false;
-    r = create(&options);
+    r = create_report(&options);
     assert_true(report_rig_replay(&rig, r, NULL));
     assert_int_equal(report_frame_count(r), FRAMES);
     report_destroy(r);
@@ -244,7 +244,7 @@ static void scenery_comes_back(void **state) {
         report_rig rig = report_rig_create(recorded_tetrahedra(2), CSCD_METHOD_SINGLE);
         report_options options = report_rig_options(&rig);
         options.scenery = (report_scenery){3, 1, triangle, moves};
-        report *r = create(&options);
+        report *r = create_report(&options);
         assert_true(report_rig_replay(&rig, r, NULL));
         uint32_t count = moves ? report_frame_count(r) : 1;
         for (uint32_t i = 0; i < count; i++) assert_true(report_add_scenery(r, positions[i], NULL));
@@ -264,8 +264,8 @@ static void scenery_comes_back(void **state) {
     }
 }
 
-/* The file's numbers are another's business. */
-static void number(void *user, const cscd_contact *contact, uint32_t vertices[4]) {
+/* Gives vertices numbers of a file, which here are made up. */
+static void number_vertices(void *user, const cscd_contact *contact, uint32_t vertices[4]) {
     for (uint32_t i = 0; i < 4; i++) vertices[i] = *(const uint32_t *)user + contact->a + i;
 }
 
@@ -283,10 +283,10 @@ static page crowded_page(const report_rig *rig, uint32_t *file_offset) {
     report_options options = report_rig_options(rig);
     options.last = INTERVALS;
     options.oriented = false;
-    options.file_vertices = number;
+    options.file_vertices = number_vertices;
     options.file_vertices_user = file_offset;
     for (int i = 0; i < MANY; i++) items[i] = (cscd_contact){.kind = CSCD_CONTACT_VF, .a = 4, .toi = i};
-    report *r = create(&options);
+    report *r = create_report(&options);
     assert_true(report_begin(r, rig->shape.frames, NULL));
     for (uint32_t k = 0; k < INTERVALS; k++) {
         cscd_contacts contacts = {items, found_in(k)};

@@ -24,7 +24,7 @@ static contact_rows rows;   /* of a replay of the whole */
 static json_node *json;     /* its summary */
 static unsigned printed[4]; /* its table: VF, EE, intervals with contact, intervals */
 
-static void generate(void) {
+static void generate_capsule(void) {
     model_program_use("capsule_bend");
     tool_run run = RUN_TOOL(model.text, frames.text);
     assert_int_equal(run.code, 0);
@@ -42,7 +42,7 @@ static int replay_capsule(void **state) {
     frames = temp_file_path(&folder, "capsule.pc2");
     csv = temp_file_path(&folder, "contacts.csv");
     summary = temp_file_path(&folder, "summary.json");
-    generate();
+    generate_capsule();
     tool_run run = RUN_TOOL("replay", model.text, frames.text, "--method", method, "--contacts", csv.text,
                             "--json", summary.text);
     if (run.code != 0) fail_msg("%s", run.error);

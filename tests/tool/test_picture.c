@@ -40,7 +40,7 @@ static picture_options front_view(picture_shading shading) {
     return options;
 }
 
-static picture_image render(const picture_scene *scene, const picture_options *options) {
+static picture_image render_scene(const picture_scene *scene, const picture_options *options) {
     picture_image image;
     io_error error = {""};
     if (!picture_render_image(scene, options, &image, &error)) fail_msg("%s", error.text);
@@ -52,12 +52,12 @@ static const uint8_t *pixel_at(const picture_image *image, double x, double y) {
     return image->pixels + 4 * ((size_t)y * image->width + (size_t)x);
 }
 
-static const uint8_t *middle(const picture_image *image) {
+static const uint8_t *middle_pixel(const picture_image *image) {
     return pixel_at(image, image->width / 2, image->height / 2);
 }
 
-static void project(const picture_scene *scene, const picture_options *options, const double point[3],
-                    double pixel[2]) {
+static void project_point(const picture_scene *scene, const picture_options *options, const double point[3],
+                          double pixel[2]) {
     picture_camera camera;
     double at[3];
     picture_scene_camera(scene, options, &camera);
@@ -71,16 +71,16 @@ static void triangle_covers_the_middle_with_its_colour(void **state) {
     (void)state;
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_UNLIT);
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     const uint8_t white[] = {255, 255, 255, 255};
-    assert_memory_equal(middle(&image), ((const uint8_t[]){220, 40, 30, 255}), 4);
+    assert_memory_equal(middle_pixel(&image), ((const uint8_t[]){220, 40, 30, 255}), 4);
     assert_memory_equal(pixel_at(&image, 0, 0), white, 4);
     picture_image_free(&image);
     options.shading = PICTURE_SMOOTH;
     options.transparent = true;
-    image = render(&scene, &options);
-    assert_true(middle(&image)[0] > 2 * middle(&image)[1]);
-    assert_true(middle(&image)[3] == 255 && pixel_at(&image, 0, 0)[3] == 0);
+    image = render_scene(&scene, &options);
+    assert_true(middle_pixel(&image)[0] > 2 * middle_pixel(&image)[1]);
+    assert_true(middle_pixel(&image)[3] == 255 && pixel_at(&image, 0, 0)[3] == 0);
     picture_image_free(&image);
 }
 
@@ -96,7 +96,7 @@ static void camera_keeps_everything_within_the_margin(void **state) {
         double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {0.0, 0.0};
         for (int i = 0; i < 8; i++) {
             double pixel[2];
-            project(&scene, &options, positions + 3 * (i / 2), pixel);
+            project_point(&scene, &options, positions + 3 * (i / 2), pixel);
             low[i % 2] = fmin(low[i % 2], pixel[i % 2]);
             high[i % 2] = fmax(high[i % 2], pixel[i % 2]);
         }
@@ -114,9 +114,9 @@ static void axes_point_where_the_header_says(void **state) {
     double origin[2], x[2], up[2];
     for (int y_up = 0; y_up < 2; y_up++) {
         options.y_up = y_up != 0;
-        project(&scene, &options, (const double[]){0, 0, 0}, origin);
-        project(&scene, &options, (const double[]){0.1, 0, 0}, x);
-        project(&scene, &options, (const double[]){0, y_up ? 0.1 : 0, y_up ? 0 : 0.1}, up);
+        project_point(&scene, &options, (const double[]){0, 0, 0}, origin);
+        project_point(&scene, &options, (const double[]){0.1, 0, 0}, x);
+        project_point(&scene, &options, (const double[]){0, y_up ? 0.1 : 0, y_up ? 0 : 0.1}, up);
         assert_true(x[0] > origin[0] + 1 && up[1] < origin[1] - 1);
     }
 }
@@ -133,8 +133,8 @@ static void nearer_hides_farther_in_either_order(void **state) {
         memcpy(colours + 3 - 3 * order, green, 3);
         picture_scene scene = scene_of(6, positions, 2, orders[order]);
         scene.triangle_colours = colours;
-        picture_image image = render(&scene, &options);
-        assert_memory_equal(middle(&image), green, 3);
+        picture_image image = render_scene(&scene, &options);
+        assert_memory_equal(middle_pixel(&image), green, 3);
         picture_image_free(&image);
     }
 }
@@ -144,11 +144,11 @@ static void back_faces_are_tinted(void **state) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
     scene.triangle_colours = blue;
-    picture_image front = render(&scene, &options);
+    picture_image front = render_scene(&scene, &options);
     options.azimuth = 180.0;
-    picture_image back = render(&scene, &options);
-    assert_true(middle(&front)[2] > middle(&front)[0]);
-    assert_true(middle(&back)[0] > middle(&back)[2]);
+    picture_image back = render_scene(&scene, &options);
+    assert_true(middle_pixel(&front)[2] > middle_pixel(&front)[0]);
+    assert_true(middle_pixel(&back)[0] > middle_pixel(&back)[2]);
     picture_image_free(&front);
     picture_image_free(&back);
 }
@@ -171,7 +171,7 @@ static void neighbours_leave_no_gap(void **state) {
     }
     picture_scene scene = scene_of(slivers + 2, positions, slivers, triangles);
     picture_options options = front_view(PICTURE_UNLIT);
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     for (double x = 0.35; x < 0.65; x += 0.004)
         for (double y = 0.26; y < 0.4; y += 0.005)
             assert_memory_equal(pixel_at(&image, x * 160, y * 120), pixel_at(&image, 80, 30), 4);
@@ -187,7 +187,7 @@ static void shared_edge_is_drawn(void **state) {
     picture_scene scene = scene_of(4, positions, 2, triangles);
     picture_options options = front_view(PICTURE_UNLIT);
     options.width = 161, options.samples = 1;
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     for (double y = 20; y < 100; y++)
         assert_memory_equal(pixel_at(&image, 80, y), pixel_at(&image, 82, 60), 4);
     assert_memory_not_equal(pixel_at(&image, 82, 60), pixel_at(&image, 0, 0), 4);
@@ -203,9 +203,9 @@ static void cube_keeps_its_creases(void **state) {
     picture_scene scene = scene_of(8, positions, 12, triangles);
     picture_options options = front_view(PICTURE_SMOOTH);
     options.azimuth = options.elevation = 30.0;
-    picture_image smooth = render(&scene, &options);
+    picture_image smooth = render_scene(&scene, &options);
     options.shading = PICTURE_FLAT;
-    picture_image flat = render(&scene, &options);
+    picture_image flat = render_scene(&scene, &options);
     for (size_t i = 0; i < (size_t)4 * 160 * 120; i++)
         assert_true(abs(smooth.pixels[i] - flat.pixels[i]) <= 1);
     picture_image_free(&smooth);
@@ -216,14 +216,14 @@ static void wires_darken_the_edges(void **state) {
     (void)state;
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
-    picture_image plain = render(&scene, &options);
+    picture_image plain = render_scene(&scene, &options);
     options.wire = true;
-    picture_image wired = render(&scene, &options);
+    picture_image wired = render_scene(&scene, &options);
     double edge[2];
-    project(&scene, &options, (const double[]){0, 0, -1}, edge);
+    project_point(&scene, &options, (const double[]){0, 0, -1}, edge);
     assert_true(pixel_at(&wired, edge[0], edge[1] - 0.5)[0] <
                 pixel_at(&plain, edge[0], edge[1] - 0.5)[0] - 20);
-    assert_memory_equal(middle(&wired), middle(&plain), 4);
+    assert_memory_equal(middle_pixel(&wired), middle_pixel(&plain), 4);
     picture_image_free(&plain);
     picture_image_free(&wired);
 }
@@ -235,10 +235,10 @@ static void marker_appears_where_it_projects(void **state) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_UNLIT);
     scene.markers = markers, scene.marker_count = 2;
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     double visible[2], hidden[2];
-    project(&scene, &options, markers[0].position, visible);
-    project(&scene, &options, markers[1].position, hidden);
+    project_point(&scene, &options, markers[0].position, visible);
+    project_point(&scene, &options, markers[1].position, hidden);
     assert_memory_equal(pixel_at(&image, visible[0], visible[1]), blue, 3);
     assert_memory_equal(pixel_at(&image, visible[0], visible[1] - 12), red, 3);
     for (int i = 0; i < 3; i++)
@@ -258,7 +258,7 @@ static void ground_under_and_behind_the_camera_is_drawn(void **state) {
     memcpy(options.focus_min, (const double[]){-1, -1, -1}, sizeof options.focus_min);
     memcpy(options.focus_max, (const double[]){1, 1, 1}, sizeof options.focus_max);
     const uint8_t white[] = {255, 255, 255, 255};
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     for (double x = 0; x < 160; x++) {
         assert_memory_equal(pixel_at(&image, x, 20), white, 4);
         assert_memory_not_equal(pixel_at(&image, x, 119), white, 4);
@@ -271,7 +271,7 @@ static void caption_and_legend_are_written(void **state) {
     const picture_legend legend = {{220, 40, 30}, "VF"};
     picture_scene scene = {.caption = "frame 44", .legend = &legend, .legend_count = 1};
     picture_options options = front_view(PICTURE_SMOOTH);
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     int dark = 0, reddish = 0;
     for (size_t i = 0; i < (size_t)160 * 120; i++) {
         dark += image.pixels[4 * i] < 64;
@@ -285,7 +285,7 @@ static void same_scene_same_pixels(void **state) {
     (void)state;
     picture_scene scene = facing_scene();
     picture_options options = picture_options_defaults();
-    picture_image first = render(&scene, &options), second = render(&scene, &options);
+    picture_image first = render_scene(&scene, &options), second = render_scene(&scene, &options);
     assert_memory_equal(first.pixels, second.pixels, (size_t)4 * 1280 * 960);
     picture_image_free(&first);
     picture_image_free(&second);
@@ -329,7 +329,7 @@ static void png_reads_back_the_same(void **state) {
     picture_scene scene = facing_scene();
     picture_options options = front_view(PICTURE_SMOOTH);
     options.transparent = true;
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     assert_true(picture_render(&scene, &options, path.text, NULL));
     png_image file = {.version = PNG_IMAGE_VERSION};
     assert_true(png_image_begin_read_from_file(&file, path.text));

@@ -10,7 +10,7 @@
 
 #include "tests/support/random_stream.h"
 
-static picture_image filled(uint32_t width, uint32_t height, uint8_t value) {
+static picture_image filled_image(uint32_t width, uint32_t height, uint8_t value) {
     picture_image image;
     assert_true(picture_image_create(width, height, &image, NULL));
     memset(image.pixels, value, (size_t)width * height * 4);
@@ -28,7 +28,7 @@ static void sheet_places_tiles_row_by_row(void **state) {
     assert_true(picture_sheet_create(5, 3, 20, 10, &sheet, NULL));
     assert_true(sheet.image.width == 60 && sheet.image.height == 20);
     for (uint32_t i = 0; i < 5; i++) {
-        picture_image tile = filled(20, 10, (uint8_t)(10 + i));
+        picture_image tile = filled_image(20, 10, (uint8_t)(10 + i));
         tile.pixels[3] = 255;
         picture_sheet_place(&sheet, i, &tile);
         picture_image_free(&tile);
@@ -200,7 +200,7 @@ static picture_options small_picture(void) {
     return options;
 }
 
-static picture_image render(const picture_scene *scene, const picture_options *options) {
+static picture_image render_scene(const picture_scene *scene, const picture_options *options) {
     picture_image image;
     io_error error = {""};
     if (!picture_render_image(scene, options, &image, &error)) fail_msg("%s", error.text);
@@ -233,7 +233,7 @@ static void pictures_have_no_unit(void **state) {
         scene.caption = "so long that the box would lie below it";
         options.focus = false;
         options.square = 0.25 * scales[i];
-        images[i] = render(&scene, &options);
+        images[i] = render_scene(&scene, &options);
         assert_memory_equal(images[i].pixels, images[0].pixels, (size_t)4 * 200 * 150);
     }
     assert_false(images[0].pixels[4 * (75 * 200 + 100)] == 255); /* and it is not empty */
@@ -251,8 +251,8 @@ static void ground_is_drawn_around_the_body(void **state) {
     picture_scene scene = box_scene(positions, &ground), alone = box_scene(positions, NULL),
                   other = box_scene(positions, &turned);
     picture_options options = small_picture();
-    picture_image image = render(&scene, &options), without = render(&alone, &options),
-                  again = render(&other, &options);
+    picture_image image = render_scene(&scene, &options), without = render_scene(&alone, &options),
+                  again = render_scene(&other, &options);
     assert_memory_equal(image.pixels, again.pixels, (size_t)4 * 200 * 150);
     for (double x = 0; x < 200; x += 199)
         for (double y = 0; y < 150; y += 149) {
@@ -277,7 +277,7 @@ static void squares_alternate_on_level_ground(void **state) {
     picture_options options = small_picture();
     options.elevation = 60.0;
     options.square = 0.5;
-    picture_image image = render(&scene, &options);
+    picture_image image = render_scene(&scene, &options);
     int one = pixel_of(&image, &scene, &options, 1.25, -0.25, 0)[0],
         next = pixel_of(&image, &scene, &options, 1.25, 0.25, 0)[0],
         diagonal = pixel_of(&image, &scene, &options, 1.75, 0.25, 0)[0];
@@ -297,11 +297,11 @@ static void given_camera_is_used(void **state) {
     picture_camera camera;
     picture_scene_camera(&scene, &options, &camera);
     fixed.camera = &camera;
-    picture_image own = render(&other, &options), first = render(&scene, &options),
-                  second = render(&other, &fixed);
+    picture_image own = render_scene(&other, &options), first = render_scene(&scene, &options),
+                  second = render_scene(&other, &fixed);
     assert_memory_not_equal(own.pixels, second.pixels, (size_t)4 * 200 * 150);
     camera.eye[0] += 0.75;
-    picture_image third = render(&other, &fixed);
+    picture_image third = render_scene(&other, &fixed);
     assert_memory_equal(first.pixels, third.pixels, (size_t)4 * 200 * 150);
     picture_image_free(&own);
     picture_image_free(&first);

@@ -34,7 +34,7 @@ static int remove_files(void **state) {
 }
 
 /* The summary of a replay with more arguments. */
-static json_node *replay(const char *const *more) {
+static json_node *replay_recording(const char *const *more) {
     const char *arguments[24] = {"replay",     model.text, cache.text, "--quiet",
                                  "--contacts", csv.text,   "--json",   summary.text};
     for (int i = 0; more[i] != NULL; i++) arguments[8 + i] = more[i];
@@ -42,15 +42,15 @@ static json_node *replay(const char *const *more) {
     return json_node_read_file(summary.text);
 }
 
-#define REPLAY(...) replay((const char *const[]){__VA_ARGS__, NULL})
+#define REPLAY(...) replay_recording((const char *const[]){__VA_ARGS__, NULL})
 
-static const json_node *interval(const json_node *root, size_t k) {
+static const json_node *interval_of(const json_node *root, size_t k) {
     return json_node_item(json_node_member(root, "intervals"), k);
 }
 
 /* The guarantee of the one component in interval k. */
 static void expect_guarantee(const json_node *root, size_t k, const char *mode, const char *reason) {
-    const json_node *list = json_node_member(interval(root, k), "guarantee");
+    const json_node *list = json_node_member(interval_of(root, k), "guarantee");
     assert_int_equal(list->count, 1);
     assert_string_equal(json_node_string(json_node_item(list, 0), "mode"), mode);
     if (strstr(json_node_string(json_node_item(list, 0), "reason"), reason) == NULL)
@@ -60,7 +60,7 @@ static void expect_guarantee(const json_node *root, size_t k, const char *mode, 
 
 static size_t first_contact(const json_node *root) {
     size_t k = 0;
-    while (json_node_member(interval(root, k), "earliest_toi")->kind == JSON_NULL) k++;
+    while (json_node_member(interval_of(root, k), "earliest_toi")->kind == JSON_NULL) k++;
     return k;
 }
 
@@ -81,7 +81,7 @@ static void methods_agree_in_mode_all(void **state) {
     json_node_free(root);
     char *expected = read_whole_file(csv.text, NULL);
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
-        json_node_free(replay(ways[i]));
+        json_node_free(replay_recording(ways[i]));
         char *bytes = read_whole_file(csv.text, NULL);
         assert_string_equal(bytes, expected);
         free(bytes);
@@ -94,13 +94,13 @@ static void earliest_finds_the_first_contact(void **state) {
     (void)state;
     static const char *const methods[] = {"charge", "single", "kmeans:4"};
     json_node *all = REPLAY("--method", "none");
-    double toi = json_node_number(interval(all, touching), "earliest_toi");
+    double toi = json_node_number(interval_of(all, touching), "earliest_toi");
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         json_node *root = REPLAY("--method", methods[i], "--mode", "earliest");
         const json_node *total = json_node_member(root, "summary");
         assert_string_equal(json_node_string(total, "mode"), "earliest");
         assert_int_equal(first_contact(root), touching);
-        assert_true(json_node_number(interval(root, touching), "earliest_toi") == toi);
+        assert_true(json_node_number(interval_of(root, touching), "earliest_toi") == toi);
         assert_true(json_node_number(total, "intervals_complete") == FRAMES - 2);
         assert_true(json_node_number(total, "contradictions") == 0);
         for (size_t k = 0; k < touching; k++) expect_guarantee(root, k, "all", "no contact");
@@ -117,7 +117,7 @@ static void counters_tell_that_culling_is_on(void **state) {
               *single = REPLAY("--method", "single", "--mode", "earliest");
     double pairs[2] = {0, 0};
     for (size_t k = 0; k < touching; k++) {
-        const json_node *without = interval(none, k), *with = interval(single, k);
+        const json_node *without = interval_of(none, k), *with = interval_of(single, k);
         assert_true(json_node_number(without, "plus") == 0 && json_node_number(without, "minus") == 0);
         assert_true(json_node_number(with, "plus") > 240);
         assert_true(json_node_number(with, "plus") + json_node_number(with, "minus") <= 480);

@@ -142,7 +142,7 @@ typedef struct difference {
     size_t label, elsewhere;
 } difference;
 
-static difference compare(const unsigned char *a, const unsigned char *b) {
+static difference compare_pictures(const unsigned char *a, const unsigned char *b) {
     difference found = {0, 0};
     for (uint32_t row = 1; row < HEIGHT; row++)
         for (uint32_t column = 1; column < WIDTH; column++) {
@@ -155,13 +155,13 @@ static difference compare(const unsigned char *a, const unsigned char *b) {
 
 static difference compare_tiles(const unsigned char *sheet, uint32_t columns, uint32_t one, uint32_t other) {
     unsigned char *a = tile_of(sheet, columns, one), *b = tile_of(sheet, columns, other);
-    difference found = compare(a, b);
+    difference found = compare_pictures(a, b);
     free(a);
     free(b);
     return found;
 }
 
-static size_t coloured(const unsigned char *pixels, size_t count) {
+static size_t coloured_pixels(const unsigned char *pixels, size_t count) {
     return count - count_pixels(pixels, count, 255, 255, 255);
 }
 
@@ -173,7 +173,7 @@ static void strip_is_a_grid_of_tiles(void **state) {
     unsigned char *sheet = read_png(3 * WIDTH, 2 * HEIGHT);
     for (uint32_t i = 0; i < 4; i++) {
         unsigned char *tile = tile_of(sheet, 3, i);
-        assert_true(coloured(tile, (size_t)WIDTH * HEIGHT) > 500);
+        assert_true(coloured_pixels(tile, (size_t)WIDTH * HEIGHT) > 500);
         free(tile);
         for (uint32_t j = 0; j < i; j++) {
             difference found = compare_tiles(sheet, 3, i, j);
@@ -181,7 +181,7 @@ static void strip_is_a_grid_of_tiles(void **state) {
         }
     }
     unsigned char *empty = tile_of(sheet, 3, 5);
-    assert_int_equal(coloured(empty, (size_t)WIDTH * HEIGHT), WIDTH + HEIGHT - 1); /* its lines */
+    assert_int_equal(coloured_pixels(empty, (size_t)WIDTH * HEIGHT), WIDTH + HEIGHT - 1); /* its lines */
     free(empty);
     free(sheet);
     RENDER_TILES(model.text, cache.text, "--frames", "3:");
@@ -204,9 +204,9 @@ static void camera_holds_the_whole_motion(void **state) {
     unsigned char *alone = read_png(WIDTH, HEIGHT);
     unsigned char *first = tile_of(all, 4, 0), *last = tile_of(all, 4, 7), *fourth = tile_of(all, 4, 4);
     unsigned char *first_end = tile_of(ends, 2, 0), *last_end = tile_of(ends, 2, 1);
-    difference same = compare(first, first_end), other = compare(fourth, alone);
+    difference same = compare_pictures(first, first_end), other = compare_pictures(fourth, alone);
     assert_true(same.label == 0 && same.elsewhere == 0);
-    same = compare(last, last_end);
+    same = compare_pictures(last, last_end);
     assert_true(same.label == 0 && same.elsewhere == 0);
     assert_true(other.elsewhere > 500);
     free(all);
@@ -243,7 +243,8 @@ static void following_camera_keeps_the_body_in_the_middle(void **state) {
         difference found = compare_tiles(followed, 2, 0, i);
         assert_true(found.label > 10 && found.elsewhere < 10);
     }
-    assert_true(coloured(followed, (size_t)WIDTH * HEIGHT * 4) > coloured(still, (size_t)WIDTH * HEIGHT * 4));
+    assert_true(coloured_pixels(followed, (size_t)WIDTH * HEIGHT * 4) >
+                coloured_pixels(still, (size_t)WIDTH * HEIGHT * 4));
     free(still);
     free(followed);
     RENDER_TILES(body.text, flight.text, "--frames", ":3", "--follow", "--scenery", ground.text);
@@ -282,7 +283,7 @@ static void strip_shows_a_plan(void **state) {
     for (uint32_t i = 0; i < 4; i++)
         for (int k = 1; k < 3; k++) {
             unsigned char *plain = tile_of(sheets[0], 2, i), *painted = tile_of(sheets[k], 2, i);
-            difference found = compare(plain, painted);
+            difference found = compare_pictures(plain, painted);
             assert_true(found.elsewhere > 300);
             free(plain);
             free(painted);
@@ -305,7 +306,7 @@ static void scenery_leaves_the_framing_alone(void **state) {
         kept += drawn && memcmp(alone + i * 3, with + i * 3, 3) == 0;
     }
     assert_true(body > 1500 && kept > body * 3 / 4);
-    assert_true(coloured(with, count) > count - 2000); /* the label */
+    assert_true(coloured_pixels(with, count) > count - 2000); /* the label */
     free(alone);
     free(with);
 }

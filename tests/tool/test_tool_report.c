@@ -33,7 +33,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-static bool exists(const char *path) {
+static bool file_exists(const char *path) {
     struct stat status;
     return lstat(path, &status) == 0;
 }
@@ -145,7 +145,7 @@ static void what_is_no_summary_is_named(void **state) {
         temp_path path = temp_file_write(&folder, "other.json", cases[i].text, strlen(cases[i].text));
         remove(page.text);
         EXPECT_ERROR(1, cases[i].reasons, "report", path.text, "-o", page.text);
-        assert_false(exists(page.text));
+        assert_false(file_exists(page.text));
     }
     EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
 }
@@ -215,12 +215,12 @@ static void an_unwritable_report_loses_nothing_else(void **state) {
     json_node *root = json_node_read_file(summary.text);
     assert_true(json_node_boolean(json_node_member(root, "summary"), "complete"));
     json_node_free(root);
-    assert_true(exists(csv.text));
+    assert_true(file_exists(csv.text));
     temp_path nowhere = temp_file_path(&folder, "nowhere/page.html");
     remove(csv.text);
     EXPECT_ERROR(1, TEXTS("nowhere/page.html", "No such file"), "replay", model.text, cache.text,
                  "--contacts", csv.text, "--report", nowhere.text);
-    assert_false(exists(csv.text)); /* asked before anything is truncated */
+    assert_false(file_exists(csv.text)); /* asked before anything is truncated */
 }
 
 static bool is_link(const char *path) {
@@ -304,7 +304,7 @@ static void a_replay_without_an_interval_says_that_it_reports_nothing(void **sta
     remove(page.text);
     EXPECT_ERROR(1, TEXTS("frame 1", "; no report was written"), "replay", model.text, spoilt.text,
                  "--report", page.text);
-    assert_false(exists(page.text));
+    assert_false(file_exists(page.text));
 }
 
 static void an_interrupted_replay_reports_what_it_has(void **state) {

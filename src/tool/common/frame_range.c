@@ -10,7 +10,7 @@ frame_range frame_range_all(void) {
 }
 
 /* Splits at colons, in place; 0 for more than three parts. */
-static int split(char *text, char *parts[3]) {
+static int split_range(char *text, char *parts[3]) {
     int count = 0;
     for (char *next = text; next != NULL; count++) {
         if (count == 3) return 0;
@@ -26,7 +26,7 @@ bool frame_range_parse(const char *text, frame_range *out) {
     if (strlen(text) >= sizeof copy) return false;
     memcpy(copy, text, strlen(text) + 1);
     frame_range range = frame_range_all();
-    int count = split(copy, parts);
+    int count = split_range(copy, parts);
     if (count == 0 || (count < 3 && parts[0][0] == '\0' && parts[count - 1][0] == '\0')) return false;
     if (parts[0][0] != '\0' && !parse_unsigned(parts[0], &range.first)) return false;
     if (count == 1) range.last = range.first;

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool append(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
+static bool append_pair(cscd_intersection **items, size_t *count, size_t *capacity, uint32_t a, uint32_t b) {
     if (*count == *capacity) {
         size_t wider = *capacity == 0 ? 64 : *capacity * 2;
         cscd_intersection *grown = realloc(*items, wider * sizeof *grown);
@@ -19,7 +19,7 @@ static bool append(cscd_intersection **items, size_t *count, size_t *capacity, u
     return true;
 }
 
-static int compare(const void *left, const void *right) {
+static int compare_pairs(const void *left, const void *right) {
     const cscd_intersection *l = left, *r = right;
     if (l->a != r->a) return l->a < r->a ? -1 : 1;
     return l->b < r->b ? -1 : l->b > r->b;
@@ -27,7 +27,7 @@ static int compare(const void *left, const void *right) {
 
 static void sort_triangles(ignore_pairs *pairs) {
     if (pairs->triangle_count > 0)
-        qsort(pairs->triangles, pairs->triangle_count, sizeof *pairs->triangles, compare);
+        qsort(pairs->triangles, pairs->triangle_count, sizeof *pairs->triangles, compare_pairs);
 }
 
 /* The mesh's number of a triangle of the file; UINT32_MAX when welding dropped it. */
@@ -71,12 +71,12 @@ static bool read_line(ignore_pairs *pairs, const recording *r, char *line, const
                        components ? "components " : "", limit);
     bool added = true;
     if (components) {
-        added =
-            append(&pairs->components, &pairs->component_count, &pairs->component_capacity, pair[0], pair[1]);
+        added = append_pair(&pairs->components, &pairs->component_count, &pairs->component_capacity, pair[0],
+                            pair[1]);
     } else {
         uint32_t a = mesh_triangle(r, pair[0]), b = mesh_triangle(r, pair[1]);
         if (a != UINT32_MAX && b != UINT32_MAX)
-            added = append(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, a, b);
+            added = append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, a, b);
     }
     return added || io_fail(error, "%s:%d: out of memory", path, number);
 }
@@ -101,8 +101,8 @@ static bool add_intersections(ignore_pairs *pairs, cscd_detector *detector, cons
     cscd_intersections found;
     if (cscd_detector_check(detector, positions, &found) != CSCD_OK) return false;
     for (size_t i = 0; i < found.count; i++) {
-        if (!append(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity, found.items[i].a,
-                    found.items[i].b))
+        if (!append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity,
+                         found.items[i].a, found.items[i].b))
             return false;
     }
     return true;
@@ -127,7 +127,7 @@ bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b) {
     const ignore_pairs *pairs = user;
     cscd_intersection key = {a, b};
     if (pairs->triangle_count > 0 &&
-        bsearch(&key, pairs->triangles, pairs->triangle_count, sizeof key, compare) != NULL)
+        bsearch(&key, pairs->triangles, pairs->triangle_count, sizeof key, compare_pairs) != NULL)
         return true;
     if (pairs->component_count == 0) return false;
     uint32_t c = cscd_mesh_triangle_component(pairs->mesh, a),

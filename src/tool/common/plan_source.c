@@ -112,7 +112,7 @@ static bool any_closed(const cscd_mesh *mesh) {
     return false;
 }
 
-static void remark(plan_choice *choice, const char *text) {
+static void add_remark(plan_choice *choice, const char *text) {
     if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
 }
 
@@ -121,14 +121,14 @@ static void remark(plan_choice *choice, const char *text) {
 static bool make_best(const plan_request *request, const recording *r, plan_choice *choice, io_error *error) {
     bool small = cscd_mesh_triangle_count(r->mesh) <= PLAN_IN_MEMORY_TRIANGLES;
     if (!insists_on_plan(request) && !any_closed(r->mesh)) {
-        remark(choice, "no component is a closed surface, so there is nothing to cull");
+        add_remark(choice, "no component is a closed surface, so there is nothing to cull");
         return true;
     }
     if (small) {
         if (make_plan(request, CSCD_METHOD_CHARGE, r, choice, error)) return true;
         snprintf(choice->remark, sizeof choice->remark, "%.590s", error->text);
     } else {
-        remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
+        add_remark(choice, "more than 6000 triangles; cscd preprocess makes a better plan, once");
     }
     return make_plan(request, CSCD_METHOD_SINGLE, r, choice, error) || !insists_on_plan(request);
 }
@@ -151,7 +151,7 @@ bool plan_choose(const plan_request *request, const recording *r, plan_choice *o
     if (!facts->by_regions) {
         /* as asked for */
     } else if (request->min_separation > 0.0) {
-        remark(&choice, "with --min-separation nothing is culled");
+        add_remark(&choice, "with --min-separation nothing is culled");
     } else if (request->plan_path != NULL) {
         chosen = read_named(request, r, &choice, error);
     } else {

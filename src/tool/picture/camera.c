@@ -12,11 +12,11 @@ static const double half_view_degrees = 14.0;
 /* Share of the shorter side that stays free on every side. */
 static const double margin = 0.06;
 
-static double dot(const double a[3], const double b[3]) {
+static double dot_product(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void orient(picture_camera *camera, double azimuth, double elevation, bool y_up) {
+static void orient_camera(picture_camera *camera, double azimuth, double elevation, bool y_up) {
     const double side[3] = {1.0, 0.0, 0.0};
     const double front[3] = {0.0, y_up ? 0.0 : -1.0, y_up ? 1.0 : 0.0};
     const double up[3] = {0.0, y_up ? 1.0 : 0.0, y_up ? 0.0 : 1.0};
@@ -83,7 +83,7 @@ static void place_eye(picture_camera *camera, const double *points, size_t point
 /* All but the eye. */
 static void set_lens(picture_camera *out, double azimuth, double elevation, bool y_up, double width,
                      double height) {
-    orient(out, azimuth, elevation, y_up);
+    orient_camera(out, azimuth, elevation, y_up);
     out->focal = 0.5 * fmin(width, height) / tan(half_view_degrees * pi / 180.0);
     out->centre[0] = 0.5 * width;
     out->centre[1] = 0.5 * height;
@@ -128,8 +128,8 @@ void picture_camera_unproject(const picture_camera *camera, double x, double y, 
 }
 
 void picture_camera_turn(const picture_camera *camera, const double direction[3], double out[3]) {
-    double x = dot(camera->right, direction), y = dot(camera->down, direction);
-    out[2] = dot(camera->forward, direction);
+    double x = dot_product(camera->right, direction), y = dot_product(camera->down, direction);
+    out[2] = dot_product(camera->forward, direction);
     out[0] = x;
     out[1] = y;
 }

@@ -4,18 +4,18 @@
 #include <math.h>
 
 /* The transfer functions of IEC 61966-2-1. */
-static double decode(double value) {
+static double decode_srgb(double value) {
     return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
 }
 
-static double encode(double linear) {
+static double encode_srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1.0 / 2.4) - 0.055;
 }
 
 void picture_gamma_set(picture_gamma *out) {
-    for (int i = 0; i < 256; i++) out->linear[i] = (float)decode(i / 255.0);
+    for (int i = 0; i < 256; i++) out->linear[i] = (float)decode_srgb(i / 255.0);
     for (int i = 0; i <= PICTURE_ENCODE_STEPS; i++)
-        out->encoded[i] = (uint8_t)(255.0 * encode((double)i / PICTURE_ENCODE_STEPS) + 0.5);
+        out->encoded[i] = (uint8_t)(255.0 * encode_srgb((double)i / PICTURE_ENCODE_STEPS) + 0.5);
 }
 
 uint8_t picture_gamma_encode(const picture_gamma *gamma, double linear) {

@@ -1,4 +1,4 @@
-/* What makes scenery readable as the ground below a body: faint squares, and the body's shadow. */
+/* Faint squares and the shadow of the body, which let a viewer read scenery as the ground below it. */
 #include "src/tool/picture/ground.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@ static const double contrast = 0.13;
 /* How much darker the deepest shadow is. */
 static const double depth_of_shadow = 0.55;
 
-static double dot(const double a[3], const double b[3]) {
+static double dot_product(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -25,13 +25,13 @@ static double mean_wave(double x, double width) {
 }
 
 /* Squares along the two level axes, averaged over what the pixel covers, so that they blend far off. */
-static double squares(const picture_ground *ground, const double point[3], double pixel_extent) {
+static double square_pattern(const picture_ground *ground, const double point[3], double pixel_extent) {
     double first = point[0] / ground->square, second = point[ground->y_up ? 2 : 1] / ground->square;
     double width = fmax(pixel_extent / ground->square, 1e-6);
     return mean_wave(first, width) * mean_wave(second, width);
 }
 
-static double clamp(double x) {
+static double clamp_unit(double x) {
     return fmin(fmax(x, 0.0), 1.0);
 }
 
@@ -41,11 +41,11 @@ double picture_ground_light(const picture_ground *ground, const picture_camera *
     double turned_up[3], point[3];
     picture_camera_turn(camera, up, turned_up);
     picture_camera_unproject(camera, x, y, depth, point);
-    double upward = dot(normal, turned_up), light = 1.0;
+    double upward = dot_product(normal, turned_up), light = 1.0;
     if (upward > 0.1)
-        light -= clamp(2.0 * upward - 0.2) * depth_of_shadow * picture_shadow_at(ground->shadow, point);
-    double level = clamp((fabs(upward) - 0.8) / 0.15);
+        light -= clamp_unit(2.0 * upward - 0.2) * depth_of_shadow * picture_shadow_at(ground->shadow, point);
+    double level = clamp_unit((fabs(upward) - 0.8) / 0.15);
     if (!(ground->square > 0.0) || level == 0.0) return light;
-    double pixel_extent = depth / camera->unit / camera->focal / fmax(fabs(dot(normal, view)), 1e-3);
-    return light * (1.0 - level * contrast * (0.5 - 0.5 * squares(ground, point, pixel_extent)));
+    double pixel_extent = depth / camera->unit / camera->focal / fmax(fabs(dot_product(normal, view)), 1e-3);
+    return light * (1.0 - level * contrast * (0.5 - 0.5 * square_pattern(ground, point, pixel_extent)));
 }

@@ -10,7 +10,7 @@
 static const uint8_t ink[3] = {32, 36, 44}, paper[3] = {255, 255, 255};
 
 /* Coverage of the pixel at `distance` from the centre by a disc, its rim smoothed over one pixel. */
-static double disc(double distance, double radius) {
+static double disc_coverage(double distance, double radius) {
     return fmin(fmax(radius + 0.5 - distance, 0.0), 1.0);
 }
 
@@ -23,8 +23,9 @@ static void draw_disc(picture_image *image, double x, double y, double radius, c
     for (int64_t row = (int64_t)floor(y - reach); row <= (int64_t)(y + reach); row++)
         for (int64_t column = (int64_t)floor(x - reach); column <= (int64_t)(x + reach); column++) {
             double distance = hypot((double)column + 0.5 - x, (double)row + 0.5 - y);
-            double inked = disc(distance, radius), filled = disc(distance, radius - outline);
-            double halo = 0.7 * disc(distance, radius + 1.2);
+            double inked = disc_coverage(distance, radius),
+                   filled = disc_coverage(distance, radius - outline);
+            double halo = 0.7 * disc_coverage(distance, radius + 1.2);
             uint8_t mixed[3];
             for (int i = 0; i < 3; i++)
                 mixed[i] = (uint8_t)((1.0 - filled) * ((1.0 - inked) * paper[i] + inked * ink[i]) +
@@ -44,7 +45,8 @@ static int far_first(const void *left, const void *right) {
     return a->index < b->index ? -1 : a->index > b->index;
 }
 
-static bool hidden(const picture_visibility *visibility, const placed_marker *marker, double ball_radius) {
+static bool marker_hidden(const picture_visibility *visibility, const placed_marker *marker,
+                          double ball_radius) {
     double x = floor(marker->x * visibility->samples), y = floor(marker->y * visibility->samples);
     uint32_t columns = visibility->width * visibility->samples,
              rows = visibility->height * visibility->samples;
@@ -72,7 +74,7 @@ bool picture_draw_markers(picture_image *image, const picture_visibility *visibi
         double radius = fmin(fmax(marker->radius_pixels, 0.5), image->width);
         double ball_radius = radius * placed[i].depth / camera->focal;
         double opacity =
-            marker->colour[3] / 255.0 * (hidden(visibility, &placed[i], ball_radius) ? 0.5 : 1.0);
+            marker->colour[3] / 255.0 * (marker_hidden(visibility, &placed[i], ball_radius) ? 0.5 : 1.0);
         draw_disc(image, placed[i].x, placed[i].y, radius, marker->colour, opacity);
     }
     free(placed);

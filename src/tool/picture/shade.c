@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3]) {
+static double dot_product(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void normalise(double v[3]) {
-    double length = sqrt(dot(v, v));
+static void normalise_vector(double v[3]) {
+    double length = sqrt(dot_product(v, v));
     if (!(length > 0.0)) return;
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
@@ -25,14 +25,14 @@ static void add_face_normal(const double *positions, const uint32_t corners[3], 
         const double *from = positions + 3 * (size_t)corners[k],
                      *to = positions + 3 * (size_t)corners[(k + 1) % 3];
         for (int i = 0; i < 3; i++) edge[k][i] = to[i] - from[i];
-        normalise(edge[k]);
+        normalise_vector(edge[k]);
     }
     double normal[3] = {edge[0][1] * edge[1][2] - edge[0][2] * edge[1][1],
                         edge[0][2] * edge[1][0] - edge[0][0] * edge[1][2],
                         edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]};
-    normalise(normal);
+    normalise_vector(normal);
     for (int k = 0; k < 3; k++) {
-        double angle = acos(fmin(fmax(-dot(edge[k], edge[(k + 2) % 3]), -1.0), 1.0));
+        double angle = acos(fmin(fmax(-dot_product(edge[k], edge[(k + 2) % 3]), -1.0), 1.0));
         for (int i = 0; i < 3; i++) out[3 * (size_t)corners[k] + (size_t)i] += (float)(angle * normal[i]);
     }
 }
@@ -46,7 +46,7 @@ void picture_vertex_normals(const picture_camera *camera, const double *position
         float *normal = out + 3 * (size_t)vertex;
         double turned[3];
         picture_camera_turn(camera, (const double[3]){normal[0], normal[1], normal[2]}, turned);
-        normalise(turned);
+        normalise_vector(turned);
         for (int i = 0; i < 3; i++) normal[i] = (float)turned[i];
     }
 }
@@ -73,14 +73,14 @@ static void light_surface(const double normal[3], const double view[3], double g
     double sum[3], half[3];
     for (int i = 0; i < 3; i++) sum[i] = sky[i] * upward + ground[i] * (1.0 - upward);
     for (size_t n = 0; n < sizeof lights / sizeof lights[0]; n++) {
-        double cosine = (dot(normal, lights[n].direction) + lights[n].wrap) / (1.0 + lights[n].wrap);
+        double cosine = (dot_product(normal, lights[n].direction) + lights[n].wrap) / (1.0 + lights[n].wrap);
         for (int i = 0; i < 3 && cosine > 0.0; i++) sum[i] += lights[n].colour[i] * cosine;
     }
     for (int i = 0; i < 3; i++) half[i] = lights[0].direction[i] + view[i];
-    normalise(half);
-    double glint = gloss * pow(fmax(dot(normal, half), 0.0), 40.0);
+    normalise_vector(half);
+    double glint = gloss * pow(fmax(dot_product(normal, half), 0.0), 40.0);
     /* Darker towards the outline, which a white background would otherwise swallow. */
-    double facing = fmin(fmax(dot(normal, view), 0.0), 1.0);
+    double facing = fmin(fmax(dot_product(normal, view), 0.0), 1.0);
     double outline = 1.0 - 0.45 * pow(1.0 - facing, 3.0);
     for (int i = 0; i < 3; i++) colour[i] = (colour[i] * sum[i] + glint) * outline;
 }
@@ -122,7 +122,7 @@ static void seen_normal(const picture_camera *camera, const picture_edges *edges
     out[0] = camera->focal * sum[0];
     out[1] = camera->focal * sum[1];
     out[2] = camera->centre[0] * sum[0] + camera->centre[1] * sum[1] + sum[2];
-    normalise(out);
+    normalise_vector(out);
 }
 
 /* Cosine of the angle between a corner's normal and the face beyond which the edge is meant to be sharp: 40
@@ -137,10 +137,10 @@ static void interpolate_normal(const picture_surface *surface, const uint32_t co
     for (int k = 0; k < 3; k++) {
         const float *at = surface->normals + 3 * (size_t)corners[k];
         const double smooth[3] = {side * at[0], side * at[1], side * at[2]};
-        const double *chosen = dot(smooth, face) >= crease_cosine ? smooth : face;
+        const double *chosen = dot_product(smooth, face) >= crease_cosine ? smooth : face;
         for (int i = 0; i < 3; i++) sum[i] += weights[k] * chosen[i];
     }
-    normalise(sum);
+    normalise_vector(sum);
     memcpy(normal, sum, sizeof sum);
 }
 
@@ -169,7 +169,7 @@ static void light_point(const shading_pass *pass, const picture_surface *surface
     const picture_camera *camera = pass->camera;
     double normal[3];
     double view[3] = {(camera->centre[0] - x) / camera->focal, (camera->centre[1] - y) / camera->focal, -1.0};
-    normalise(view);
+    normalise_vector(view);
     seen_normal(camera, edges, normal);
     if (surface->normals != NULL) interpolate_normal(surface, corners, weights, edges->front, normal);
     light_surface(normal, view, surface->ground == NULL ? 0.10 : 0.0, colour);

@@ -28,7 +28,7 @@ static void spread_taps(picture_shadow *shadow) {
     }
 }
 
-static void measure(const double *positions, uint32_t vertex_count, double low[3], double high[3]) {
+static void measure_scene(const double *positions, uint32_t vertex_count, double low[3], double high[3]) {
     for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
     for (size_t i = 0; i < 3 * (size_t)vertex_count; i++) {
         low[i % 3] = fmin(low[i % 3], positions[i]);
@@ -69,7 +69,7 @@ bool picture_shadow_create(const double *positions, uint32_t vertex_count, const
                            uint32_t triangle_count, bool y_up, picture_shadow *out, io_error *error) {
     picture_shadow shadow = {.across = 0, .along = y_up ? 2 : 1, .up = y_up ? 1 : 2};
     double high[3];
-    measure(positions, vertex_count, shadow.origin, high);
+    measure_scene(positions, vertex_count, shadow.origin, high);
     for (int k = 0; k < 3; k++) shadow.extent = fmax(shadow.extent, high[k] - shadow.origin[k]);
     shadow.cell = shadow.extent / resolution;
     if (!(shadow.cell > 0.0 && shadow.extent < HUGE_VAL)) {
@@ -104,7 +104,7 @@ void picture_shadow_free(picture_shadow *shadow) {
 }
 
 /* Is there something above the height, in the cell nearest to (u, v)? */
-static bool covered(const picture_shadow *shadow, double u, double v, double height, double *distance) {
+static bool point_covered(const picture_shadow *shadow, double u, double v, double height, double *distance) {
     double column = floor(u + 0.5), row = floor(v + 0.5);
     if (!(column >= 0.0 && row >= 0.0 && column < shadow->columns && row < shadow->rows)) return false;
     size_t cell = (size_t)row * shadow->columns + (size_t)column;
@@ -115,7 +115,7 @@ static bool covered(const picture_shadow *shadow, double u, double v, double hei
 
 /* The shadow per area, in cells, that a cell so high above casts at that distance from below it; it adds up
  * to 1 over a disc, less what is lost on the way. */
-static double density(double height, double distance) {
+static double shadow_density(double height, double distance) {
     const double pi = 3.14159265358979324;
     double radius = fmin(2.0 + widening * height * resolution, widest * resolution);
     double inside = 1.0 - distance * distance / (radius * radius);
@@ -131,8 +131,8 @@ double picture_shadow_at(const picture_shadow *shadow, const double point[3]) {
     if (!(u > -reach && v > -reach && u < shadow->columns + reach && v < shadow->rows + reach)) return 0.0;
     for (int i = 0; i < PICTURE_SHADOW_TAPS; i++) {
         const picture_shadow_tap *tap = &shadow->taps[i];
-        if (covered(shadow, u + tap->offset[0], v + tap->offset[1], height, &above))
-            sum += tap->area * density(above, tap->radius);
+        if (point_covered(shadow, u + tap->offset[0], v + tap->offset[1], height, &above))
+            sum += tap->area * shadow_density(above, tap->radius);
     }
     return fmin(sum, 1.0);
 }

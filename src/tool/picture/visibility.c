@@ -36,7 +36,7 @@ void picture_visibility_free(picture_visibility *visibility) {
     *visibility = (picture_visibility){0};
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
+static void cross_product(const double a[3], const double b[3], double out[3]) {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
@@ -47,9 +47,9 @@ static void cross(const double a[3], const double b[3], double out[3]) {
 bool picture_edges_set(const double *projected, const uint32_t corners[3], picture_edges *out) {
     const double *a = projected + 3 * (size_t)corners[0], *b = projected + 3 * (size_t)corners[1],
                  *c = projected + 3 * (size_t)corners[2];
-    cross(b, c, out->edge[0]);
-    cross(c, a, out->edge[1]);
-    cross(a, b, out->edge[2]);
+    cross_product(b, c, out->edge[0]);
+    cross_product(c, a, out->edge[1]);
+    cross_product(a, b, out->edge[2]);
     double volume = a[0] * out->edge[0][0] + a[1] * out->edge[0][1] + a[2] * out->edge[0][2];
     /* The normal of the counter-clockwise side points against the line of sight. */
     out->front = volume < 0.0;

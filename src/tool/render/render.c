@@ -59,7 +59,7 @@ static double square_side(const recording *r) {
     return power * (share < 1.5 ? 1.0 : share < 3.5 ? 2.0 : share < 7.5 ? 5.0 : 10.0);
 }
 
-static bool draw(render_options *o, recording *r, io_error *error) {
+static bool draw_picture(render_options *o, recording *r, io_error *error) {
     contact_picture picture = {0};
     scenery other = {0};
     scenery *beside = o->scenery_path != NULL ? &other : NULL;
@@ -81,7 +81,7 @@ int command_render(int argument_count, char **arguments) {
     int code;
     if (!render_options_parse(argument_count, arguments, &options, &code)) return code;
     if (!recording_open(&options.source, &r, &error)) return fail_input("%s", error.text);
-    bool drawn = draw(&options, &r, &error);
+    bool drawn = draw_picture(&options, &r, &error);
     recording_close(&r);
     return drawn ? EXIT_RAN : fail_input("%s", error.text);
 }

@@ -56,7 +56,8 @@ static bool prepare_ignored(replay *r, io_error *error) {
     size_t listed = r->ignored.triangle_count;
     if (!ignore_pairs_add_rest(&r->ignored, &r->recording, error)) return false;
     if (!r->options->quiet)
-        printf("%zu triangle pairs that intersect or touch in frame 0 are left out\n", r->ignored.triangle_count - listed);
+        printf("%zu triangle pairs that intersect or touch in frame 0 are left out\n",
+               r->ignored.triangle_count - listed);
     return true;
 }
 
@@ -93,7 +94,7 @@ static bool prepare_detector(replay *r, io_error *error) {
     return (r->x0 != NULL && r->x1 != NULL) || io_fail(error, "out of memory");
 }
 
-/* Asked before anything takes time, or is truncated. */
+/* Checks the outputs before anything takes time and before any file is truncated. */
 static bool outputs_open(const replay_options *o, io_error *error) {
     return output_path_opens(o->contacts_path, error) && output_path_opens(o->json_path, error) &&
            output_path_opens(o->report.path, error);
@@ -110,7 +111,7 @@ static bool open_outputs(replay *r, io_error *error) {
 }
 
 /* Opens everything that can fail before the work begins. */
-static bool begin(replay *r, io_error *error) {
+static bool begin_replay(replay *r, io_error *error) {
     return recording_open(&r->options->source, &r->recording, error) && choose_frames(r, error) &&
            prepare_ignored(r, error) && outputs_open(r->options, error) && prepare_plan(r, error) &&
            prepare_detector(r, error) && open_outputs(r, error);
@@ -235,7 +236,7 @@ static void print_results(const replay *r) {
     totals_print_table(t, r->plan.method);
 }
 
-/* Of what there is: not even a first frame makes no report. */
+/* Writes the report of the intervals that were replayed; without any there is no report. */
 static bool write_report(replay *r, const char *summary, io_error *error) {
     if (r->options->report.path == NULL || r->totals.intervals == 0) return true;
     terminal_progress_begin(&r->progress, r->options->quiet);
@@ -270,7 +271,7 @@ static bool close_outputs(replay *r, const char *stopped_by, io_error *error) {
     return written;
 }
 
-static void end(replay *r) {
+static void end_replay(replay *r) {
     replay_report_close(&r->report);
     cscd_detector_destroy(r->detector);
     plan_choice_free(&r->plan);
@@ -282,17 +283,17 @@ static void end(replay *r) {
     free(r->x1);
 }
 
-/* A page that is not of this replay may lie where its report would. */
+/* Says so when no report was written: an older page may lie at its path. */
 static int fail_replay(const replay *r, bool begun, const char *reason) {
     bool unreported = begun && r->options->report.path != NULL && r->totals.intervals == 0;
     return fail_input("%s%s", reason, unreported ? "; no report was written" : "");
 }
 
-static int run(const replay_options *options) {
+static int run_replay(const replay_options *options) {
     replay r = {.options = options};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
-    bool begun = begin(&r, &error), ran = false;
+    bool begun = begin_replay(&r, &error), ran = false;
     if (begun) {
         if (!options->quiet) recording_warn(&r.recording);
         interrupt_catch();
@@ -308,7 +309,7 @@ static int run(const replay_options *options) {
     if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
     if (code == EXIT_RAN && options->fail_on_contact && r.totals.intervals_with_contact > 0)
         code = EXIT_CONTACT;
-    end(&r);
+    end_replay(&r);
     return code;
 }
 
@@ -316,5 +317,5 @@ int command_replay(int argument_count, char **arguments) {
     replay_options options;
     int code;
     if (!replay_options_parse(argument_count, arguments, &options, &code)) return code;
-    return run(&options);
+    return run_replay(&options);
 }

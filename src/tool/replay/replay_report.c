@@ -42,20 +42,21 @@ bool replay_report_open(replay_report *out, const report_request *request, const
     return report_create(&options, &out->report, error);
 }
 
-/* What has failed is given up at once, for its memory. */
-static void keep(replay_report *r, bool added) {
+/* A report that has failed is given up at once, to free its memory. */
+static void keep_or_give_up(replay_report *r, bool added) {
     if (added) return;
     report_destroy(r->report);
     r->report = NULL;
 }
 
 void replay_report_begin(replay_report *r, const double *positions) {
-    if (r->report != NULL) keep(r, report_begin(r->report, positions, &r->failure));
+    if (r->report != NULL) keep_or_give_up(r, report_begin(r->report, positions, &r->failure));
 }
 
 void replay_report_add(replay_report *r, const cscd_detector *detector, const cscd_contacts *contacts,
                        const double *end) {
-    if (r->report != NULL) keep(r, report_add_interval(r->report, detector, contacts, end, &r->failure));
+    if (r->report != NULL)
+        keep_or_give_up(r, report_add_interval(r->report, detector, contacts, end, &r->failure));
 }
 
 static bool add_scenery(replay_report *r, io_error *error) {

@@ -61,7 +61,7 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
 }
 
 /* Hands the file what is new in memory. A stream in memory fails only for want of it. */
-static bool forward(summary_writer *w, io_error *error) {
+static bool forward_text(summary_writer *w, io_error *error) {
     if (fflush(w->memory) != 0 || ferror(w->memory)) return io_fail(error, "out of memory for the summary");
     size_t begin = w->keeps_text ? w->forwarded : 0, count = w->size - begin;
     w->forwarded = w->size;
@@ -114,7 +114,7 @@ bool summary_add_interval(summary_writer *w, const interval_result *result, io_e
     write_guarantees(w, result->detector);
     write_times(out, &result->timings);
     json_end_object(out);
-    return forward(w, error);
+    return forward_text(w, error);
 }
 
 bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error) {
@@ -254,7 +254,7 @@ bool summary_close(summary_writer *w, const summary_ending *ending, char **text,
     write_provenance(w, ending);
     json_end_object(&w->out);
     fputc('\n', w->memory);
-    bool forwarded = forward(w, error);
+    bool forwarded = forward_text(w, error);
     bool closed = close_file(w, forwarded ? error : NULL);
     bool whole = w->keeps_text && !ferror(w->memory);
     whole = fclose(w->memory) == 0 && whole;

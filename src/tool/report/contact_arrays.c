@@ -47,8 +47,8 @@ static void heat_contact(contact_arrays *a, const cscd_mesh *mesh, const cscd_co
     heat_all(a, triangles, count);
 }
 
-static bool keep(contact_arrays *a, const report_options *options, uint32_t interval,
-                 const cscd_contact *contact, double scale) {
+static bool keep_contact(contact_arrays *a, const report_options *options, uint32_t interval,
+                         const cscd_contact *contact, double scale) {
     uint8_t kind = contact->kind == CSCD_CONTACT_EE;
     cscd_stencil stencil =
         cscd_mesh_stencil(options->mesh, contact->kind, contact->a, contact->b, contact->u, contact->v);
@@ -80,7 +80,7 @@ bool contact_arrays_add(contact_arrays *a, const report_options *options, uint32
     for (size_t i = 0; i < contacts->count; i++) {
         const cscd_contact *contact = &contacts->items[i];
         heat_contact(a, options->mesh, contact);
-        if (i < room && !keep(a, options, interval, contact, scale)) return false;
+        if (i < room && !keep_contact(a, options, interval, contact, scale)) return false;
     }
     return true;
 }

@@ -19,7 +19,7 @@ typedef struct box {
     double low[3], high[3], side; /* side: the longest */
 } box;
 
-static void *allocate(size_t count, size_t size) {
+static void *allocate_stream(size_t count, size_t size) {
     return count <= SIZE_MAX / size ? io_realloc(NULL, count * size) : NULL;
 }
 
@@ -27,10 +27,10 @@ bool frame_stream_create(uint32_t vertex_count, double scale, frame_stream *out)
     frame_stream s = {.vertex_count = vertex_count, .scale = scale};
     size_t count = (size_t)vertex_count * 3;
     s.bytes = packed_array_create();
-    s.values = allocate(count, sizeof *s.values);
-    s.previous = allocate(count, sizeof *s.previous);
-    s.residuals = allocate(count, sizeof *s.residuals);
-    s.plane = allocate(count, sizeof *s.plane);
+    s.values = allocate_stream(count, sizeof *s.values);
+    s.previous = allocate_stream(count, sizeof *s.previous);
+    s.residuals = allocate_stream(count, sizeof *s.residuals);
+    s.plane = allocate_stream(count, sizeof *s.plane);
     *out = s;
     if (s.bytes != NULL && s.values != NULL && s.previous != NULL && s.residuals != NULL && s.plane != NULL)
         return true;
@@ -70,7 +70,7 @@ static bool grid_serves(const frame_stream *s, const box *b) {
     return true;
 }
 
-static void quantize(frame_stream *s, const double *positions) {
+static void quantize_position(frame_stream *s, const double *positions) {
     for (size_t k = 0; k < 3; k++) {
         int32_t *values = s->values + k * s->vertex_count;
         for (size_t v = 0; v < s->vertex_count; v++) {
@@ -106,7 +106,7 @@ static double measure_axis(const frame_stream *s, const double *positions, size_
     return error;
 }
 
-static void measure(frame_stream *s, const double *positions) {
+static void measure_box(frame_stream *s, const double *positions) {
     double error = 0.0, side = 0.0;
     for (size_t k = 0; k < 3; k++) {
         double length;
@@ -138,7 +138,7 @@ static bool add_shift(frame_stream *s) {
     return packed_array_add_bytes(s->bytes, &(uint8_t){0}, 1) && packed_array_add_u32(s->bytes, shifts, 3);
 }
 
-static uint32_t zigzag(uint32_t r) {
+static uint32_t zigzag_code(uint32_t r) {
     return r << 1 ^ (r >> 31 != 0 ? UINT32_MAX : 0);
 }
 
@@ -149,7 +149,7 @@ static uint32_t take_residuals(frame_stream *s) {
         uint32_t before = 0;
         for (size_t v = k * s->vertex_count; v < (k + 1) * s->vertex_count; v++) {
             uint32_t difference = (uint32_t)s->values[v] - (uint32_t)s->previous[v];
-            s->residuals[v] = zigzag(difference - before);
+            s->residuals[v] = zigzag_code(difference - before);
             all |= s->residuals[v];
             before = difference;
         }
@@ -177,8 +177,8 @@ bool frame_stream_add(frame_stream *s, const double *positions) {
         memcpy(s->origin, b.low, sizeof s->origin);
         s->step = b.side * STEP_OF_SIDE;
     }
-    quantize(s, positions);
-    measure(s, positions);
+    quantize_position(s, positions);
+    measure_box(s, positions);
     if (!(key ? add_key(s) : add_shift(s)) || !add_body(s)) return false;
     int32_t *swap = s->previous;
     s->previous = s->values;

@@ -23,12 +23,12 @@ struct packed_array {
     bool finished;
 };
 
-static voidpf allocate(voidpf user, uInt count, uInt size) {
+static voidpf zlib_allocate(voidpf user, uInt count, uInt size) {
     (void)user;
     return count <= SIZE_MAX / size ? io_realloc(NULL, (size_t)count * size) : NULL;
 }
 
-static void release(voidpf user, voidpf memory) {
+static void zlib_release(voidpf user, voidpf memory) {
     (void)user;
     free(memory);
 }
@@ -36,7 +36,8 @@ static void release(voidpf user, voidpf memory) {
 packed_array *packed_array_create(void) {
     packed_array *array = io_realloc(NULL, sizeof *array);
     if (array == NULL) return NULL;
-    *array = (packed_array){.stream = {.zalloc = allocate, .zfree = release}, .bytes = growable_of(1)};
+    *array =
+        (packed_array){.stream = {.zalloc = zlib_allocate, .zfree = zlib_release}, .bytes = growable_of(1)};
     if (deflateInit(&array->stream, LEVEL) == Z_OK) return array;
     free(array);
     return NULL;
@@ -76,7 +77,7 @@ static bool compress_input(packed_array *array, int flush) {
     return true;
 }
 
-static bool add(packed_array *array, const uint8_t *bytes, size_t size) {
+static bool add_bytes(packed_array *array, const uint8_t *bytes, size_t size) {
     array->size += size;
     while (size > 0) {
         size_t step = size < STEP_MAX ? size : STEP_MAX;
@@ -90,10 +91,10 @@ static bool add(packed_array *array, const uint8_t *bytes, size_t size) {
 }
 
 bool packed_array_add_bytes(packed_array *array, const uint8_t *bytes, size_t count) {
-    return add(array, bytes, count);
+    return add_bytes(array, bytes, count);
 }
 
-static void store(uint8_t *bytes, uint64_t bits, size_t size) {
+static void store_bytes(uint8_t *bytes, uint64_t bits, size_t size) {
     for (size_t i = 0; i < size; i++) bytes[i] = (uint8_t)(bits >> (8 * i));
 }
 
@@ -101,8 +102,8 @@ bool packed_array_add_u32(packed_array *array, const uint32_t *values, size_t co
     uint8_t chunk[CHUNK_VALUES * 4];
     for (size_t done = 0; done < count;) {
         size_t step = count - done < CHUNK_VALUES ? count - done : CHUNK_VALUES;
-        for (size_t i = 0; i < step; i++) store(chunk + 4 * i, values[done + i], 4);
-        if (!add(array, chunk, 4 * step)) return false;
+        for (size_t i = 0; i < step; i++) store_bytes(chunk + 4 * i, values[done + i], 4);
+        if (!add_bytes(array, chunk, 4 * step)) return false;
         done += step;
     }
     return true;
@@ -122,8 +123,8 @@ bool packed_array_add_f64(packed_array *array, const double *values, size_t coun
         uint8_t bytes[8];
         uint64_t bits;
         memcpy(&bits, &values[i], sizeof bits);
-        store(bytes, bits, sizeof bytes);
-        if (!add(array, bytes, sizeof bytes)) return false;
+        store_bytes(bytes, bits, sizeof bytes);
+        if (!add_bytes(array, bytes, sizeof bytes)) return false;
     }
     return true;
 }

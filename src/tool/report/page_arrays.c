@@ -7,16 +7,16 @@
 #include <assert.h>
 #include <stdlib.h>
 
-/* Of the report. NULL: the page does without. */
-static bool list(page_arrays *a, const char *name, const char *type, packed_array *values) {
+/* Lists an array of the report; with values NULL the page has none. */
+static bool list_array(page_arrays *a, const char *name, const char *type, packed_array *values) {
     if (values == NULL) return true;
     assert(a->count < PAGE_ARRAYS_MAX);
     a->items[a->count++] = (page_array){name, type, values, false};
     return packed_array_finish(values);
 }
 
-/* A new one, empty. */
-static packed_array *create(page_arrays *a, const char *name, const char *type) {
+/* A new, empty array; NULL when out of memory. */
+static packed_array *create_array(page_arrays *a, const char *name, const char *type) {
     packed_array *values = packed_array_create();
     if (values == NULL) return NULL;
     assert(a->count < PAGE_ARRAYS_MAX);
@@ -25,12 +25,12 @@ static packed_array *create(page_arrays *a, const char *name, const char *type) 
 }
 
 static bool list_u32(page_arrays *a, const char *name, const uint32_t *values, size_t count) {
-    packed_array *packed = create(a, name, "u32");
+    packed_array *packed = create_array(a, name, "u32");
     return packed != NULL && packed_array_add_u32(packed, values, count) && packed_array_finish(packed);
 }
 
 static bool list_triangles(page_arrays *a, const cscd_mesh *mesh) {
-    packed_array *packed = create(a, "triangles", "u32");
+    packed_array *packed = create_array(a, "triangles", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t corners[3];
@@ -41,7 +41,7 @@ static bool list_triangles(page_arrays *a, const cscd_mesh *mesh) {
 }
 
 static bool list_components(page_arrays *a, const cscd_mesh *mesh) {
-    packed_array *packed = create(a, "component", "u32");
+    packed_array *packed = create_array(a, "component", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t component = cscd_mesh_triangle_component(mesh, t);
@@ -52,7 +52,8 @@ static bool list_components(page_arrays *a, const cscd_mesh *mesh) {
 
 static bool list_charges(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
     double *ranks = charge_ranks(plan, mesh);
-    packed_array *charges = create(a, "charge", "f32"), *equalized = create(a, "equalized", "f32");
+    packed_array *charges = create_array(a, "charge", "f32"),
+                 *equalized = create_array(a, "equalized", "f32");
     bool added = ranks != NULL && charges != NULL && equalized != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         float charge = (float)cscd_plan_triangle_charge(plan, t), rank = (float)ranks[t];
@@ -63,7 +64,7 @@ static bool list_charges(page_arrays *a, const cscd_plan *plan, const cscd_mesh 
 }
 
 static bool list_regions(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
-    packed_array *packed = create(a, "region", "u32");
+    packed_array *packed = create_array(a, "region", "u32");
     bool added = packed != NULL;
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh) && added; t++) {
         uint32_t region = cscd_plan_triangle_region(plan, t);
@@ -76,7 +77,7 @@ static bool list_scenery(page_arrays *a, report *r) {
     const report_scenery *scenery = &r->options.scenery;
     return scenery->triangles == NULL ||
            (list_u32(a, "scenery_triangles", scenery->triangles, (size_t)scenery->triangle_count * 3) &&
-            list(a, "scenery_frames", "u8", r->scenery.bytes));
+            list_array(a, "scenery_frames", "u8", r->scenery.bytes));
 }
 
 static bool list_plan(page_arrays *a, const cscd_plan *plan, const cscd_mesh *mesh) {
@@ -89,20 +90,21 @@ static bool list_contacts(page_arrays *a, report *r) {
     const contact_arrays *c = &r->contacts;
     return c->heat == NULL ||
            (list_u32(a, "heat", c->heat, cscd_mesh_triangle_count(r->options.mesh)) &&
-            list(a, "contact_interval", "u32", c->interval) && list(a, "contact_kind", "u8", c->kind) &&
-            list(a, "contact_vertices", "u32", c->vertices) &&
-            list(a, "contact_file_vertices", "u32", c->file_vertices) &&
-            list(a, "contact_toi", "f64", c->toi) && list(a, "contact_point", "f64", c->point));
+            list_array(a, "contact_interval", "u32", c->interval) &&
+            list_array(a, "contact_kind", "u8", c->kind) &&
+            list_array(a, "contact_vertices", "u32", c->vertices) &&
+            list_array(a, "contact_file_vertices", "u32", c->file_vertices) &&
+            list_array(a, "contact_toi", "f64", c->toi) && list_array(a, "contact_point", "f64", c->point));
 }
 
 bool page_arrays_list(report *r, page_arrays *out) {
     const cscd_mesh *mesh = r->options.mesh;
     *out = (page_arrays){.count = 0};
     if (mesh == NULL) return true;
-    return list_triangles(out, mesh) && list(out, "frames", "u8", r->frames.bytes) && list_scenery(out, r) &&
-           list_components(out, mesh) && list_plan(out, r->options.plan, mesh) &&
-           list(out, "orientation", "u8", r->orientations.orientations) &&
-           list(out, "detector_points", "f64", r->orientations.points) && list_contacts(out, r);
+    return list_triangles(out, mesh) && list_array(out, "frames", "u8", r->frames.bytes) &&
+           list_scenery(out, r) && list_components(out, mesh) && list_plan(out, r->options.plan, mesh) &&
+           list_array(out, "orientation", "u8", r->orientations.orientations) &&
+           list_array(out, "detector_points", "f64", r->orientations.points) && list_contacts(out, r);
 }
 
 void page_arrays_free(page_arrays *arrays) {

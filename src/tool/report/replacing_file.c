@@ -12,7 +12,7 @@
 enum { LINKS_MAX = 40, NAMES_MAX = 1000 };
 
 /* The folder of path, with its slash, and then name; to be freed. */
-static char *beside(const char *path, const char *name) {
+static char *name_beside(const char *path, const char *name) {
     const char *slash = strrchr(path, '/');
     size_t folder_size = slash != NULL ? (size_t)(slash - path) + 1 : 0, name_size = strlen(name) + 1;
     char *joined = malloc(folder_size + name_size);
@@ -24,13 +24,13 @@ static char *beside(const char *path, const char *name) {
 
 /* Where path leads, whether something is there or not; to be freed. */
 static char *follow_links(const char *path) {
-    char *target = beside("", path);
+    char *target = name_beside("", path);
     for (int i = 0; i < LINKS_MAX && target != NULL; i++) {
         char link[PATH_MAX];
         ssize_t size = readlink(target, link, sizeof link - 1);
         if (size < 0) return target;
         link[size] = '\0';
-        char *next = beside(link[0] == '/' ? "" : target, link);
+        char *next = name_beside(link[0] == '/' ? "" : target, link);
         free(target);
         target = next;
     }
@@ -44,7 +44,7 @@ static int create_temporary(replacing_file *f) {
     for (int i = 0; i < NAMES_MAX; i++) {
         char name[64];
         snprintf(name, sizeof name, ".cscd-report-%ld-%d", (long)getpid(), i);
-        f->temporary = beside(f->target, name);
+        f->temporary = name_beside(f->target, name);
         if (f->temporary == NULL) return -1;
         int descriptor = open(f->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) return descriptor;

@@ -25,7 +25,7 @@ static uint32_t choose_stride(const report_options *o) {
     return stride > 1 ? (uint32_t)stride : 1;
 }
 
-static bool prepare(report *r) {
+static bool prepare_report(report *r) {
     const report_options *o = &r->options;
     r->stride = choose_stride(o);
     size_t size = cscd_mesh_vertex_count(o->mesh) * sizeof(double[3]);
@@ -41,7 +41,7 @@ bool report_create(const report_options *options, report **out, io_error *error)
     report *r = io_realloc(NULL, sizeof *r);
     if (r == NULL) return out_of_memory(error);
     *r = (report){.options = *options, .unit = 1.0, .kept = growable_of(sizeof(uint32_t))};
-    if (options->mesh != NULL && !prepare(r)) {
+    if (options->mesh != NULL && !prepare_report(r)) {
         report_destroy(r);
         return out_of_memory(error);
     }
@@ -78,7 +78,7 @@ static double choose_unit(const double *positions, uint32_t vertex_count) {
     return ldexp(1.0, ilogb(size));
 }
 
-static bool keep(report *r, uint32_t frame, const double *positions) {
+static bool keep_interval(report *r, uint32_t frame, const double *positions) {
     uint32_t *kept = growable_push(&r->kept);
     if (kept == NULL) return false;
     *kept = frame;
@@ -92,7 +92,7 @@ static bool is_due(const report *r, uint32_t frame) {
 static bool add_frame(report *r, uint32_t frame, const double *positions) {
     r->last = frame;
     r->last_is_kept = is_due(r, frame);
-    if (r->last_is_kept) return keep(r, frame, positions);
+    if (r->last_is_kept) return keep_interval(r, frame, positions);
     memcpy(r->last_positions, positions, r->frames.vertex_count * sizeof(double[3]));
     return true;
 }
@@ -119,7 +119,7 @@ bool report_add_interval(report *r, const cscd_detector *detector, const cscd_co
 bool report_keep_last(report *r) {
     if (r->last_is_kept) return true;
     r->last_is_kept = true;
-    return keep(r, r->last, r->last_positions);
+    return keep_interval(r, r->last, r->last_positions);
 }
 
 uint32_t report_frame_count(const report *r) {

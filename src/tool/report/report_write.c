@@ -165,7 +165,7 @@ static char *make_json(const report *r, const page_arrays *arrays, const attache
 
 /* ---- the file ---------------------------------------------------------------------------------------- */
 
-static bool put(FILE *file, const char *text, size_t size) {
+static bool put_text(FILE *file, const char *text, size_t size) {
     return fwrite(text, 1, size, file) == size;
 }
 
@@ -173,7 +173,7 @@ static bool put(FILE *file, const char *text, size_t size) {
 static bool put_json(FILE *file, const char *text) {
     while (*text != '\0') {
         size_t size = strcspn(text, "<");
-        if (!put(file, text, size) || (text[size] == '<' && fputs("\\u003c", file) == EOF)) return false;
+        if (!put_text(file, text, size) || (text[size] == '<' && fputs("\\u003c", file) == EOF)) return false;
         text += size + (text[size] == '<');
     }
     return true;
@@ -186,11 +186,11 @@ static bool put_array(FILE *file, const page_array *array) {
 }
 
 static bool put_page(FILE *file, const report_template *page, const char *text, const page_arrays *arrays) {
-    bool written = put(file, page->head, page->head_size) &&
+    bool written = put_text(file, page->head, page->head_size) &&
                    fputs("<script type=\"application/json\" id=\"cscd-report\">", file) != EOF &&
                    put_json(file, text) && fputs("</script>\n", file) != EOF;
     for (size_t i = 0; i < arrays->count && written; i++) written = put_array(file, &arrays->items[i]);
-    return written && put(file, page->tail, page->tail_size) && fflush(file) == 0;
+    return written && put_text(file, page->tail, page->tail_size) && fflush(file) == 0;
 }
 
 static bool write_file(const char *path, const report_template *page, const char *text,

@@ -66,7 +66,7 @@ static bool prepare_plan(sense *s, io_error *error) {
     return chosen;
 }
 
-/* The partition is one of the mesh at rest. */
+/* Makes the partition from the mesh at rest. */
 static bool prepare_sensors(sense *s, io_error *error) {
     const cscd_mesh *mesh = s->recording.mesh;
     size_t size = (size_t)cscd_mesh_vertex_count(mesh) * 3 * sizeof *s->x0;
@@ -89,13 +89,13 @@ static bool prepare_detector(sense *s, io_error *error) {
            api_failed(s, error);
 }
 
-/* Asked before anything takes time, or is truncated. */
+/* Checks the outputs before anything takes time and before any file is truncated. */
 static bool outputs_open(const sense_options *o, io_error *error) {
     return output_path_opens(o->csv_path, error) && output_path_opens(o->json_path, error) &&
            output_path_opens(o->picture_path, error);
 }
 
-static bool begin(sense *s, io_error *error) {
+static bool begin_sense(sense *s, io_error *error) {
     return recording_open(&s->options->source, &s->recording, error) && choose_frames(s, error) &&
            outputs_open(s->options, error) && prepare_plan(s, error) && prepare_sensors(s, error) &&
            prepare_detector(s, error) && sense_files_open(s->options, &s->files, error);
@@ -107,8 +107,8 @@ static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *er
     return true;
 }
 
-/* Those of the detector on the same interval, and what both have. */
-static bool compare(sense *s, sense_interval *interval, io_error *error) {
+/* Finds the detector's contacts in the same interval, and counts the pairs that both have found. */
+static bool compare_with_detector(sense *s, sense_interval *interval, io_error *error) {
     cscd_contacts contacts;
     if (s->detector == NULL) return true;
     if (cscd_detector_step(s->detector, s->x0, s->x1, &contacts) != CSCD_OK) return api_failed(s, error);
@@ -123,15 +123,15 @@ static bool compare(sense *s, sense_interval *interval, io_error *error) {
     return frame_list_add(&s->missed_frames, interval->frame) || io_fail(error, "out of memory");
 }
 
-/* New cells would not shorten an edge: it is told once. */
+/* Warns once: new cells would not shorten an edge. */
 static void tell_edge(sense *s, uint32_t frame, uint32_t part) {
     if (!s->edge_told && !s->options->quiet)
         warn("frame %u: part %u has an edge longer than --mu, so contacts there may be missed", frame, part);
     s->edge_told = true;
 }
 
-/* Cells anew for the parts that ask for it, at the end of the interval. */
-static bool renew(sense *s, sense_interval *interval, io_error *error) {
+/* Makes new cells for the parts that need them, at the end of the interval. */
+static bool renew_cells(sense *s, sense_interval *interval, io_error *error) {
     for (uint32_t p = 0; interval->warnings->renewals_due > 0 && p < cscd_partition_part_count(s->partition);
          p++) {
         cscd_renewal why = cscd_sensors_renewal(s->sensors, p);
@@ -147,8 +147,8 @@ static bool renew(sense *s, sense_interval *interval, io_error *error) {
     return true;
 }
 
-static bool draw(const sense *s, const double *positions, uint32_t frame, const cscd_warnings *warnings,
-                 io_error *error) {
+static bool draw_if_shown(const sense *s, const double *positions, uint32_t frame,
+                          const cscd_warnings *warnings, io_error *error) {
     if (frame != s->shown) return true;
     sense_view view = {&s->recording, s->partition, s->sensors, &s->paths, positions, frame, warnings};
     return sense_picture_draw(&view, s->options, error);
@@ -176,16 +176,17 @@ static bool run_interval(sense *s, uint32_t k, io_error *error) {
                                .timings = cscd_sensors_timings(s->sensors),
                                .counters = cscd_sensors_counters(s->sensors)};
     sense_subject subject = subject_of(s);
-    if (!count_warnings(s, &interval, error) || !compare(s, &interval, error)) return false;
+    if (!count_warnings(s, &interval, error) || !compare_with_detector(s, &interval, error)) return false;
     if (!sense_paths_follow(&s->paths, s->sensors)) return io_fail(error, "out of memory");
-    if (!draw(s, s->x1, k + 1, &warnings, error) || !renew(s, &interval, error)) return false;
+    if (!draw_if_shown(s, s->x1, k + 1, &warnings, error) || !renew_cells(s, &interval, error)) return false;
     sense_totals_add(&s->totals, &interval);
     if (!s->options->quiet) sense_print_row(&interval, s->options->compare);
     return sense_files_add(&s->files, &subject, &interval, error);
 }
 
 static bool run_intervals(sense *s, io_error *error) {
-    if (!read_frame(s, s->first, s->x0, error) || !draw(s, s->x0, s->first, NULL, error)) return false;
+    if (!read_frame(s, s->first, s->x0, error) || !draw_if_shown(s, s->x0, s->first, NULL, error))
+        return false;
     if (!s->options->quiet) sense_print_head(s->options->compare);
     for (uint32_t k = s->first; k < s->last && !interrupted(); k++) {
         terminal_progress_update(&s->progress, k - s->first, s->last - s->first, "sense");
@@ -204,7 +205,7 @@ static void print_results(const sense *s) {
         frame_list_print(&s->missed_frames, "pairs were missed in the intervals from frame ");
 }
 
-static void end(sense *s) {
+static void end_sense(sense *s) {
     cscd_detector_destroy(s->detector);
     cscd_sensors_destroy(s->sensors);
     cscd_partition_destroy(s->partition);
@@ -220,7 +221,7 @@ static void end(sense *s) {
     free(s->x1);
 }
 
-static int run(const sense_options *options) {
+static int run_sense(const sense_options *options) {
     sense s = {.options = options,
                .warned = object_pairs_none(),
                .confirmed = object_pairs_none(),
@@ -228,7 +229,7 @@ static int run(const sense_options *options) {
                .paths = sense_paths_none()};
     io_error error = {""}, close_error = {""};
     int code = EXIT_RAN;
-    bool begun = begin(&s, &error), ran = false;
+    bool begun = begin_sense(&s, &error), ran = false;
     if (begun) {
         if (!options->quiet) recording_warn(&s.recording);
         interrupt_catch();
@@ -243,7 +244,7 @@ static int run(const sense_options *options) {
     if (!ran) code = fail_input("%s", error.text);
     if (!closed) code = fail_input("%s", close_error.text);
     if (code == EXIT_RAN && interrupted()) code = EXIT_INTERRUPTED;
-    end(&s);
+    end_sense(&s);
     return code;
 }
 
@@ -251,5 +252,5 @@ int command_sense(int argument_count, char **arguments) {
     sense_options options;
     int code;
     if (!sense_options_parse(argument_count, arguments, &options, &code)) return code;
-    return run(&options);
+    return run_sense(&options);
 }

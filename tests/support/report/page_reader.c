@@ -20,7 +20,7 @@ static uint32_t value_of(char c) {
     return (uint32_t)(found - alphabet);
 }
 
-static page_bytes decode(const char *text, size_t length) {
+static page_bytes decode_base64(const char *text, size_t length) {
     assert_true(length % 4 == 0);
     page_bytes bytes = {malloc(length / 4 * 3 + 1), 0};
     for (size_t i = 0; i < length; i += 4) {
@@ -33,7 +33,7 @@ static page_bytes decode(const char *text, size_t length) {
 }
 
 page_bytes page_unpack(const char *base64, size_t length) {
-    page_bytes packed = decode(base64, length);
+    page_bytes packed = decode_base64(base64, length);
     page_bytes out = {NULL, 0};
     size_t capacity = 0;
     z_stream stream = {.next_in = packed.data, .avail_in = (uInt)packed.size};
@@ -125,7 +125,7 @@ typedef struct cursor {
     const uint8_t *at, *end;
 } cursor;
 
-static uint64_t take(cursor *c, size_t size) {
+static uint64_t take_bytes(cursor *c, size_t size) {
     uint64_t bits = 0;
     assert_true((size_t)(c->end - c->at) >= size);
     for (size_t i = 0; i < size; i++) bits |= (uint64_t)*c->at++ << (8 * i);
@@ -133,14 +133,14 @@ static uint64_t take(cursor *c, size_t size) {
 }
 
 static double take_double(cursor *c) {
-    uint64_t bits = take(c, 8);
+    uint64_t bits = take_bytes(c, 8);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
 }
 
 static void take_body(cursor *c, uint32_t vertex_count, uint32_t *values) {
-    size_t count = (size_t)vertex_count * 3, planes = (size_t)take(c, 1);
+    size_t count = (size_t)vertex_count * 3, planes = (size_t)take_bytes(c, 1);
     uint32_t difference = 0;
     assert_in_range(planes, 1, 4);
     assert_true((size_t)(c->end - c->at) >= planes * count);
@@ -155,8 +155,8 @@ static void take_body(cursor *c, uint32_t vertex_count, uint32_t *values) {
 }
 
 /* As the page keeps it: float32 from the middle. */
-static void show(const uint32_t *values, uint32_t vertex_count, const double *origin, double step,
-                 double *out) {
+static void restore_positions(const uint32_t *values, uint32_t vertex_count, const double *origin,
+                              double step, double *out) {
     for (size_t k = 0; k < 3; k++) {
         int32_t low = INT32_MAX, high = INT32_MIN;
         for (size_t v = 0; v < vertex_count; v++) {
@@ -178,7 +178,7 @@ double *page_frames(page_bytes records, uint32_t vertex_count, uint32_t frame_co
     double *positions = malloc(frame_count * count * sizeof *positions), origin[3] = {0}, step = 0;
     uint32_t *values = calloc(count, sizeof *values), keys = 0;
     for (size_t f = 0; f < frame_count; f++) {
-        bool key = take(&c, 1) == 1;
+        bool key = take_bytes(&c, 1) == 1;
         keys += key;
         if (key) {
             memset(values, 0, count * sizeof *values);
@@ -187,12 +187,12 @@ double *page_frames(page_bytes records, uint32_t vertex_count, uint32_t frame_co
         } else {
             assert_true(f > 0);
             for (size_t k = 0; k < 3; k++) {
-                uint32_t shift = (uint32_t)take(&c, 4);
+                uint32_t shift = (uint32_t)take_bytes(&c, 4);
                 for (size_t v = 0; v < vertex_count; v++) values[k * vertex_count + v] += shift;
             }
         }
         take_body(&c, vertex_count, values);
-        show(values, vertex_count, origin, step, positions + f * count);
+        restore_positions(values, vertex_count, origin, step, positions + f * count);
     }
     assert_ptr_equal(c.at, c.end);
     free(values);

@@ -13,7 +13,7 @@ enum { FIELDS = 16 };
 
 static const char header[] = "frame,kind,toi,a0,a1,b0,b1,b2,u,v,x,y,z,nx,ny,nz";
 
-static void add(contact_rows *rows, const contact_record *record) {
+static void add_row(contact_rows *rows, const contact_record *record) {
     contact_record *grown = realloc(rows->items, (rows->count + 1) * sizeof *grown);
     assert_non_null(grown);
     rows->items = grown;
@@ -21,7 +21,7 @@ static void add(contact_rows *rows, const contact_record *record) {
 }
 
 /* Splits at commas, in place; the test fails unless there are as many fields as the header has. */
-static void split(char *line, char *fields[FIELDS]) {
+static void split_line(char *line, char *fields[FIELDS]) {
     int count = 0;
     for (char *at = line; at != NULL; count++) {
         assert_true(count < FIELDS);
@@ -84,9 +84,9 @@ contact_rows contact_rows_read_csv(const char *path) {
     assert_non_null(line);
     assert_string_equal(line, header);
     while ((line = next_line(&rest)) != NULL) {
-        split(line, fields);
+        split_line(line, fields);
         contact_record row = row_of(fields);
-        add(&rows, &row);
+        add_row(&rows, &row);
     }
     free(text);
     return rows;
@@ -126,7 +126,7 @@ contact_rows contact_rows_read_jsonl(const char *path) {
         json_node *node = json_node_parse(line, strlen(line), NULL);
         assert_non_null(node);
         contact_record row = line_of(node);
-        add(&rows, &row);
+        add_row(&rows, &row);
         json_node_free(node);
     }
     free(text);

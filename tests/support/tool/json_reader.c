@@ -21,7 +21,7 @@ static void skip_space(reader *r) {
     while (r->at < r->end && strchr(" \t\r\n", *r->at) != NULL) r->at++;
 }
 
-static bool take(reader *r, char c) {
+static bool take_character(reader *r, char c) {
     skip_space(r);
     if (r->at >= r->end || *r->at != c) return false;
     r->at++;
@@ -115,7 +115,7 @@ static bool copy_utf8(reader *r, char **out) {
 }
 
 static char *read_string(reader *r) {
-    if (!take(r, '"')) return NULL;
+    if (!take_character(r, '"')) return NULL;
     char *text = malloc((size_t)(r->end - r->at) + 1), *out = text;
     while (text != NULL && r->at < r->end && *r->at != '"') {
         bool escape = *r->at == '\\';
@@ -141,7 +141,7 @@ static bool read_child(reader *r, json_node *parent, json_node **last) {
     char *key = NULL;
     if (parent->kind == JSON_OBJECT) {
         key = read_string(r);
-        if (key == NULL || json_node_find(parent, key) != NULL || !take(r, ':')) {
+        if (key == NULL || json_node_find(parent, key) != NULL || !take_character(r, ':')) {
             free(key);
             return false;
         }
@@ -160,11 +160,11 @@ static bool read_child(reader *r, json_node *parent, json_node **last) {
 
 static bool read_children(reader *r, json_node *parent, char closing) {
     json_node *last = NULL;
-    if (take(r, closing)) return true;
+    if (take_character(r, closing)) return true;
     do {
         if (!read_child(r, parent, &last)) return false;
-    } while (take(r, ','));
-    return take(r, closing);
+    } while (take_character(r, ','));
+    return take_character(r, closing);
 }
 
 static bool fill_value(reader *r, json_node *node) {

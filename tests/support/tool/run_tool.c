@@ -87,7 +87,7 @@ void tool_run_free(tool_run *run) {
     *run = (tool_run){0};
 }
 
-static void require(bool holds, const char *what, const tool_run *run) {
+static void require_that(bool holds, const char *what, const tool_run *run) {
     if (holds) return;
     fail_msg("%s\nexit code %d\nstdout: %s\nstderr: %s", what, run->code, run->out, run->error);
 }
@@ -96,7 +96,7 @@ void run_tool_expect(int code, const char *const *arguments) {
     char what[64];
     tool_run run = run_tool(arguments);
     snprintf(what, sizeof what, "expected exit code %d", code);
-    require(run.code == code, what, &run);
+    require_that(run.code == code, what, &run);
     tool_run_free(&run);
 }
 
@@ -110,13 +110,13 @@ void run_tool_expect_error(int code, const char *const *texts, const char *const
     char what[256];
     tool_run run = run_tool(arguments);
     snprintf(what, sizeof what, "expected exit code %d", code);
-    require(run.code == code, what, &run);
-    require(strncmp(run.error, "cscd: ", 6) == 0, "expected 'cscd: ' first", &run);
-    require(count_lines(run.error) == (code == 2 ? 2 : 1), "expected one line", &run);
-    require(code != 2 || strstr(run.error, "--help'") != NULL, "expected a hint to --help", &run);
+    require_that(run.code == code, what, &run);
+    require_that(strncmp(run.error, "cscd: ", 6) == 0, "expected 'cscd: ' first", &run);
+    require_that(count_lines(run.error) == (code == 2 ? 2 : 1), "expected one line", &run);
+    require_that(code != 2 || strstr(run.error, "--help'") != NULL, "expected a hint to --help", &run);
     for (; *texts != NULL; texts++) {
         snprintf(what, sizeof what, "expected '%s' in the error", *texts);
-        require(strstr(run.error, *texts) != NULL, what, &run);
+        require_that(strstr(run.error, *texts) != NULL, what, &run);
     }
     tool_run_free(&run);
 }

@@ -11,17 +11,17 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void require(bool done, const char *what) {
+static void require_done(bool done, const char *what) {
     if (done) return;
     fprintf(stderr, "test fixture: %s\n", what);
     abort();
 }
 
-static recorded make(uint32_t vertex_count, uint32_t triangle_count, uint32_t frame_count) {
+static recorded make_recorded(uint32_t vertex_count, uint32_t triangle_count, uint32_t frame_count) {
     recorded r = {vertex_count, triangle_count, frame_count, NULL, NULL};
     r.triangles = calloc((size_t)triangle_count * 3, sizeof *r.triangles);
     r.frames = calloc((size_t)frame_count * vertex_count * 3, sizeof *r.frames);
-    require(r.triangles != NULL && r.frames != NULL, "out of memory");
+    require_done(r.triangles != NULL && r.frames != NULL, "out of memory");
     return r;
 }
 
@@ -31,12 +31,12 @@ void recorded_free(recorded *r) {
     *r = (recorded){0};
 }
 
-static double *at(const recorded *r, uint32_t frame, uint32_t vertex) {
+static double *position_at(const recorded *r, uint32_t frame, uint32_t vertex) {
     return r->frames + ((size_t)frame * r->vertex_count + vertex) * 3;
 }
 
 const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vertex) {
-    return at(r, frame, vertex);
+    return position_at(r, frame, vertex);
 }
 
 /* Volatile: gcc 12 drops neighbouring (double)(float) conversions where it joins them into vectors. */
@@ -45,8 +45,8 @@ static double to_float32(double x) {
     return (double)rounded;
 }
 
-static void put(const recorded *r, uint32_t frame, uint32_t vertex, double x, double y, double z) {
-    double *p = at(r, frame, vertex);
+static void put_position(const recorded *r, uint32_t frame, uint32_t vertex, double x, double y, double z) {
+    double *p = position_at(r, frame, vertex);
     p[0] = to_float32(x);
     p[1] = to_float32(y);
     p[2] = to_float32(z);
@@ -61,19 +61,19 @@ static void add_tetrahedron(const recorded *r, uint32_t triangle, const uint32_t
 
 recorded recorded_tetrahedra(uint32_t frame_count) {
     static const uint32_t hit[4] = {0, 1, 2, 3}, flying[4] = {5, 6, 7, 4};
-    recorded r = make(8, 8, frame_count);
+    recorded r = make_recorded(8, 8, frame_count);
     add_tetrahedron(&r, 0, hit);
     add_tetrahedron(&r, 4, flying);
     for (uint32_t k = 0; k < frame_count; k++) {
         double x = 3.5 - k;
-        put(&r, k, 0, 0, 0, 0);
-        put(&r, k, 1, 0, 4, 0);
-        put(&r, k, 2, 0, 0, 4);
-        put(&r, k, 3, -4, 0, 0);
-        put(&r, k, 4, x, 1, 1);
-        put(&r, k, 5, x + 4, 1.5, 1);
-        put(&r, k, 6, x + 4, 0.5, 1.5);
-        put(&r, k, 7, x + 4, 0.5, 0.5);
+        put_position(&r, k, 0, 0, 0, 0);
+        put_position(&r, k, 1, 0, 4, 0);
+        put_position(&r, k, 2, 0, 0, 4);
+        put_position(&r, k, 3, -4, 0, 0);
+        put_position(&r, k, 4, x, 1, 1);
+        put_position(&r, k, 5, x + 4, 1.5, 1);
+        put_position(&r, k, 6, x + 4, 0.5, 1.5);
+        put_position(&r, k, 7, x + 4, 0.5, 0.5);
     }
     return r;
 }
@@ -98,11 +98,11 @@ static void put_folded(const recorded *r, uint32_t frame, uint32_t vertex, doubl
     double wave = 0.05 * sin(1.7 * s + 2.3 * w) + 0.03 * cos(3.1 * w - 0.9 * s);
     double x = before + radius * sin(turned) + after * cos(turned) - wave * sin(turned);
     double z = radius * (1.0 - cos(turned)) + after * sin(turned) + wave * cos(turned);
-    put(r, frame, vertex, x, w + 0.04 * after, z);
+    put_position(r, frame, vertex, x, w + 0.04 * after, z);
 }
 
 recorded recorded_fold(uint32_t columns, uint32_t rows, uint32_t frame_count) {
-    recorded r = make((columns + 1) * (rows + 1), columns * rows * 2, frame_count);
+    recorded r = make_recorded((columns + 1) * (rows + 1), columns * rows * 2, frame_count);
     add_grid(&r, columns, rows, false);
     for (uint32_t k = 0; k < frame_count; k++) {
         double angle = 0.1 + (200.0 / 180.0 * pi - 0.1) * (frame_count > 1 ? k / (frame_count - 1.0) : 0.0);
@@ -133,7 +133,7 @@ static const uint32_t cube_sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 
 
 recorded recorded_cube(bool split) {
     uint32_t corners = split ? 24 : 8;
-    recorded r = make(corners + 4, 16, 3);
+    recorded r = make_recorded(corners + 4, 16, 3);
     for (uint32_t side = 0; side < 6; side++) {
         uint32_t v[4];
         for (uint32_t i = 0; i < 4; i++) v[i] = split ? side * 4 + i : cube_sides[side][i];
@@ -145,33 +145,33 @@ recorded recorded_cube(bool split) {
         for (uint32_t v = 0; v < corners; v++) {
             double p[3];
             cube_corner(split ? cube_sides[v / 4][v % 4] : v, p);
-            put(&r, k, v, p[0] - 4.0 + 2.1 * k, p[1] + 0.1, p[2] - 0.2);
+            put_position(&r, k, v, p[0] - 4.0 + 2.1 * k, p[1] + 0.1, p[2] - 0.2);
         }
-        put(&r, k, corners, 1.1, -3, -2);
-        put(&r, k, corners + 1, 0.8, 3, -2);
-        put(&r, k, corners + 2, 1, 0.3, 3);
-        put(&r, k, corners + 3, -2, 0.5, 0.2);
+        put_position(&r, k, corners, 1.1, -3, -2);
+        put_position(&r, k, corners + 1, 0.8, 3, -2);
+        put_position(&r, k, corners + 2, 1, 0.3, 3);
+        put_position(&r, k, corners + 3, -2, 0.5, 0.2);
     }
     return r;
 }
 
 recorded recorded_bow_tie(void) {
-    recorded r = make(7, 8, 1);
+    recorded r = make_recorded(7, 8, 1);
     add_tetrahedron(&r, 0, (uint32_t[4]){1, 2, 3, 0});
     add_tetrahedron(&r, 4, (uint32_t[4]){6, 5, 4, 0});
     for (uint32_t v = 1; v < 7; v++) {
         double x = v < 4 ? 2.0 : -2.0, turn = 2.0 * pi * (v % 3) / 3.0;
-        put(&r, 0, v, x, cos(turn), sin(turn));
+        put_position(&r, 0, v, x, cos(turn), sin(turn));
     }
     return r;
 }
 
 recorded recorded_torus(uint32_t rings, uint32_t segments) {
-    recorded r = make(rings * segments, rings * segments * 2, 1);
+    recorded r = make_recorded(rings * segments, rings * segments * 2, 1);
     add_grid(&r, segments, rings, true);
     for (uint32_t v = 0; v < r.vertex_count; v++) {
         double u = 2.0 * pi * (v % segments) / segments, w = 2.0 * pi * (v / segments) / rings;
-        put(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), sin(u));
+        put_position(&r, 0, v, (3.0 + cos(u)) * cos(w), (3.0 + cos(u)) * sin(w), sin(u));
     }
     return r;
 }
@@ -196,12 +196,12 @@ static void put_spindle(const recorded *r, uint32_t frame, uint32_t vertex, doub
                         double angle) {
     double radius = 12.0 / angle, turned = s / radius, thick = sqrt(fmax(0.0, 1.0 - s * s / 36.0));
     double from_centre = radius + thick * cos(w);
-    put(r, frame, vertex, from_centre * sin(turned), from_centre * cos(turned) - radius,
-        thick * sin(w) + 0.03 * s + 0.01 * sin(3.0 * s));
+    put_position(r, frame, vertex, from_centre * sin(turned), from_centre * cos(turned) - radius,
+                 thick * sin(w) + 0.03 * s + 0.01 * sin(3.0 * s));
 }
 
 recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count) {
-    recorded r = make(rings * segments + 2, rings * segments * 2, frame_count);
+    recorded r = make_recorded(rings * segments + 2, rings * segments * 2, frame_count);
     add_spindle(&r, rings, segments);
     for (uint32_t k = 0; k < frame_count; k++) {
         double angle = (30.0 + 370.0 * k / (frame_count - 1.0)) / 180.0 * pi;
@@ -217,7 +217,7 @@ recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_coun
 
 static void write_ply(const char *path, const mesh_file *mesh) {
     FILE *file = fopen(path, "w");
-    require(file != NULL, path);
+    require_done(file != NULL, path);
     fprintf(file, "ply\nformat ascii 1.0\nelement vertex %u\n", mesh->vertex_count);
     fprintf(file, "property double x\nproperty double y\nproperty double z\nelement face %u\n",
             mesh->triangle_count);
@@ -230,18 +230,18 @@ static void write_ply(const char *path, const mesh_file *mesh) {
         const uint32_t *v = mesh->triangles + (size_t)t * 3;
         fprintf(file, "3 %u %u %u\n", v[0], v[1], v[2]);
     }
-    require(fclose(file) == 0, path);
+    require_done(fclose(file) == 0, path);
 }
 
 temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const recorded *r,
                               uint32_t frame) {
     temp_path path = temp_file_path(folder, name);
-    mesh_file mesh = {r->vertex_count, r->triangle_count, at(r, frame, 0), r->triangles};
+    mesh_file mesh = {r->vertex_count, r->triangle_count, position_at(r, frame, 0), r->triangles};
     io_error error = {""};
     if (strlen(name) > 4 && strcmp(name + strlen(name) - 4, ".ply") == 0)
         write_ply(path.text, &mesh);
     else
-        require(mesh_file_write_obj(path.text, &mesh, &error), error.text);
+        require_done(mesh_file_write_obj(path.text, &mesh, &error), error.text);
     return path;
 }
 
@@ -257,12 +257,13 @@ temp_path recorded_write_cycle(const temp_folder *folder, const char *name, cons
     temp_path path = temp_file_path(folder, name);
     point_cache_writer *writer = NULL;
     io_error error = {""};
-    require(point_cache_writer_open(path.text, r->vertex_count, frame_count, &writer, &error), error.text);
+    require_done(point_cache_writer_open(path.text, r->vertex_count, frame_count, &writer, &error),
+                 error.text);
     for (uint32_t k = 0; k < frame_count; k++) {
         uint32_t frame = cycle_frame(k, r->frame_count);
-        require(point_cache_writer_write(writer, at(r, frame, 0), &error), error.text);
+        require_done(point_cache_writer_write(writer, position_at(r, frame, 0), &error), error.text);
     }
-    require(point_cache_writer_close(writer, &error), error.text);
+    require_done(point_cache_writer_close(writer, &error), error.text);
     return path;
 }
 
@@ -273,7 +274,7 @@ temp_path recorded_write_cache(const temp_folder *folder, const char *name, cons
 /* The pattern's %04d, or the like, is replaced here: the compiler could not check a format from outside. */
 temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r) {
     const char *conversion = strchr(pattern, '%');
-    require(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");
+    require_done(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");
     int digits = atoi(conversion + 1);
     for (uint32_t k = 0; k < r->frame_count; k++) {
         char name[128];
