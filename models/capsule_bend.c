@@ -43,7 +43,7 @@ typedef struct capsule {
     uint32_t triangles[3 * triangle_count];
 } capsule;
 
-/* Repeatable noise in -1..1. */
+/* Noise in -1..1, the same in every run. */
 static double noise_at(uint32_t index) {
     uint32_t h = index * 2654435769u + 0x9e3779b9u;
     h = (h ^ h >> 16) * 0x85ebca6bu;
@@ -123,7 +123,7 @@ static void place_vertices(const capsule *model, double theta, double *positions
     }
 }
 
-/* The frame, with its fraction, in which theta - 2 k delta(a / 2) = 2 pi (see above). */
+/* The frame, with a fraction, at which theta - 2 k delta(a / 2) = 2 pi, as derived above. */
 static double contact_frame(void) {
     double before = 0.0, after = frame_count - 1;
     for (int i = 0; i < 60; i++) {

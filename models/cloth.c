@@ -21,7 +21,7 @@ static bool obstacles_move(const cloth_scene *s) {
     return move;
 }
 
-/* All obstacles as they begin. */
+/* Makes one body of all obstacles in their first positions. */
 static body make_scenery(const cloth_simulation *c) {
     body scenery = {0};
     for (uint32_t i = 0; i < c->scene->obstacle_count; i++)
@@ -51,7 +51,7 @@ static bool write_frame(const cloth_simulation *c, const cloth_files *out, io_er
             point_cache_writer_write(out->scenery_frames, c->positions + c->garment.vertex_count * 3, error));
 }
 
-/* True if all that was opened is complete. */
+/* Closes the files; false when one of them is not complete. */
 static bool close_outputs(cloth_files *out, io_error *error) {
     bool good = out->frames == NULL || point_cache_writer_close(out->frames, error);
     if (out->scenery_frames != NULL) good = point_cache_writer_close(out->scenery_frames, error) && good;
@@ -98,7 +98,7 @@ static bool record_frames(cloth_simulation *c, const char *folder, const uint64_
     return good && complete;
 }
 
-/* user: the resolution; 0: the scene's own. */
+/* Records one scene. user points to the resolution; 0 is the scene's own. */
 static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const cloth_scene *s = &cloth_scenes[index];
     const uint32_t *resolution = user;

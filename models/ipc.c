@@ -1,5 +1,5 @@
-/* Records bodies that meet and never pass through each other, by incremental potential contact: a model and
- * its frames. */
+/* Records bodies that are pressed together and never pass through each other, by incremental potential
+ * contact: a model and its frames. */
 #include "models/common/motion.h"
 #include "models/common/recording_files.h"
 #include "models/common/scene_program.h"
@@ -51,8 +51,8 @@ static cscd_status advance_frame(ipc_solver *p) {
     return status;
 }
 
-/* The frames, the first as the solver begins; a frame is measured as the files have it, in single precision.
- */
+/* Writes all frames; the first is the start of the solver. Motion is measured in single precision, as the
+ * file has it. */
 static bool record_frames(ipc_solver *p, cscd_context *context, point_cache_writer *frames,
                           recording_motion *m, io_error *error) {
     size_t bytes = (size_t)p->shape.vertex_count * 3 * sizeof(double);

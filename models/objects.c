@@ -1,5 +1,5 @@
-/* Records several closed objects that meet and part, for sensors between objects: one model and its frames.
- */
+/* Records several closed objects that touch and part, for the sensors between objects: one model and its
+ * frames. */
 #include "models/common/clock.h"
 #include "models/common/recording_files.h"
 #include "models/common/scene_program.h"
@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-/* A scene that goes by formula, or, with stage.scene NULL, the soft bodies. */
+/* A scene in which objects move by formula or, when stage.scene is NULL, the soft bodies. */
 typedef struct object_recording {
     const char *name, *text;
     uint32_t frame_count;

@@ -15,7 +15,7 @@ typedef struct record_files {
     body scenery;
 } record_files;
 
-/* Scenery frames only where balls move. */
+/* Opens the files; the scenery has frames only when balls move. */
 static bool open_outputs(const char *folder, const recorder *r, record_files *out, io_error *error) {
     if (!scenery_make(&r->around, &out->scenery, error)) return false;
     const soft_scene *s = r->scene;
@@ -35,7 +35,7 @@ static bool write_frame(const recorder *r, record_files *out, io_error *error) {
            point_cache_writer_write(out->scenery_frames, out->scenery.positions, error);
 }
 
-/* True if all that was opened is complete. */
+/* Closes the files; false when one of them is not complete. */
 static bool close_outputs(record_files *out, io_error *error) {
     bool good = out->frames == NULL || point_cache_writer_close(out->frames, error);
     if (out->scenery_frames != NULL) good = point_cache_writer_close(out->scenery_frames, error) && good;

@@ -34,7 +34,7 @@ static int usage_error(const char *what, const char *which) {
     return 2;
 }
 
-/* 0 when all is well, else the exit code. */
+/* Returns 0, or the exit code of a wrong count. */
 static int read_count(const char *text, uint32_t *out) {
     char *end;
     errno = 0;

@@ -1,4 +1,4 @@
-/* Contact and friction: what cscd_detector_near finds, as constraints on positions. */
+/* Contact and friction: turns the pairs of cscd_detector_near into constraints on positions. */
 #include "models/cloth/apart.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
@@ -19,7 +19,7 @@ static bool is_with_obstacle(const cscd_mesh *mesh, const cscd_stencil *s) {
            cscd_mesh_object(mesh, cscd_mesh_vertex_object(mesh, s->vertices[3])).obstacle;
 }
 
-/* Obstacles do not give way, so they have the last word. */
+/* Sorts pairs with obstacles to the end: obstacles do not give way, so they are solved last. */
 void apart_take(apart *a, const cscd_mesh *mesh, const cscd_proximities *near) {
     a->count = 0;
     if (near->count > a->capacity) {

@@ -94,7 +94,7 @@ const cloth_scene *cloth_scene_find(const char *name) {
     return NULL;
 }
 
-/* Odd, as a bag needs them. */
+/* A bag needs an odd number of columns. */
 static uint32_t bag_columns(uint32_t resolution) {
     return resolution | 1;
 }
@@ -108,8 +108,8 @@ double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution) {
     return s->width / ((s->cut == CLOTH_BAG ? bag_columns(resolution) : resolution) - 1);
 }
 
-/* Turns two coordinates by an angle of which this is the tangent of the half: without sines, whose last bits
- * differ from library to library. */
+/* Rotates two coordinates; `tangent` is that of half the angle. This needs no sines, whose last bits
+ * differ between libraries. */
 static void turn_plane(double tangent, double *x, double *y) {
     double square = tangent * tangent, c = (1.0 - square) / (1.0 + square),
            s = 2.0 * tangent / (1.0 + square);
@@ -118,7 +118,7 @@ static void turn_plane(double tangent, double *x, double *y) {
     *x = turned;
 }
 
-/* Of even triangles with sides of the spacing. */
+/* Adds a tube of even triangles whose sides are as long as the spacing. */
 static void add_tube(const cloth_scene *s, uint32_t resolution, body *b) {
     double spacing = cloth_scene_spacing(s, resolution), radius = 0.5 * s->width;
     double area = 2.0 * pi * radius * (s->height + radius);

@@ -8,12 +8,12 @@ typedef enum cloth_cut { CLOTH_SHEET, CLOTH_TUBE, CLOTH_BAG } cloth_cut;
 
 typedef enum cloth_obstacle_kind { CLOTH_BOX, CLOTH_BALL } cloth_obstacle_kind;
 
-/* Moves as it is told: from `begin` to `begin + seconds` it rises, and turns about the vertical through its
- * centre; before and afterwards it rests. */
+/* An obstacle with a given motion: from `begin` to `begin + seconds` it rises and turns about the vertical
+ * axis through its centre; before and after that it rests. */
 typedef struct cloth_obstacle {
     cloth_obstacle_kind kind;
-    double size;      /* radius of a ball; of a box its reach to the sides */
-    double centre[3]; /* of a box: of its top */
+    double size;      /* radius of a ball, or half the width of a box */
+    double centre[3]; /* the centre of a ball, or of a box's top */
     double begin, seconds, rise;
     double turn; /* tangent of half the angle */
 } cloth_obstacle;
@@ -24,10 +24,10 @@ enum { CLOTH_OBSTACLES_MAX = 2 };
 typedef struct cloth_scene {
     const char *name, *text;
     cloth_cut cut;
-    double width, height; /* of a sheet its side; of a tube its diameter, and its height; of a bag both */
-    double depth;         /* of a bag, to each side */
-    uint32_t resolution;  /* vertices along a side (a bag's: made odd), or around a tube: the default */
-    double place[3];      /* of a sheet's middle, or of the middle of the garment's foot */
+    double width, height; /* side of a sheet; diameter and height of a tube; both of a bag */
+    double depth;         /* how far a bag bulges to each side */
+    uint32_t resolution;  /* default: vertices along a side (odd for a bag) or around a tube */
+    double place[3];      /* middle of a sheet, or middle of the lower end of another garment */
     double turn, lean;    /* tangents of half the angles: about the vertical, then about the x axis */
     fabric_material stuff;
     double friction, gravity;
@@ -41,20 +41,20 @@ typedef struct cloth_scene {
 extern const cloth_scene cloth_scenes[];
 extern const uint32_t cloth_scene_count;
 
-/* NULL: there is none of this name. */
+/* Returns NULL when no scene has this name. */
 const cloth_scene *cloth_scene_find(const char *name);
 
 enum { CLOTH_RESOLUTION_MIN = 12, CLOTH_RESOLUTION_MAX = 500 };
 
-/* The mean distance of neighbouring vertices. */
+/* Returns the mean distance of neighbouring vertices. */
 double cloth_scene_spacing(const cloth_scene *s, uint32_t resolution);
 
-/* The garment as it begins, which is how it rests. */
+/* Makes the garment in its first shape, which is also its shape at rest. */
 body cloth_scene_garment(const cloth_scene *s, uint32_t resolution);
 
-/* *pair_count pairs of vertices of the garment that are sewn together, to be freed; none: NULL. */
+/* Returns *pair_count pairs of vertices that are sewn together, to be freed; NULL when there are none. */
 uint32_t *cloth_scene_seams(const cloth_scene *s, uint32_t resolution, uint32_t *pair_count);
 
-/* An obstacle as a mesh about its centre, to be placed by cloth_obstacle_place. */
+/* Makes the mesh of an obstacle about its centre; cloth_obstacle_place moves it. */
 bool cloth_obstacle_make(const cloth_obstacle *o, body *out, io_error *error);
 void cloth_obstacle_place(const cloth_obstacle *o, const body *shape, double time, double *positions);

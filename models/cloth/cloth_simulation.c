@@ -6,10 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In spacings. Flat cloth has no features nearer than 0.7 that do not share a vertex. */
+/* In spacings of the vertices. In flat cloth, features that share no vertex are at least 0.7 apart. */
 static const double thickness = 0.3, separation = 0.03, reach = 0.45;
 
-/* Shares of what pairs lack, a small step: layers that part press on the lowest, which must not give way. */
+/* Shares of the missing distance that a small step adds. Layers that are pushed apart press on the lowest
+ * one, which must not give way to an obstacle. */
 static const double healing[2] = {0.05, 0.3};
 
 double cloth_thickness(const cloth_simulation *c) {
@@ -30,7 +31,8 @@ static cscd_mesh_desc describe_body(const body *b) {
     return (cscd_mesh_desc){b->vertex_count, b->triangle_count, b->triangles};
 }
 
-/* One scene of the garment, which is looked after, and obstacles, which move as they are told. */
+/* Creates a scene of the garment, which the detector tests, and of the obstacles, which have given
+ * motions. */
 static cscd_status open_mesh(cloth_simulation *c) {
     cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {{describe_body(&c->garment), false}};
     uint32_t count = c->scene->obstacle_count;
@@ -97,7 +99,7 @@ void cloth_close(cloth_simulation *c) {
     *c = (cloth_simulation){0};
 }
 
-/* The obstacles go on evenly, from where they start the frame to where `goal` has them. */
+/* Takes one small step. Obstacles move evenly from the start of the frame to `goal`. */
 static void small_step(cloth_simulation *c, const double *goal, uint32_t which) {
     uint32_t steps = c->scene->small_steps, free_count = c->garment.vertex_count;
     double step = c->scene->frame_seconds / steps, kept = 1.0 / (1.0 + c->cloth.drag * step);
@@ -117,7 +119,7 @@ static void small_step(cloth_simulation *c, const double *goal, uint32_t which) 
     for (size_t i = 0; i < free_size; i++) c->velocities[i] = (x[i] - c->previous[i]) / step;
 }
 
-/* The motion that the solver wants, in c->target. */
+/* Finds where the solver would move the cloth if nothing were in its way; the result is c->target. */
 static void find_target(cloth_simulation *c) {
     size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3;
     double *goal = c->positions; /* not needed until the frame's end, but for the start of it */

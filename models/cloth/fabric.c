@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* A triangle's edge and the vertex opposite. */
+/* An edge of a triangle and the vertex opposite. */
 typedef struct side {
     uint32_t low, high, opposite;
 } side;
@@ -16,7 +16,7 @@ static int compare_sides(const void *left, const void *right) {
     return (a->opposite > b->opposite) - (a->opposite < b->opposite);
 }
 
-/* All sides of all triangles, those of one edge beside each other. */
+/* Returns the sides of all triangles, sorted so that the sides of one edge are neighbours. */
 static side *sorted_sides(const body *b) {
     side *sides = body_allocate((size_t)b->triangle_count * 3, sizeof *sides);
     for (uint32_t i = 0; i < b->triangle_count * 3; i++) {
@@ -36,7 +36,7 @@ static double triangle_area(const double *p, const double *q, const double *r) {
     return 0.5 * vec3_norm(normal);
 }
 
-/* Of the angle at p between q and r. */
+/* Returns the cotangent of the angle at p between q and r. */
 static double corner_cotangent(const double *p, const double *q, const double *r) {
     double to_q[3], to_r[3], normal[3];
     vec3_subtract(q, p, to_q);
@@ -56,7 +56,7 @@ static void weighted_sum(const fabric_hinge *h, const double *positions, double 
     for (int i = 0; i < 4; i++) vec3_add_scaled(sum, h->weights[i], positions + h->vertices[i] * 3);
 }
 
-/* Energy 3 / (2 (A0 + A1)) bending |sum|^2. */
+/* Makes the hinge whose energy is 3 / (2 (A0 + A1)) bending |sum|^2. */
 static fabric_hinge make_hinge(const side sides[2], const double *rest, double bending) {
     fabric_hinge h = {.vertices = {sides[0].low, sides[0].high, sides[0].opposite, sides[1].opposite}};
     const double *x[4];
@@ -113,8 +113,8 @@ void fabric_free(fabric *f) {
     *f = (fabric){0};
 }
 
-/* Equation 26 of XPBD for one iteration: the multiplier of a constraint that is off by `error`, and that
- * changed by `change` since the small step began; `squares` is the sum of inverse mass * gradient^2. */
+/* Equation 26 of XPBD for one iteration: the multiplier of a constraint that is off by `error` and has
+ * changed by `change` since the small step began. `squares` is the sum of inverse mass * gradient^2. */
 static double constraint_multiplier(double error, double change, double squares, double compliance,
                                     double damping, double step) {
     double lag = damping / step;

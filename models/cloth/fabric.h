@@ -6,7 +6,7 @@
 
 typedef struct fabric_material {
     double density; /* mass per area */
-    double stretch; /* force per length: of an edge's spring; those across resist shear */
+    double stretch; /* force per length of a spring; springs across cells resist shear */
     double bending; /* force times length: resistance to curvature */
     double damping; /* seconds: stretching and bending motion dies away as with Rayleigh's coefficient */
     double drag;    /* share of the velocity that the air takes per second (1/s) */
@@ -17,12 +17,12 @@ typedef struct fabric_spring {
     double rest, compliance;
 } fabric_spring;
 
-/* Two triangles at an edge. The weighted sum of the four vertices is 0 where they are flat, and grows with
+/* Two triangles at an edge. The weighted sum of the four vertices is 0 when they are flat and grows with
  * the angle (Bergou et al., "A quadratic bending model for inextensible surfaces", 2006). */
 typedef struct fabric_hinge {
-    uint32_t vertices[4]; /* the edge's two, then those opposite */
+    uint32_t vertices[4]; /* the two of the edge, then the two opposite */
     double weights[4];
-    double rest; /* length of that sum */
+    double rest; /* length of that sum at rest */
     double compliance;
 } fabric_hinge;
 
@@ -34,13 +34,15 @@ typedef struct fabric {
     double damping, drag;
 } fabric;
 
-/* At rest as the body is; every vertex belongs to a triangle, and no edge to more than two. */
+/* Makes a fabric whose rest shape is the body. Every vertex belongs to a triangle, and every edge to at
+ * most two. */
 fabric fabric_make(const body *rest, const fabric_material *m);
 void fabric_free(fabric *f);
 
-/* One pass over all springs and hinges, always in one order: passes to and fro would not come to rest, for
- * each ends a little elsewhere. previous: where the small step began; step in seconds. */
+/* Solves all springs and hinges once, always in the same order: alternating the order would never come to
+ * rest, since each order ends in a slightly different place. previous: positions at the start of the small
+ * step; step: in seconds. */
 void fabric_solve(const fabric *f, double step, const double *previous, double *positions);
 
-/* Kinetic energy plus that of springs and hinges above rest. */
+/* Returns the kinetic energy plus the energy of springs and hinges. */
 double fabric_energy(const fabric *f, const double *positions, const double *velocities);

@@ -1,10 +1,10 @@
-/* What falls and what it falls onto: sheets, tubes, boxes and balls as meshes. */
+/* Sheets, tubes, boxes and balls as meshes: garments and obstacles. */
 #include "models/cloth/garment.h"
 #include "models/shapes/catalogue.h"
 #include "models/shapes/rings.h"
 
-/* Two triangles for each cell of a lattice of vertices, in rows from `first` on; turned: seen from the other
- * side. */
+/* Adds two triangles for each cell of a lattice of vertices, which stand in rows from `first` on. turned:
+ * counter-clockwise seen from the other side. */
 static void add_cells(body *b, uint32_t first, uint32_t columns, uint32_t rows, bool turned) {
     for (uint32_t j = 0; j + 1 < rows; j++) {
         for (uint32_t i = 0; i + 1 < columns; i++) {
@@ -65,7 +65,7 @@ void garment_add_tube(body *b, uint32_t triangle_count, double radius, double he
     body_round(b);
 }
 
-/* Corners as the bits of 0 to 7: x, y, z. */
+/* The bits of a corner's number, 0 to 7, are its x, y and z. */
 void garment_add_box(body *b, double reach) {
     static const uint8_t sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};

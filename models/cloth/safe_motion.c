@@ -1,4 +1,4 @@
-/* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
+/* Changes the motion that a solver wants into one near it that is certified to have no contact. */
 #include "models/cloth/safe_motion.h"
 #include "models/cloth/apart.h"
 #include "models/common/vec3.h"
@@ -7,13 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* First contacts only stop what approaches; what then still meets moves together. */
+/* In the first rounds contacts only stop what approaches; in the others, the vertices of contacts move
+ * together. */
 enum { STOPPING_ROUNDS = 6, STOPPING_PASSES = 40, ROUNDS = 16 };
 
-/* How much of the way to a contact is left to its features. */
+/* The share of the way to a contact that its features may go. */
 static const double share_of_way = 0.7;
 
-/* How much of an excess is taken away in a pass: all of it at once would throw back what comes first. */
+/* The share of an excess that a pass takes away: all of it at once would throw back the side that comes
+ * first. */
 static const double share_of_excess = 0.25;
 
 /* Each separation is a quarter of the one before. */
@@ -62,7 +64,7 @@ void safe_motion_sew(const safe_motion *s, double *positions) {
     }
 }
 
-/* How far the two points come nearer along the normal. */
+/* Returns by how much the two points approach along the normal. */
 static double approach_of(const safe_motion_stop *stop, const double *x0, const double *x1) {
     double from[3], to[3];
     apart_sum(&stop->stencil, x0, from);
@@ -90,7 +92,8 @@ static void take_stops(safe_motion *s, const cscd_contacts *found, const double 
     }
 }
 
-/* What was found in this and earlier rounds approaches only for a share of its way to the contact. */
+/* Lets the pairs that were found in this and earlier rounds approach only by a share of their way to the
+ * contact. */
 static void stop_approaches(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
     take_stops(s, found, x0, x1);
     for (size_t i = 0; i < s->stop_count * STOPPING_PASSES; i++) {
@@ -120,8 +123,9 @@ static bool is_told(const safe_motion *s, uint32_t vertex) {
     return s->inverse_masses[vertex] == 0.0;
 }
 
-/* The vertices of a contact come into one zone; but for an obstacle's, which only tell it how they move: or
- * all that lies on a floor were one. Returns UINT32_MAX for vertices of obstacles only. */
+/* Joins the zones of a contact's vertices. Vertices of obstacles do not join a zone, they only tell it how
+ * they move; else all cloth on a floor were one zone. Returns UINT32_MAX when all vertices belong to
+ * obstacles. */
 static uint32_t join_zones(safe_motion *s, const cscd_stencil *stencil, const double *x0, const double *x1) {
     uint32_t zone = UINT32_MAX;
     for (int i = 0; i < 4; i++) {
@@ -156,8 +160,8 @@ static void sum_up_zones(safe_motion *s, const double *x0, const double *x1) {
     }
 }
 
-/* What meets comes nearer to the common motion of its zone: that of the obstacles in it, or of its centre of
- * mass, which keeps momentum. Vertices that all move alike keep their distances. */
+/* Brings the vertices of contacts nearer to the common motion of their zone: that of the obstacles in it,
+ * or else that of its centre of mass, which keeps momentum. Vertices that move alike keep their distances. */
 static void move_together(safe_motion *s, const cscd_contacts *found, const double *x0, double *x1) {
     cscd_stencil stencil;
     for (size_t i = 0; i < found->count; i++) {
@@ -188,7 +192,7 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
     }
 }
 
-/* The whole motion, shortened. */
+/* Shortens the whole motion. */
 static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
     cscd_free_step way = {.length = 0.0};
     cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
@@ -208,7 +212,8 @@ static cscd_status find_contacts(safe_motion *s, const double *x0, const double 
     return CSCD_OK;
 }
 
-/* With the first separation that x0 keeps; else, with the last. A contact at time 0 is one of x0. */
+/* Steps with the first separation that x0 keeps, or with the last. A contact at time 0 shows that x0 does
+ * not keep it. */
 static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
     for (uint32_t which = 0; which < SAFE_MOTION_SEPARATIONS; which++) {
         cscd_status status = set_separation(s, which);

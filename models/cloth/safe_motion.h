@@ -1,36 +1,36 @@
-/* A motion that meets nothing, certified: from the motion that a solver wants to one near it. */
+/* Changes the motion that a solver wants into one near it that is certified to have no contact. */
 #pragma once
 
 #include "cscd/cscd.h"
 
-/* What has been done so far. */
+/* Totals since the start. */
 typedef struct safe_motion_counts {
     uint64_t steps;            /* calls of cscd_detector_step */
-    uint64_t contacts;         /* found by them */
+    uint64_t contacts;         /* found by these calls */
     uint64_t cut;              /* motions that needed a change */
-    uint64_t fallbacks, waits; /* that took cscd_detector_max_step; that found no way on, and stayed */
-    uint64_t tight;            /* that began too near for the first separation; */
-    uint32_t tightest;         /* the last that was needed, 0 the first */
+    uint64_t fallbacks, waits; /* motions that took cscd_detector_max_step; motions without any way on */
+    uint64_t tight;            /* motions that began too near for the first separation */
+    uint32_t tightest;         /* the smallest separation that was needed; 0 is the first */
 } safe_motion_counts;
 
 /* Each separation is a quarter of the one before. */
 enum { SAFE_MOTION_SEPARATIONS = 5 };
 
-/* How near the points of a contact may come to each other along its normal. */
+/* Limits how far the points of a contact may approach along its normal. */
 typedef struct safe_motion_stop {
     cscd_stencil stencil;
     double normal[3], allowed;
 } safe_motion_stop;
 
-/* Vertices that move together, named by the smallest. */
+/* A set of vertices that move together; its smallest vertex names it. */
 typedef struct safe_motion_zone {
-    double motion[3], mass;  /* summed: mass times motion */
-    double told[3], tellers; /* summed: motions of the obstacles that it meets */
-    double share;            /* what this round leaves of the motions that differ */
+    double motion[3], mass;  /* sums of mass times motion, and of mass */
+    double told[3], tellers; /* sum and number of the motions of obstacles in contact with it */
+    double share;            /* the share that this round leaves of motions that differ */
 } safe_motion_zone;
 
-/* Owned by the caller: mesh, seams, and inverse_masses, one per vertex, 0 for those that move as they are
- * told. */
+/* The caller owns mesh, seams and inverse_masses, which has one number per vertex, 0 for vertices with
+ * given motions. */
 typedef struct safe_motion {
     cscd_detector *detector; /* its separation is that of the last motion */
     const cscd_mesh *mesh;
@@ -39,11 +39,11 @@ typedef struct safe_motion {
     const uint32_t *seams; /* pairs of vertices that move as one */
     uint32_t seam_count;
     uint32_t vertex_count;
-    safe_motion_stop *stops; /* of a motion */
+    safe_motion_stop *stops; /* of the motion in work */
     size_t stop_count, stop_capacity;
-    uint32_t *parents;       /* the zones of a motion, as a forest of vertices */
-    safe_motion_zone *zones; /* at the vertices that name them */
-    double (*told)[4];       /* per vertex: sum and number of the motions of obstacles that it met */
+    uint32_t *parents;       /* zones of the motion in work, as a forest of vertices */
+    safe_motion_zone *zones; /* indexed by the vertices that name them */
+    double (*told)[4];       /* per vertex: sum and number of the motions of obstacles in contact */
     safe_motion_counts counts;
 } safe_motion;
 
@@ -51,12 +51,12 @@ cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const dou
                              const uint32_t *seams, uint32_t seam_count, safe_motion *out);
 void safe_motion_close(safe_motion *s);
 
-/* Changes x1 until vertices that move from x0 to it in straight lines meet nothing on the way: they stay
- * farther apart than the separation, or, where they are pressed together until they begin nearer than that,
- * than the next one, and so on. x0 touches nothing. *length: 1, or how much of their way the obstacles went,
- * down to 0: where no other motion is left, all vertices stop on the way, the obstacles with them. Vertices
- * that are sewn together lie on each other at x0 and x1, and stay so. */
+/* Changes x1 until the straight motion from x0 to x1 has no contact: features stay farther apart than the
+ * separation or, where they were pressed together and begin nearer than that, than the next one, and so
+ * on. x0 has no contact. *length is 1, or the share of their way that the obstacles went, down to 0: when
+ * no other motion is left, all vertices stop on the way, and the obstacles with them. Vertices that are
+ * sewn together have equal positions in x0 and in x1. */
 cscd_status safe_motion_find(safe_motion *s, const double *x0, double *x1, double *length);
 
-/* Both vertices of each seam to their common centre of mass. */
+/* Moves both vertices of each seam to their common centre of mass. */
 void safe_motion_sew(const safe_motion *s, double *positions);

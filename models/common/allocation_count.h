@@ -3,5 +3,5 @@
 
 #include "cscd/cscd.h"
 
-/* Counts on from what *count is; it outlives the context. */
+/* Returns an allocator that counts on from *count, which outlives the context. */
 cscd_allocator allocation_count_interface(uint64_t *count);

@@ -1,4 +1,4 @@
-/* Wall clock time, for what a program says of itself. */
+/* Wall clock time, for the summaries of programs. */
 #include "models/common/clock.h"
 
 #include <time.h>

@@ -1,5 +1,5 @@
-/* Wall clock time, for what a program says of itself. */
+/* Wall clock time, for the summaries of programs. */
 #pragma once
 
-/* Milliseconds since some moment. */
+/* Milliseconds since some fixed moment. */
 double clock_now_ms(void);

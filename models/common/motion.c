@@ -10,8 +10,8 @@ enum { ROUNDS = 2000 };
 
 static const double soft_residual = 0.03;
 
-/* The largest eigenvalue of a symmetric matrix by power iteration, shifted so that it is the largest by
- * magnitude too. */
+/* Finds the largest eigenvalue of a symmetric matrix by power iteration. The matrix is shifted so that
+ * this eigenvalue is also the largest by magnitude. */
 static double largest_eigenvalue(double m[4][4]) {
     double vector[4] = {1.0, 0.3, 0.2, 0.1}, shift = 0.0, value = 0.0;
     for (int i = 0; i < 16; i++) shift += m[i / 4][i % 4] * m[i / 4][i % 4];

@@ -4,7 +4,7 @@
 #include "models/shapes/body.h"
 #include "src/io/point_cache_write.h"
 
-/* FOLDER/NAMEending; the current folder where the folder has no name. */
+/* Writes FOLDER/NAMEending; an empty folder is the current one. */
 bool recording_write_model(const char *folder, const char *name, const char *ending, const body *b,
                            io_error *error);
 bool recording_open_frames(const char *folder, const char *name, const char *ending, uint32_t vertex_count,

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 typedef struct scene_program {
-    const char *name, *help; /* the scenes are told behind the help */
+    const char *name, *help; /* the list of scenes is printed after the help */
     uint32_t scene_count;
     const char *(*scene_name)(uint32_t scene);
     const char *(*scene_text)(uint32_t scene);
@@ -15,9 +15,10 @@ typedef struct scene_program {
     void *user;
 } scene_program;
 
-/* SCENE... FOLDER, or --help; `all` stands for all scenes. Records those that are named, in their own order,
- * and returns the exit status: 0; 1 with what went wrong on stderr; 2 for arguments that cannot be. */
+/* Takes the arguments `SCENE... FOLDER` or `--help`; `all` stands for all scenes. Records the named scenes
+ * in the order of the list. Returns the exit status: 0, 1 after an error that stderr explains, 2 for wrong
+ * arguments. */
 int scene_program_run(const scene_program *p, int argument_count, char **arguments);
 
-/* Where a scene is: on a terminal only, on one line, which goes when frame is frame_count. */
+/* Shows the progress of a scene on one line of a terminal; the line goes when frame is frame_count. */
 void scene_program_show(const char *scene_name, uint32_t frame, uint32_t frame_count);

@@ -1,4 +1,4 @@
-/* Three-vectors. */
+/* Vectors of three doubles. */
 #pragma once
 
 #include <math.h>
@@ -27,7 +27,7 @@ static inline double vec3_norm(const double a[3]) {
     return sqrt(vec3_dot(a, a));
 }
 
-/* To length 1; false and unchanged for the zero vector. */
+/* Scales to length 1; returns false and leaves the zero vector unchanged. */
 static inline bool vec3_normalize(double a[3]) {
     double length = vec3_norm(a);
     if (!(length > 0.0)) return false;

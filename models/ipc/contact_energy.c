@@ -1,4 +1,4 @@
-/* The barrier's energy over all pairs of features that are near, as a list of terms. */
+/* The energy of the barrier over all pairs of features nearer than its reach, as a list of terms. */
 #include "models/ipc/contact_energy.h"
 #include "models/common/vec3.h"
 #include "models/ipc/barrier.h"
@@ -6,7 +6,8 @@
 
 #include <stdlib.h>
 
-/* Edges are nearly parallel where the square of the sine between them, at rest lengths, is below. */
+/* Edges count as nearly parallel when the squared sine between them, taken with their rest lengths, is
+ * below. */
 static const double parallel_share = 1e-3;
 
 static double squared_length(const double *positions, const uint32_t edge[2]) {
@@ -15,8 +16,8 @@ static double squared_length(const double *positions, const uint32_t edge[2]) {
     return vec3_dot(along, along);
 }
 
-/* Energy times mollifier, and the mollifier's part of the gradient: crossing is |a x b|^2, whose derivative
- * by a is 2 b x (a x b), by b 2 (a x b) x a. */
+/* Multiplies the energy by the mollifier and adds the mollifier's part of the gradient. crossing is |a x
+ * b|^2, whose derivative by a is 2 b x (a x b), and by b 2 (a x b) x a. */
 static void fade_parallel(ipc_contact *c, const double *rest, const double *positions) {
     const uint32_t *v = c->vertices;
     double a[3], b[3], across[3], by_a[3], by_b[3];

@@ -1,22 +1,22 @@
-/* The barrier's energy over all pairs of features that are near, as a list of terms. */
+/* The energy of the barrier over all pairs of features nearer than its reach, as a list of terms. */
 #pragma once
 
 #include "cscd/cscd.h"
 
-/* One pair. Its Hessian is taken as curvature * g g^T, where g, the gradient of the distance, is weights[i] *
- * normal at vertex i: see ipc_contacts_find. */
+/* One pair. Its Hessian is approximated by curvature * g g^T, where g, the gradient of the distance, is
+ * weights[i] * normal at vertex i; see ipc_contacts_find. */
 typedef struct ipc_contact {
     uint32_t vertices[4];
     double weights[4], normal[3];
-    double gradient[4][3]; /* of the energy */
+    double gradient[4][3]; /* gradient of the energy */
     double energy, curvature;
 } ipc_contact;
 
-/* Grows from {0}; ipc_contacts_free takes it back. */
+/* Grows from {0}; ipc_contacts_free releases it. */
 typedef struct ipc_contacts {
     ipc_contact *items;
     size_t count, capacity;
-    double energy, least_distance; /* the sum; INFINITY without pairs */
+    double energy, least_distance; /* the sum of energies; the least distance, INFINITY without pairs */
 } ipc_contacts;
 
 typedef struct ipc_barrier_options {
@@ -41,5 +41,5 @@ void ipc_contacts_free(ipc_contacts *contacts);
 
 void ipc_contacts_add_gradient(const ipc_contacts *contacts, double *gradient);
 
-/* out += Hessian * x */
+/* Adds Hessian * x to out. */
 void ipc_contacts_add_product(const ipc_contacts *contacts, const double *x, double *out);

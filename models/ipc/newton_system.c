@@ -42,7 +42,7 @@ static void add_spring(ipc_block *sum, const ipc_spring_hessian *h) {
     sum->m[5] += h->aside;
 }
 
-/* By cofactors; the block is positive definite. */
+/* Inverts a positive definite block by cofactors. */
 static void invert_block(ipc_block *block) {
     const double *m = block->m;
     double xx = m[3] * m[5] - m[4] * m[4], xy = m[2] * m[4] - m[1] * m[5], xz = m[1] * m[4] - m[2] * m[3];

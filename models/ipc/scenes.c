@@ -1,4 +1,4 @@
-/* The scenes of the IPC solver: which bodies, of what, between which obstacles. */
+/* The scenes of the IPC solver: bodies, their materials, and obstacles. */
 #include "models/ipc/scenes.h"
 #include "models/shapes/outline.h"
 #include "models/shapes/revolution.h"
@@ -12,7 +12,7 @@ enum { LINKS = 6, PLATE_DIVISIONS = 4 };
 
 static const double link_radius = 1.0, link_thickness = 0.22, link_spacing = 1.4;
 
-/* The tube of a ring that stands: its axis is y. */
+/* Places a point on the tube of an upright ring, whose axis is y. */
 static void place_upright(double radius, double height, double angle, double point[3]) {
     point[0] = radius * cos(angle);
     point[1] = -height;
@@ -25,7 +25,8 @@ static void scale_and_move(body *b, const double scale[3], const double offset[3
     body_round(b);
 }
 
-/* Along x, every second one upright, slack by a tenth; the first does not move. */
+/* Makes a chain along x: every second ring stands upright, it is a tenth longer than taut, and its first
+ * ring does not move. */
 static uint32_t make_rings(uint32_t triangle_count, ipc_object objects[IPC_OBJECTS_MAX]) {
     outline o = {.closed = true, .end = {link_radius + link_thickness, 0.0}};
     outline_arc(&o, link_radius, 0.0, link_thickness, 0.0, 360.0);
@@ -46,7 +47,7 @@ static ipc_object make_plate(double height, double travel) {
     return plate;
 }
 
-/* A spring between two plates, of which the upper one comes down. */
+/* Makes a coil between two plates; the upper one comes down. */
 static uint32_t make_press(uint32_t triangle_count, ipc_object objects[IPC_OBJECTS_MAX]) {
     const uint32_t plates = 2 * 12 * PLATE_DIVISIONS * PLATE_DIVISIONS;
     objects[0] = (ipc_object){.obstacle = false};

@@ -1,4 +1,5 @@
-/* What the IPC solver is made of: one mesh of all objects, masses, springs, the detector and its line. */
+/* Makes and frees an IPC solver: one mesh of all objects, masses, springs, the detector and its line
+ * search. */
 #include "models/ipc/solver.h"
 
 #include <math.h>
@@ -45,7 +46,7 @@ static void allocate_arrays(ipc_solver *p) {
     p->inertia = body_allocate(p->shape.vertex_count, sizeof *p->inertia);
 }
 
-/* Later ones come with each line. */
+/* Finds the first contacts; the line search finds the later ones. */
 static cscd_status find_first_contacts(ipc_solver *p) {
     const ipc_barrier_options *barrier = &p->scene->barrier;
     cscd_proximities near;

@@ -1,4 +1,4 @@
-/* Time steps of implicit Euler as minimisations by Newton's method, along lines that stay free of contact. */
+/* Time steps of implicit Euler as minimisations by Newton's method, along lines without contact. */
 #include "models/ipc/solver.h"
 #include "models/common/clock.h"
 #include "models/common/vec3.h"
@@ -8,11 +8,11 @@
 
 enum { NEWTON_MOST = 60, GRADIENTS_MOST = 400, HALVINGS_MOST = 40 };
 
-/* The linear system's residual; what share of the slope a step must win (Armijo); and when a minimisation is
- * done: no vertex would move farther than this share of the barrier's reach. */
+/* The residual of the linear system; the share of the slope that a step must gain (Armijo); and the end of
+ * a minimisation: no vertex would move farther than this share of the barrier's reach. */
 static const double solve_tolerance = 3e-2, least_gain = 1e-4, done_share = 0.05;
 
-/* Time in cscd since then: of a stage and in all. */
+/* Adds the time in cscd since `since` to a stage and to the total. */
 static void add_detection(ipc_solver *p, double since, double *stage) {
     double spent = clock_now_ms() - since;
     *stage += spent;
@@ -29,12 +29,12 @@ double ipc_solver_energy(const ipc_solver *p, const double *positions, const ipc
     return inertia + ipc_springs_energy(&p->springs, positions) + contacts->energy;
 }
 
-/* Where an obstacle's coordinate i is to be at the end of the time step. */
+/* Returns where coordinate i of an obstacle is at the end of the time step. */
 static double goal_of(const ipc_solver *p, uint32_t i) {
     return p->shape.positions[i] + p->to_travel * p->travels[i];
 }
 
-/* The way left to go for each obstacle. */
+/* Sets the direction of obstacles to the rest of their way. */
 static void aim_obstacles(ipc_solver *p) {
     p->arrived = true;
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++) {
@@ -44,8 +44,8 @@ static void aim_obstacles(ipc_solver *p) {
     }
 }
 
-/* Newton's: how bodies go with the obstacles that press them is in the Hessian of the barrier. Returns the
- * slope of the energy along it. */
+/* Finds Newton's direction. The Hessian of the barrier makes bodies follow the obstacles that press them.
+ * Returns the slope of the energy along the direction. */
 static double find_direction(ipc_solver *p) {
     double slope = 0.0;
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
@@ -60,7 +60,7 @@ static double find_direction(ipc_solver *p) {
     return slope;
 }
 
-/* The energy at the trial point, `length` along the line. */
+/* Computes the energy at the trial point, `length` along the line. */
 static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) {
     cscd_proximities near;
     double since = clock_now_ms();
@@ -74,7 +74,7 @@ static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) 
     return CSCD_OK;
 }
 
-/* Certified: p->trial is what the library verified, at most `longest` along the line. */
+/* Steps along the line by at most `longest`; p->trial is the point that the library has verified. */
 static cscd_status step_along_line(ipc_solver *p, double longest, cscd_free_step *step) {
     double since = clock_now_ms();
     cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
@@ -92,9 +92,9 @@ static cscd_status begin_line(ipc_solver *p) {
     return status;
 }
 
-/* From the longest step that is free of contact on backwards, until the energy has fallen by enough (Armijo's
- * rule); while obstacles move, which may do work, the longest. What is evaluated is what the library has
- * verified. *found false: no step leads down. */
+/* Starts with the longest step without contact and shortens it until the energy has fallen by enough
+ * (Armijo's rule). While obstacles move, which may do work, it takes the longest. Only points that the
+ * library has verified are evaluated. *found is false when no step leads down. */
 static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
     double longest = 1.0;
     cscd_status status = begin_line(p);
@@ -112,7 +112,7 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
     return status;
 }
 
-/* What was tried is where the vertices are. */
+/* Moves the vertices to the trial point. */
 static void accept_trial(ipc_solver *p) {
     double *positions = p->positions;
     ipc_contacts contacts = p->contacts;

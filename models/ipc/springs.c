@@ -1,4 +1,4 @@
-/* Elasticity of closed bodies by springs: along the edges of the surface, and across the inside as struts. */
+/* Elasticity of closed bodies by springs: along the edges of the surface, and as struts across the inside. */
 #include "models/ipc/springs.h"
 #include "models/common/vec3.h"
 
@@ -7,14 +7,14 @@
 
 enum { STRUTS = 5 };
 
-/* How far the tilted struts lean away from the normal: the tangent of the angle. */
+/* How far tilted struts lean away from the normal: the tangent of the angle. */
 static const double tilt = 0.7;
 
 static const double *corner_of(const body *b, uint32_t triangle, uint32_t corner) {
     return b->positions + (size_t)b->triangles[triangle * 3 + corner] * 3;
 }
 
-/* As long as twice the area. */
+/* The normal is as long as twice the area. */
 static void triangle_normal(const body *b, uint32_t triangle, double out[3]) {
     double along[3], aside[3];
     vec3_subtract(corner_of(b, triangle, 1), corner_of(b, triangle, 0), along);
@@ -31,8 +31,8 @@ void ipc_vertex_areas(const body *b, double *areas) {
     }
 }
 
-/* Where a ray leaves a triangle's plane within the triangle (Moeller and Trumbore), as a multiple of the
- * direction; INFINITY where it misses. */
+/* Returns where a ray leaves the body through the triangle (Moeller and Trumbore), as a multiple of the
+ * direction, or INFINITY where it misses. */
 static double ray_length(const body *b, uint32_t triangle, const double from[3], const double direction[3]) {
     double along[3], aside[3], offset[3], p[3], q[3];
     const double *origin = corner_of(b, triangle, 0);
@@ -46,7 +46,7 @@ static double ray_length(const body *b, uint32_t triangle, const double from[3],
     return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && length > 0.0 ? length : INFINITY;
 }
 
-/* Spheres around the triangles, most of which a ray passes by. */
+/* Spheres around the triangles; a ray misses most of them. */
 typedef struct sphere {
     double centre[3], squared_radius;
 } sphere;
@@ -71,8 +71,8 @@ static bool passes_by(const sphere *s, const double from[3], const double direct
     return (vec3_dot(offset, offset) - s->squared_radius) * squared > along * along;
 }
 
-/* The vertex next to where the ray from a vertex comes to the surface, the vertex itself where it does not.
- */
+/* Returns the vertex next to where the ray from a vertex comes to the surface again, or the vertex itself
+ * when it does not. */
 static uint32_t opposite_vertex(const body *b, const sphere *spheres, uint32_t vertex,
                                 const double direction[3]) {
     const double *from = b->positions + (size_t)vertex * 3;
@@ -100,7 +100,8 @@ static uint32_t opposite_vertex(const body *b, const sphere *spheres, uint32_t v
     return nearest;
 }
 
-/* The body's own numbers; stiffness per length: a strut's is divided by its length. */
+/* Adds a spring between two vertices in the numbers of the body. A strut's stiffness is divided by its
+ * length. */
 static void add_spring(ipc_springs *springs, const body *b, uint32_t v, uint32_t w, double stiffness,
                        double per_length) {
     double along[3];
@@ -184,7 +185,7 @@ void ipc_springs_free(ipc_springs *springs) {
     *springs = (ipc_springs){0};
 }
 
-/* The length, and the direction from a to b. */
+/* Returns the length, and the direction from a to b. */
 static double spring_length(const ipc_spring *s, const double *positions, double direction[3]) {
     vec3_subtract(positions + (size_t)s->b * 3, positions + (size_t)s->a * 3, direction);
     double length = vec3_norm(direction);

@@ -1,4 +1,4 @@
-/* Elasticity of closed bodies by springs: along the edges of the surface, and across the inside as struts. */
+/* Elasticity of closed bodies by springs: along the edges of the surface, and as struts across the inside. */
 #pragma once
 
 #include "models/shapes/body.h"
@@ -9,7 +9,7 @@ typedef struct ipc_spring {
     double rest, stiffness;
 } ipc_spring;
 
-/* Grows from {0}, sorted by (a, b), none twice; ipc_springs_free takes it back. */
+/* Grows from {0}; sorted by (a, b), without repetitions. ipc_springs_free releases it. */
 typedef struct ipc_springs {
     ipc_spring *items;
     uint32_t count, capacity;
@@ -17,31 +17,31 @@ typedef struct ipc_springs {
 
 typedef struct ipc_stuff {
     double density;  /* mass per volume */
-    double membrane; /* stiffness of the surface: of every edge, force per length */
+    double membrane; /* stiffness of the surface: force per length of every edge */
     double solid;    /* stiffness of the inside: force per area */
 } ipc_stuff;
 
 /* Adds a closed body whose first vertex has this number: a spring for each edge, and from each vertex five
- * struts that leave inwards, straight and tilted, to where they come to the surface again. So the body keeps
- * its shape, at about the same stiffness whatever the size of the triangles. */
+ * struts that run inwards, straight and tilted, to the opposite surface. So the body keeps its shape,
+ * about equally stiff for any size of triangles. */
 void ipc_springs_add_body(ipc_springs *springs, const body *b, uint32_t first_vertex, const ipc_stuff *stuff);
 void ipc_springs_free(ipc_springs *springs);
 
 double ipc_springs_energy(const ipc_springs *springs, const double *positions);
 void ipc_springs_add_gradient(const ipc_springs *springs, const double *positions, double *gradient);
 
-/* A spring's Hessian: the block B = along * n n^T + aside * I at (a, a) and (b, b), -B at (a, b) and (b, a).
- * Without what would make it indefinite: a spring that is pressed pushes aside, too. */
+/* The Hessian of a spring: the block B = along * n n^T + aside * I at (a, a) and (b, b), and -B at (a, b)
+ * and (b, a). The part that would make it indefinite is left out: a compressed spring also pushes aside. */
 typedef struct ipc_spring_hessian {
     double n[3], along, aside;
 } ipc_spring_hessian;
 
-/* One for each spring. */
+/* Computes one Hessian for each spring. */
 void ipc_springs_hessians(const ipc_springs *springs, const double *positions, ipc_spring_hessian *hessians);
 
-/* out += Hessian * x */
+/* Adds Hessian * x to out. */
 void ipc_springs_add_product(const ipc_springs *springs, const ipc_spring_hessian *hessians, const double *x,
                              double *out);
 
-/* The area that belongs to each vertex: a third of its triangles'. */
+/* Computes the area of each vertex: a third of that of its triangles. */
 void ipc_vertex_areas(const body *b, double *areas);

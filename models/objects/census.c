@@ -1,4 +1,4 @@
-/* Which objects of a recording touch each other, and when: by the detector, from frame to frame. */
+/* Finds which objects of a recording touch each other, and when, by detector steps from frame to frame. */
 #include "models/objects/census.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"

@@ -1,16 +1,16 @@
-/* The scenes of objects that meet and part by formula. */
+/* The scenes of objects that touch and part by formula. */
 #include "models/objects/object_scene.h"
 
 #include <stddef.h>
 #include <string.h>
 
-/* Of radius 1 and 1/2, with edges of one length. */
+/* Balls of radius 1 and 1/2 with edges of equal length. */
 #define WHOLE .kind = BODY_SPHERE, .triangle_count = 1200, .scale = 1.0
 #define HALF  .kind = BODY_SPHERE, .triangle_count = 300, .scale = 0.5
 #define U     .kind = BODY_LETTER_U, .scale = 1.0
 
-/* Places are where surfaces overlap by about the length of an edge: 0.15 for the spheres, 0.11 for the
- * letters of 1,380 triangles, 0.05 for the W. */
+/* At `place`, surfaces overlap by about the length of an edge: 0.15 for the spheres, 0.11 for the letters
+ * of 1,380 triangles, 0.05 for the W. */
 const object_scene object_scenes[] = {
     {.name = "t-pair",
      .text = "two letters T turn, touch three times and part",

@@ -7,7 +7,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* About the middle of its box, in its size. */
+/* Adds an object, centred at the middle of its box and scaled. */
 static void add_object(object_stage *s, const moving_object *o, const body *b) {
     double low[3], high[3];
     uint32_t first = s->rest.vertex_count;
@@ -51,7 +51,7 @@ void object_stage_close(object_stage *s) {
     *s = (object_stage){0};
 }
 
-/* Keeps the volume. */
+/* Places the vertices of an object; its stretch keeps the volume. */
 static void place_object(const moving_object *o, double time, const double *rest, uint32_t vertex_count,
                          double *placed) {
     double turn[3][3], far = 0.5 + 0.5 * cos(2.0 * pi * (o->visits * (time - o->late)));

@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKS = 3, SMALL_STEPS = 8 }; /* a frame; and a check */
+enum { CHECKS = 3, SMALL_STEPS = 8 }; /* checks in a frame; small steps in a check */
 
 const char tumble_name[] = "tumble";
 const char tumble_text[] = "eight soft bodies fall into a tray and tumble together";
 
 static const double spacing = 0.14, frame_seconds = 1.0 / 50.0;
 
-/* How each begins: about its own middle, and where that is. */
+/* How each body begins: turned about its own middle, and where that is. */
 static const struct falling_body {
     body_kind kind;
     uint32_t triangle_count;

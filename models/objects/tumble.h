@@ -16,15 +16,15 @@ typedef struct tumble {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
-    soft_body soft; /* all bodies: one lattice, of which each has a piece of its own */
+    soft_body soft; /* all bodies in one lattice of separate pieces */
     self_contacts contacts;
     double *start; /* the vertices where the detector's interval starts */
 } tumble;
 
-/* At the first frame, with a context that outlives it. On false there is nothing to close, and *error says
- * why. */
+/* Opens the scene at its first frame, with a context that outlives it. When it returns false, there is
+ * nothing to close and *error says why. */
 bool tumble_open(cscd_context *context, tumble *out, io_error *error);
 void tumble_close(tumble *t);
 
-/* On to the next frame. */
+/* Advances by one frame. */
 bool tumble_advance(tumble *t, io_error *error);

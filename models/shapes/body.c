@@ -52,7 +52,7 @@ void body_append(body *b, const body *other, const double offset[3]) {
     }
 }
 
-/* Through memory: gcc 12 may drop the rounding of neighbouring stores when it vectorises them. */
+/* Rounds through memory: gcc 12 may drop the rounding of neighbouring stores when it vectorises them. */
 static double rounded_to_float(double x) {
     volatile float rounded = (float)x;
     return rounded;
@@ -75,7 +75,7 @@ double body_volume(const body *b) {
     return six / 6.0;
 }
 
-/* At corner k, between the two edges from there, in degrees. */
+/* Returns the angle at corner k in degrees. */
 static double corner_angle(const body *b, const uint32_t v[3], uint32_t k) {
     const double *p = b->positions + (size_t)v[k] * 3, *q = b->positions + (size_t)v[(k + 1) % 3] * 3,
                  *r = b->positions + (size_t)v[(k + 2) % 3] * 3;

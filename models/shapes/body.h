@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Grows from {0}; body_free takes it back. Where memory runs out, the program ends with a message. */
+/* Grows from {0}; body_free releases it. When memory runs out, the program ends with a message. */
 typedef struct body {
     uint32_t vertex_count, triangle_count;
     uint32_t vertex_capacity, triangle_capacity;
@@ -24,11 +24,11 @@ void body_append(body *b, const body *other, const double offset[3]);
 /* Rounds all positions to single precision, so that files of that precision hold the same numbers. */
 void body_round(body *b);
 
-/* Enclosed by the triangles: positive where they are counter-clockwise from outside. */
+/* Returns the enclosed volume, which is positive when the triangles are counter-clockwise from outside. */
 double body_volume(const body *b);
 
-/* Of the whole surface, in degrees; 0 with triangles without area. */
+/* Returns the least angle of all triangles in degrees, or 0 when one has no area. */
 double body_least_angle(const body *b);
 
-/* Zeroed, never NULL; to be freed. */
+/* Allocates zeroed memory, to be freed; never returns NULL. */
 void *body_allocate(size_t count, size_t size);

@@ -1,4 +1,4 @@
-/* The bodies by name, with as many triangles as asked for. */
+/* Bodies by name, with any possible number of triangles. */
 #include "models/shapes/catalogue.h"
 #include "models/shapes/figure.h"
 #include "models/shapes/letters.h"
@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* A body has one way to be made: by its rings, by its function, or by squares with a count of its own. */
+/* A body is made in one of three ways: by rings, by a function, or by squares with a number of their own. */
 typedef struct entry {
     const char *name, *description;
     uint32_t default_count, least_count;
@@ -58,7 +58,7 @@ bool body_kind_from_name(const char *name, body_kind *out) {
     return false;
 }
 
-/* The largest n with that many triangles or fewer, or the least. */
+/* Returns the largest n with at most that many triangles, or the least n. */
 static uint32_t squares_below(const entry *e, uint32_t triangle_count) {
     uint32_t n = e->least_n;
     while (e->count_of(n + 1) <= triangle_count) n++;

@@ -1,4 +1,4 @@
-/* The bodies by name, with as many triangles as asked for. */
+/* Bodies by name, with any possible number of triangles. */
 #pragma once
 
 #include "models/shapes/body.h"
@@ -45,7 +45,7 @@ enum { BODY_TRIANGLES_MAX = 4000000 };
 
 const char *body_kind_name(body_kind kind);
 
-/* One line for a person. */
+/* Returns one line that describes the body. */
 const char *body_kind_description(body_kind kind);
 
 /* Leaves *out untouched when it returns false. */
@@ -54,9 +54,9 @@ bool body_kind_from_name(const char *name, body_kind *out);
 uint32_t body_default_count(body_kind kind);
 uint32_t body_least_count(body_kind kind);
 
-/* The possible number of triangles that is nearest to this one. */
+/* Returns the possible number of triangles that is nearest to this one. */
 uint32_t body_nearest_count(body_kind kind, uint32_t triangle_count);
 
-/* Exactly triangle_count triangles, 0: the default. On false *out is untouched and *error says which counts
- * are possible. */
+/* Makes a body of exactly triangle_count triangles, or of its default number when that is 0. When it
+ * returns false, *out is unchanged and *error says which numbers are possible. */
 bool body_make(body_kind kind, uint32_t triangle_count, body *out, io_error *error);

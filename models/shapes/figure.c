@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* A cone with round ends. */
+/* A limb: a cone with round ends. */
 typedef struct limb {
     double a[3], b[3], radius_a, radius_b, blend; /* blend: how far its root is rounded */
 } limb;
@@ -24,13 +24,14 @@ static double to_limb(const double p[3], const limb *l) {
     return sqrt(squared) - (l->radius_a + t * (l->radius_b - l->radius_a));
 }
 
-/* The smaller of the two, rounded where they are less than `blend` apart. */
+/* Returns the smaller of the two, smoothly where they differ by less than `blend`. */
 static double round_union(double a, double b, double blend) {
     double h = fmax(blend - fabs(a - b), 0.0) / blend;
     return fmin(a, b) - h * h * blend * 0.25;
 }
 
-/* The left half mirrors the right; the first two go across the middle. */
+/* Returns about the distance to the figure. Its left half mirrors the right; the first two limbs stand in
+ * the middle. */
 static double to_figure(const double point[3]) {
     static const limb limbs[] = {
         {{0.00, 0.00, 1.00}, {0.00, 0.00, 1.22}, 0.160, 0.155, 0.05},    /* hips and belly */
@@ -71,7 +72,7 @@ bool add_genus2(body *b, uint32_t triangle_count) {
     return body_add_even_implicit(b, &shape, triangle_count);
 }
 
-/* Not a distance, but near the surface a first approximation of it. */
+/* Returns a first approximation of the distance near the surface. */
 static double to_ellipsoid(const double p[3]) {
     double x = p[0] / 1.5, y = p[1], z = p[2] / 0.7, level = sqrt(x * x + y * y + z * z);
     double gradient = hypot(hypot(x / 1.5, y), z / 0.7);

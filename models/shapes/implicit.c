@@ -9,7 +9,7 @@ typedef struct grid {
     uint32_t size[3]; /* points along x, y, z */
     double low[3], spacing;
     double *values;
-    uint32_t *cells; /* vertex of the cell that starts at this point, UINT32_MAX: none */
+    uint32_t *cells; /* vertex of the cell that starts at this point, or UINT32_MAX */
 } grid;
 
 static size_t grid_index(const grid *g, uint32_t x, uint32_t y, uint32_t z) {
@@ -44,7 +44,7 @@ static bool corner_is_inside(const grid *g, const uint32_t at[3], uint32_t step_
     return g->values[grid_index(g, p[0], p[1], p[2])] < 0.0;
 }
 
-/* A cell's face with its inner corners across: there the surface would meet itself. */
+/* Whether a face of a cell has its two inner corners on a diagonal: there the surface would touch itself. */
 static bool is_ambiguous(const grid *g) {
     uint32_t at[3];
     for (at[2] = 0; at[2] + 1 < g->size[2]; at[2]++) {
@@ -63,7 +63,7 @@ static bool is_ambiguous(const grid *g) {
     return false;
 }
 
-/* A vertex in the cell, at the mean of the points where the surface meets the cell's edges. */
+/* Adds the vertex of a cell: the mean of the points where the surface crosses the cell's edges. */
 static void add_cell_vertex(body *b, grid *g, const uint32_t at[3]) {
     double sum[3] = {0.0, 0.0, 0.0};
     int crossings = 0;
@@ -94,7 +94,7 @@ static double squared_distance(const body *b, uint32_t v, uint32_t w) {
     return sum;
 }
 
-/* The four cells around a grid edge that the surface crosses, counter-clockwise from outside. */
+/* Finds the four cells around a grid edge that the surface crosses, counter-clockwise from outside. */
 static bool edge_quad(const grid *g, const uint32_t at[3], uint32_t axis, uint32_t corner[4]) {
     uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3, end[3] = {at[0], at[1], at[2]};
     end[axis]++;
@@ -110,7 +110,8 @@ static bool edge_quad(const grid *g, const uint32_t at[3], uint32_t axis, uint32
     return true;
 }
 
-/* Along the shorter diagonal; but a vertex of two quads gets both diagonals, which else would be one edge. */
+/* Splits a quad along its shorter diagonal. A vertex of two quads gets both diagonals, which would
+ * otherwise be one edge. */
 static void split_quad(body *b, const uint32_t corner[4], const uint8_t *valences) {
     bool across = squared_distance(b, corner[1], corner[3]) < squared_distance(b, corner[0], corner[2]);
     if (valences[corner[0]] == 2 || valences[corner[2]] == 2) across = false;
@@ -120,7 +121,7 @@ static void split_quad(body *b, const uint32_t corner[4], const uint8_t *valence
     body_add_triangle(b, corner[first], corner[first + 2], corner[(first + 3) % 4]);
 }
 
-/* valences are counted in the first pass and used in the second. */
+/* Visits all quads: the first pass counts valences, the second adds triangles. */
 static void visit_quads(body *b, const grid *g, uint8_t *valences, bool counting) {
     uint32_t at[3], corner[4];
     for (at[2] = 1; at[2] + 1 < g->size[2]; at[2]++) {

@@ -4,11 +4,11 @@
 
 #include <math.h>
 
-/* All edges are rounded by this radius, which surrounds a core: an outline in x and z, half_depth to both
- * sides along y. */
+/* All edges are rounded by this radius around a core: an outline in x and z that extends by half_depth to
+ * both sides along y. */
 static const double rounding = 0.1, half_depth = 0.15;
 
-/* To a polygon, counter-clockwise; negative inside. */
+/* Returns the distance to a counter-clockwise polygon, negative inside. */
 static double to_outline(double x, double z, const double (*corners)[2], int count) {
     double nearest = INFINITY;
     bool inside = false;

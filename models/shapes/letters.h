@@ -3,8 +3,8 @@
 
 #include "models/shapes/body.h"
 
-/* Each adds exactly triangle_count triangles; false, and nothing added, where that cannot be. Sizes and
- * places: catalogue.h. */
+/* Each function adds exactly triangle_count triangles, or returns false and adds nothing when that is
+ * impossible. catalogue.h has sizes and places. */
 bool add_letter_t(body *b, uint32_t triangle_count);
 bool add_letter_u(body *b, uint32_t triangle_count);
 bool add_letter_v(body *b, uint32_t triangle_count);

@@ -35,7 +35,7 @@ void outline_arc(outline *o, double centre_radius, double centre_height, double 
     add_piece(o, piece);
 }
 
-/* The angle of the tangent where a piece starts or ends. */
+/* Returns the angle of the tangent at the start or end of a piece. */
 static double tangent_angle(const outline_piece *piece, int end) {
     if (piece->size == 0.0) return atan2(piece->to[1] - piece->from[1], piece->to[0] - piece->from[0]);
     return piece->angle[end] + (piece->angle[1] > piece->angle[0] ? 90.0 : -90.0) * degree;

@@ -25,7 +25,7 @@ static int by_length(const void *a, const void *b) {
     return (e->half_edge > f->half_edge) - (e->half_edge < f->half_edge);
 }
 
-/* The shortest first; to be freed. */
+/* Returns all edges, the shortest first, to be freed. */
 static surface_edge *sorted_edges(const surface *s, uint32_t *count) {
     surface_edge *edges = body_allocate((size_t)s->live_triangles * 3 / 2, sizeof *edges);
     *count = 0;
@@ -52,7 +52,7 @@ static void touch_neighbours(const surface *s, uint8_t *touched, uint32_t v) {
     } while (h != s->out[v]);
 }
 
-/* Up to `most` edges shorter than `below`, no two near each other; returns how many. */
+/* Collapses up to `most` edges shorter than `below`, no two of them near each other; returns their number. */
 static uint32_t collapse_shortest(surface *s, const implicit *shape, uint32_t most, double scale,
                                   double below) {
     uint32_t count, done = 0;
@@ -75,7 +75,7 @@ static uint32_t collapse_shortest(surface *s, const implicit *shape, uint32_t mo
     return done;
 }
 
-/* Up to `most` edges longer than `above`; returns how many. */
+/* Splits up to `most` edges longer than `above`; returns their number. */
 static uint32_t split_longest(surface *s, const implicit *shape, uint32_t most, double scale, double above) {
     uint32_t count, done = 0;
     surface_edge *edges = sorted_edges(s, &count);
@@ -101,7 +101,7 @@ static int excess_valence(uint32_t valence) {
     return (int)valence - 6;
 }
 
-/* A flip brings the four valences nearer to 6. */
+/* Whether a flip brings the four valences nearer to 6. */
 static bool evens_valences(const surface *s, uint32_t h) {
     uint32_t v[4] = {half_edge_from(s, h), half_edge_to(s, h), s->mesh.triangles[half_edge_previous(h)],
                      s->mesh.triangles[half_edge_previous(s->twins[h])]};
@@ -126,7 +126,7 @@ static double cotangent_at(const surface *s, uint32_t h) {
     return dot / sqrt(fmax(qq * rr - dot * dot, 1e-300));
 }
 
-/* The two angles opposite the edge add up to more than 180 degrees. */
+/* Whether the two angles opposite the edge add up to more than 180 degrees. */
 static bool is_not_delaunay(const surface *s, uint32_t h) {
     return cotangent_at(s, h) + cotangent_at(s, s->twins[h]) < -1e-9;
 }
@@ -136,7 +136,7 @@ static void flip_where(surface *s, bool (*wanted)(const surface *, uint32_t)) {
         if (!triangle_is_dead(s, h / 3) && h < s->twins[h] && wanted(s, h)) surface_flip(s, h);
 }
 
-/* Vertices move along the surface towards the mean of their neighbours. */
+/* Moves vertices along the surface towards the mean of their neighbours. */
 static void relax_vertices(surface *s, const implicit *shape, double length) {
     for (uint32_t v = 0; v < s->mesh.vertex_count; v++) {
         if (s->out[v] == UINT32_MAX) continue;
@@ -158,7 +158,7 @@ static void relax_vertices(surface *s, const implicit *shape, double length) {
     }
 }
 
-/* The edge that `count` triangles have if they are equilateral and cover as much. */
+/* Returns the length of an edge when `count` equilateral triangles cover the same area. */
 static double ideal_length(const surface *s, uint32_t count) {
     double sum = 0.0;
     for (uint32_t h = 0; h < s->mesh.triangle_count * 3; h++)
@@ -166,7 +166,7 @@ static double ideal_length(const surface *s, uint32_t count) {
     return sqrt(sum / 3.0 / count);
 }
 
-/* To the target; false when not enough edges can be collapsed. */
+/* Collapses or splits edges until the target is reached; false when not enough edges can be collapsed. */
 static bool reach_count(surface *s, const implicit *shape, uint32_t target, double length) {
     for (int pass = 0; pass < PASSES_MAX && s->live_triangles != target; pass++) {
         uint32_t most = s->live_triangles / 50 + 1;

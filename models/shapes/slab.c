@@ -6,8 +6,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The surface of a block of size[0] x size[1] x size[2] cells. Vertices go layer by layer along the last
- * axis: the first and the last layer are full, of the others there is only the rim. */
+/* The surface of a block of size[0] x size[1] x size[2] cells. Vertices are numbered layer by layer along
+ * the last axis: the first and the last layer are full, the others have only their rim. */
 typedef struct block {
     uint32_t size[3], first;
 } block;
@@ -30,7 +30,7 @@ static uint32_t block_vertex(const block *k, const uint32_t at[3]) {
     return before + (at[2] == k->size[2] ? flat : rim_index(k, at[0], at[1]));
 }
 
-/* One side of the block, normal to an axis. Diagonals alternate. */
+/* Adds one side of the block, normal to an axis. Its diagonals alternate. */
 static void add_side(body *b, const block *k, uint32_t axis, bool upper) {
     uint32_t u = (axis + 1) % 3, v = (axis + 2) % 3, at[3], corner[4];
     for (uint32_t i = 0; i < k->size[u]; i++) {
@@ -48,7 +48,7 @@ static void add_side(body *b, const block *k, uint32_t axis, bool upper) {
     }
 }
 
-/* In the order of block_vertex; at a cell's whole numbers. */
+/* Adds the block with its vertices in the order of block_vertex, at the whole numbers of the cells. */
 static void add_block(body *b, const uint32_t size[3]) {
     block k = {{size[0], size[1], size[2]}, b->vertex_count};
     for (uint32_t z = 0; z <= size[2]; z++) {
@@ -74,7 +74,7 @@ void add_cube(body *b, uint32_t n) {
         b->positions[i] = b->positions[i] * 2.0 / n - 1.0;
 }
 
-/* The folded slab's middle: three panels one above the other, joined by half circles. */
+/* The middle surface of the folded slab: three panels one above the other, joined by half circles. */
 static const double panel = 2.0, width = 1.6, thickness = 0.16, fold_radius = 0.20;
 
 static double slab_length(void) {
@@ -94,7 +94,7 @@ uint32_t slab_triangles(uint32_t n) {
     return 4 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
 }
 
-/* Where the middle is after a length s, in x and z, and the direction up from there. */
+/* Finds the point of the middle surface after a length s, in x and z, and the direction up from it. */
 static void fold_profile(double s, double centre[2], double up[2]) {
     double bend = pi * fold_radius;
     for (int k = 0; k < 3; k++) {

@@ -1,4 +1,4 @@
-/* Closed meshes with neighbours: edges can be flipped, split and collapsed. */
+/* Closed meshes with adjacency: their edges can be flipped, split and collapsed. */
 #include "models/shapes/surface.h"
 
 #include <assert.h>
@@ -17,7 +17,7 @@ static void *grow_list(void *block, uint32_t *capacity, uint32_t count, uint32_t
     return larger;
 }
 
-/* Half-edges by their origin, then each looks for its twin among those from its end. */
+/* Sorts half-edges by their origin; then each finds its twin among those that start at its end. */
 static void find_twins(surface *s) {
     const body *b = &s->mesh;
     uint32_t count = b->triangle_count * 3;
@@ -88,7 +88,7 @@ static void normal_of(const double *p, const double *q, const double *r, double 
     for (int k = 0; k < 3; k++) n[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-/* Normals more than 60 degrees apart, or one of them none. */
+/* Whether two normals are more than 60 degrees apart, or one of them is zero. */
 static bool turned_over(const double n[3], const double m[3]) {
     double dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
     double nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
@@ -109,7 +109,7 @@ static void join_twins(surface *s, uint32_t h, uint32_t twin) {
     s->twins[twin] = h;
 }
 
-/* Triangles (a, b, c) and (b, a, d) become (d, b, c) and (c, a, d). */
+/* Replaces the triangles (a, b, c) and (b, a, d) by (d, b, c) and (c, a, d). */
 bool surface_flip(surface *s, uint32_t h) {
     uint32_t g = s->twins[h], h1 = half_edge_next(h), h2 = half_edge_next(h1), g1 = half_edge_next(g),
              g2 = half_edge_next(g1);
@@ -139,7 +139,7 @@ bool surface_flip(surface *s, uint32_t h) {
     return true;
 }
 
-/* The two ends have no common neighbours but the two corners beside the edge. */
+/* Whether the two ends have no common neighbours except the two corners beside the edge. */
 static bool is_link(const surface *s, uint32_t h) {
     uint32_t a = half_edge_from(s, h), b = half_edge_to(s, h), common = 0, i = s->out[a];
     do {
@@ -151,8 +151,8 @@ static bool is_link(const surface *s, uint32_t h) {
     return common == 2 && surface_valence(s, c) > 4 && surface_valence(s, d) > 4;
 }
 
-/* Whether triangles around vertex v, but the two beside the edge to `other`, keep their sides if v moves, or
- * have that of `normal`, if it is given: a sliver's own normal says little. */
+/* Whether the triangles around vertex v, except the two beside the edge to `other`, keep their sides when
+ * v moves, or have the side of `normal`, if it is given: the own normal of a sliver says little. */
 static bool can_move(const surface *s, uint32_t v, uint32_t other, const double at[3], const double *normal) {
     const double *x = s->mesh.positions;
     uint32_t h = s->out[v];
@@ -193,7 +193,7 @@ bool surface_move(surface *s, uint32_t vertex, const double at[3]) {
     return true;
 }
 
-/* The end b goes; the triangles (a, b, c) and (b, a, d) with it. */
+/* Removes the end b, and with it the triangles (a, b, c) and (b, a, d). */
 bool surface_collapse(surface *s, uint32_t h, const double at[3]) {
     uint32_t g = s->twins[h], a = half_edge_from(s, h), b = half_edge_from(s, g);
     if (!is_link(s, h) || !can_move(s, a, b, at, NULL) || !can_move(s, b, a, at, NULL)) return false;
@@ -213,7 +213,7 @@ bool surface_collapse(surface *s, uint32_t h, const double at[3]) {
     return true;
 }
 
-/* (a, b, c) becomes (a, m, c) and (m, b, c); (b, a, d) becomes (b, m, d) and (m, a, d). */
+/* Replaces (a, b, c) by (a, m, c) and (m, b, c), and (b, a, d) by (b, m, d) and (m, a, d). */
 void surface_split(surface *s, uint32_t h, const double at[3]) {
     uint32_t g = s->twins[h], h1 = half_edge_next(h), g1 = half_edge_next(g);
     uint32_t b = half_edge_to(s, h), a = half_edge_to(s, g);

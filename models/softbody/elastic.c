@@ -1,11 +1,11 @@
-/* Elastic tetrahedra as XPBD constraints: neo-Hookean, volume and shape apart. */
+/* Elastic tetrahedra as constraints of XPBD: neo-Hookean, with separate constraints for volume and shape. */
 #include "models/softbody/elastic.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
 
 #include <string.h>
 
-/* The two ways to cut a cube into five tetrahedra; neighbours of the other parity fit. */
+/* The two ways to cut a cube into five tetrahedra; cells of different parity fit together. */
 static const uint8_t cuts[2][5][4] = {
     {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}},
     {{1, 3, 0, 5}, {2, 0, 3, 6}, {4, 5, 6, 0}, {7, 6, 5, 3}, {0, 3, 5, 6}},
@@ -17,7 +17,7 @@ static double determinant_of(double m[3][3]) {
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/* The derivatives of the determinant. */
+/* Computes the derivatives of the determinant. */
 static void find_cofactors(double m[3][3], double out[3][3]) {
     for (int i = 0; i < 3; i++) {
         int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
@@ -28,7 +28,7 @@ static void find_cofactors(double m[3][3], double out[3][3]) {
     }
 }
 
-/* Columns: the edges from the first node to the others. */
+/* Fills the columns of `out` with the edges from the first node to the others. */
 static void edges_of(const tetrahedron *t, const double *nodes, double out[3][3]) {
     const double *origin = nodes + t->nodes[0] * 3;
     for (int j = 0; j < 3; j++) {
@@ -78,8 +78,8 @@ tetrahedron *tetrahedra_make(const lattice *l, const material *m) {
     return out;
 }
 
-/* Moves the nodes along the gradient (of the constraint by the deformation gradient) until the constraint,
- * with its compliance, is met to first order. */
+/* Moves the nodes along the gradient of the constraint, which is given by the deformation gradient, until
+ * the constraint holds to first order with its compliance. */
 static void correct_nodes(const tetrahedron *t, double by_gradient[3][3], double value, double compliance,
                           const double *inverse_masses, double *nodes) {
     double gradients[4][3] = {{0.0}};

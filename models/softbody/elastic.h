@@ -1,12 +1,12 @@
-/* Elastic tetrahedra as XPBD constraints: neo-Hookean, volume and shape apart. */
+/* Elastic tetrahedra as constraints of XPBD: neo-Hookean, with separate constraints for volume and shape. */
 #pragma once
 
 #include "models/softbody/lattice.h"
 
 typedef struct material {
     double density;        /* mass per volume */
-    double young, poisson; /* stiffness (force per area), and above 0 to 0.49: how much volume is kept */
-    double damping;        /* share of a cell's motion that is not rigid, lost per second (1/s) */
+    double young, poisson; /* stiffness (force per area); from above 0 to 0.49, how well volume is kept */
+    double damping;        /* share of a cell's motion that is not rigid and is lost per second (1/s) */
 } material;
 
 typedef struct tetrahedron {
@@ -16,14 +16,15 @@ typedef struct tetrahedron {
     double shear, bulk; /* Lame's mu and lambda */
 } tetrahedron;
 
-/* Five tetrahedra per cell, 5 * cell_count, to be freed. The body has the mass of its cells, which is more
- * than the surface holds. */
+/* Makes five tetrahedra for each cell, 5 * cell_count, to be freed. The body has the mass of its cells,
+ * which cover more than the inside of the surface. */
 tetrahedron *tetrahedra_make(const lattice *l, const material *m);
 
-/* One XPBD iteration over all tetrahedra, in order (Macklin and Mueller, "A constraint-based formulation of
- * stable neo-Hookean materials", 2021, equations 9 and 10). inverse_masses per node, step in seconds. */
+/* Does one iteration of XPBD over all tetrahedra, in order (Macklin and Mueller, "A constraint-based
+ * formulation of stable neo-Hookean materials", 2021, equations 9 and 10). inverse_masses: per node; step:
+ * in seconds. */
 void tetrahedra_solve(const tetrahedron *tetrahedra, uint32_t count, const double *inverse_masses,
                       double step, double *nodes);
 
-/* Energy above that of the rest shape. */
+/* Returns the energy above that of the rest shape. */
 double tetrahedra_energy(const tetrahedron *tetrahedra, uint32_t count, const double *nodes);

@@ -1,4 +1,4 @@
-/* A lattice of cubes around a closed surface: the body that is simulated, and how the surface hangs in it. */
+/* A lattice of cubes around a closed surface: the lattice is simulated, and carries the surface along. */
 #include "models/softbody/lattice.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
@@ -8,7 +8,7 @@
 
 enum { UNKNOWN, OUTSIDE, SURFACE };
 
-/* All cells of a box that holds the surface and a layer around it. */
+/* The cells of a box that holds the surface and a layer around it. */
 typedef struct cell_grid {
     uint32_t size[3];
     double low[3], spacing;
@@ -65,7 +65,7 @@ static void mark_surface(cell_grid *g, const double *positions, uint32_t vertex_
     }
 }
 
-/* From a corner of the grid through all cells that the surface leaves open. */
+/* Floods from a corner of the grid through all cells that the surface does not touch. */
 static void flood_outside(cell_grid *g) {
     size_t count = (size_t)g->size[0] * g->size[1] * g->size[2], pending = 1;
     size_t *stack = body_allocate(count, sizeof *stack);
@@ -97,7 +97,7 @@ static uint32_t node_of(lattice *l, uint32_t *nodes, const cell_grid *g, const u
     return *node;
 }
 
-/* Numbers nodes and cells in grid order; cell_numbers gets each cell's number. */
+/* Numbers nodes and cells in the order of the grid; cell_numbers gets the number of each cell. */
 static void collect_cells(lattice *l, const cell_grid *g, uint32_t *cell_numbers) {
     size_t nodes_max = (size_t)(g->size[0] + 1) * (g->size[1] + 1) * (g->size[2] + 1);
     size_t cells_max = (size_t)g->size[0] * g->size[1] * g->size[2];

@@ -1,4 +1,4 @@
-/* A lattice of cubes around a closed surface: the body that is simulated, and how the surface hangs in it. */
+/* A lattice of cubes around a closed surface: the lattice is simulated, and carries the surface along. */
 #pragma once
 
 #include <stdint.h>
@@ -13,12 +13,13 @@ typedef struct lattice {
     double spacing;
 } lattice;
 
-/* The cells, spacing wide, that meet the surface or lie inside. Parts of the surface that are nearer than
- * spacing to each other share cells, and so stick together. lattice_free takes it back. */
+/* Makes the lattice of the cells, `spacing` wide, that the surface touches or encloses. Parts of the
+ * surface that are nearer than spacing to each other share cells, and so stick together. lattice_free
+ * releases it. */
 lattice lattice_make(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
                      uint32_t triangle_count, double spacing);
 void lattice_free(lattice *l);
 
-/* The surface's vertices, vertex_count * 3, for nodes anywhere. */
+/* Computes the vertices of the surface, vertex_count * 3, from any places of the nodes. */
 void lattice_place_vertices(const lattice *l, const double *nodes, double *positions);
 void lattice_place_vertex(const lattice *l, const double *nodes, uint32_t vertex, double position[3]);

@@ -1,4 +1,4 @@
-/* What a soft body falls onto: ground, stairs, balls. z is up. */
+/* The obstacles of a soft body: ground, stairs, balls. z is up. */
 #include "models/softbody/obstacles.h"
 #include "models/common/vec3.h"
 
@@ -10,7 +10,7 @@ double obstacles_height(const obstacles *o, double x) {
     return step >= o->step_count ? 0.0 : (o->step_count - step) * o->riser;
 }
 
-/* Out through the top, or forwards through the riser that is nearer. */
+/* Finds the way out of the ground: through the top, or forwards through the riser when that is nearer. */
 static bool hit_ground(const obstacles *o, const double point[3], obstacle_hit *out) {
     double depth = obstacles_height(o, point[0]) - point[2];
     if (depth <= 0.0) return false;
@@ -22,7 +22,7 @@ static bool hit_ground(const obstacles *o, const double point[3], obstacle_hit *
     return true;
 }
 
-/* Of ground and walls the one that the point is deepest in. */
+/* Chooses between ground and walls the one that the point is deepest in. */
 bool obstacles_hit_terrain(const obstacles *o, const double point[3], obstacle_hit *out) {
     bool hit = hit_ground(o, point, out);
     for (int k = 0; k < 2 && o->tray > 0.0; k++) {

@@ -1,5 +1,5 @@
-/* Runs a scene frame by frame: the soft body moves, cscd finds where it runs into itself, the body responds.
- */
+/* Runs a scene frame by frame: the soft body moves, cscd finds its contacts with itself, the body
+ * responds. */
 #include "models/softbody/recorder.h"
 
 #include <stdlib.h>
@@ -11,12 +11,12 @@ static bool explain_status(const recorder *r, cscd_status status, io_error *erro
                    cscd_context_detail(r->context));
 }
 
-/* The body is planned at rest: regions are the parts that hardly bend. */
+/* Makes the plan at rest: regions are the parts that hardly bend. */
 static cscd_status open_detector(recorder *r, const double *rest) {
     const cscd_mesh_desc desc = {r->shape.vertex_count, r->shape.triangle_count, r->shape.triangles};
     cscd_plan_options options = cscd_plan_defaults();
     options.method =
-        CSCD_METHOD_KMEANS; /* a hundred times sooner ready than charge, and good for 300 steps */
+        CSCD_METHOD_KMEANS; /* ready a hundred times sooner than charge, and good enough for 300 steps */
     cscd_status status = r->own_context ? cscd_context_create(NULL, &r->context) : CSCD_OK;
     if (status == CSCD_OK) status = cscd_mesh_create(r->context, &desc, &r->mesh);
     if (status == CSCD_OK) status = cscd_plan_create(r->mesh, rest, &options, &r->plan);
@@ -24,7 +24,7 @@ static cscd_status open_detector(recorder *r, const double *rest) {
     return status;
 }
 
-/* Only single precision is recorded; the simulation goes on with double. */
+/* Takes the frame in single precision, as it is recorded; the simulation goes on in double precision. */
 static void take_frame(recorder *r) {
     body rounded = {.vertex_count = r->shape.vertex_count, .positions = r->frame};
     memcpy(r->frame, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->frame);

@@ -1,5 +1,5 @@
-/* Runs a scene frame by frame: the soft body moves, cscd finds where it runs into itself, the body responds.
- */
+/* Runs a scene frame by frame: the soft body moves, cscd finds its contacts with itself, the body
+ * responds. */
 #pragma once
 
 #include "models/softbody/scene.h"
@@ -18,16 +18,17 @@ typedef struct recorder {
     soft_body soft;
     self_contacts contacts;
     double *start;    /* the vertices where the detector's interval starts */
-    double detect_ms; /* spent in cscd by recorder_advance, all calls so far */
+    double detect_ms; /* time that recorder_advance has spent in cscd so far */
 } recorder;
 
-/* At the first frame. context: NULL, for one of its own, or one that outlives it. recorder_close takes it
- * back; on false there is nothing to close, and *error says why. */
+/* Opens a scene at its first frame. context outlives the recorder; when it is NULL, the recorder has one
+ * of its own. recorder_close releases it; when this returns false, there is nothing to close and *error
+ * says why. */
 bool recorder_open(const soft_scene *s, cscd_context *context, recorder *out, io_error *error);
 void recorder_close(recorder *r);
 
-/* On to the next frame. */
+/* Advances by one frame. */
 bool recorder_advance(recorder *r, io_error *error);
 
-/* Of the body and the balls: kinetic, potential and elastic. */
+/* Returns the energy of the body and the balls: kinetic, potential and elastic. */
 double recorder_energy(const recorder *r);

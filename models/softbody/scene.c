@@ -1,4 +1,4 @@
-/* The recordings: which body falls how, onto what. */
+/* The scenes of the recordings: a body, how it falls, and its obstacles. */
 #include "models/softbody/scene.h"
 #include "models/softbody/turn.h"
 
@@ -18,7 +18,7 @@
         }                                                                                                    \
     }
 
-/* The free ones are stiffer and fall more softly, or lie across the stairs, so that nothing touches. */
+/* In the scenes without contact, bodies are stiffer and fall more softly, or lie across the stairs. */
 const soft_scene soft_scenes[] = {
     {
         .name = "pawn-drop",

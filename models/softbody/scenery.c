@@ -1,16 +1,16 @@
-/* What a body falls onto, as a mesh for pictures. */
+/* The obstacles as a mesh for pictures. */
 #include "models/softbody/scenery.h"
 #include "models/shapes/catalogue.h"
 
 enum { BALL_TRIANGLES = 1280 };
 
-/* How far ground and steps reach to all sides, and the ground downwards. */
+/* How far ground and steps extend to all sides, and the ground downwards. */
 static const double reach = 12.0, thickness = 0.5;
 
-/* Walls are drawn so low that one sees into the tray. */
+/* Walls are drawn this low so that one sees into the tray. */
 static const double wall = 0.1, wall_height = 0.3;
 
-/* Corners as the bits of 0 to 7: x, y, z. */
+/* The bits of a corner's number, 0 to 7, are its x, y and z. */
 static void add_box(body *b, const double low[3], const double high[3]) {
     static const uint8_t sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -38,7 +38,7 @@ static void place_ball(const ball *which, const body *sphere, double *positions)
         positions[i] = which->centre[i % 3] + which->radius * sphere->positions[i];
 }
 
-/* The balls are the last vertices, each as the sphere of the catalogue. */
+/* Makes a ball from the sphere of the catalogue; the balls are the last vertices. */
 static bool make_sphere(body *out, io_error *error) {
     return body_make(BODY_SPHERE, body_nearest_count(BODY_SPHERE, BALL_TRIANGLES), out, error);
 }

@@ -1,4 +1,4 @@
-/* The response to self-contacts: pairs that cscd reports are kept on their sides, gently. */
+/* The response to contacts of a body with itself: each pair that cscd reports is kept on its side, gently. */
 #include "models/softbody/self_contact.h"
 #include "models/common/vec3.h"
 #include "models/shapes/body.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A point of the surface: weighted vertices. */
+/* A point of the surface, as weighted vertices. */
 typedef struct surface_point {
     int count;
     uint32_t vertices[3];
@@ -31,13 +31,13 @@ void self_contacts_free(self_contacts *s) {
     *s = (self_contacts){0};
 }
 
-/* The two triangles at an edge: the body is closed. */
+/* Returns the two triangles at an edge, which exist since the body is closed. */
 static const uint32_t *triangles_at(const self_contacts *s, uint32_t edge) {
     uint32_t count;
     return cscd_mesh_edge_triangles(s->mesh, edge, &count);
 }
 
-/* Not normalized: twice the area. */
+/* The normal is as long as twice the area. */
 static void triangle_normal(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
                             double out[3]) {
     uint32_t v[3];
@@ -48,7 +48,8 @@ static void triangle_normal(const cscd_mesh *mesh, const double *positions, uint
     vec3_cross(first, second, out);
 }
 
-/* From b outwards, across both features; false where they do not face each other clearly. */
+/* Finds the normal that points outwards from b, across both features; false where they do not clearly face
+ * each other. */
 static bool outward_normal(const self_contacts *s, const double *positions, const held_pair *pair,
                            double out[3]) {
     if (pair->kind == CSCD_CONTACT_VF) {
@@ -138,8 +139,8 @@ void self_contacts_add(self_contacts *s, const cscd_contacts *found, const doubl
     s->count = kept;
 }
 
-/* The vertex's place over its triangle's plane; when it has slid over an edge, the next triangle. False: the
- * vertex belongs to that one. */
+/* Finds the point of the triangle below the vertex. When the vertex has slid over an edge, the pair gets
+ * the next triangle; false when the vertex belongs to that one. */
 static bool find_below(const self_contacts *s, const double *positions, held_pair *pair,
                        surface_point *below) {
     double normal[3], least = 0.0;
@@ -171,7 +172,7 @@ static bool find_below(const self_contacts *s, const double *positions, held_pai
     return v[0] != pair->a && v[1] != pair->a && v[2] != pair->a;
 }
 
-/* The nearest points of the two edges' lines, false outside of the edges. */
+/* Finds the nearest points of the lines of two edges; false when they lie outside of the edges. */
 static bool find_crossing(const self_contacts *s, const double *positions, const held_pair *pair,
                           surface_point *a, surface_point *b) {
     double along_a[3], along_b[3], between[3];
@@ -189,14 +190,14 @@ static bool find_crossing(const self_contacts *s, const double *positions, const
     return u >= 0.0 && u <= 1.0 && v >= 0.0 && v <= 1.0;
 }
 
-/* How far the point moves at most for a momentum that its vertices share by their weights. */
+/* Returns how far the point moves for a momentum that its vertices share by their weights. */
 static double point_mobility(const soft_body *soft, const surface_point *p) {
     double sum = 0.0;
     for (int i = 0; i < p->count; i++) sum += p->weights[i] * soft->vertex_mobilities[p->vertices[i]];
     return sum;
 }
 
-/* Moves the points apart by change at most: one momentum for a, its opposite for b. */
+/* Moves the points apart by `change` in all: a gets a momentum, b its opposite. */
 static void push_apart(const soft_body *soft, double *nodes, const surface_point *a, const surface_point *b,
                        const double change[3]) {
     const surface_point *const sides[2] = {a, b};
@@ -211,7 +212,7 @@ static void push_apart(const soft_body *soft, double *nodes, const surface_point
     }
 }
 
-/* Where the two points have moved apart by since the small step's start. */
+/* Computes how the two points have moved relative to each other since the small step began. */
 static void relative_motion(const soft_body *soft, const double *positions, const surface_point *a,
                             const surface_point *b, double out[3]) {
     const surface_point *const sides[2] = {a, b};
@@ -226,7 +227,7 @@ static void relative_motion(const soft_body *soft, const double *positions, cons
     }
 }
 
-/* Earlier pairs of the pass have moved the lattice. */
+/* Places the vertices of a pair again, since earlier pairs of the pass have moved the lattice. */
 static void refresh_vertices(const self_contacts *s, soft_body *soft, const held_pair *pair) {
     uint32_t vertices[4] = {pair->a};
     if (pair->kind == CSCD_CONTACT_VF) {
@@ -239,8 +240,8 @@ static void refresh_vertices(const self_contacts *s, soft_body *soft, const held
         lattice_place_vertex(&soft->frame, soft->nodes, vertices[i], soft->vertices + vertices[i] * 3);
 }
 
-/* The approach stops; what has got too near parts slowly, without a velocity: contacts only ever take kinetic
- * energy. False: the pair has parted, or is lost. */
+/* Stops the approach of a pair. A pair that is too near parts slowly and without gaining speed, so that
+ * contacts only ever take kinetic energy. Returns false when the pair has parted or is lost. */
 static bool solve_pair(self_contacts *s, soft_body *soft, held_pair *pair) {
     const double *positions = soft->vertices;
     surface_point a = {1, {pair->a}, {1.0}}, b;

@@ -1,4 +1,4 @@
-/* The response to self-contacts: pairs that cscd reports are kept on their sides, gently. */
+/* The response to contacts of a body with itself: each pair that cscd reports is kept on its side, gently. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -13,23 +13,24 @@ typedef struct held_pair {
 typedef struct self_contacts {
     const cscd_mesh *mesh;
     double *rest;     /* the vertices at rest */
-    held_pair *pairs; /* after self_contacts_add sorted by (kind, a, b), each once */
+    held_pair *pairs; /* sorted by (kind, a, b) after self_contacts_add, without repetitions */
     size_t count, capacity;
-    double near;     /* pairs nearer than this at rest: the lattice keeps them apart, or nothing can */
+    double near;     /* pairs that are nearer at rest are left to the lattice */
     double gap;      /* pairs are pushed apart to this distance */
-    double depth;    /* pairs that have got deeper than this are given up */
+    double depth;    /* deeper pairs are given up */
     double healing;  /* how far pairs are pushed apart in one small step */
     double friction; /* Coulomb's coefficient */
 } self_contacts;
 
-/* Without pairs; the limits follow from near. The mesh is closed and manifold, at rest in `rest`. */
+/* Makes a response without pairs; its limits follow from near. The mesh is closed and manifold; `rest` has
+ * its vertices at rest. */
 self_contacts self_contacts_make(const cscd_mesh *mesh, const double *rest, double near);
 void self_contacts_free(self_contacts *s);
 
-/* Takes up what a step of the detector found, as far as the pairs run into each other and not out, and come
- * from parts of the body that were apart at rest. */
+/* Adds the contacts of a detector step whose sides run into each other, not apart, and come from parts of
+ * the body that were apart at rest. */
 void self_contacts_add(self_contacts *s, const cscd_contacts *found, const double *start, const double *end);
 
-/* One pass in order: pushes the pairs in hold apart, follows vertices that slide from triangle to triangle,
- * and lets go of what has parted. */
+/* Solves all pairs once, in order: pushes them apart, follows vertices that slide from triangle to
+ * triangle, and drops pairs that have parted. */
 void self_contacts_solve(self_contacts *s, soft_body *soft);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Each cell's mass goes to its corners in equal parts. */
+/* Shares the mass of each cell equally among its corners. */
 static void share_masses(soft_body *b, double density) {
     const lattice *l = &b->frame;
     double share = density * l->spacing * l->spacing * l->spacing / 8.0;

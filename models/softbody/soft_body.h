@@ -10,22 +10,22 @@ typedef struct soft_body {
     double *masses, *inverse_masses; /* per node */
     double *nodes, *previous, *velocities;
     double *vertices;          /* of the surface, vertex_count * 3 */
-    double *vertex_mobilities; /* inverse masses of the surface's vertices, as pushed points of the lattice */
+    double *vertex_mobilities; /* inverse masses of the surface's vertices, as points of the lattice */
     double damping;
 } soft_body;
 
-/* At rest, as given; spacing is the width of the lattice's cells. */
+/* Makes a body at rest as given; spacing is the width of the lattice's cells. */
 soft_body soft_body_make(const double *positions, uint32_t vertex_count, const uint32_t *triangles,
                          uint32_t triangle_count, double spacing, const material *m);
 void soft_body_free(soft_body *b);
 
-/* Turns the body, then moves it, before the first step. */
+/* Turns the body and then moves it, before the first step. */
 void soft_body_place(soft_body *b, double turn[3][3], const double offset[3]);
 void soft_body_throw(soft_body *b, const double velocity[3], const double spin[3]);
 
-/* Moves a vertex of the surface with the lattice around it, in nodes: the body's nodes, or its previous ones,
- * so that a move of both leaves the velocity. Used by the contacts. */
+/* Moves a vertex of the surface together with the lattice around it. nodes: those of the body, or the
+ * previous ones; moving both leaves the velocity unchanged. */
 void soft_body_push(const soft_body *b, double *nodes, uint32_t vertex, const double change[3]);
 
-/* Kinetic, potential (of height z) and elastic energy. */
+/* Returns the kinetic, potential (of height z) and elastic energy. */
 double soft_body_energy(const soft_body *b, double gravity);
