@@ -1,4 +1,4 @@
-/* What detection costs three solvers: its share of a simulation step, its latency, what it allocates. */
+/* The cost of detection in three solvers: its share of a simulation step, its latency, its allocations. */
 #include "benchmarks/lib/options.h"
 #include "models/cloth/cloth_simulation.h"
 #include "models/common/allocation_count.h"
@@ -25,7 +25,7 @@ static const char help[] =
 
 /* ---- callers ------------------------------------------------------------------------------------------- */
 
-/* A simulation under way; detect_ms: so far, in all. */
+/* A running simulation; detect_ms is the time in cscd so far. */
 typedef struct caller {
     recorder soft;
     cloth_simulation cloth;
@@ -122,7 +122,8 @@ static const caller_kind kinds[] = {
 typedef struct samples {
     uint32_t count;
     double detect[FRAMES_MAX], total[FRAMES_MAX];
-    uint64_t first_calls, calls[PARTS]; /* of the allocator: in the first frame; in each part of the rest */
+    uint64_t first_calls,
+        calls[PARTS]; /* calls of the allocator: in the first frame; in each part of the rest */
 } samples;
 
 static bool run_frames(const caller_kind *kind, caller *c, const uint64_t *calls, samples *s,
@@ -178,7 +179,7 @@ static double sum_of(const double *values, uint32_t count) {
     return sum;
 }
 
-/* Of values in order: as many of them as `share` says are no larger. */
+/* Returns the value of a sorted list below which `share` of the values lie. */
 static double percentile_of(const double *values, uint32_t count, double share) {
     uint32_t place = (uint32_t)(share * count);
     return values[place < count ? place : count - 1];

@@ -1,4 +1,4 @@
-/* Frames of cloth simulations with heavy contact: one interval each, what it takes and what is found. */
+/* Frames of cloth simulations with heavy contact: time and contacts of one interval each. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 
@@ -16,7 +16,7 @@ static const char help[] =
 
 typedef struct cloth_pair {
     const char *name;
-    int first; /* the frame, before the one after it */
+    int first; /* the pair is this frame and the next */
 } cloth_pair;
 
 static void count_kinds(const cscd_contacts *found, size_t *vf, size_t *ee) {

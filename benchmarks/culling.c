@@ -1,5 +1,5 @@
-/* Culling on recordings: pairs and time per stage, by method, for intervals with a proven start and without.
- */
+/* Culling on recordings: pairs and time per stage, by method, for intervals with and without a proven
+ * start. */
 #include "cscd/cscd.h"
 #include "src/io/animation.h"
 #include "src/io/mesh_file.h"
@@ -24,10 +24,10 @@ typedef struct culled_recording {
     double *positions[2];
 } culled_recording;
 
-/* Sums over the intervals of one kind. */
+/* Sums over the intervals of one kind: with a proven start, or without. */
 typedef struct interval_sums {
     double update, orientation, traversal, contact, proof, total;
-    double pairs, contacts, lit; /* lit: triangles S+ or S- */
+    double pairs, contacts, lit; /* lit: triangles that are S+ or S- */
     uint32_t intervals, checks;
 } interval_sums;
 
@@ -87,7 +87,7 @@ static bool replay_method(culled_recording *r, cscd_detector *detector, const ch
     return true;
 }
 
-/* "kmeans:4+": method, number of regions, mode earliest. */
+/* Parses a name such as "kmeans:4+": method, number of regions, mode earliest. */
 static bool parse_method(const char *name, cscd_plan_options *plan, cscd_detector_options *detector) {
     char method[32];
     size_t length = strcspn(name, ":+");

@@ -1,5 +1,5 @@
-/* The broad phase beside Embree's: pairs of triangles whose swept volumes overlap, by refit and
- * self-collision. */
+/* The broad phase beside that of Embree: pairs of triangles whose swept volumes overlap, by refit and
+ * self-intersection of the tree. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 #include "src/core/timer.h"
@@ -24,7 +24,7 @@ typedef struct swept_bounds {
     float low[3], high[3];
 } swept_bounds;
 
-/* What callbacks see. */
+/* The data of the callbacks. */
 typedef struct broad_phase {
     const deforming_body *b;
     const double *start, *end;
@@ -43,7 +43,7 @@ static float round_up(double x) {
     return (float)(x + (fabs(x) * 0x1p-23 + 0x1p-149));
 }
 
-/* Of a swept triangle, rounded outward. */
+/* Returns the box of a swept triangle, rounded outward. */
 static swept_bounds swept_box(const broad_phase *p, uint32_t triangle) {
     const uint32_t *corners = p->b->triangles + (size_t)triangle * 3;
     double low[3], high[3];
@@ -177,7 +177,7 @@ static bool run_intervals(const bench_options *o, const deforming_body *b, broad
     return good;
 }
 
-/* The counts of pairs are those of the last interval, but for cscd's, which are means. */
+/* Runs one size. The numbers of pairs are those of the last interval, except for cscd's, which are means. */
 static bool run_size(const bench_options *o, uint32_t size, json *out, io_error *error) {
     static const char *const names[] = {"embree, refit", "embree, rebuild"};
     deforming_body b;

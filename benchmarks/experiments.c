@@ -1,4 +1,4 @@
-/* The thesis's chapter 6 in numbers: a sphere, the stability of k-means; and long steps. */
+/* Chapter 6 of the thesis in numbers (a sphere, the stability of k-means), and long steps. */
 #include "benchmarks/lib/scene_files.h"
 #include "models/shapes/catalogue.h"
 
@@ -13,7 +13,7 @@ static bool print_failure(const char *text) {
     return false;
 }
 
-/* One step of a new detector; false: it failed, and why has been said. */
+/* Measures one step of a new detector; returns false after a failure that has been reported. */
 static bool measure_step(const cscd_mesh *mesh, const cscd_context *context, const cscd_plan *plan,
                          cscd_method method, const double *start, const double *end, cscd_counters *counters,
                          cscd_timings *ms) {
@@ -68,7 +68,7 @@ static bool measure_spheres(void) {
 
 /* ---- k-means ----------------------------------------------------------------------------------------- */
 
-/* How many regions border on one other region only. */
+/* Counts the regions that border on one other region only. */
 static uint32_t count_enclosed(const cscd_mesh *mesh, const cscd_plan *plan) {
     bool beside[REGIONS_MAX][REGIONS_MAX] = {{false}};
     uint32_t enclosed = 0;
@@ -134,7 +134,8 @@ static bool measure_kmeans(const recording_data *r) {
 
 /* ---- long steps -------------------------------------------------------------------------------------- */
 
-/* The greatest extent at rest, rounded down to a power of two: translations by multiples of it are exact. */
+/* Returns the greatest extent at rest, rounded down to a power of two, so that translations by multiples
+ * of it are exact. */
 static double body_length(const recording_data *r) {
     double extent = 0.0, power = 1.0;
     for (uint32_t i = 0; i < r->model.vertex_count * 3; i++) {

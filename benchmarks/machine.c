@@ -1,4 +1,4 @@
-/* What this machine can do at best, on one thread: bandwidth, arithmetic, random reads, latency. */
+/* The limits of this machine on one thread: bandwidth, arithmetic, random reads, latency. */
 #include "benchmarks/lib/machine_kernels.h"
 #include "models/shapes/body.h"
 #include "src/core/timer.h"
@@ -18,17 +18,17 @@ static const char help[] =
     "reads that depend on one another, rates of multiplications and additions (separate, as in the library)\n"
     "and of tests of boxes. --quick: no working set beyond 64 MiB.\n";
 
-/* Bytes of working sets: first level, second, third twice, and memory. */
+/* Bytes of the working sets: in the first and second level of cache, twice in the third, and in memory. */
 static const size_t sets[SET_COUNT] = {1 << 14, 1 << 20, 1 << 24, 1 << 26, (size_t)3 << 29};
 static const char *const set_names[SET_COUNT] = {"16 KiB", "1 MiB", "16 MiB", "64 MiB", "1.5 GiB"};
 
-static volatile uint64_t seen; /* results go here, so that they are wanted */
+static volatile uint64_t seen; /* results go here, so that the loops are not optimised away */
 
 static double lesser_time(double least, double ms) {
     return least < 0.0 || ms < least ? ms : least;
 }
 
-/* Times over a set, so that about as many bytes are moved in each. */
+/* Returns how often to run over a set, so that about as many bytes are moved for each size. */
 static uint32_t rounds_of(size_t size) {
     size_t count = ((size_t)1 << 27) / size;
     return count > 0 ? (uint32_t)count : 1;
@@ -38,7 +38,7 @@ static uint32_t rounds_of(size_t size) {
 
 typedef enum transfer { TRANSFER_READ, TRANSFER_WRITE, TRANSFER_COPY } transfer;
 
-/* GB/s, of bytes that the program sees: a copy counts what it reads and what it writes. */
+/* Measures GB/s of the bytes that the program moves: a copy counts both its reads and its writes. */
 static double measure_bandwidth(const machine_kernels *k, transfer kind, char *memory, size_t size) {
     double least = -1.0;
     uint32_t count = rounds_of(size);
@@ -72,7 +72,7 @@ static void print_bandwidth(const machine_kernels *const *levels, int level_coun
 
 /* ---- random reads ------------------------------------------------------------------------------------ */
 
-/* The next of a full cycle of random steps: 0 .. count - 1, by Sattolo's shuffle. */
+/* Returns the successor of each of 0 .. count - 1 on one random cycle through all, by Sattolo's shuffle. */
 static uint32_t *random_cycle(uint32_t count) {
     uint32_t *next = body_allocate(count, sizeof *next);
     uint64_t state = 1;
@@ -86,7 +86,7 @@ static uint32_t *random_cycle(uint32_t count) {
     return next;
 }
 
-/* ns of a read of three doubles at a random place; the places are known ahead. */
+/* Returns the ns of a read of three doubles at random places that are known ahead. */
 static double random_point_ns(const double *points, size_t size) {
     uint32_t count = (uint32_t)(size / sizeof(double[3])), reads = count < 1 << 22 ? count : 1 << 22;
     uint32_t *order = random_cycle(count);
@@ -107,7 +107,7 @@ static double random_point_ns(const double *points, size_t size) {
     return least * 1e6 / ((double)reads * repeats);
 }
 
-/* ns of a read whose place is what the last one read, one a cache line. */
+/* Returns the ns of a read whose place is the result of the read before, one in each cache line. */
 static double latency_ns(char *memory, size_t size) {
     uint32_t count = (uint32_t)(size / LINE), steps = 1 << 20;
     uint32_t *cycle = random_cycle(count);
@@ -139,7 +139,7 @@ static void print_random(char *memory, int set_count) {
 
 /* ---- arithmetic -------------------------------------------------------------------------------------- */
 
-/* Gop/s: a multiplication and an addition are two. */
+/* Returns Gop/s; a multiplication and an addition are two operations. */
 static double arithmetic_rate(double (*function)(uint32_t), uint32_t lanes) {
     double least = -1.0;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
@@ -151,7 +151,7 @@ static double arithmetic_rate(double (*function)(uint32_t), uint32_t lanes) {
     return 2.0 * MACHINE_CHAINS * lanes * STEPS / least * 1e-6;
 }
 
-/* Pairs of boxes per ns; a step tests 64 pairs. */
+/* Returns pairs of boxes per ns; a step tests 64 pairs. */
 static double box_rate(const machine_kernels *k) {
     double least = -1.0;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
@@ -178,7 +178,7 @@ static void print_rates(const machine_kernels *const *levels, int level_count) {
 
 /* ---- the program ------------------------------------------------------------------------------------- */
 
-/* All levels of this build that the processor has; how many. */
+/* Finds the instruction sets of this build that the processor has; returns their number. */
 static int find_levels(const machine_kernels *levels[3]) {
     int count = 1;
     levels[0] = &machine_scalar;

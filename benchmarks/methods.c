@@ -1,4 +1,4 @@
-/* The methods side by side on recordings: the thesis's tables, with what each method loses. */
+/* The methods side by side on recordings: the tables of the thesis, and what each method loses. */
 #include "benchmarks/lib/methods_report.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/thesis_numbers.h"
@@ -54,7 +54,7 @@ static bool enter_contest(methods_report *r, const entrant *e, uint32_t repeats,
     return true;
 }
 
-/* Where nothing is closed there are no regions, and methods that want them do not take part. */
+/* Enters a method, except one by regions when nothing is closed, for then there are none. */
 static bool enter_method(methods_report *r, cscd_method method, cscd_mode mode, uint32_t repeats,
                          io_error *error) {
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
@@ -63,7 +63,7 @@ static bool enter_method(methods_report *r, cscd_method method, cscd_mode mode, 
     return enter_contest(r, &e, repeats, error);
 }
 
-/* Trees of 14-DOPs: whether they pay is to be measured. */
+/* Enters a method with trees of 14-DOPs, to measure whether they pay. */
 static bool enter_kdop14(methods_report *r, cscd_method method, uint32_t repeats, io_error *error) {
     if (method == CSCD_METHOD_CHARGE && r->truth->recording->charge == NULL) return true;
     entrant e = {.method = method, .mode = CSCD_MODE_ALL, .volume = CSCD_VOLUME_KDOP14};
@@ -71,7 +71,7 @@ static bool enter_kdop14(methods_report *r, cscd_method method, uint32_t repeats
     return enter_contest(r, &e, repeats, error);
 }
 
-/* Five seeded runs, as in the thesis. */
+/* Enters k-means with five seeded runs, as in the thesis. */
 static bool enter_kmeans(methods_report *r, uint32_t k, cscd_mode mode, io_error *error) {
     if (r->truth->recording->charge == NULL) return true;
     entrant e = {.method = CSCD_METHOD_KMEANS, .mode = mode, .k = k, .seed = 1};
@@ -112,7 +112,7 @@ static int compare_names(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Adds the recordings in the data folder, sorted by name. A folder that is given must have some. */
+/* Adds the recordings in the data folder, sorted by name. When a folder is given, it must have some. */
 static bool list_data(methods_options *o) {
     uint32_t first = o->scene_count;
     if (o->data == NULL) {
@@ -202,7 +202,7 @@ static bool run_scenes(const methods_options *o, int argument_count, char **argu
     return (written || print_failure("the JSON could not be written")) && good;
 }
 
-/* A whole number from 1 to 999. */
+/* Parses a whole number from 1 to 999. */
 static bool parse_threads(const char *text, uint32_t *out) {
     size_t digits = strspn(text, "0123456789");
     *out = digits < 4 && text[digits] == '\0' ? (uint32_t)strtoul(text, NULL, 10) : 0;

@@ -1,4 +1,5 @@
-/* What a bulk motion costs: the same deformation with everything moved by many body lengths an interval. */
+/* The cost of a bulk motion: the same deformation with everything moved by many body lengths in an
+ * interval. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 
@@ -42,7 +43,7 @@ static contact_pairs sorted_pairs(const cscd_contacts *found) {
     return set;
 }
 
-/* How many are in one of them only, and how many in any. */
+/* Counts the pairs in only one of the lists, and the pairs in any. */
 static void add_difference(const contact_pairs *a, const contact_pairs *b, double *different, double *all) {
     size_t i = 0, j = 0;
     while (i < a->count || j < b->count) {
@@ -146,7 +147,7 @@ static bool run_made(const bench_options *o, deformation motion, uint32_t size, 
     return good;
 }
 
-/* Open surfaces are culled by no method but iccd, so none will do. */
+/* Runs the cloth with method none: of the other methods, only iccd culls on open surfaces. */
 static bool run_cloth(const bench_options *o, json *out, io_error *error) {
     deforming_body b;
     if (!bench_has_data(o, "cloth funnel")) return true;

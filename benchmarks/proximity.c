@@ -1,4 +1,4 @@
-/* Nearness, minimum separation, certified steps and line searches, each beside a plain step. */
+/* Proximity queries, minimum separation, certified steps and line searches, each beside a plain step. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/scene_files.h"
 #include "benchmarks/lib/stages.h"
@@ -28,12 +28,12 @@ static const char help[] =
     "frame 80). --sizes, --body, --volume and --shuffled mean nothing here.\n"
     "\n";
 
-/* Consecutive frames, all in memory. Intervals before first_timed are there to be stepped over: a detector
- * that culls proves the start of the first. */
+/* Consecutive frames, all in memory. Intervals before first_timed are only stepped over, so that a
+ * detector that culls has proven the start of the first timed one. */
 typedef struct frames {
     const char *name;
     cscd_mesh *mesh;
-    cscd_plan *plan; /* NULL: no detector culls */
+    cscd_plan *plan; /* NULL: detectors do not cull */
     double edge;     /* mean length in the first frame */
     uint32_t first_timed, interval_count;
     const double *ends[INTERVALS_MAX + 2];
@@ -44,7 +44,7 @@ typedef struct task_rig {
     cscd_detector *detector;
     cscd_line *line;
     double distance;
-    size_t found; /* what the last call listed */
+    size_t found; /* length of the list of the last call */
 } task_rig;
 
 typedef struct task {
@@ -54,7 +54,7 @@ typedef struct task {
     cscd_status (*act)(task_rig *r, uint32_t interval);
 } task;
 
-/* Per interval; refused: NAN. found: per call. */
+/* Times per interval, NAN for a refused one; found: mean per call. */
 typedef struct task_result {
     double ms[INTERVALS_MAX + 1], found;
     uint32_t refused;
@@ -119,7 +119,7 @@ static cscd_status run_once(task_rig *r, const task *t, bool counts, task_result
     return CSCD_OK;
 }
 
-/* The first run, which builds trees and makes buffers grow, is left out. */
+/* Measures a task. The first run, which builds trees and grows buffers, is left out. */
 static bool measure_task(const frames *f, const task *t, uint32_t repeats, task_result *out,
                          io_error *error) {
     task_rig r = {.f = f, .distance = t->distance * f->edge};
@@ -141,7 +141,7 @@ static bool measure_task(const frames *f, const task *t, uint32_t repeats, task_
     return status == CSCD_OK || io_fail(error, "%s: %s", f->name, cscd_status_string(status));
 }
 
-/* Over the intervals that both have. */
+/* Returns the ratio of times over the intervals that both have. */
 static double time_ratio(const frames *f, const task_result *a, const task_result *b) {
     double sums[2] = {0.0, 0.0};
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) {
@@ -154,7 +154,7 @@ static double time_ratio(const frames *f, const task_result *a, const task_resul
 
 /* ---- tables ------------------------------------------------------------------------------------------ */
 
-/* Nearness and separation by length. */
+/* Prints proximity and separation by length. */
 static bool run_lengths(const frames *f, const task_result *plain, uint32_t repeats, json *out,
                         io_error *error) {
     static const double lengths[] = {0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0};

@@ -1,4 +1,4 @@
-/* What each rule of the published culling loses, one at a time. */
+/* What each rule of the published culling loses, one rule at a time. */
 #include "benchmarks/lib/contest.h"
 #include "runtime/baselines/published.h"
 #include "runtime/detector/detector.h"
@@ -21,10 +21,10 @@ static const rule_set rule_sets[] = {
     {"all, as published", PUBLISHED_ALL},
 };
 
-/* Of one recording with one component. */
+/* Losses on one recording with one component. */
 typedef struct losses {
     uint32_t with_contact;     /* intervals */
-    uint32_t first, none_left; /* of these: the first contact is lost; all are */
+    uint32_t first, none_left; /* of these: intervals whose first contact is lost; that lose all */
     size_t contacts, lost;
 } losses;
 

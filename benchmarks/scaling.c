@@ -1,4 +1,4 @@
-/* What each stage costs per triangle, from small meshes to large ones, where nothing touches. */
+/* The cost of each stage per triangle, from small meshes to large ones, where nothing touches. */
 #include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
@@ -99,7 +99,8 @@ static void print_per_triangle(const table *t) {
     }
 }
 
-/* The row of a method nearest in size to `triangles`; NULL: it took no part. */
+/* Returns the row of this method that is nearest in size to `triangles`, or NULL when the method took no
+ * part. */
 static const scaling_row *nearest_row(const table *t, const scaling_row *like, uint32_t triangles) {
     const scaling_row *best = NULL;
     for (uint32_t i = 0; i < t->count; i++) {

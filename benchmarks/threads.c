@@ -1,4 +1,4 @@
-/* What a second thread gains, beside what it gains on this machine for arithmetic that shares nothing. */
+/* The gain of a second thread, beside its gain on this machine for arithmetic that shares nothing. */
 #include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
@@ -28,7 +28,7 @@ typedef struct loop_worker {
     double begin, end, result;
 } loop_worker;
 
-/* Starts when the last of all has come. */
+/* Runs the loop as soon as all workers have arrived. */
 static void *run_worker(void *data) {
     loop_worker *w = data;
     atomic_fetch_sub(&waiting, 1);
@@ -44,7 +44,8 @@ static double lesser_time(double a, double b) {
     return a > 0.0 && a < b ? a : b;
 }
 
-/* Of the loop: the least on one thread, and of two loops on two threads until both are done; 0: none yet. */
+/* Times of the loop: the least on one thread, and of two loops on two threads until both are done; 0: none
+ * yet. */
 typedef struct loop_times {
     double one, two;
 } loop_times;
@@ -73,7 +74,7 @@ typedef struct duel {
     loop_times loops;
 } duel;
 
-/* The first interval of a round only moves the subjects there. */
+/* Runs one interval; the first of a round only moves the subjects to its end. */
 static bool run_interval(const deforming_body *b, duel *d, uint32_t i, double *ends, io_error *error) {
     size_t size = (size_t)b->vertex_count * 3;
     bool good = true;

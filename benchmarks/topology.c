@@ -1,5 +1,4 @@
-/* What new connectivity costs: mesh, plan and detector made anew, and the first step, beside a steady step.
- */
+/* The cost of new connectivity: a new mesh, plan and detector and the first step, beside a steady step. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
 #include "src/core/timer.h"
@@ -23,7 +22,7 @@ static const char help[] =
     "--intervals: the repetitions (default 9, with --quick 5).\n"
     "\n";
 
-/* In the order in which they are called. */
+/* The measured parts, in the order of their calls. */
 typedef enum part {
     PART_MESH,
     PART_PLAN,
@@ -37,7 +36,7 @@ typedef enum part {
 static const char *const part_names[PART_COUNT] = {"mesh",       "plan",      "detector",
                                                    "first step", "its proof", "steady step"};
 
-/* Carried over: what a plan of an earlier mesh said, in the numbers of the new one. */
+/* Regions and detector points of the plan of an earlier mesh, in the numbers of the new one. */
 typedef struct carried_plan {
     uint32_t region_count, *regions;
     double *points;
@@ -45,7 +44,7 @@ typedef struct carried_plan {
 
 typedef struct subject_set {
     const deforming_body *body;
-    const carried_plan *carried; /* NULL: no such plan */
+    const carried_plan *carried; /* NULL: not carried over */
     cscd_method method;
     cscd_start start;
     double *ends[INTERVAL_COUNT][2];
@@ -109,7 +108,7 @@ static cscd_status step_interval(subject_set *s, uint32_t interval, double ms[PA
     return status;
 }
 
-/* Lowers least[] to what this repetition took. */
+/* Runs once and lowers least[] to the times of this run. */
 static cscd_status repeat_once(subject_set *s, double least[PART_COUNT]) {
     double ms[PART_COUNT] = {[PART_STEADY] = HUGE_VAL};
     cscd_status status = make_subjects(s, ms);

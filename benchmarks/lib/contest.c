@@ -1,4 +1,4 @@
-/* One method on one recording, held against the method that leaves out no pair. */
+/* One method on one recording, compared with the method that leaves out no pair. */
 #include "benchmarks/lib/contest.h"
 
 #include "src/core/methods.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A TOI is early by less than this. */
+/* A time of impact may be early by less than this. */
 static const double toi_early = 1e-9;
 
 static bool explain_failure(const recording_data *r, const char *what, io_error *error) {
@@ -81,7 +81,7 @@ void truth_free(truth *t) {
 
 /* ---- comparison -------------------------------------------------------------------------------------- */
 
-/* Of a contact of a component with itself, else UINT32_MAX. */
+/* Returns the component of a contact of a component with itself, else UINT32_MAX. */
 static uint32_t own_component(const truth *t, const cscd_contact *c) {
     uint32_t a[2] = {c->a, 0}, b[3] = {0, 0, 0};
     if (c->kind == CSCD_CONTACT_EE) {
@@ -94,7 +94,7 @@ static uint32_t own_component(const truth *t, const cscd_contact *c) {
     return first == second ? first : UINT32_MAX;
 }
 
-/* When a component first touches itself, INFINITY: never. Lists are sorted by time. */
+/* Returns when a component first touches itself, or INFINITY. Lists are sorted by time. */
 static double first_time(const truth *t, const cscd_contact *items, size_t count, uint32_t component) {
     for (size_t i = 0; i < count; i++) {
         if (own_component(t, &items[i]) == component) return items[i].toi;
@@ -102,7 +102,8 @@ static double first_time(const truth *t, const cscd_contact *items, size_t count
     return INFINITY;
 }
 
-/* Bit for bit: every method computes a contact from the same two features by the same code. */
+/* Whether two contacts are equal bit for bit, as they must be: every method computes a contact from the
+ * same two features by the same code. */
 static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
     return a->kind == b->kind && a->a == b->a && a->b == b->b && a->bounded == b->bounded &&
            memcmp(&a->toi, &b->toi, sizeof a->toi) == 0 && memcmp(&a->u, &b->u, sizeof a->u) == 0 &&
@@ -110,8 +111,9 @@ static bool same_contact(const cscd_contact *a, const cscd_contact *b) {
            memcmp(a->normal, b->normal, sizeof a->normal) == 0;
 }
 
-/* Counts what is missing; false if the lists differ in a way that is not allowed. No method may report what
- * method none does not; a published one may lose anything, mode earliest what its guarantee leaves out. */
+/* Counts the missing contacts; returns false when the lists differ in a way that is not allowed. No method
+ * may report what method none does not. A published method may lose anything, mode earliest what its
+ * guarantee leaves out. */
 static bool compare_contacts(const truth *t, uint32_t interval, const cscd_detector *detector,
                              const entrant *e, const cscd_contacts *found, score *s) {
     const cscd_contact *expected = t->contacts + t->offsets[interval];

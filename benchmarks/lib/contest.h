@@ -1,9 +1,10 @@
-/* One method on one recording, held against the method that leaves out no pair. */
+/* One method on one recording, compared with the method that leaves out no pair. */
 #pragma once
 
 #include "benchmarks/lib/scene_files.h"
 
-/* What method none finds in each interval, and which of them begin with every component proven embedded. */
+/* The contacts of method none in each interval, and which intervals begin with every component proven
+ * embedded. */
 typedef struct truth {
     const recording_data *recording;
     uint32_t *vertex_components;
@@ -17,10 +18,10 @@ bool truth_find(const recording_data *r, truth *out, io_error *error);
 void truth_free(truth *t);
 
 typedef struct entrant {
-    char name[32]; /* of the row */
+    char name[32]; /* name of the row */
     cscd_method method;
     cscd_mode mode;
-    uint32_t k, seed; /* k-means; repeat i has seed + i */
+    uint32_t k, seed; /* of k-means; repeat i has the seed seed + i */
     cscd_volume volume;
 } entrant;
 
@@ -29,24 +30,25 @@ typedef struct score {
     uint32_t intervals;
     cscd_timings ms;
     double pcp, tests, contacts;
-    double lost;          /* per run: contacts of method none that are not reported, */
-    double earliest_lost; /* and intervals and components whose first contact is not reported in time */
+    double lost;          /* per run: contacts of method none that are not reported */
+    double earliest_lost; /* per run: intervals and components whose first contact is not reported in time */
 } score;
 
 enum { CLASS_PROVEN, CLASS_OTHER, CLASS_COUNT };
 
-/* Means over repeats, in intervals with a proven start and in others, and the repeats' least and greatest
- * time per interval over all of them. */
+/* Means over the repeats, for intervals with a proven start and for others, and the least and greatest
+ * time per interval of a repeat over all intervals. */
 typedef struct contest_result {
     entrant entrant;
     score classes[CLASS_COUNT];
     double least_ms, most_ms;
 } contest_result;
 
-/* Replays `repeats` times. False: *error says that a call failed, or which interval's contacts break the
- * guarantee that the method gave for it. Published methods may lose anything; none may add or alter a
- * contact. */
+/* Replays `repeats` times. Returns false when a call failed or the contacts of an interval break the
+ * guarantee that the method gave for it; *error says which. Published methods may lose anything; none may
+ * add or alter a contact. */
 bool contest_run(const truth *t, const entrant *e, uint32_t repeats, contest_result *out, io_error *error);
 
-/* Of one class, or, where only is CLASS_COUNT, of both; means per interval, losses as they are. */
+/* Returns the means per interval of one class, or of both when only is CLASS_COUNT; losses are not
+ * divided. */
 score score_mean(const score classes[CLASS_COUNT], int only);

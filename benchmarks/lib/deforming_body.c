@@ -36,7 +36,7 @@ static void find_edge(deforming_body *b) {
     b->edge = sum / (3.0 * b->triangle_count);
 }
 
-/* A permutation of 0 .. count - 1, the same every time. */
+/* Returns a permutation of 0 .. count - 1, the same every time. */
 static uint32_t *random_order(uint32_t count) {
     uint32_t *order = body_allocate(count, sizeof *order);
     uint64_t state = 1;
@@ -120,9 +120,9 @@ void deforming_body_free(deforming_body *b) {
 
 /* ---- motion ------------------------------------------------------------------------------------------ */
 
-/* x moves by a function of y and z, y by one of z, z by itself, increasing: a triangular map, and so is every
- * map between two of them, linearly in time. Those are one-to-one, so a surface that did not touch itself at
- * rest never does; a mesh that is fine enough does not either. */
+/* Moves x by a function of y and z, y by one of z, and z increasingly by one of itself. This is a
+ * triangular map, and so is the linear motion between two such maps. Triangular maps are one-to-one, so a
+ * surface that did not touch itself at rest never does; nor does a fine enough mesh. */
 static void apply_wave(const deforming_body *b, double phase, double p[3]) {
     double size = 0.08 * b->length, height = b->high[2] - b->low[2];
     double up = (p[2] - b->low[2]) / height, across = (p[1] - b->low[1]) / height;
@@ -131,7 +131,7 @@ static void apply_wave(const deforming_body *b, double phase, double p[3]) {
     p[2] += (p[2] - b->low[2]) * 0.03 * sin(phase);
 }
 
-/* The legs of the figure, below its thighs, go towards and past each other: nothing is at x = 0 there. */
+/* Moves the legs of the figure, below its thighs, towards and past each other: nothing is at x = 0 there. */
 static void close_legs(double distance, double p[3]) {
     double down = fmin(fmax((0.7 - p[2]) / 0.4, 0.0), 1.0);
     p[0] -= down * down * (3.0 - 2.0 * down) * distance * p[0] / sqrt(p[0] * p[0] + 0.0025);

@@ -5,8 +5,8 @@
 
 enum { STEPS = 100000, CHAINS = 24 };
 
-/* Enough chains to keep all units busy: then it shows, too, when another processor shares them (with few
- * chains it waits for results, and takes the same time whatever the neighbour does). */
+/* This many chains keep all units busy, so that the time also shows when another processor shares them.
+ * With few chains it would wait for results and take the same time whatever the neighbour does. */
 double fixed_arithmetic(void) {
     double x[CHAINS], sum = 0.0;
     for (int k = 0; k < CHAINS; k++) x[k] = k;
@@ -17,7 +17,7 @@ double fixed_arithmetic(void) {
     return sum;
 }
 
-static volatile double result; /* wanted, as far as the compiler knows */
+static volatile double result; /* keeps the compiler from dropping the loop */
 
 double fixed_arithmetic_ms(void) {
     double since = timer_now_ms(), spent = 0.0;

@@ -7,14 +7,15 @@
 /* Sizes are in bytes, multiples of 1,024. Results are returned so that nothing is optimised away. */
 typedef struct machine_kernels {
     const char *name;
-    uint32_t f32_lanes, f64_lanes; /* of the widest vector */
+    uint32_t f32_lanes, f64_lanes; /* numbers in the widest vector */
     uint64_t (*read)(const void *from, size_t size);
     void (*write)(void *to, size_t size, uint64_t value);
     void (*copy)(void *to, const void *from, size_t size);
-    /* `steps` times a multiplication and an addition in each of MACHINE_CHAINS accumulators. */
-    double (*f32_one)(uint32_t steps), (*f64_one)(uint32_t steps);       /* one number each, */
-    double (*f32_vector)(uint32_t steps), (*f64_vector)(uint32_t steps); /* one vector each */
-    /* Pairs of boxes of six floats, eight against one a time, as in traversal: pairs that overlap. */
+    /* Does `steps` multiplications and additions in each of MACHINE_CHAINS accumulators. */
+    double (*f32_one)(uint32_t steps), (*f64_one)(uint32_t steps);       /* on single numbers */
+    double (*f32_vector)(uint32_t steps), (*f64_vector)(uint32_t steps); /* on vectors */
+    /* Tests pairs of boxes of six floats, eight against one at a time as in traversal; returns the number
+     * of overlapping pairs. */
     uint64_t (*boxes)(uint32_t steps);
 } machine_kernels;
 

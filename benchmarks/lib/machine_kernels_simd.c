@@ -49,7 +49,8 @@ static void copy_all(void *to, const void *from, size_t size) {
 
 /* ---- arithmetic -------------------------------------------------------------------------------------- */
 
-/* As many chains as hide the latency of both operations; no fused ones, since the library has none. */
+/* This many chains hide the latency of both operations. They are not fused, since the library has no fused
+ * ones. */
 #define CHAINS_OF(function, type, element, expand)                                                           \
     static double function(uint32_t steps) {                                                                 \
         type x[MACHINE_CHAINS], factor = expand((element)0.999), term = expand((element)0.001);              \

@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-/* A stage of a method that may not have it. */
+/* Prints the time of a stage, which the method may not have. */
 static void print_stage(double ms) {
     if (ms > 0.0)
         printf(" %7.3f", ms);
@@ -13,8 +13,8 @@ static void print_stage(double ms) {
         printf(" %7s", "X");
 }
 
-/* What the reference costs more, and what it would if the method's own stages cost nothing: then what is left
- * is the update and the elementary tests. */
+/* Prints how much more the reference costs, and how much more it would if the method's own stages cost
+ * nothing, so that only the update and the elementary tests were left. */
 static void print_ratio(const score *reference, const score *s) {
     printf(" %5.2f (%5.2f)", reference->ms.total_ms / s->ms.total_ms,
            reference->ms.total_ms / (s->ms.update_ms + s->ms.contact_ms));

@@ -6,7 +6,7 @@
 
 enum { RESULTS_MAX = 32 };
 
-/* Of one recording; methods none and iccd first. */
+/* The results on one recording; methods none and iccd come first. */
 typedef struct methods_report {
     const truth *truth;
     contest_result results[RESULTS_MAX];
@@ -15,5 +15,5 @@ typedef struct methods_report {
 
 void methods_report_print(const methods_report *r);
 
-/* One object per method over all intervals: means per interval, but losses per run. */
+/* Writes one object per method over all intervals: means per interval, but losses per run. */
 void methods_report_write(const methods_report *r, json *out, uint32_t thread_count);

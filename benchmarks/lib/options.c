@@ -24,7 +24,7 @@ static bool refuse_argument(const char *program, const char *argument, const cha
     return false;
 }
 
-/* A whole number from 1 to most. */
+/* Parses a whole number from 1 to most. */
 static bool parse_number(const char *text, uint32_t most, uint32_t *out) {
     size_t digits = strspn(text, "0123456789");
     unsigned long value = digits > 0 && digits < 9 && text[digits] == '\0' ? strtoul(text, NULL, 10) : 0;

@@ -10,7 +10,7 @@ enum { SIZES_MAX = 16, INTERVALS_MAX = 60 };
 
 typedef struct bench_options {
     uint32_t sizes[SIZES_MAX], size_count; /* triangles */
-    uint32_t interval_count;               /* 0: fewer with size */
+    uint32_t interval_count;               /* 0: fewer for larger meshes */
     uint32_t thread_count;
     cscd_simd simd;
     cscd_volume volume;
@@ -20,24 +20,24 @@ typedef struct bench_options {
     const char *json_path;
 } bench_options;
 
-/* A folder of the data to compare with, below the one that the environment variable CSCD_DATA names; NULL when
- * that is not set. To be freed. */
+/* Returns a folder of the data to compare with, below the one that the environment variable CSCD_DATA
+ * names, or NULL when that is not set; to be freed. */
 char *bench_data_folder(const char *name);
 
 /* Whether a folder with data is given; when it is not, says that `what` is left out. */
 bool bench_has_data(const bench_options *o, const char *what);
 
-/* Measured intervals of a size. */
+/* Returns the number of measured intervals for a size. */
 uint32_t bench_intervals(const bench_options *o, uint32_t triangle_count);
 
 typedef struct bench_program {
-    const char *name, *help;               /* the options are told behind the help */
-    const uint32_t *sizes;                 /* where none are asked for, */
-    uint32_t size_count, quick_size_count; /* the first ones with --quick */
-    /* Prints its tables and, where out->file is not NULL, writes a row of JSON for each of theirs. */
+    const char *name, *help;               /* the list of options is printed after the help */
+    const uint32_t *sizes;                 /* the default sizes; */
+    uint32_t size_count, quick_size_count; /* with --quick, the first ones */
+    /* Prints the tables and, when out->file is not NULL, writes a row of JSON for each row of them. */
     bool (*run)(const bench_options *o, json *out, io_error *error);
 } bench_program;
 
-/* Of a whole program, its exit status: parses, runs, says what went wrong, and gives the rows of --json the
- * frame that tells where they come from. */
+/* Runs a whole program and returns its exit status: parses, runs, explains errors, and adds the origin to
+ * the rows of --json. */
 int bench_main(const bench_program *program, int argument_count, char **arguments);

@@ -32,7 +32,7 @@ static bool record_frames(recorder *r, const char *path, io_error *error) {
     return good && complete;
 }
 
-/* Does nothing where both files are there. */
+/* Makes a recording unless both files are there. */
 static bool make_recording(const char *model, const char *frames, const char *name, io_error *error) {
     const soft_scene *s = soft_scene_find(name);
     recorder r;

@@ -12,12 +12,13 @@ typedef struct recording_data {
     mesh_file model;
     uint32_t frame_count;
     double *frames;    /* frame_count * vertex_count * 3 */
-    cscd_plan *charge; /* by charge; NULL where nothing is closed */
-    double made_ms;    /* what was missing and has been made: recording, plan */
+    cscd_plan *charge; /* by charge; NULL when no component is closed */
+    double made_ms;    /* time spent making what was missing: recording, plan */
 } recording_data;
 
-/* folder/name.obj and .pc2, recorded first if they are missing and name is a scene of models/softbody; the
- * plan from folder/name.plan.ply or cache/name.plan.ply, made and written to the cache if it is missing. */
+/* Reads folder/name.obj and .pc2, which are recorded first when they are missing and name is a scene of
+ * models/softbody; reads the plan from folder/name.plan.ply or cache/name.plan.ply, or makes it and writes
+ * it to the cache. */
 bool recording_data_open(const char *folder, const char *name, const char *cache, uint32_t thread_count,
                          recording_data *out, io_error *error);
 void recording_data_close(recording_data *r);

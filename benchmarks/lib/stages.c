@@ -1,4 +1,4 @@
-/* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
+/* Detectors under measurement: one method on one mesh, its stages interval by interval, its memory. */
 #include "benchmarks/lib/stages.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* Detectors that are measured: one method on one mesh, its stages interval by interval, its memory. */
+/* Detectors under measurement: one method on one mesh, its stages interval by interval, its memory. */
 #pragma once
 
 #include "benchmarks/lib/deforming_body.h"
@@ -35,10 +35,10 @@ typedef struct subject_options {
     cscd_volume volume;
 } subject_options;
 
-/* Does not move: the context knows where its bytes are counted. */
+/* Must not move: the context has its address and counts bytes there. */
 typedef struct subject {
     subject_options options;
-    size_t held, peak; /* bytes of this context; the peak leaves out what only preprocessing held */
+    size_t held, peak; /* bytes of this context; the peak leaves out memory that only preprocessing used */
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_plan *plan;
@@ -46,10 +46,11 @@ typedef struct subject {
     stage_samples samples;
 } subject;
 
-/* NULL: *error says why. */
+/* Returns NULL after a failure, which *error explains. */
 subject *subject_make(const deforming_body *b, const subject_options *options, io_error *error);
 void subject_destroy(subject *s);
 
-/* One interval; it counts as a sample when `counts`: a first one, which builds trees, should not. */
+/* Steps over one interval. It is a sample when `counts` is true; a first interval, which builds trees,
+ * should not be. */
 bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
                   io_error *error);

@@ -1,11 +1,11 @@
-/* What the thesis measured: figures 5.2 to 5.4 and 6.4. */
+/* Measurements of the thesis: figures 5.2 to 5.4 and 6.4. */
 #include "benchmarks/lib/thesis_numbers.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Milliseconds, means per frame; a negative stage is not part of the method. The range of TTCD over five runs
- * of k-means is figure 6.4's. */
+/* Milliseconds, as means per frame; a negative stage is not part of the method. The range of the total
+ * over five runs of k-means is that of figure 6.4. */
 typedef struct thesis_row {
     const char *method;
     double update, orientation, contour, traversal, contact, pcp, total, least, most;
