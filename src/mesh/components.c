@@ -3,16 +3,17 @@
 
 #include "src/core/disjoint_sets.h"
 
-static uint32_t *singletons(cscd_context *context, uint32_t count) {
+static uint32_t *single_sets(cscd_context *context, uint32_t count) {
     uint32_t *parents = context_allocate(context, count, sizeof *parents);
     if (parents != NULL) sets_begin(parents, count);
     return parents;
 }
 
-/* Components in the order of their first triangles; a triangle belongs to that of its vertices' set. */
+/* Numbers components in the order of their first triangles; triangles that share a vertex are in one
+ * component. */
 static cscd_status number_components(cscd_mesh *mesh) {
     mesh->triangle_components = context_allocate(mesh->context, mesh->triangle_count, sizeof(uint32_t));
-    uint32_t *parents = singletons(mesh->context, mesh->triangle_count);
+    uint32_t *parents = single_sets(mesh->context, mesh->triangle_count);
     if (mesh->triangle_components == NULL || parents == NULL) {
         context_free(mesh->context, parents);
         return CSCD_OUT_OF_MEMORY;
@@ -38,7 +39,7 @@ static uint32_t corner_at(const cscd_mesh *mesh, uint32_t triangle, uint32_t ver
     return triangle * 3 + (v[0] == vertex ? 0u : v[1] == vertex ? 1u : 2u);
 }
 
-/* The triangle runs along the edge from its smaller to its larger vertex. */
+/* Does the triangle run along the edge from its smaller to its larger vertex? */
 static bool runs_forward(const cscd_mesh *mesh, uint32_t triangle, const uint32_t edge[2]) {
     const uint32_t *v = mesh->triangles[triangle];
     return v[(corner_at(mesh, triangle, edge[0]) % 3 + 1) % 3] == edge[1];
@@ -56,7 +57,8 @@ static void count_edge(const cscd_mesh *mesh, uint32_t edge) {
         count_one(&component->inconsistent_edges, &component->first_inconsistent_edge, edge);
 }
 
-/* Unites the corners that meet at either end of each edge: a vertex of one fan has one set left. */
+/* Unites the corners of neighbouring triangles at both ends of each edge: a vertex with one fan keeps one
+ * set. */
 static void unite_fans(const cscd_mesh *mesh, uint32_t *parents) {
     for (uint32_t edge = 0; edge < mesh->edge_count; edge++) {
         const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
@@ -94,7 +96,7 @@ cscd_status mesh_build_components(cscd_mesh *mesh) {
     cscd_status status = number_components(mesh);
     if (status != CSCD_OK) return status;
     mesh->components = context_allocate(mesh->context, mesh->component_count, sizeof *mesh->components);
-    uint32_t *parents = singletons(mesh->context, mesh->triangle_count * 3);
+    uint32_t *parents = single_sets(mesh->context, mesh->triangle_count * 3);
     if (mesh->components == NULL || parents == NULL) {
         context_free(mesh->context, parents);
         return CSCD_OUT_OF_MEMORY;

@@ -1,4 +1,4 @@
-/* The mesh object of the public API: validation, copy, access. */
+/* The mesh of the public API: checks what it is given, copies it, and answers questions about it. */
 #include "src/mesh/mesh.h"
 
 #include <stdio.h>
@@ -7,7 +7,7 @@
 /* Corners are numbered by 32 bits: 3 * triangle_count must fit. */
 enum { TRIANGLE_COUNT_MAX = (int)(UINT32_MAX / 3) };
 
-/* "", or "object 2: " where there are several. */
+/* How messages name an object: "" if it is the only one, else for instance "object 2: ". */
 typedef struct object_name {
     char text[32];
 } object_name;
@@ -73,7 +73,7 @@ static cscd_status check_objects(cscd_context *context, const cscd_object_desc *
 
 /* ---- objects ----------------------------------------------------------------------------------------- */
 
-static cscd_status join(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
+static cscd_status join_objects(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
     mesh->object_count = count;
     mesh->objects = context_allocate(mesh->context, count, sizeof *mesh->objects);
     if (mesh->objects == NULL) return CSCD_OUT_OF_MEMORY;
@@ -99,7 +99,7 @@ static cscd_status join(cscd_mesh *mesh, const cscd_object_desc *objects, uint32
     return CSCD_OK;
 }
 
-/* Edges are sorted by their smaller vertices, so those of an object follow each other. */
+/* Edges are sorted by their smaller vertices, so the edges of an object are consecutive. */
 static void find_edges_of_objects(cscd_mesh *mesh) {
     uint32_t edge = 0;
     for (uint32_t i = 0; i < mesh->object_count; i++) {
@@ -111,7 +111,7 @@ static void find_edges_of_objects(cscd_mesh *mesh) {
     }
 }
 
-/* A component lies in one object. */
+/* Marks the components of objects that are obstacles; no component spans two objects. */
 static cscd_status mark_obstacles(cscd_mesh *mesh) {
     bool any = false;
     for (uint32_t i = 0; i < mesh->object_count; i++) any |= mesh->objects[i].obstacle;
@@ -126,8 +126,8 @@ static cscd_status mark_obstacles(cscd_mesh *mesh) {
     return CSCD_OK;
 }
 
-static cscd_status build(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
-    cscd_status status = join(mesh, objects, count);
+static cscd_status build_mesh(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
+    cscd_status status = join_objects(mesh, objects, count);
     if (status == CSCD_OK) status = mesh_build_topology(mesh);
     if (status == CSCD_OK) status = mesh_build_components(mesh);
     if (status == CSCD_OK) status = mark_obstacles(mesh);
@@ -135,14 +135,14 @@ static cscd_status build(cscd_mesh *mesh, const cscd_object_desc *objects, uint3
     return status;
 }
 
-static cscd_status create(cscd_context *context, const cscd_object_desc *objects, uint32_t count,
-                          cscd_mesh **out) {
+static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *objects, uint32_t count,
+                               cscd_mesh **out) {
     cscd_status status = check_objects(context, objects, count);
     if (status != CSCD_OK) return status;
     cscd_mesh *mesh = context_allocate(context, 1, sizeof *mesh);
     if (mesh == NULL) return context_out_of_memory(context);
     mesh->context = context;
-    if (build(mesh, objects, count) != CSCD_OK) {
+    if (build_mesh(mesh, objects, count) != CSCD_OK) {
         cscd_mesh_destroy(mesh);
         return context_out_of_memory(context);
     }
@@ -154,7 +154,7 @@ cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, 
     if (context == NULL) return CSCD_INVALID_ARGUMENT;
     if (desc == NULL || out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: desc or out is NULL");
-    return create(context, &(cscd_object_desc){.mesh = *desc}, 1, out);
+    return create_mesh(context, &(cscd_object_desc){.mesh = *desc}, 1, out);
 }
 
 cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc *objects,
@@ -164,19 +164,24 @@ cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create_scene: objects or out is NULL");
     if (object_count == 0)
         return context_fail(context, CSCD_INVALID_MESH, "the scene is empty: object_count is 0");
-    return create(context, objects, object_count, out);
+    return create_mesh(context, objects, object_count, out);
+}
+
+/* The arrays are allocated one stage after the other, since the size of one follows from what another holds.
+ * */
+static array_list mesh_arrays(cscd_mesh *mesh) {
+    return (array_list){{ARRAY(mesh->triangles, 0), ARRAY(mesh->edges, 0), ARRAY(mesh->triangle_edges, 0),
+                         ARRAY(mesh->vertex_star_offsets, 0), ARRAY(mesh->vertex_stars, 0),
+                         ARRAY(mesh->edge_star_offsets, 0), ARRAY(mesh->edge_stars, 0),
+                         ARRAY(mesh->triangle_components, 0), ARRAY(mesh->components, 0),
+                         ARRAY(mesh->objects, 0), ARRAY(mesh->obstacles, 0)}};
 }
 
 void cscd_mesh_destroy(cscd_mesh *mesh) {
     if (mesh == NULL) return;
     cscd_context *context = mesh->context;
-    void *blocks[] = {mesh->triangles,      mesh->edges,
-                      mesh->triangle_edges, mesh->vertex_star_offsets,
-                      mesh->vertex_stars,   mesh->edge_star_offsets,
-                      mesh->edge_stars,     mesh->triangle_components,
-                      mesh->components,     mesh->objects,
-                      mesh->obstacles,      mesh};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, mesh_arrays(mesh));
+    context_free(context, mesh);
 }
 
 uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh) {
@@ -237,7 +242,10 @@ uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
     uint32_t low = 0, high = mesh->object_count;
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;
-        *(mesh->objects[middle].first_vertex <= vertex ? &low : &high) = middle;
+        if (mesh->objects[middle].first_vertex <= vertex)
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }

@@ -1,4 +1,4 @@
-/* The mesh's connectivity: edges, stars and components, built once. */
+/* A mesh with its connectivity: edges, stars and components, which are built once. */
 #pragma once
 
 #include "src/core/context.h"
@@ -11,7 +11,7 @@ struct cscd_mesh {
     uint32_t (*edges)[2];          /* smaller vertex first, sorted */
     uint32_t (*triangle_edges)[3]; /* edge i joins the corners i and i + 1 */
 
-    /* Star of x: the triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
+    /* The star of x is the list of triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
     uint32_t *vertex_star_offsets, *vertex_stars;
     uint32_t *edge_star_offsets, *edge_stars;
 
@@ -20,21 +20,22 @@ struct cscd_mesh {
 
     uint32_t object_count;
     cscd_object *objects;
-    bool *obstacles; /* per component: pairs of its features, and with those of others, are not looked for;
-                      * NULL: there is none */
+    bool *
+        obstacles; /* per component: it is an obstacle, whose features are not tested with those of obstacles;
+                      * NULL: there are no obstacles */
 };
 
-/* Fills edges, triangle_edges and both stars from triangles. */
+/* Builds edges, triangle_edges and both kinds of stars from the triangles. */
 cscd_status mesh_build_topology(cscd_mesh *mesh);
 
-/* Fills triangle_components and components; wants the topology. */
+/* Builds triangle_components and components from the topology. */
 cscd_status mesh_build_components(cscd_mesh *mesh);
 
 static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t component) {
     return mesh->obstacles != NULL && mesh->obstacles[component];
 }
 
-/* Is the triangle's object an obstacle? */
+/* Does the triangle belong to an obstacle? */
 static inline bool triangle_of_obstacle(const cscd_mesh *mesh, uint32_t triangle) {
     return component_is_obstacle(mesh, mesh->triangle_components[triangle]);
 }

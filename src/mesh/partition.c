@@ -1,36 +1,16 @@
-/* The partition: cells of vertices that particles walk in, handed from preprocessing to the runtime. */
+/* The partition of vertices into cells, in which particles walk: preprocessing makes it, the sensors use it.
+ * */
 #include "src/mesh/partition.h"
 
-static bool allocate_cells(cscd_partition *partition) {
-    cscd_context *context = partition->context;
-    size_t vertices = partition->mesh->vertex_count, edges = partition->mesh->edge_count;
-    partition->vertex_cells = context_allocate(context, vertices, sizeof(uint32_t));
-    partition->cell_parts = context_allocate(context, vertices, sizeof(uint32_t));
-    partition->cell_offsets = context_allocate(context, vertices + 1, sizeof(uint32_t));
-    partition->cell_vertices = context_allocate(context, vertices, sizeof(uint32_t));
-    partition->neighbour_offsets = context_allocate(context, vertices + 1, sizeof(uint32_t));
-    partition->neighbours = context_allocate(context, 2 * edges, sizeof(uint32_t));
-    return partition->vertex_cells != NULL && partition->cell_parts != NULL &&
-           partition->cell_offsets != NULL && partition->cell_vertices != NULL &&
-           partition->neighbour_offsets != NULL && partition->neighbours != NULL;
-}
-
-static bool allocate_parts(cscd_partition *partition) {
-    cscd_context *context = partition->context;
-    size_t vertices = partition->mesh->vertex_count, triangles = partition->mesh->triangle_count;
-    size_t parts = partition->part_count;
-    partition->object_obstacles = context_allocate(context, partition->object_count, sizeof(bool));
-    partition->parts = context_allocate(context, parts, sizeof(cscd_part));
-    partition->distortions = context_allocate(context, parts, sizeof(double));
-    partition->part_generations = context_allocate(context, parts, sizeof(uint64_t));
-    partition->triangle_parts = context_allocate(context, triangles, sizeof(uint32_t));
-    partition->vertex_parts = context_allocate(context, vertices, sizeof(uint32_t));
-    partition->part_vertex_offsets = context_allocate(context, parts + 1, sizeof(uint32_t));
-    partition->part_vertices = context_allocate(context, vertices, sizeof(uint32_t));
-    return partition->object_obstacles != NULL && partition->parts != NULL &&
-           partition->distortions != NULL && partition->part_generations != NULL &&
-           partition->triangle_parts != NULL && partition->vertex_parts != NULL &&
-           partition->part_vertex_offsets != NULL && partition->part_vertices != NULL;
+static array_list list_arrays(cscd_partition *p) {
+    size_t vertices = p->mesh->vertex_count, triangles = p->mesh->triangle_count, parts = p->part_count;
+    return (array_list){
+        {ARRAY(p->object_obstacles, p->object_count), ARRAY(p->parts, parts), ARRAY(p->distortions, parts),
+         ARRAY(p->part_generations, parts), ARRAY(p->triangle_parts, triangles),
+         ARRAY(p->vertex_parts, vertices), ARRAY(p->part_vertex_offsets, parts + 1),
+         ARRAY(p->part_vertices, vertices), ARRAY(p->vertex_cells, vertices), ARRAY(p->cell_parts, vertices),
+         ARRAY(p->cell_offsets, vertices + 1), ARRAY(p->cell_vertices, vertices),
+         ARRAY(p->neighbour_offsets, vertices + 1), ARRAY(p->neighbours, 2 * (size_t)p->mesh->edge_count)}};
 }
 
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count) {
@@ -40,20 +20,16 @@ cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count,
     partition->mesh = mesh;
     partition->object_count = object_count;
     partition->part_count = part_count;
-    if (allocate_parts(partition) && allocate_cells(partition)) return partition;
-    cscd_partition_destroy(partition);
+    if (context_allocate_all(partition->context, list_arrays(partition))) return partition;
+    context_free(mesh->context, partition);
     return NULL;
 }
 
 void cscd_partition_destroy(cscd_partition *partition) {
     if (partition == NULL) return;
     cscd_context *context = partition->context;
-    void *blocks[] = {partition->object_obstacles,    partition->parts,          partition->distortions,
-                      partition->part_generations,    partition->triangle_parts, partition->vertex_parts,
-                      partition->part_vertex_offsets, partition->part_vertices,  partition->vertex_cells,
-                      partition->cell_parts,          partition->cell_offsets,   partition->cell_vertices,
-                      partition->neighbour_offsets,   partition->neighbours,     partition};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, list_arrays(partition));
+    context_free(context, partition);
 }
 
 uint32_t cscd_partition_object_count(const cscd_partition *partition) {

@@ -1,4 +1,5 @@
-/* The partition: cells of vertices that particles walk in, handed from preprocessing to the runtime. */
+/* The partition of vertices into cells, in which particles walk: preprocessing makes it, the sensors use it.
+ * */
 #pragma once
 
 #include "src/mesh/mesh.h"
@@ -33,11 +34,11 @@ struct cscd_partition {
                                  * keep their vertices, but not their numbers */
 };
 
-/* A partition of zeros with room for all, its arrays of objects and parts too; NULL when out of memory. */
+/* Returns a partition of zeros with all its arrays; NULL when out of memory. */
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count);
 
-/* Are two different parts watched for each other? Those of two objects unless both are obstacles; those of
- * one object where the options say so, but not of an obstacle. */
+/* Do the sensors watch this pair of parts? They watch parts of different objects unless both are obstacles,
+ * and with the option `within` also different parts of one object that is no obstacle. */
 static inline bool partition_watches(const cscd_partition *partition, uint32_t part_a, uint32_t part_b) {
     uint32_t a = partition->parts[part_a].object, b = partition->parts[part_b].object;
     bool obstacles = partition->object_obstacles[a] && partition->object_obstacles[b];

@@ -15,38 +15,35 @@ uint64_t cscd_mesh_hash(const cscd_mesh *mesh) {
     return hash;
 }
 
+static array_list list_arrays(cscd_plan *plan) {
+    bool charged = plan->method == CSCD_METHOD_CHARGE;
+    return (array_list){{ARRAY(plan->triangle_regions, plan->triangle_count),
+                         ARRAY(plan->triangle_weights, plan->triangle_count),
+                         ARRAY(plan->regions, plan->region_count),
+                         ARRAY(plan->detector_offsets, plan->region_count),
+                         ARRAY_IF(charged, plan->charges, plan->triangle_count),
+                         ARRAY_IF(charged, plan->capacitances, plan->component_count)}};
+}
+
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count) {
-    cscd_context *context = mesh->context;
-    cscd_plan *plan = context_allocate(context, 1, sizeof *plan);
+    cscd_plan *plan = context_allocate(mesh->context, 1, sizeof *plan);
     if (plan == NULL) return NULL;
-    plan->context = context;
+    plan->context = mesh->context;
     plan->mesh_hash = cscd_mesh_hash(mesh);
     plan->triangle_count = mesh->triangle_count;
     plan->component_count = mesh->component_count;
     plan->region_count = region_count;
     plan->method = method;
-    plan->triangle_regions = context_allocate(context, mesh->triangle_count, sizeof *plan->triangle_regions);
-    plan->triangle_weights = context_allocate(context, mesh->triangle_count, sizeof *plan->triangle_weights);
-    plan->regions = context_allocate(context, region_count, sizeof *plan->regions);
-    plan->detector_offsets = context_allocate(context, region_count, sizeof *plan->detector_offsets);
-    bool allocated = plan->triangle_regions != NULL && plan->triangle_weights != NULL &&
-                     plan->regions != NULL && plan->detector_offsets != NULL;
-    if (allocated && method == CSCD_METHOD_CHARGE) {
-        plan->charges = context_allocate(context, mesh->triangle_count, sizeof *plan->charges);
-        plan->capacitances = context_allocate(context, mesh->component_count, sizeof *plan->capacitances);
-        allocated = plan->charges != NULL && plan->capacitances != NULL;
-    }
-    if (allocated) return plan;
-    cscd_plan_destroy(plan);
+    if (context_allocate_all(mesh->context, list_arrays(plan))) return plan;
+    context_free(mesh->context, plan);
     return NULL;
 }
 
 void cscd_plan_destroy(cscd_plan *plan) {
     if (plan == NULL) return;
     cscd_context *context = plan->context;
-    void *blocks[] = {plan->triangle_regions, plan->triangle_weights, plan->regions, plan->detector_offsets,
-                      plan->charges,          plan->capacitances,     plan};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, list_arrays(plan));
+    context_free(context, plan);
 }
 
 cscd_method cscd_plan_method(const cscd_plan *plan) {

@@ -11,8 +11,8 @@ struct cscd_plan {
     uint32_t *triangle_regions;
     cscd_region *regions;
 
-    /* Each triangle's share of its region's area at rest, or an equal share in a region without area; the
-     * detector point moves with the mean of the triangles' centroids, weighted by these. */
+    /* The share of each triangle in its region's area at rest, or an equal share in a region without area.
+     * The detector point moves with the mean of the triangles' centroids, weighted by these shares. */
     double *triangle_weights;
     double (*detector_offsets)[3]; /* from that mean at rest to the detector point */
 
@@ -20,5 +20,5 @@ struct cscd_plan {
     cscd_preprocess_timings timings;
 };
 
-/* A plan of zeros with room for region_count regions; NULL when out of memory. */
+/* Returns a plan of zeros with room for region_count regions; NULL when out of memory. */
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count);

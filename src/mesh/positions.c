@@ -1,4 +1,4 @@
-/* What positions may hold, and in which layouts they may come. */
+/* Checks the coordinates of positions, and packs positions of other layouts. */
 #include "src/mesh/positions.h"
 
 #include "src/core/check.h"
@@ -17,7 +17,7 @@ static uint64_t magnitude_bits(double x) {
     return bits << 1;
 }
 
-/* Without a branch per coordinate. */
+/* Has no branch per coordinate. */
 static bool all_acceptable(const double *x, size_t count) {
     uint64_t low = magnitude_bits(LENGTH_MIN), range = magnitude_bits(LENGTH_MAX) - low;
     unsigned refused = 0;
@@ -69,7 +69,7 @@ static double load_scalar(const char *at, cscd_scalar scalar) {
     return value;
 }
 
-static void pack(const cscd_view *view, uint32_t vertex_count, double *out) {
+static void pack_view(const cscd_view *view, uint32_t vertex_count, double *out) {
     size_t size = view->scalar == CSCD_SCALAR_FLOAT ? sizeof(float) : sizeof(double);
     size_t step = view->coordinate_stride != 0 ? view->coordinate_stride : size;
     size_t stride = view->stride != 0 ? view->stride : 3 * size;
@@ -95,6 +95,7 @@ cscd_status cscd_mesh_pack(const cscd_mesh *mesh, const cscd_view *views, double
                 (int)views[i].scalar);
     }
     for (uint32_t i = 0; i < mesh->object_count; i++)
-        pack(&views[i], mesh->objects[i].vertex_count, positions + (size_t)mesh->objects[i].first_vertex * 3);
+        pack_view(&views[i], mesh->objects[i].vertex_count,
+                  positions + (size_t)mesh->objects[i].first_vertex * 3);
     return CSCD_OK;
 }

@@ -14,20 +14,21 @@
  * for nonoverlapping expansions and return them, so they can be chained in any order. */
 #include "src/mesh/predicates.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
 _Static_assert(FLT_EVAL_METHOD == 0 && DBL_MANT_DIG == 53, "error-free transformations need plain doubles");
 
-/* A difference of two doubles, exact: at most two terms. */
+/* The exact difference of two doubles, which has at most two terms. */
 struct difference {
     int count;
     double term[2];
 };
 
-/* Sum of nonoverlapping doubles, none of them 0, smallest first, so that the last has the sign of the whole.
- * Products of two differences have 8 terms at most, minors 16, minors times a difference 64, three of them
- * 192. */
+/* A sum of nonoverlapping doubles, none of them 0, smallest first, so that the last has the sign of the
+ * whole. A product of two differences has at most 8 terms, a minor 16, a minor times a difference 64, and the
+ * sum of three of those 192. */
 struct expansion {
     int count;
     double term[192];
@@ -56,59 +57,59 @@ static inline void two_sum(double a, double b, double *sum, double *error) {
 }
 
 /* high + low = a, 26 bits each (Veltkamp). */
-static inline void split(double a, double *high, double *low) {
+static inline void split_double(double a, double *high, double *low) {
     double scaled = 134217729.0 * a; /* 2^27 + 1 */
 
     *high = scaled - (scaled - a);
     *low = a - *high;
 }
 
-/* product + error = a * b exactly (Dekker), b split by the caller; without the instruction, fma() is slower.
- */
+/* product + error = a * b exactly (Dekker), with b split by the caller. fma() is slower on processors that
+ * lack the instruction. */
 static inline void two_product(double a, double b, double b_high, double b_low, double *product,
                                double *error) {
     double p = a * b;
     double a_high, a_low;
 
-    split(a, &a_high, &a_low);
+    split_double(a, &a_high, &a_low);
     *error = a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low);
     *product = p;
 }
 
-static inline void append(double *term, int *count, double value) {
+static inline void append_term(double *term, int *count, double value) {
     if (value != 0.0) term[(*count)++] = value;
 }
 
-static struct difference subtract(double a, double b) {
+static struct difference exact_difference(double a, double b) {
     struct difference d = {0, {0.0, 0.0}};
     double head, tail;
 
     two_sum(a, -b, &head, &tail);
-    append(d.term, &d.count, tail);
-    append(d.term, &d.count, head);
+    append_term(d.term, &d.count, tail);
+    append_term(d.term, &d.count, head);
     return d;
 }
 
 /* SCALE-EXPANSION with zero elimination. */
-static void scale(const double *term, int count, double factor, struct expansion *result) {
+static void scale_expansion(const double *term, int count, double factor, struct expansion *result) {
     double factor_high, factor_low, sum = 0.0, error;
 
-    split(factor, &factor_high, &factor_low);
+    split_double(factor, &factor_high, &factor_low);
     result->count = 0;
     for (int i = 0; i < count; i++) {
         double high, low;
 
         two_product(term[i], factor, factor_high, factor_low, &high, &low);
         two_sum(sum, low, &sum, &error);
-        append(result->term, &result->count, error);
+        append_term(result->term, &result->count, error);
         fast_two_sum(high, sum, &sum, &error);
-        append(result->term, &result->count, error);
+        append_term(result->term, &result->count, error);
     }
-    append(result->term, &result->count, sum);
+    append_term(result->term, &result->count, sum);
 }
 
 /* LINEAR-EXPANSION-SUM with zero elimination. */
-static void add(const struct expansion *a, const struct expansion *b, struct expansion *result) {
+static void add_expansions(const struct expansion *a, const struct expansion *b, struct expansion *result) {
     int i = 0, j = 0;
     double sum = 0.0, rest = 0.0;
 
@@ -119,34 +120,35 @@ static void add(const struct expansion *a, const struct expansion *b, struct exp
         double head, tail;
 
         fast_two_sum(next, rest, &head, &tail);
-        append(result->term, &result->count, tail);
+        append_term(result->term, &result->count, tail);
         two_sum(sum, head, &sum, &rest);
     }
-    append(result->term, &result->count, rest);
-    append(result->term, &result->count, sum);
+    append_term(result->term, &result->count, rest);
+    append_term(result->term, &result->count, sum);
+    assert(result->count <= (int)(sizeof result->term / sizeof *result->term));
 }
 
-static void multiply(const double *term, int count, const struct difference *factor,
-                     struct expansion *result) {
+static void multiply_by_difference(const double *term, int count, const struct difference *factor,
+                                   struct expansion *result) {
     struct expansion low, high;
 
     result->count = 0;
-    if (factor->count == 1) scale(term, count, factor->term[0], result);
+    if (factor->count == 1) scale_expansion(term, count, factor->term[0], result);
     if (factor->count < 2) return;
-    scale(term, count, factor->term[0], &low);
-    scale(term, count, factor->term[1], &high);
-    add(&low, &high, result);
+    scale_expansion(term, count, factor->term[0], &low);
+    scale_expansion(term, count, factor->term[1], &high);
+    add_expansions(&low, &high, result);
 }
 
 /* a * d - b * c */
-static void minor(const struct difference *a, const struct difference *b, const struct difference *c,
-                  const struct difference *d, struct expansion *result) {
+static void exact_minor(const struct difference *a, const struct difference *b, const struct difference *c,
+                        const struct difference *d, struct expansion *result) {
     struct expansion ad, bc;
 
-    multiply(a->term, a->count, d, &ad);
-    multiply(b->term, b->count, c, &bc);
+    multiply_by_difference(a->term, a->count, d, &ad);
+    multiply_by_difference(b->term, b->count, c, &bc);
     for (int i = 0; i < bc.count; i++) bc.term[i] = -bc.term[i];
-    add(&ad, &bc, result);
+    add_expansions(&ad, &bc, result);
 }
 
 static int sign_of_expansion(const struct expansion *e) {
@@ -154,11 +156,11 @@ static int sign_of_expansion(const struct expansion *e) {
 }
 
 static int orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy) {
-    struct difference ux = subtract(bx, ax), uy = subtract(by, ay);
-    struct difference vx = subtract(cx, ax), vy = subtract(cy, ay);
+    struct difference ux = exact_difference(bx, ax), uy = exact_difference(by, ay);
+    struct difference vx = exact_difference(cx, ax), vy = exact_difference(cy, ay);
     struct expansion determinant;
 
-    minor(&ux, &uy, &vx, &vy, &determinant);
+    exact_minor(&ux, &uy, &vx, &vy, &determinant);
     return sign_of_expansion(&determinant);
 }
 
@@ -167,18 +169,18 @@ static int orient3d_exact(const double a[3], const double b[3], const double c[3
     struct expansion plane, part[3], two_parts, determinant;
 
     for (int k = 0; k < 3; k++) {
-        u[k] = subtract(b[k], a[k]);
-        v[k] = subtract(c[k], a[k]);
-        w[k] = subtract(d[k], a[k]);
+        u[k] = exact_difference(b[k], a[k]);
+        v[k] = exact_difference(c[k], a[k]);
+        w[k] = exact_difference(d[k], a[k]);
     }
     for (int k = 0; k < 3; k++) {
         int y = (k + 1) % 3, z = (k + 2) % 3;
 
-        minor(&u[y], &u[z], &v[y], &v[z], &plane);
-        multiply(plane.term, plane.count, &w[k], &part[k]);
+        exact_minor(&u[y], &u[z], &v[y], &v[z], &plane);
+        multiply_by_difference(plane.term, plane.count, &w[k], &part[k]);
     }
-    add(&part[0], &part[1], &two_parts);
-    add(&two_parts, &part[2], &determinant);
+    add_expansions(&part[0], &part[1], &two_parts);
+    add_expansions(&two_parts, &part[2], &determinant);
     return sign_of_expansion(&determinant);
 }
 

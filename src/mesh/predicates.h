@@ -13,5 +13,5 @@ int orient2d(double ax, double ay, double bx, double by, double cx, double cy);
  * counter-clockwise. */
 int orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
 
-/* The three points lie on one line (or coincide). */
+/* Do the three points lie on one line, or coincide? */
 bool collinear(const double a[3], const double b[3], const double c[3]);

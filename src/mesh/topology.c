@@ -20,8 +20,8 @@ static uint32_t side_larger(const cscd_mesh *mesh, uint32_t corner) {
     return a > b ? a : b;
 }
 
-/* Stable counting sort of corners by key; offsets (vertex_count + 1, zeroed) ends as the buckets' bounds.
- * in == NULL stands for 0, 1, 2, ... */
+/* A stable counting sort of corners by key. offsets has vertex_count + 1 zeros, and ends as the bounds of the
+ * buckets. in == NULL stands for 0, 1, 2, ... */
 static void sort_corners(const cscd_mesh *mesh, uint32_t (*key)(const cscd_mesh *, uint32_t),
                          const uint32_t *in, uint32_t *out, uint32_t *offsets) {
     uint32_t corner_count = mesh->triangle_count * 3;
@@ -48,7 +48,7 @@ static bool same_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return side_smaller(mesh, a) == side_smaller(mesh, b) && side_larger(mesh, a) == side_larger(mesh, b);
 }
 
-/* sides: all corners, those of one edge next to each other. */
+/* sides lists all corners, with those of one edge next to each other. */
 static uint32_t count_edges(const cscd_mesh *mesh, const uint32_t *sides) {
     uint32_t corner_count = mesh->triangle_count * 3, edge_count = 1;
     for (uint32_t i = 1; i < corner_count; i++) edge_count += !same_edge(mesh, sides[i - 1], sides[i]);
@@ -68,25 +68,22 @@ static void number_edges(cscd_mesh *mesh, const uint32_t *sides) {
     mesh->edge_star_offsets[next] = corner_count;
 }
 
-static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger, uint32_t *offsets) {
+/* The other arguments are scratch: one number per corner, and two per vertex and one more of each, zeroed. */
+static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger, uint32_t *offsets_larger,
+                               uint32_t *offsets_smaller) {
     cscd_context *context = mesh->context;
     uint32_t corner_count = mesh->triangle_count * 3;
-    uint32_t *sides = context_allocate(context, corner_count, sizeof *sides);
-    uint32_t *offsets_smaller = context_allocate(context, (size_t)mesh->vertex_count + 1, sizeof *offsets);
-    mesh->edge_stars = sides;
-    mesh->triangle_edges = context_allocate(context, mesh->triangle_count, sizeof *mesh->triangle_edges);
-    if (sides == NULL || offsets_smaller == NULL || mesh->triangle_edges == NULL) {
-        context_free(context, offsets_smaller);
-        return CSCD_OUT_OF_MEMORY;
-    }
-    sort_corners(mesh, side_larger, NULL, by_larger, offsets);
+    array_list by_side = {
+        {ARRAY(mesh->edge_stars, corner_count), ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
+    if (!context_allocate_all(context, by_side)) return CSCD_OUT_OF_MEMORY;
+    uint32_t *sides = mesh->edge_stars;
+    sort_corners(mesh, side_larger, NULL, by_larger, offsets_larger);
     sort_corners(mesh, side_smaller, by_larger, sides, offsets_smaller);
-    context_free(context, offsets_smaller);
 
     mesh->edge_count = count_edges(mesh, sides);
-    mesh->edges = context_allocate(context, mesh->edge_count, sizeof *mesh->edges);
-    mesh->edge_star_offsets = context_allocate(context, (size_t)mesh->edge_count + 1, sizeof *offsets);
-    if (mesh->edges == NULL || mesh->edge_star_offsets == NULL) return CSCD_OUT_OF_MEMORY;
+    array_list by_edge = {
+        {ARRAY(mesh->edges, mesh->edge_count), ARRAY(mesh->edge_star_offsets, (size_t)mesh->edge_count + 1)}};
+    if (!context_allocate_all(context, by_edge)) return CSCD_OUT_OF_MEMORY;
     number_edges(mesh, sides);
     corners_to_triangles(sides, corner_count);
     return CSCD_OK;
@@ -94,10 +91,9 @@ static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger, uint32_t *o
 
 static cscd_status build_vertex_stars(cscd_mesh *mesh) {
     size_t corner_count = (size_t)mesh->triangle_count * 3;
-    mesh->vertex_stars = context_allocate(mesh->context, corner_count, sizeof *mesh->vertex_stars);
-    mesh->vertex_star_offsets =
-        context_allocate(mesh->context, (size_t)mesh->vertex_count + 1, sizeof *mesh->vertex_star_offsets);
-    if (mesh->vertex_stars == NULL || mesh->vertex_star_offsets == NULL) return CSCD_OUT_OF_MEMORY;
+    array_list stars = {{ARRAY(mesh->vertex_stars, corner_count),
+                         ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}};
+    if (!context_allocate_all(mesh->context, stars)) return CSCD_OUT_OF_MEMORY;
     sort_corners(mesh, corner_vertex, NULL, mesh->vertex_stars, mesh->vertex_star_offsets);
     corners_to_triangles(mesh->vertex_stars, (uint32_t)corner_count);
     return CSCD_OK;
@@ -105,11 +101,12 @@ static cscd_status build_vertex_stars(cscd_mesh *mesh) {
 
 cscd_status mesh_build_topology(cscd_mesh *mesh) {
     cscd_context *context = mesh->context;
-    uint32_t *by_larger = context_allocate(context, (size_t)mesh->triangle_count * 3, sizeof *by_larger);
-    uint32_t *offsets = context_allocate(context, (size_t)mesh->vertex_count + 1, sizeof *offsets);
-    cscd_status status = CSCD_OUT_OF_MEMORY;
-    if (by_larger != NULL && offsets != NULL) status = build_edges(mesh, by_larger, offsets);
-    context_free(context, offsets);
-    context_free(context, by_larger);
+    uint32_t *by_larger, *offsets_larger, *offsets_smaller;
+    array_list scratch = {{ARRAY(by_larger, (size_t)mesh->triangle_count * 3),
+                           ARRAY(offsets_larger, (size_t)mesh->vertex_count + 1),
+                           ARRAY(offsets_smaller, (size_t)mesh->vertex_count + 1)}};
+    if (!context_allocate_all(context, scratch)) return CSCD_OUT_OF_MEMORY;
+    cscd_status status = build_edges(mesh, by_larger, offsets_larger, offsets_smaller);
+    context_free_all(context, scratch);
     return status == CSCD_OK ? build_vertex_stars(mesh) : status;
 }

@@ -1,26 +1,21 @@
-/* Exact test whether two triangles of one mesh meet, features that share a vertex aside.
- *
- * Which pairs of features count follows from the number of shared vertices:
- *   none: an edge of one against the face of the other, both ways. A vertex that lies in a face lies there
- * with its edges; an edge that meets an edge meets the face behind it. one, T1 = (w, a, b), T2 = (w, c, d):
- * ab against T2 and cd against T1, by the same argument. The vertices a and b lie on ab, c and d on cd; of
- * the pairs of edges, (wa, cd) and (wb, cd) lie within T1 against cd, (ab, wc) and (ab, wd) within ab against
- * T2, and (ab, cd) within both. two, T1 = (p, q, c), T2 = (p, q, d): every edge touches the shared ones, so
- * there remain c in T2, d in T1 and the edges pc, qd and qc, pd. three: nothing is left. Vertices within a
- * triangle have distinct indices; their positions may coincide or lie on one line. */
+/* Do two triangles of one mesh intersect, features that share a vertex aside? The test is exact. What it
+ * tests for each number of shared vertices, and why that is enough, is in docs/theory/static-check.md, whose
+ * lemmas are cited below. Vertices within a triangle have distinct indices; their positions may coincide or
+ * lie on one line. */
 #include "src/mesh/triangle_intersection.h"
-
-#include <stddef.h>
 
 #include "src/mesh/mesh.h"
 #include "src/mesh/predicates.h"
 
+#include <stddef.h>
+
 struct triangle {
     const double *corner[3];
-    bool shared[3]; /* the corner is one of the other triangle's */
+    bool shared[3]; /* the corner is also a corner of the other triangle */
 };
 
-static struct triangle load(const uint32_t triangle[3], const uint32_t other[3], const double *positions) {
+static struct triangle load_triangle(const uint32_t triangle[3], const uint32_t other[3],
+                                     const double *positions) {
     struct triangle t;
 
     for (int i = 0; i < 3; i++) {
@@ -50,26 +45,22 @@ static bool boxes_overlap(const double *const *a, int a_count, const double *con
     return true;
 }
 
-/* Orientation in the projection along an axis. */
-static int turn(const double *a, const double *b, const double *c, int axis) {
+/* The orientation of three points in the projection along an axis. */
+static int orient_along(const double *a, const double *b, const double *c, int axis) {
     int x = (axis + 1) % 3, y = (axis + 2) % 3;
 
     return orient2d(a[x], a[y], b[x], b[y], c[x], c[y]);
 }
 
-/* Closed segments, possibly points. A projection in which one of the four triples turns is injective on the
- * plane of the four points. There, not all four signs are 0, and then each segment reaching both closed sides
- * of the other's line decides: if r alone lies on the line pq, the lines meet in r, which p and q enclose; if
- * p equals q, its sides of rs are equal and differ from 0. Without such a projection all four lie on one
- * line, along which every coordinate is monotone: they meet when their boxes do. */
-static bool segments_meet(const double *p, const double *q, const double *r, const double *s) {
+/* Lemma 2: two closed segments, possibly points. */
+static bool segments_intersect(const double *p, const double *q, const double *r, const double *s) {
     const double *const pq[2] = {p, q}, *const rs[2] = {r, s};
 
     if (!boxes_overlap(pq, 2, rs, 2)) return false;
     if (orient3d(p, q, r, s) != 0) return false;
     for (int axis = 0; axis < 3; axis++) {
-        int r_side = turn(p, q, r, axis), s_side = turn(p, q, s, axis);
-        int p_side = turn(r, s, p, axis), q_side = turn(r, s, q, axis);
+        int r_side = orient_along(p, q, r, axis), s_side = orient_along(p, q, s, axis);
+        int p_side = orient_along(r, s, p, axis), q_side = orient_along(r, s, q, axis);
 
         if (r_side != 0 || s_side != 0 || p_side != 0 || q_side != 0)
             return r_side * s_side <= 0 && p_side * q_side <= 0;
@@ -81,42 +72,46 @@ static bool same_sign_or_zero(int a, int b, int c) {
     return !((a > 0 || b > 0 || c > 0) && (a < 0 || b < 0 || c < 0));
 }
 
-/* p lies in the plane of the triangle; a triangle without area is left to the test of its edges. */
+/* Lies p, a point of the triangle's plane, in the triangle? A triangle without area is left to the test of
+ * its edges. */
 static bool within_coplanar_triangle(const double *p, const struct triangle *t) {
     const double *a = t->corner[0], *b = t->corner[1], *c = t->corner[2];
 
     for (int axis = 0; axis < 3; axis++) {
-        if (turn(a, b, c, axis) != 0)
-            return same_sign_or_zero(turn(a, b, p, axis), turn(b, c, p, axis), turn(c, a, p, axis));
+        if (orient_along(a, b, c, axis) != 0)
+            return same_sign_or_zero(orient_along(a, b, p, axis), orient_along(b, c, p, axis),
+                                     orient_along(c, a, p, axis));
     }
     return false;
 }
 
-static bool coplanar_segment_meets_triangle(const double *p, const double *q, const struct triangle *t) {
-    return segments_meet(p, q, t->corner[0], t->corner[1]) ||
-           segments_meet(p, q, t->corner[1], t->corner[2]) ||
-           segments_meet(p, q, t->corner[2], t->corner[0]) || within_coplanar_triangle(p, t);
+static bool coplanar_segment_intersects_triangle(const double *p, const double *q, const struct triangle *t) {
+    return segments_intersect(p, q, t->corner[0], t->corner[1]) ||
+           segments_intersect(p, q, t->corner[1], t->corner[2]) ||
+           segments_intersect(p, q, t->corner[2], t->corner[0]) || within_coplanar_triangle(p, t);
 }
 
-/* The line pq, not in the plane of the triangle, passes all edges on the same side or through them. */
+/* Does the line pq, which is not in the plane of the triangle, pass all edges in the same sense or through
+ * them? */
 static bool line_crosses_triangle(const double *p, const double *q, const struct triangle *t) {
     const double *a = t->corner[0], *b = t->corner[1], *c = t->corner[2];
 
     return same_sign_or_zero(orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a));
 }
 
-/* Closed segment and closed face; p_side, q_side: the sides of the face's plane, all 0 if it has no area. */
-static bool segment_meets_triangle(const double *p, int p_side, const double *q, int q_side,
-                                   const struct triangle *t) {
+/* Lemma 3: a closed segment and a closed face. p_side and q_side are the sides of the face's plane on which p
+ * and q lie, both 0 if the face has no area. */
+static bool segment_intersects_triangle(const double *p, int p_side, const double *q, int q_side,
+                                        const struct triangle *t) {
     if (p_side * q_side > 0) return false;
-    if (p_side == 0 && q_side == 0) return coplanar_segment_meets_triangle(p, q, t);
+    if (p_side == 0 && q_side == 0) return coplanar_segment_intersects_triangle(p, q, t);
     return line_crosses_triangle(p, q, t);
 }
 
 static bool point_in_triangle(const double *p, const struct triangle *t) {
     int side = orient3d(t->corner[0], t->corner[1], t->corner[2], p);
 
-    return segment_meets_triangle(p, side, p, side, t);
+    return segment_intersects_triangle(p, side, p, side, t);
 }
 
 /* The side of the face's plane on which each corner of t lies; shared corners lie in it. */
@@ -127,9 +122,7 @@ static void find_sides(const struct triangle *t, const struct triangle *face, in
     }
 }
 
-/* All corners that are not shared lie strictly on one side: the triangles have nothing in common but, at
- * most, the shared vertex. (A sign other than 0 also says that the face has an area, so that the vertex w of
- * the face does not lie on its opposite edge.) */
+/* Lemma 4: do all corners that are not shared lie strictly on one side? */
 static bool strictly_on_one_side(const struct triangle *t, const int side[3]) {
     int positive = 0, negative = 0, shared = 0;
 
@@ -141,19 +134,20 @@ static bool strictly_on_one_side(const struct triangle *t, const int side[3]) {
     return positive + shared == 3 || negative + shared == 3;
 }
 
-/* An edge of t with no shared vertex meets the face. */
-static bool free_edge_meets(const struct triangle *t, const int side[3], const struct triangle *face) {
+/* Does an edge of t without a shared vertex intersect the face? */
+static bool unshared_edge_intersects(const struct triangle *t, const int side[3],
+                                     const struct triangle *face) {
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
 
         if (t->shared[i] || t->shared[j]) continue;
-        if (segment_meets_triangle(t->corner[i], side[i], t->corner[j], side[j], face)) return true;
+        if (segment_intersects_triangle(t->corner[i], side[i], t->corner[j], side[j], face)) return true;
     }
     return false;
 }
 
-/* At most one shared vertex. */
-static bool edges_meet_faces(const struct triangle *a, const struct triangle *b) {
+/* Lemma 1, for at most one shared vertex. */
+static bool edges_intersect_faces(const struct triangle *a, const struct triangle *b) {
     int a_side[3], b_side[3];
 
     if (!boxes_overlap(a->corner, 3, b->corner, 3)) return false;
@@ -161,34 +155,35 @@ static bool edges_meet_faces(const struct triangle *a, const struct triangle *b)
     if (strictly_on_one_side(b, b_side)) return false;
     find_sides(a, b, a_side);
     if (strictly_on_one_side(a, a_side)) return false;
-    return free_edge_meets(a, a_side, b) || free_edge_meets(b, b_side, a);
+    return unshared_edge_intersects(a, a_side, b) || unshared_edge_intersects(b, b_side, a);
 }
 
 static int apex_of(const struct triangle *t) {
     return !t->shared[0] ? 0 : !t->shared[1] ? 1 : 2;
 }
 
-/* Two shared vertices: only triangles of one plane, folded onto each other, can meet. */
-static bool hinge_is_folded(const struct triangle *a, const struct triangle *b) {
+/* Lemma 5: with two shared vertices, only triangles of one plane that are folded onto each other can
+ * intersect. */
+static bool pair_sharing_edge_intersects(const struct triangle *a, const struct triangle *b) {
     int apex = apex_of(a);
     const double *p = a->corner[(apex + 1) % 3], *q = a->corner[(apex + 2) % 3];
     const double *c = a->corner[apex], *d = b->corner[apex_of(b)];
 
     if (orient3d(p, q, c, d) != 0) return false;
-    return point_in_triangle(c, b) || point_in_triangle(d, a) || segments_meet(p, c, q, d) ||
-           segments_meet(q, c, p, d);
+    return point_in_triangle(c, b) || point_in_triangle(d, a) || segments_intersect(p, c, q, d) ||
+           segments_intersect(q, c, p, d);
 }
 
 bool triangles_intersect(const uint32_t a[3], const uint32_t b[3], const double *positions) {
-    struct triangle ta = load(a, b, positions), tb = load(b, a, positions);
+    struct triangle ta = load_triangle(a, b, positions), tb = load_triangle(b, a, positions);
     int shared_count = ta.shared[0] + ta.shared[1] + ta.shared[2];
 
     if (shared_count == 3) return false;
-    if (shared_count == 2) return hinge_is_folded(&ta, &tb);
-    return edges_meet_faces(&ta, &tb);
+    if (shared_count == 2) return pair_sharing_edge_intersects(&ta, &tb);
+    return edges_intersect_faces(&ta, &tb);
 }
 
-/* ---- names -------------------------------------------------------------------------------------------- */
+/* ---- vertices that names unite ------------------------------------------------------------------------- */
 
 static bool same_name_in(const uint32_t *list, int count, uint32_t vertex, const uint32_t *names) {
     for (int i = 0; i < count; i++) {
@@ -208,9 +203,9 @@ static struct triangle load_by_names(const uint32_t triangle[3], const uint32_t 
     return t;
 }
 
-/* A corner, or an edge of two corners, that shares no name with the face, meets it. A corner of the same name
+/* Does a corner or an edge of t that shares no name with the face intersect it? A corner of the same name
  * need not lie in the plane of the face. */
-static bool free_part_meets(const struct triangle *t, const struct triangle *face) {
+static bool unshared_part_intersects(const struct triangle *t, const struct triangle *face) {
     int side[3];
 
     for (int i = 0; i < 3; i++)
@@ -218,17 +213,17 @@ static bool free_part_meets(const struct triangle *t, const struct triangle *fac
     for (int i = 0; i < 3; i++) {
         if (!t->shared[i] && point_in_triangle(t->corner[i], face)) return true;
     }
-    return free_edge_meets(t, side, face);
+    return unshared_edge_intersects(t, side, face);
 }
 
-static bool free_edges_meet(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
-                            const double *positions) {
+static bool unshared_edges_intersect(const uint32_t a[3], const uint32_t b[3], const uint32_t *names,
+                                     const double *positions) {
     for (int k = 0; k < 9; k++) {
         const uint32_t p[2] = {a[k / 3], a[(k / 3 + 1) % 3]}, q[2] = {b[k % 3], b[(k % 3 + 1) % 3]};
 
         if (same_name_in(q, 2, p[0], names) || same_name_in(q, 2, p[1], names)) continue;
-        if (segments_meet(positions + 3 * (size_t)p[0], positions + 3 * (size_t)p[1],
-                          positions + 3 * (size_t)q[0], positions + 3 * (size_t)q[1]))
+        if (segments_intersect(positions + 3 * (size_t)p[0], positions + 3 * (size_t)p[1],
+                               positions + 3 * (size_t)q[0], positions + 3 * (size_t)q[1]))
             return true;
     }
     return false;
@@ -238,5 +233,6 @@ bool triangles_intersect_by_names(const uint32_t a[3], const uint32_t b[3], cons
                                   const double *positions) {
     struct triangle ta = load_by_names(a, b, names, positions), tb = load_by_names(b, a, names, positions);
 
-    return free_part_meets(&ta, &tb) || free_part_meets(&tb, &ta) || free_edges_meet(a, b, names, positions);
+    return unshared_part_intersects(&ta, &tb) || unshared_part_intersects(&tb, &ta) ||
+           unshared_edges_intersect(a, b, names, positions);
 }
