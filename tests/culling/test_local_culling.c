@@ -16,7 +16,7 @@
 #ifdef __SANITIZE_ADDRESS__
 enum { SEQUENCES = 12, EXACT_PERCENT = 85 }; /* of so few sequences */
 #else
-enum { SEQUENCES = 120, EXACT_PERCENT = 90 };
+enum { SEQUENCES = 60, EXACT_PERCENT = 90 };
 #endif
 
 enum { FRAMES = 14, SMALL = 120, REGIONS_MAX = 5 };
@@ -327,6 +327,7 @@ static void print_tally(const char *name, const tally *t) {
         (unsigned long long)t->contacts, 100.0 * (double)t->tests / (double)t->tests_without);
 }
 
+/* LOCAL_SEQUENCES and LOCAL_FIRST, when they are set, choose other sequences, for longer runs by hand. */
 static void run_kind(sequence_kind kind, const char *name, tally *sum) {
     const char *count = getenv("LOCAL_SEQUENCES"), *first = getenv("LOCAL_FIRST");
     uint64_t sequences = count != NULL ? strtoull(count, NULL, 10) : SEQUENCES;
