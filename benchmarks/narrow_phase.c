@@ -78,9 +78,9 @@ static uint32_t triangle_chunk(const recording *r, size_t i) {
  * full.
  */
 static bool record_pairs(recording *r) {
-    traversal *t = &r->detector->traversal;
+    traversal *t = &r->detector->space.traversal;
     bool good = true, more = true;
-    traversal_begin(t, &r->detector->bvh, TRAVERSAL_KEPT);
+    traversal_begin(t, &r->detector->space.bvh, TRAVERSAL_KEPT);
     while (good && more) {
         good = traversal_round(t, &more) == CSCD_OK;
         for (uint32_t i = 0; good && i < t->lane_count; i++)
@@ -102,17 +102,17 @@ static bool open_recording(recording *r, io_error *error) {
     if (cscd_context_create(NULL, &r->context) != CSCD_OK) return io_fail(error, "no context");
     if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
         cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
-        bvh_rebuild_move(&r->detector->rebuild, &r->detector->bvh, r->start.positions, r->end.positions, 0.0,
-                         0.0) != CSCD_OK)
+        bvh_rebuild_move(&r->detector->rebuild, &r->detector->space.bvh, r->start.positions, r->end.positions,
+                         0.0, 0.0) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
-    bvh_refit(&r->detector->bvh, r->start.positions, r->end.positions, 0.0);
-    r->lane = &r->detector->contact_lanes[0];
+    bvh_refit(&r->detector->space.bvh, r->start.positions, r->end.positions, 0.0);
+    r->lane = &r->detector->space.lanes[0];
     r->interval = (swept_interval){.mesh = r->mesh,
                                    .x0 = r->start.positions,
                                    .x1 = r->end.positions,
-                                   .bvh = &r->detector->bvh,
+                                   .bvh = &r->detector->space.bvh,
                                    .skip_adjacent = true,
-                                   .representatives = &r->detector->representatives,
+                                   .representatives = &r->detector->space.representatives,
                                    .limit = r->detector->limit};
     contact_lane_reset(r->lane);
     return record_pairs(r) || io_fail(error, "out of memory");

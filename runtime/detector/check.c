@@ -4,22 +4,6 @@
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 
-#include <string.h>
-
-/* Sorts by a, then by b: in place as numbers, and back. */
-static void sort_intersections(cscd_intersection *items, void *scratch, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        uint64_t number = (uint64_t)items[i].a << 32 | items[i].b;
-        memcpy(&items[i], &number, sizeof number);
-    }
-    sort_by_number(items, scratch, count, sizeof *items);
-    for (size_t i = 0; i < count; i++) {
-        uint64_t number;
-        memcpy(&number, &items[i], sizeof number);
-        items[i] = (cscd_intersection){(uint32_t)(number >> 32), (uint32_t)number};
-    }
-}
-
 static bool is_excluded(const exclusions *e, cscd_intersection pair, const double *positions) {
     return exclusions_any(e) && exclusions_cover_triangles(e, pair.a, pair.b, positions);
 }
@@ -29,21 +13,26 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     const static_check *check = &d->check;
     size_t found = 0, kept = 0;
     for (uint32_t i = 0; i < check->lane_count; i++) found += check->lanes[i].count;
-    cscd_status status =
-        result_buffer_reserve(d->context, &d->intersections, found, sizeof(cscd_intersection));
+    cscd_status status = result_buffer_reserve(d->context, &d->intersections, found,
+                                               sizeof(cscd_intersection), sizeof(uint64_t));
     if (status != CSCD_OK) return status;
 
-    cscd_intersection *items = d->intersections.items;
-    cscd_intersections result = {items, 0, 0, UINT32_MAX};
+    uint64_t *pairs = d->intersections.keys; /* a in the upper half, b in the lower one */
+    cscd_intersections result = {d->intersections.items, 0, 0, UINT32_MAX};
     for (uint32_t i = 0; i < check->lane_count; i++) {
         const intersection_lane *lane = &check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            if (!is_excluded(&d->exclusions, lane->items[j], positions)) items[kept++] = lane->items[j];
+            cscd_intersection pair = lane->items[j];
+            if (!is_excluded(&d->exclusions, pair, positions))
+                pairs[kept++] = (uint64_t)pair.a << 32 | pair.b;
         }
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
-    sort_intersections(items, d->intersections.scratch, kept);
+    sort_by_number(pairs, d->intersections.spare_keys, kept, sizeof *pairs);
+    cscd_intersection *items = d->intersections.items;
+    for (size_t i = 0; i < kept; i++)
+        items[i] = (cscd_intersection){(uint32_t)(pairs[i] >> 32), (uint32_t)pairs[i]};
     result.count = kept;
     *out = result;
     return CSCD_OK;
@@ -51,8 +40,9 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
 
 /* The states and the positions that they are of go together, so they are written when nothing can fail any more. */
 static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
-    cscd_status status = bvh_rebuild_move_to(&d->rebuild, &d->bvh, positions, 0.0, d->limit.distance);
-    if (status == CSCD_OK) status = static_check_all(&d->check, &d->traversal, &d->bvh, positions);
+    cscd_status status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, 0.0, d->limit.distance);
+    if (status == CSCD_OK)
+        status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
     if (status == CSCD_OK) status = collect_intersections(d, positions, out);
     if (status != CSCD_OK) return status;
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
@@ -69,10 +59,10 @@ cscd_status cscd_detector_check(cscd_detector *detector, const double *positions
     if (status != CSCD_OK) return status;
 
     cscd_intersections result;
-    call_begin(detector);
+    detector_begin_call(detector);
     progress_stage(&context->progress, "static check", 0.0, 1.0);
     status = check_moment(detector, positions, &result);
-    if (status != CSCD_OK) return call_fail(detector, status);
+    if (status != CSCD_OK) return detector_fail_call(detector, status);
     timer_lap(&since, &spent);
     detector->timings.check_ms = spent;
     *out = result;

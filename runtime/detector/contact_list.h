@@ -1,15 +1,22 @@
-/* The interval's contacts from all threads as one sorted list. */
+/* The contacts of all lanes as one sorted list. */
 #pragma once
 
-#include "runtime/detector/detector.h"
+#include "runtime/detector/result_buffer.h"
+#include "runtime/detector/search_space.h"
+#include "runtime/narrow_phase/exclusions.h"
 
-/* Joins the lanes' contacts in the detector's buffer, leaves out the pairs that its options ignore, sorts by
- * (toi, kind, a, b), and adds up the lanes' counters. */
-cscd_status contact_list_collect(cscd_detector *detector, cscd_counters *counters, cscd_contacts *out);
+/* A contact in a lane, and a number to sort it by. */
+typedef struct contact_key {
+    uint64_t key;
+    const cscd_contact *contact;
+} contact_key;
 
-/* Do the options leave this one out? */
-bool contact_list_leaves_out(const cscd_detector *detector, const cscd_contact *contact);
+/* Writes a key, whose number is 0, for each contact of the lanes that the caller does not ignore to buffer->keys, and
+ * makes room for as many items of item_size bytes. Lanes get room for their share of a next search like this one. */
+cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t item_size, result_buffer *buffer,
+                                size_t *count);
 
-/* How many contacts each lane finds differs from run to run: without this a buffer might grow in an interval
- * like those before. found: by all lanes together. */
-cscd_status contact_list_reserve_lanes(cscd_detector *detector, size_t found);
+/* The contacts that the caller does not ignore, sorted by (toi, kind, a, b). Adds to counters what the lanes have counted
+ * and what is in the list. */
+cscd_status contact_list_collect(search_space *s, const exclusions *e, result_buffer *buffer,
+                                 cscd_counters *counters, cscd_contacts *out);

@@ -1,7 +1,6 @@
 /* The detector of the public API: options, parts, and what they report. */
 #include "runtime/detector/detector.h"
 
-#include "runtime/narrow_phase/representatives.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
 
@@ -75,16 +74,11 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
     return CSCD_OK;
 }
 
-static bool allocate_per_component(cscd_detector *d) {
-    size_t count = d->mesh->component_count;
-    d->culled = context_allocate(d->context, count, sizeof *d->culled);
-    d->touched = context_allocate(d->context, count, sizeof *d->touched);
-    d->wants_all_contacts = context_allocate(d->context, count, sizeof *d->wants_all_contacts);
-    d->incomplete = context_allocate(d->context, count, sizeof *d->incomplete);
-    d->skipped = context_allocate(d->context, count, sizeof *d->skipped);
-    d->guarantees = context_allocate(d->context, count, sizeof *d->guarantees);
-    return d->culled != NULL && d->touched != NULL && d->wants_all_contacts != NULL &&
-           d->incomplete != NULL && d->skipped != NULL && d->guarantees != NULL;
+static array_list list_arrays(cscd_detector *d) {
+    size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
+    return (array_list){{ARRAY(d->culled, components), ARRAY(d->wants_all_contacts, components),
+                         ARRAY(d->touched, components), ARRAY(d->incomplete, components),
+                         ARRAY(d->guarantees, components), ARRAY(d->contacts_seen, lanes)}};
 }
 
 static void choose_regions(cscd_detector *d) {
@@ -102,24 +96,19 @@ static cscd_status create_hider(cscd_detector *d) {
     return d->hider_state != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
-static cscd_status allocate_parts(cscd_detector *d, const cscd_plan *plan) {
-    cscd_context *context = d->context;
+static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     bool own_regions =
         d->options.method == CSCD_METHOD_SINGLE && plan != NULL && plan->method != d->options.method;
-    cscd_status status = traversal_create(context, &d->traversal);
+    cscd_status status = search_space_create(d->mesh, &d->space);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
     if (status == CSCD_OK) choose_regions(d);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
-    if (status == CSCD_OK) status = static_check_create(d->mesh, d->traversal.lane_count, &d->check);
-    if (status == CSCD_OK) status = representatives_create(d->mesh, &d->representatives);
+    if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
     if (status == CSCD_OK) status = create_hider(d);
-    if (status == CSCD_OK) status = call_create(d);
-    if (status != CSCD_OK) return status;
-    d->contact_lanes = context_allocate(context, d->traversal.lane_count, sizeof *d->contact_lanes);
-    d->contacts_seen = context_allocate(context, d->traversal.lane_count, sizeof *d->contacts_seen);
-    bool allocated = d->contact_lanes != NULL && d->contacts_seen != NULL && allocate_per_component(d);
-    return allocated ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
+    if (status == CSCD_OK && !context_allocate_all(d->context, list_arrays(d))) status = CSCD_OUT_OF_MEMORY;
+    return status;
 }
 
 cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
@@ -142,7 +131,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->rules = *d->stages->rules;
     d->limit = limit_of(&chosen);
     status = exclusions_create(mesh, &chosen, &d->exclusions);
-    if (status == CSCD_OK && allocate_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
+    if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
         return status;
@@ -151,45 +140,22 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     return CSCD_OK;
 }
 
-static void free_lanes(cscd_detector *d) {
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        if (d->contact_lanes != NULL) {
-            context_free(d->context, d->contact_lanes[i].contacts);
-            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_VF].pairs);
-            context_free(d->context, d->contact_lanes[i].candidates[CSCD_CONTACT_EE].pairs);
-        }
-    }
-    context_free(d->context, d->contact_lanes);
-}
-
 void cscd_detector_destroy(cscd_detector *d) {
     if (d == NULL) return;
     cscd_context *context = d->context;
-    free_lanes(d);
-    call_free(d);
-    if (d->traversal.lanes != NULL) traversal_destroy(&d->traversal);
+    if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     static_check_destroy(&d->check);
-    bvh_free(&d->bvh);
+    search_space_destroy(&d->space);
     exclusions_free(context, &d->exclusions);
-    representatives_free(context, &d->representatives);
-    orphan_pairs_free(context, &d->orphans);
-    if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
-    void *blocks[] = {d->contacts.items,
-                      d->contacts.scratch,
-                      d->intersections.items,
-                      d->intersections.scratch,
-                      d->culled,
-                      d->touched,
-                      d->wants_all_contacts,
-                      d->incomplete,
-                      d->skipped,
-                      d->contacts_seen,
-                      d->guarantees,
-                      d->reached,
-                      d};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    rollback_free(context, &d->before);
+    result_buffer_free(context, &d->contacts);
+    result_buffer_free(context, &d->proximities);
+    result_buffer_free(context, &d->intersections);
+    context_free_all(context, list_arrays(d));
+    context_free(context, d->reached);
+    context_free(context, d);
 }
 
 cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
@@ -204,20 +170,15 @@ cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_sep
     return CSCD_OK;
 }
 
-cscd_status result_buffer_reserve(cscd_context *context, result_buffer *buffer, size_t count, size_t size) {
-    if (count <= buffer->capacity) return CSCD_OK;
-    size_t capacity = count + count / 2;
-    void *items = context_allocate(context, capacity, size);
-    void *scratch = context_allocate(context, capacity, size);
-    if (items == NULL || scratch == NULL) {
-        context_free(context, items);
-        context_free(context, scratch);
-        return CSCD_OUT_OF_MEMORY;
-    }
-    context_free(context, buffer->items);
-    context_free(context, buffer->scratch);
-    *buffer = (result_buffer){items, scratch, capacity};
-    return CSCD_OK;
+void detector_begin_call(cscd_detector *d) {
+    progress_begin(&d->context->progress);
+    rollback_save(&d->before, &d->starts, &d->rebuild);
+}
+
+cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
+    if (status == CSCD_IN_CONTACT) return status;
+    rollback_restore(&d->before, &d->starts, &d->rebuild);
+    return context_explain(d->context, status);
 }
 
 cscd_timings cscd_detector_timings(const cscd_detector *detector) {

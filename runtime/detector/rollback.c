@@ -1,47 +1,34 @@
-/* A call that takes long: it can be cancelled, and when it fails the detector is as it was, for a repetition.
- */
+/* Snapshot of what a call that is cancelled or fails must restore. */
 #include "runtime/detector/rollback.h"
-
-#include "runtime/detector/detector.h"
 
 #include <string.h>
 
-cscd_status call_create(cscd_detector *d) {
-    call_memory *before = &d->before;
-    if (!progress_wanted(&d->context->progress)) return CSCD_OK;
-    before->triangles = context_allocate(d->context, d->mesh->triangle_count, sizeof *before->triangles);
-    before->of = context_allocate(d->context, d->mesh->component_count, sizeof *before->of);
-    return before->triangles != NULL && before->of != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+cscd_status rollback_create(const cscd_mesh *mesh, rollback *out) {
+    cscd_context *context = mesh->context;
+    if (!progress_wanted(&context->progress)) return CSCD_OK;
+    out->triangles = context_allocate(context, mesh->triangle_count, sizeof *out->triangles);
+    out->components = context_allocate(context, mesh->component_count, sizeof *out->components);
+    return out->triangles != NULL && out->components != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
-void call_free(cscd_detector *d) {
-    context_free(d->context, d->before.triangles);
-    context_free(d->context, d->before.of);
+void rollback_free(cscd_context *context, rollback *r) {
+    context_free(context, r->triangles);
+    context_free(context, r->components);
 }
 
-void call_begin(cscd_detector *d) {
-    const start_states *s = &d->starts;
-    call_memory *before = &d->before;
-    progress_begin(&d->context->progress);
-    if (before->triangles == NULL) return;
-    memcpy(before->triangles, s->triangles, d->mesh->triangle_count * sizeof *s->triangles);
-    memcpy(before->of, s->of, d->mesh->component_count * sizeof *s->of);
-    before->vouched = s->vouched;
-    before->intervals_unmeasured = d->rebuild.intervals_unmeasured;
+void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees) {
+    if (r->triangles == NULL) return;
+    memcpy(r->triangles, starts->triangles, starts->mesh->triangle_count * sizeof *r->triangles);
+    memcpy(r->components, starts->of, starts->mesh->component_count * sizeof *r->components);
+    r->vouched = starts->vouched;
+    r->intervals_unmeasured = trees->intervals_unmeasured;
 }
 
-static void put_back(cscd_detector *d) {
-    start_states *s = &d->starts;
-    const call_memory *before = &d->before;
-    memcpy(s->triangles, before->triangles, d->mesh->triangle_count * sizeof *s->triangles);
-    memcpy(s->of, before->of, d->mesh->component_count * sizeof *s->of);
-    s->vouched = before->vouched;
-    s->counted = false;
-    d->rebuild.intervals_unmeasured = before->intervals_unmeasured;
-}
-
-cscd_status call_fail(cscd_detector *d, cscd_status status) {
-    if (status == CSCD_IN_CONTACT) return status;
-    if (d->before.triangles != NULL) put_back(d);
-    return context_explain(d->context, status);
+void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees) {
+    if (r->triangles == NULL) return;
+    memcpy(starts->triangles, r->triangles, starts->mesh->triangle_count * sizeof *r->triangles);
+    memcpy(starts->of, r->components, starts->mesh->component_count * sizeof *r->components);
+    starts->vouched = r->vouched;
+    starts->counted = false;
+    trees->intervals_unmeasured = r->intervals_unmeasured;
 }

@@ -1,32 +1,25 @@
-/* A call that takes long: it can be cancelled, and when it fails the detector is as it was, for a repetition.
- */
+/* Snapshot of what a call that is cancelled or fails must restore.
+ *
+ * Such a call has found some contacts and tainted triangles, whose states are those of the start until the call succeeds;
+ * a check that was left records nothing. So the states say at most too little, and the next call is as sound as ever. But
+ * it might do more, or report other contacts in mode EARLIEST, than it would without the failure: that is why they are put
+ * back. Trees that the call has rebuilt stay: the repetition finds them as good as new. */
 #pragma once
 
-#include "src/core/context.h"
+#include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/culling/start_state.h"
 
-struct component_start;
-
-/* What a call that fails puts back; without a progress function nothing, and no memory is taken. Trees that
- * it has built anew stay, and what is known of them: the repetition, when it comes to look at them, finds
- * them as good as new. */
-typedef struct call_memory {
-    uint8_t *triangles;         /* states at the start, and */
-    struct component_start *of; /* what goes with them, per component */
+typedef struct rollback {
+    uint8_t *triangles;          /* start_states.triangles; NULL: nothing is restored */
+    component_start *components; /* start_states.of */
     bool vouched;
     uint32_t intervals_unmeasured;
-} call_memory;
+} rollback;
 
-cscd_status call_create(cscd_detector *d);
-void call_free(cscd_detector *d);
+/* Takes no memory, and restores nothing, in a context without a progress function: there a call fails for want of memory
+ * only. On failure the caller frees what there is. */
+cscd_status rollback_create(const cscd_mesh *mesh, rollback *out);
+void rollback_free(cscd_context *context, rollback *r);
 
-/* Once the positions are checked, and what is known of the start is of the start. */
-void call_begin(cscd_detector *d);
-
-/* Ends the call with status, which is no success, and its sentence. IN_CONTACT is an answer, and has both
- * already.
- *
- * A call that is left in the midst has found some contacts and tainted triangles, which are of the start, as
- * are all states until the call succeeds; checks that were left record nothing. So states say at most too
- * little, and the next call is as sound as ever. Only it might do more, or in mode EARLIEST report other
- * contacts, than without the failure: that is why they are put back. */
-cscd_status call_fail(cscd_detector *d, cscd_status status);
+void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees);
+void rollback_restore(const rollback *r, start_states *starts, bvh_rebuild *trees);

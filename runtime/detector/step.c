@@ -10,6 +10,7 @@
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
 typedef struct step_work {
+    cscd_detector *detector;
     interval_search search;
     cscd_mode mode;
     bool rehearsal;                  /* the vertices may not go to the interval's end */
@@ -20,12 +21,12 @@ typedef struct step_work {
 } step_work;
 
 static void begin_interval(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     d->rebuild.rebuilt = false;
     culling_clear(&d->culling);
     for (uint32_t c = 0; c < d->mesh->component_count; c++)
         d->culled[c] = d->wants_all_contacts[c] = d->touched[c] = false;
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) d->contacts_seen[i] = 0;
+    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) d->contacts_seen[i] = 0;
     if (detector_culls(d) && d->options.start == CSCD_START_VOUCHED) start_states_vouch(&d->starts);
     start_states_count(&d->starts);
     if (work->rehearsal) start_states_save(&d->starts);
@@ -39,9 +40,10 @@ enum { UNPROVEN_SHARE = 16 };
 
 /* Finds out which unproven triangles are clean, by the volumes that the trees have. */
 static cscd_status check_start(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     progress_stage(&d->context->progress, "start", 0.0, 0.3);
-    cscd_status status = static_check_unproven(&d->check, &d->traversal, &d->bvh, work->search.interval.x0);
+    cscd_status status =
+        static_check_unproven(&d->check, &d->space.traversal, &d->space.bvh, work->search.interval.x0);
     work->unproven = 0;
     if (status != CSCD_OK) return status;
     start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
@@ -50,14 +52,15 @@ static cscd_status check_start(step_work *work) {
 }
 
 static cscd_status prove_starts(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
     double since = timer_now_ms();
     cscd_status status = CSCD_OK;
     work->unproven = start_states_suspect(&d->starts, d->check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
-        status = bvh_rebuild_move_to(&d->rebuild, &d->bvh, work->search.interval.x0, 0.0, d->limit.distance);
+        status =
+            bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, work->search.interval.x0, 0.0, d->limit.distance);
         if (status == CSCD_OK) status = check_start(work);
     }
     timer_lap(&since, &work->search.timings.proof_ms);
@@ -65,11 +68,11 @@ static cscd_status prove_starts(step_work *work) {
 }
 
 static cscd_status refit_trees(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->bvh, interval->x0, interval->x1, d->limit.distance,
-                                          d->limit.distance);
+    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1,
+                                          d->limit.distance, d->limit.distance);
     timer_lap(&since, &work->search.timings.update_ms);
     return status;
 }
@@ -85,19 +88,19 @@ static cscd_status prove_remaining_starts(step_work *work) {
 /* ---- orientation ----------------------------------------------------------------------------------- */
 
 static cscd_status hide_pairs(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     if (!detector_hides_pairs(d)) return CSCD_OK;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status =
-        d->stages->hider->hide(d->hider_state, &d->bvh, interval->x0, interval->x1, &work->search.counters);
+    cscd_status status = d->stages->hider->hide(d->hider_state, &d->space.bvh, interval->x0, interval->x1,
+                                                &work->search.counters);
     timer_lap(&since, &work->search.timings.contour_ms);
     return status;
 }
 
 /* A first contact that is to be left out may hide the one to report: then mode EARLIEST finds all contacts, too. */
 static bool finds_all_contacts(const step_work *work) {
-    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->search.detector->exclusions);
+    return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
 }
 
 static bool is_culled(const cscd_detector *d, uint32_t clean, uint32_t triangle_count) {
@@ -110,7 +113,7 @@ static bool is_culled(const cscd_detector *d, uint32_t clean, uint32_t triangle_
 /* Culls closed components of which nearly all triangles are clean. Of those that are not all clean, all contacts are
  * wanted in either mode. */
 static cscd_status choose_culled(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     if (detector_hides_pairs(d)) return CSCD_OK; /* instead of culling */
     start_states_count(&d->starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
@@ -130,19 +133,19 @@ static cscd_status choose_culled(step_work *work) {
 }
 
 static orientation_query orientation_query_of(const step_work *work) {
-    const cscd_detector *d = work->search.detector;
+    const cscd_detector *d = work->detector;
     bool all = work->all_clean || d->rules.assumes_clean;
     return (orientation_query){d->culled, all ? NULL : start_states_clean(&d->starts),
                                (const double(*)[3])d->culling.detector_offsets, d->rules.still_points};
 }
 
 static cscd_status orient_triangles(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     orientation_query query = orientation_query_of(work);
-    if (detector_region_count(d) > 0) bvh_detector_points(&d->bvh, &query, d->culling.detector_points);
+    if (detector_region_count(d) > 0) bvh_detector_points(&d->space.bvh, &query, d->culling.detector_points);
     if (!work->any_culled) return CSCD_OK;
     double since = timer_now_ms();
-    bvh_orient(&d->bvh, &query, d->culling.facing);
+    bvh_orient(&d->space.bvh, &query, d->culling.facing);
     culling_begin(&d->culling);
     timer_lap(&since, &work->search.timings.orientation_ms);
     work->search.counters.plus = d->culling.plus;
@@ -155,7 +158,7 @@ static cscd_status orient_triangles(step_work *work) {
 /* ---- traversal, closing pass ----------------------------------------------------------------------- */
 
 static cscd_status traverse_pairs(step_work *work) {
-    const cscd_detector *d = work->search.detector;
+    const cscd_detector *d = work->detector;
     bool all_culled = work->any_culled && !work->any_not_culled;
     bool loses_contacts = d->traits->loses_contacts && (work->any_culled || detector_hides_pairs(d));
     if (!all_culled && !loses_contacts) return interval_search_everything(&work->search);
@@ -166,11 +169,11 @@ static cscd_status traverse_pairs(step_work *work) {
 /* Looks at the contacts that the lanes have gained since the last look; returns how many triangles these have tainted
  * whose pairs were culled. */
 static uint32_t taint_by_contacts(const step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     const tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
     uint32_t newly_kept = 0;
-    for (uint32_t i = 0; detector_culls(d) && i < d->traversal.lane_count; i++) {
-        const contact_lane *lane = &d->contact_lanes[i];
+    for (uint32_t i = 0; detector_culls(d) && i < d->space.traversal.lane_count; i++) {
+        const contact_lane *lane = &d->space.lanes[i];
         newly_kept +=
             tainting_look(&t, lane->contacts + d->contacts_seen[i], lane->count - d->contacts_seen[i]);
         d->contacts_seen[i] = lane->count;
@@ -181,14 +184,14 @@ static uint32_t taint_by_contacts(const step_work *work) {
 /* Tests the pairs that contacts have uncovered until these bring no more contacts. Then all contacts of the components
  * that want them all are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     if (!work->any_culled) return CSCD_OK;
     work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
         culling_pass_done(&d->culling);
         if (taint_by_contacts(work) == 0) return CSCD_OK;
-        bvh_mark_fresh(&d->bvh, d->culling.earlier, d->culling.orientations);
+        bvh_mark_fresh(&d->space.bvh, d->culling.earlier, d->culling.orientations);
         timer_lap(&since, &work->search.timings.orientation_ms);
         cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_FRESH);
         if (status != CSCD_OK) return status;
@@ -205,11 +208,12 @@ static cscd_status search_every_feature_pair(step_work *work) {
 }
 
 static cscd_status collect_contacts(step_work *work) {
-    cscd_detector *d = work->search.detector;
+    cscd_detector *d = work->detector;
     work->search.counters.rebuilds = d->rebuild.rebuilt;
     taint_by_contacts(work);
     double since = timer_now_ms();
-    cscd_status status = contact_list_collect(d, &work->search.counters, &work->contacts);
+    cscd_status status = contact_list_collect(&d->space, &d->exclusions, &d->contacts, &work->search.counters,
+                                              &work->contacts);
     timer_lap(&since, &work->search.timings.contact_ms);
     return status;
 }
@@ -238,7 +242,7 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
 
 /* The reason for a component of a method that culls. */
 static cscd_reason culling_reason(const step_work *work, uint32_t component, bool embedded) {
-    const cscd_detector *d = work->search.detector;
+    const cscd_detector *d = work->detector;
     if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
     if (!embedded) return d->starts.of[component].crossing > 0 ? CSCD_REASON_CROSSING : CSCD_REASON_UNPROVEN;
     if (!d->touched[component]) return CSCD_REASON_CLEAN;
@@ -246,7 +250,7 @@ static cscd_reason culling_reason(const step_work *work, uint32_t component, boo
 }
 
 static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
-    const cscd_detector *d = work->search.detector;
+    const cscd_detector *d = work->detector;
     bool embedded = d->starts.of[component].clean == d->mesh->components[component].triangle_count;
     if (component_is_obstacle(d->mesh, component))
         return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
@@ -260,7 +264,8 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
 
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
-    step_work work = {.search = interval_search_begin(d, x0, x1, d->limit),
+    step_work work = {.detector = d,
+                      .search = interval_search_begin(&d->space, x0, x1, d->limit),
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
@@ -318,9 +323,9 @@ cscd_status cscd_detector_step(cscd_detector *detector, const double *start, con
     if (status != CSCD_OK) return status;
 
     step_outcome found;
-    call_begin(detector);
+    detector_begin_call(detector);
     status = step_find(detector, start, end, detector->options.mode, false, &found);
-    if (status != CSCD_OK) return call_fail(detector, status);
+    if (status != CSCD_OK) return detector_fail_call(detector, status);
     step_take(detector, end);
     timer_lap(&since, &found.timings.total_ms);
     found.timings.check_ms = detector->timings.check_ms;

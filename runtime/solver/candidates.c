@@ -1,4 +1,4 @@
-/* Pairs of features that may come near each other on a motion, kept for every shorter one. */
+/* Pairs of features that may come near each other on a motion, kept for every shorter motion. */
 #include "runtime/solver/candidates.h"
 
 #include "runtime/bvh/bvh_rebuild.h"
@@ -6,20 +6,20 @@
 
 #include <string.h>
 
-static bool take(cscd_detector *d, cscd_contact_kind kind, candidate_list *list) {
+/* Joins the lists of all lanes. False: no memory. */
+static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_list *list) {
     size_t count = 0;
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++)
-        count += d->contact_lanes[i].candidates[kind].count;
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) count += s->lanes[i].candidates[kind].count;
     list->count = 0;
     if (count > list->capacity) {
         size_t capacity = count + count / 2;
-        uint32_t(*grown)[2] = context_grow(d->context, list->pairs, 0, capacity, sizeof *grown);
+        uint32_t(*grown)[2] = context_grow(s->context, list->pairs, 0, capacity, sizeof *grown);
         if (grown == NULL) return false;
         list->pairs = grown;
         list->capacity = capacity;
     }
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        const candidate_list *found = &d->contact_lanes[i].candidates[kind];
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        const candidate_list *found = &s->lanes[i].candidates[kind];
         if (found->count > 0)
             memcpy(list->pairs + list->count, found->pairs, found->count * sizeof *found->pairs);
         list->count += found->count;
@@ -29,13 +29,13 @@ static bool take(cscd_detector *d, cscd_contact_kind kind, candidate_list *list)
 
 cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double distance,
                                candidates *out) {
-    interval_search search = interval_search_begin(d, x0, x1, (separation){distance, distance});
+    interval_search search = interval_search_begin(&d->space, x0, x1, (separation){distance, distance});
     search.interval.collecting = true;
-    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->bvh, x0, x1, distance, d->limit.distance);
+    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, x0, x1, distance, d->limit.distance);
     if (status == CSCD_OK) status = interval_search_everything(&search);
     if (status != CSCD_OK) return status;
-    bool taken = take(d, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
-                 take(d, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
+    bool taken = join_lists(&d->space, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
+                 join_lists(&d->space, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
     return taken ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -68,22 +68,22 @@ static void test_ee(const swept_interval *interval, const uint32_t pair[2], cont
     narrow_phase_test_ee(interval, pair[0], pair[1], lane);
 }
 
-/* The host is asked after so many candidates. */
+/* After so many candidates the host is asked whether to go on. */
 enum { CANDIDATES_AT_ONCE = 1024 };
 
-/* A lane's share of either list. */
+/* Tests a lane's share of both lists. */
 static void test_share(void *data, uint32_t index) {
     const testing *t = data;
     const swept_interval *interval = &t->search->interval;
-    const cscd_detector *d = t->search->detector;
-    contact_lane *lane = &d->contact_lanes[index];
+    const search_space *space = t->search->space;
+    contact_lane *lane = &space->lanes[index];
     for (int kind = 0; kind < 2; kind++) {
         const candidate_list *list = &t->candidates->lists[kind];
-        size_t begin = list->count * index / d->traversal.lane_count;
-        size_t end = list->count * (index + 1) / d->traversal.lane_count;
+        size_t begin = list->count * index / space->traversal.lane_count;
+        size_t end = list->count * (index + 1) / space->traversal.lane_count;
         for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
             double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
-            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&d->context->progress, share))
+            if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&space->context->progress, share))
                 return;
             (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
         }
@@ -92,10 +92,10 @@ static void test_share(void *data, uint32_t index) {
 }
 
 cscd_status candidates_test(const candidates *c, interval_search *search) {
-    cscd_detector *d = search->detector;
+    search_space *space = search->space;
     testing t = {c, search};
-    progress_stage(&d->context->progress, "candidates", 0.0, 1.0);
-    parallel_run(d->context->threads, d->traversal.lane_count, test_share, &t);
-    cscd_status status = interval_search_lanes_status(d);
-    return status == CSCD_OK ? context_progress_status(d->context) : status;
+    progress_stage(&space->context->progress, "candidates", 0.0, 1.0);
+    parallel_run(space->context->threads, space->traversal.lane_count, test_share, &t);
+    cscd_status status = search_space_status(space);
+    return status == CSCD_OK ? context_progress_status(space->context) : status;
 }

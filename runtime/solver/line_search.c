@@ -97,9 +97,9 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
     line->covered = max_of(d->limit.distance, reach);
-    call_begin(d);
+    detector_begin_call(d);
     status = candidates_collect(d, line->x0, line->x1, line->covered + rounding_on(line), &line->candidates);
-    if (status != CSCD_OK) return call_fail(d, status);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
     return CSCD_OK;
 }
@@ -146,14 +146,14 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_line_near: distance is %g, but the line was begun with a reach of %g",
                             distance, line->reach);
-    call_begin(d);
+    detector_begin_call(d);
     motion m = motion_of(line);
     motion_at(&m, length, line->reached);
     interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, &found);
-    if (status != CSCD_OK) return call_fail(d, status);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
     *out = found;
     return CSCD_OK;
 }
@@ -162,17 +162,19 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 
 static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     cscd_line *line = of;
+    cscd_detector *d = line->detector;
     cscd_counters counters = {.vf = 0};
-    progress_part(&line->detector->context->progress, line->done, 0.5 + 0.5 * line->done);
+    progress_part(&d->context->progress, line->done, 0.5 + 0.5 * line->done);
     line->done = 0.5 + 0.5 * line->done;
-    interval_search search = interval_search_begin(line->detector, from, to, line->detector->limit);
+    interval_search search = interval_search_begin(&d->space, from, to, d->limit);
     cscd_status status = candidates_test(&line->candidates, &search);
-    return status == CSCD_OK ? contact_list_collect(line->detector, &counters, out) : status;
+    return status == CSCD_OK ? contact_list_collect(&d->space, &d->exclusions, &d->contacts, &counters, out)
+                             : status;
 }
 
-static bool lanes_are_empty(const cscd_detector *d) {
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        if (d->contact_lanes[i].count > 0) return false;
+static bool lanes_are_empty(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].count > 0) return false;
     }
     return true;
 }
@@ -181,14 +183,13 @@ static bool lanes_are_empty(const cscd_detector *d) {
  * that the detector got since the line began, the lanes are those of the end only. */
 static void take_step(cscd_line *line) {
     cscd_detector *d = line->detector;
-    if (!line->states_known || !detector_culls(d) || !lanes_are_empty(d)) return;
-    bool *lost = d->culled; /* scratch between steps */
-    for (uint32_t c = 0; c < d->mesh->component_count; c++) lost[c] = false;
+    if (!line->states_known || !detector_culls(d) || !lanes_are_empty(&d->space)) return;
+    for (uint32_t c = 0; c < d->mesh->component_count; c++) d->incomplete[c] = false;
     memcpy(d->starts.triangles, line->states, d->mesh->triangle_count);
     d->starts.vouched |= line->vouched;
     d->starts.counted = false;
     start_states_count(&d->starts);
-    start_states_end(&d->starts, line->reached, lost);
+    start_states_end(&d->starts, line->reached, d->incomplete);
 }
 
 /* cscd_detector_set_separation may have been called since. */
@@ -212,12 +213,12 @@ cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, csc
     if (!(longest > 0.0 && longest <= 1.0))
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                             "cscd_line_max_step: longest is %g, expected a number in (0,1]", longest);
-    call_begin(d);
+    detector_begin_call(d);
     line->done = 0.0;
     motion m = motion_of(line);
     cscd_free_step step;
     status = free_step_find(d, &m, longest, test_motion, line, line->reached, &step);
-    if (status != CSCD_OK) return call_fail(d, status);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
     take_step(line);
     if (end != NULL) memcpy(end, line->reached, m.vertex_count * sizeof(double[3]));
     *out = step;

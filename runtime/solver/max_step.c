@@ -23,13 +23,29 @@ static void add_timings(cscd_timings *sum, const cscd_timings *more) {
     sum->proof_ms += more->proof_ms;
 }
 
-_Static_assert(sizeof(cscd_counters) % sizeof(uint64_t) == 0, "counters are numbers of one kind");
-
 static void add_counters(cscd_counters *sum, const cscd_counters *more) {
-    uint64_t *to = (uint64_t *)sum;
-    const uint64_t *from = (const uint64_t *)more;
-    for (size_t i = 0; i < sizeof *sum / sizeof *to; i++) to[i] += from[i];
+    sum->static_checks += more->static_checks;
+    sum->clean += more->clean;
+    sum->rebuilds += more->rebuilds;
+    sum->passes += more->passes;
+    sum->plus += more->plus;
+    sum->minus += more->minus;
+    sum->contours += more->contours;
+    sum->sealed += more->sealed;
+    sum->boxes_tested += more->boxes_tested;
+    sum->pcp += more->pcp;
+    sum->adjacent += more->adjacent;
+    sum->feature_pairs += more->feature_pairs;
+    sum->tests += more->tests;
+    sum->by_signs += more->by_signs;
+    sum->by_roots += more->by_roots;
+    sum->by_exact += more->by_exact;
+    sum->vf += more->vf;
+    sum->ee += more->ee;
+    sum->bounded += more->bounded;
 }
+
+_Static_assert(sizeof(cscd_counters) == 19 * sizeof(uint64_t), "add_counters adds every counter");
 
 /* The vertices do not go to the end of the try before. */
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
@@ -58,7 +74,7 @@ static cscd_status check_arguments(cscd_detector *d, const double *x0, const dou
     return step_check_positions(d, x0, x1, "x0", "x1");
 }
 
-static cscd_status make_room(cscd_detector *d) {
+static cscd_status reserve_reached(cscd_detector *d) {
     if (d->reached == NULL)
         d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
     return d->reached != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -73,13 +89,13 @@ cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, co
     motion m = {detector->mesh->vertex_count, x0, x1};
     tries t = {.detector = detector, .timings = {.check_ms = detector->timings.check_ms}};
     cscd_free_step step;
-    call_begin(detector);
-    status = make_room(detector);
+    detector_begin_call(detector);
+    status = reserve_reached(detector);
     if (status == CSCD_OK)
         status = free_step_find(detector, &m, 1.0, try_motion, &t, detector->reached, &step);
     if (status != CSCD_OK) {
         if (t.any) step_withdraw(detector);
-        return call_fail(detector, status);
+        return detector_fail_call(detector, status);
     }
     step_take(detector, detector->reached);
     if (end != NULL) memcpy(end, detector->reached, m.vertex_count * sizeof(double[3]));

@@ -1,7 +1,6 @@
 /* Pairs of features that are near each other at one moment. */
 #include "runtime/solver/proximity.h"
 
-#include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/contact_list.h"
 #include "src/core/check.h"
 #include "src/core/sort.h"
@@ -10,17 +9,8 @@
 
 #include <string.h>
 
-/* What one thread describes at a time. */
+/* One thread describes so many pairs at a time. */
 enum { PAIRS_PER_SHARE = 4096 };
-
-/* A contact, and a part of its name as a number. */
-typedef struct name_key {
-    uint64_t key;
-    const cscd_contact *of;
-} name_key;
-
-_Static_assert(sizeof(cscd_proximity) <= sizeof(cscd_contact) && 2 * sizeof(name_key) <= sizeof(cscd_contact),
-               "proximities and keys are where contacts are otherwise");
 
 static const double relative_tolerance = 0x1p-21; /* half of what is promised: the distance is rounded, too */
 
@@ -30,8 +20,8 @@ cscd_status proximity_check_distance(cscd_context *context, double distance) {
                         "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
 
-/* From the point that v names on b, or u and v on the face, to the one on a: by differences, so that it is as
- * exact as they are. */
+/* The distance between the two points that u and v name, summed from differences of coordinates, so that it is as exact as
+ * these are. */
 static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
     cscd_stencil s = cscd_mesh_stencil(mesh, at->kind, at->a, at->b, at->u, at->v);
     int base = at->kind == CSCD_CONTACT_VF ? 1 : 2;
@@ -49,8 +39,8 @@ static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, co
     return largest * sqrt(vec3_dot(scaled, scaled));
 }
 
-/* In place, for a copy need not keep the padding. */
-static void describe(const cscd_mesh *mesh, const cscd_contact *at, const double *x, cscd_proximity *p) {
+/* Written in place, because a copy need not keep the padding. */
+static void describe_pair(const cscd_mesh *mesh, const cscd_contact *at, const double *x, cscd_proximity *p) {
     memset(p, 0, sizeof *p); /* padding too: lists are compared bit for bit */
     p->kind = at->kind;
     p->a = at->a;
@@ -62,18 +52,19 @@ static void describe(const cscd_mesh *mesh, const cscd_contact *at, const double
     memcpy(p->normal, at->normal, sizeof p->normal);
 }
 
-/* The lanes' contacts by (kind, a, b): first by b, then, which keeps that order, by the rest. */
-static void sort_names(name_key *keys, name_key *scratch, size_t count) {
-    for (size_t i = 0; i < count; i++) keys[i].key = keys[i].of->b;
-    sort_by_number(keys, scratch, count, sizeof *keys);
-    for (size_t i = 0; i < count; i++) keys[i].key = (uint64_t)keys[i].of->kind << 32 | keys[i].of->a;
-    sort_by_number(keys, scratch, count, sizeof *keys);
+/* Sorts by (kind, a, b): first by b, then by kind and a, which keeps the order by b where these are equal. */
+static void sort_pairs(contact_key *keys, contact_key *spare, size_t count) {
+    for (size_t i = 0; i < count; i++) keys[i].key = keys[i].contact->b;
+    sort_by_number(keys, spare, count, sizeof *keys);
+    for (size_t i = 0; i < count; i++)
+        keys[i].key = (uint64_t)keys[i].contact->kind << 32 | keys[i].contact->a;
+    sort_by_number(keys, spare, count, sizeof *keys);
 }
 
 typedef struct description {
     const cscd_mesh *mesh;
     const double *positions;
-    const name_key *keys;
+    const contact_key *keys;
     cscd_proximity *items;
     size_t count;
 } description;
@@ -82,28 +73,19 @@ static void describe_share(void *data, uint32_t index) {
     const description *d = data;
     size_t begin = (size_t)index * PAIRS_PER_SHARE, end = begin + PAIRS_PER_SHARE;
     for (size_t i = begin; i < end && i < d->count; i++)
-        describe(d->mesh, d->keys[i].of, d->positions, &d->items[i]);
+        describe_pair(d->mesh, d->keys[i].contact, d->positions, &d->items[i]);
 }
 
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out) {
-    size_t found = 0, kept = 0;
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) found += d->contact_lanes[i].count;
-    cscd_status status = result_buffer_reserve(d->context, &d->contacts, found, sizeof(cscd_contact));
-    if (status == CSCD_OK) status = contact_list_reserve_lanes(d, found);
+    size_t count;
+    cscd_status status =
+        contact_list_gather(&d->space, &d->exclusions, sizeof(cscd_proximity), &d->proximities, &count);
     if (status != CSCD_OK) return status;
-    name_key *keys = d->contacts.scratch;
-    for (uint32_t i = 0; i < d->traversal.lane_count; i++) {
-        const contact_lane *lane = &d->contact_lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            keys[kept].of = &lane->contacts[j];
-            kept += !contact_list_leaves_out(d, &lane->contacts[j]);
-        }
-    }
-    sort_names(keys, keys + found, kept);
-    description all = {d->mesh, positions, keys, d->contacts.items, kept};
-    uint32_t shares = (uint32_t)((kept + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
+    sort_pairs(d->proximities.keys, d->proximities.spare_keys, count);
+    description all = {d->mesh, positions, d->proximities.keys, d->proximities.items, count};
+    uint32_t shares = (uint32_t)((count + PAIRS_PER_SHARE - 1) / PAIRS_PER_SHARE);
     parallel_run(d->context->threads, shares, describe_share, &all);
-    *out = (cscd_proximities){all.items, kept};
+    *out = (cscd_proximities){all.items, count};
     return CSCD_OK;
 }
 
@@ -112,17 +94,17 @@ separation proximity_limit(double distance) {
 }
 
 interval_search proximity_search(cscd_detector *d, const double *positions, double distance) {
-    return interval_search_begin(d, positions, positions, proximity_limit(distance));
+    return interval_search_begin(&d->space, positions, positions, proximity_limit(distance));
 }
 
-static cscd_status find_near(cscd_detector *d, const double *positions, double distance,
-                             cscd_proximities *out) {
+static cscd_status find_proximities(cscd_detector *d, const double *positions, double distance,
+                                    cscd_proximities *out) {
     interval_search search = proximity_search(d, positions, distance);
     cscd_status status = CSCD_OK;
     if (d->stages->brute_force) {
         status = interval_search_by_brute_force(&search);
     } else {
-        status = bvh_rebuild_move_to(&d->rebuild, &d->bvh, positions, distance, d->limit.distance);
+        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, distance, d->limit.distance);
         if (status == CSCD_OK) status = interval_search_everything(&search);
     }
     return status == CSCD_OK ? proximity_collect(d, positions, out) : status;
@@ -138,9 +120,9 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
         status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     cscd_proximities found;
-    call_begin(detector);
-    status = find_near(detector, positions, distance, &found);
-    if (status != CSCD_OK) return call_fail(detector, status);
+    detector_begin_call(detector);
+    status = find_proximities(detector, positions, distance, &found);
+    if (status != CSCD_OK) return detector_fail_call(detector, status);
     *out = found;
     return CSCD_OK;
 }

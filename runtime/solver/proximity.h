@@ -1,16 +1,17 @@
 /* Pairs of features that are near each other at one moment. */
 #pragma once
 
+#include "runtime/detector/detector.h"
 #include "runtime/detector/interval_search.h"
 
-/* Is this a distance that can be asked for? INVALID_ARGUMENT says why not. */
+/* INVALID_ARGUMENT, with a sentence, unless this is a distance that can be asked for. */
 cscd_status proximity_check_distance(cscd_context *context, double distance);
 
-/* Within this distance pairs are reported; between that and the tolerance beyond it they may be. */
+/* Pairs within the distance are reported; pairs between it and the tolerance beyond it may be. */
 separation proximity_limit(double distance);
 
-/* A search of that moment, begun. */
+/* Begins a search of the moment with that limit. */
 interval_search proximity_search(cscd_detector *d, const double *positions, double distance);
 
-/* Of that search, in the detector's buffer. */
+/* What the search has found, in the detector's memory, sorted by (kind, a, b). */
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out);

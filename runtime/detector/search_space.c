@@ -1,0 +1,46 @@
+/* What the searches of a detector work with, from one to the next: trees, lanes, and which triangle pair tests what. */
+#include "runtime/detector/search_space.h"
+
+cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
+    search_space s = {.context = mesh->context, .mesh = mesh};
+    cscd_status status = traversal_create(s.context, &s.traversal);
+    if (status == CSCD_OK) status = representatives_create(mesh, &s.representatives);
+    if (status == CSCD_OK) {
+        s.lanes = context_allocate(s.context, s.traversal.lane_count, sizeof *s.lanes);
+        s.skipped = context_allocate(s.context, mesh->component_count, sizeof *s.skipped);
+        if (s.lanes == NULL || s.skipped == NULL) status = CSCD_OUT_OF_MEMORY;
+    }
+    if (status != CSCD_OK) {
+        search_space_destroy(&s);
+        return status;
+    }
+    *out = s;
+    return CSCD_OK;
+}
+
+static void free_lanes(search_space *s) {
+    for (uint32_t i = 0; s->lanes != NULL && i < s->traversal.lane_count; i++) {
+        context_free(s->context, s->lanes[i].contacts);
+        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_VF].pairs);
+        context_free(s->context, s->lanes[i].candidates[CSCD_CONTACT_EE].pairs);
+    }
+    context_free(s->context, s->lanes);
+}
+
+void search_space_destroy(search_space *s) {
+    if (s->context == NULL) return;
+    free_lanes(s);
+    if (s->traversal.lanes != NULL) traversal_destroy(&s->traversal);
+    bvh_free(&s->bvh);
+    representatives_free(s->context, &s->representatives);
+    orphan_pairs_free(s->context, &s->orphans);
+    context_free(s->context, s->skipped);
+    *s = (search_space){.context = NULL};
+}
+
+cscd_status search_space_status(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
+    }
+    return CSCD_OK;
+}

@@ -1,0 +1,27 @@
+/* What the searches of a detector work with, from one to the next: trees, lanes, and which triangle pair tests what. */
+#pragma once
+
+#include "runtime/bvh/traversal.h"
+#include "runtime/narrow_phase/contact_lane.h"
+#include "runtime/narrow_phase/orphan_pairs.h"
+#include "runtime/narrow_phase/representatives.h"
+
+typedef struct search_space {
+    cscd_context *context;
+    const cscd_mesh *mesh;
+    bvh bvh; /* of the current interval or moment; whoever begins a search has moved it there */
+    traversal traversal;
+    contact_lane *lanes; /* one per lane of the traversal */
+    representatives representatives;
+    orphan_pairs
+        orphans; /* made by the first search that skips adjacent triangles, unless there are too many */
+    bool orphans_known, orphans_usable;
+    bool *skipped; /* per component: pairs of its adjacent triangles are not traversed */
+} search_space;
+
+/* The trees are not built yet. On failure *out holds nothing. */
+cscd_status search_space_create(const cscd_mesh *mesh, search_space *out);
+void search_space_destroy(search_space *s);
+
+/* OUT_OF_MEMORY: a lane had no room for a contact. */
+cscd_status search_space_status(const search_space *s);
