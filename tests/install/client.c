@@ -1,4 +1,4 @@
-/* A program of a user of the installed library, in C99: two tetrahedra, one of which flies into the other. */
+/* A program that uses the installed library, in C99: two tetrahedra, one of which flies into the other. */
 #include <cscd/cscd.h>
 
 #include <stdio.h>
@@ -10,7 +10,7 @@ static const uint32_t triangles[TRIANGLE_COUNT * 3] = {0, 2, 1, 0, 1, 3, 1, 2, 3
 static const double start[VERTEX_COUNT * 3] = {0, 0, 0,  4, 0, 0,  0, 4, 0,  0, 0, 4,
                                                1, 1, -1, 2, 1, -2, 1, 2, -2, 1, 1, -3};
 
-/* Regions, which take the linear algebra that the library is linked with; then the contacts of one step. */
+/* Makes regions, which needs the linear algebra libraries, and prints the contacts of one step. */
 static cscd_status print_contacts(cscd_context *context) {
     double end[VERTEX_COUNT * 3];
     const cscd_mesh_desc desc = {VERTEX_COUNT, TRIANGLE_COUNT, triangles};

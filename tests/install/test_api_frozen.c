@@ -1,6 +1,6 @@
 /* Version 1 of the API keeps its numbers: values of enumerators, sizes of structs and places of their
- * members. A compiler that sees another value ends here; a change needs another major version. Sensors:
- * test_api_frozen_sensors.c. */
+ * members. A compiler that sees another value stops here; a change needs a new major version.
+ * test_api_frozen_sensors.c has the sensors. */
 #include "cscd/cscd.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
@@ -259,7 +259,7 @@ PLACE(cscd_free_step, limit, 16);
 
 #endif
 
-/* Functions, declared once more: other parameters or results would not compile. */
+/* The functions are declared again: other parameters or results would not compile. */
 
 const char *cscd_status_string(cscd_status status);
 const char *cscd_simd_name(cscd_simd simd);
@@ -364,7 +364,7 @@ static void nothing_public_is_missing_here(void **state) {
                      " | sed -n '/^typedef enum cscd_/,/}/p' | grep -oE 'CSCD_[A-Z_0-9]+' | "
                      "while read -r name; do grep -q \"VALUE($name, \" tests/install/test_api_frozen*.c || "
                      "echo $name; done"));
-    /* TYPE or TYPE, MEMBER; of a pointer to a function what is in its first parentheses. */
+    /* Lines of TYPE or of TYPE, MEMBER; a pointer to a function is named in its first parentheses. */
     expect_none(
         "structures and members",
         shell_output(

@@ -1,4 +1,4 @@
-/* As test_api_frozen.c, for <cscd/sensors.h>; and its defaults, which are as frozen. */
+/* The same as test_api_frozen.c for <cscd/sensors.h>, and its defaults, which are also frozen. */
 #include "cscd/cscd.h"
 #include "tests/support/test.h"
 
@@ -76,7 +76,7 @@ PLACE(cscd_sensor_counters, tests, 32);
 
 #endif
 
-/* Functions, declared once more: other parameters or results would not compile. */
+/* The functions are declared again: other parameters or results would not compile. */
 
 cscd_partition_options cscd_partition_defaults(void);
 cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,

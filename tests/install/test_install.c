@@ -1,4 +1,4 @@
-/* make install, and programs of users of what it installs: pkg-config, CMake, moved trees; make uninstall. */
+/* make install, programs that use what it installs (pkg-config, CMake, moved trees), and make uninstall. */
 #include "cscd/cscd.h"
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
@@ -10,15 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The build that is installed, as the arguments of make that lead to it. */
+/* The build that is installed, as arguments of make. */
 static struct {
     char root[4096], config[64];
     bool gsl;
 } build;
 static temp_folder folder;
-static char prefix[512]; /* where the files are: DESTDIR and PREFIX */
+static char prefix[512]; /* DESTDIR and PREFIX: the folder of the files */
 
-/* Reads the build from the place of the tool: ROOT/CONFIG[-without-gsl]/cscd. */
+/* Reads the build from the path of the tool: ROOT/CONFIG[-without-gsl]/cscd. */
 static void find_build(void) {
     static const char without[] = "-without-gsl";
     const char *tool = getenv("CSCD_TOOL");
@@ -34,7 +34,7 @@ static void find_build(void) {
     snprintf(build.config, sizeof build.config, "%s", name);
 }
 
-/* Runs the target for the tree below `place`, apart from the make that may run this test. */
+/* Runs the target for the tree below `place`, independently of the make that may run this test. */
 static void run_make(const char *target, const char *place, const char *variables) {
     shell("env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES make -s %s BUILD_ROOT='%s' CONFIG=%s GSL=%d "
           "DESTDIR='%s' %s",
@@ -67,7 +67,7 @@ static int remove_all(void **state) {
     return 0;
 }
 
-/* What both clients print, with any library. */
+/* Returns the output of both clients, with any library. */
 static const char *clients_output(void) {
     static char text[256];
     snprintf(text, sizeof text, "cscd %s\nvf 4 0 at t = 0.667\n", cscd_version_string());
@@ -122,7 +122,7 @@ static void shared_library_exports_the_api(void **state) {
         "");
 }
 
-/* Compiles tests/install/client.c with what pkg-config says, changed by a filter; returns what it prints. */
+/* Compiles tests/install/client.c with the flags of pkg-config, changed by a filter; returns its output. */
 static char *c_client(const char *pkg_config_options, const char *filter) {
     shell("set -e; export PKG_CONFIG_PATH='%s/lib/pkgconfig'; "
           "flags=$(pkg-config --cflags --libs %s cscd | %s); "
@@ -180,7 +180,7 @@ static void cmake_project(const char *place) {
                   "1\n0\n");
 }
 
-/* The tree may be moved: then nothing of its old place is left to be found. */
+/* A tree that was moved refers nowhere to its old place. */
 static void cpp_program_by_cmake(void **state) {
     (void)state;
     cmake_project(prefix);
@@ -196,8 +196,8 @@ static void cpp_program_by_cmake(void **state) {
     shell("mv '%s' '%s'", moved, prefix);
 }
 
-/* Whether find_package takes the installed version where `version` is asked for: "" or "TRUE", then "TRUE"
- * where it is the very same. */
+/* Checks whether find_package accepts the installed version when `version` is asked for: the answer is ""
+ * or "TRUE", and a second "TRUE" for exactly that version. */
 static void expect_version(const char *version, const char *answer) {
     shell("printf 'set(PACKAGE_FIND_VERSION %%s)\\nset(PACKAGE_FIND_VERSION_MAJOR %%s)\\ninclude(\"%%s\")\\n"
           "message(\"${PACKAGE_VERSION_COMPATIBLE} ${PACKAGE_VERSION_EXACT}\")\\n' "
@@ -228,7 +228,7 @@ static void uninstall_leaves_nothing(void **state) {
     expect_output("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
 }
 
-/* Folders of any names; what was there before, files and empty folders, stays. */
+/* Folders may have any names; files and empty folders that were there before stay. */
 static void uninstall_leaves_what_others_made(void **state) {
     (void)state;
     char place[512];

@@ -51,7 +51,7 @@ static void options_are_those_of_the_tool(void **state) {
         const char *name = commands[i];
         expect_equal(name, shell_output(0, PART_OF " | " NAMES, name),
                      shell_output(0, "\"$CSCD_TOOL\" %s --help | " NAMES, name));
-        /* With their arguments, as the lists of --help have them: two spaces end an option. */
+        /* Options with their arguments, as --help lists them: two spaces end an option. */
         char *missing =
             shell_output(0,
                          "\"$CSCD_TOOL\" %s --help | sed -n 's/^  \\(-.*\\)/\\1/p' | sed 's/  .*//' | "
@@ -63,7 +63,7 @@ static void options_are_those_of_the_tool(void **state) {
     }
 }
 
-/* In examples, for one. */
+/* Options in examples exist, too. */
 static void no_option_is_made_up(void **state) {
     (void)state;
     expect_equal(

@@ -1,5 +1,5 @@
-/* Certified motions: whatever a solver wants, nothing meets on the way; and nothing is changed without need.
- */
+/* Certified motions: whatever a solver wants, there is no contact on the way, and nothing is changed
+ * without need. */
 #include "models/cloth/cloth_scene.h"
 #include "models/cloth/garment.h"
 #include "models/cloth/safe_motion.h"
@@ -19,7 +19,7 @@ typedef struct press {
     body sheet, box;
     cscd_context *context;
     cscd_mesh *mesh;
-    cscd_detector *judge;              /* that finds what touches */
+    cscd_detector *judge;              /* finds all contacts */
     uint32_t vertex_count, floor, lid; /* first vertices of the obstacles */
     double *inverse_masses, *x0, *x1;
     safe_motion safe;
@@ -66,7 +66,7 @@ static void free_press(press *p) {
     free(p->x1);
 }
 
-/* Makes the motion safe, judges it, and goes on to its end. Returns the length. */
+/* Makes the motion safe, checks it, and moves to its end. Returns the length. */
 static double go_on(press *p) {
     double length;
     cscd_contacts found;
@@ -117,8 +117,7 @@ static void what_falls_stops_at_the_floor(void **state) {
     free_press(&p);
 }
 
-/* Vertices that jump by more than an edge, again and again: the sheet ends in a tangle that does not cross.
- */
+/* Vertices jump by more than an edge, again and again: the sheet ends in a tangle without intersections. */
 static void shaken_sheets_never_cross(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 2; seed++) {
@@ -133,7 +132,7 @@ static void shaken_sheets_never_cross(void **state) {
     }
 }
 
-/* The lid wants to go through sheet and floor: it waits above the sheet. Then it is told to go up again, and
+/* The lid is to move through sheet and floor, and waits above the sheet. Then it moves up again, and
  * everything comes free. */
 static void obstacles_wait_for_what_they_press(void **state) {
     (void)state;
@@ -163,7 +162,7 @@ static void what_meets_itself_keeps_its_momentum(void **state) {
     press p = make_press(5.0, 5.0);
     double wanted[3] = {0.0}, got[3] = {0.0};
     for (uint32_t v = 0; v < p.floor; v++) {
-        double *x = p.x1 + v * 3; /* the one half turns over onto the other, and through it */
+        double *x = p.x1 + v * 3; /* one half turns over onto the other, and through it */
         if (x[0] > 0.1) x[2] += 0.4;
         if (x[0] > 0.3) x[0] -= 0.9, x[2] -= 0.8;
         x[1] += 0.5;

@@ -1,4 +1,4 @@
-/* What the cloth simulator is made of: garments, springs and hinges, contact with friction. */
+/* The parts of the cloth simulator: garments, springs and hinges, contact with friction. */
 #include "models/cloth/apart.h"
 #include "models/cloth/cloth_scene.h"
 #include "models/cloth/fabric.h"
@@ -42,7 +42,7 @@ static void sheets_are_open(void **state) {
     }
 }
 
-/* Two panels, which their seams join into one disc: with an open edge as long as both lower edges. */
+/* The seams join the two panels into one disc with an open edge as long as both lower edges. */
 static void bags_are_sewn_from_two_panels(void **state) {
     (void)state;
     enum { COLUMNS = 7, ROWS = 9 };
@@ -125,7 +125,7 @@ static void what_rests_stays(void **state) {
     body_free(&tube);
 }
 
-/* One spring for each edge, one hinge for each inner edge; masses add up to that of the area. */
+/* There is one spring for each edge and one hinge for each inner edge; masses add up to that of the area. */
 static void fabric_counts(void **state) {
     (void)state;
     body b = make_sheet(10);
@@ -139,8 +139,8 @@ static void fabric_counts(void **state) {
     body_free(&b);
 }
 
-/* Sums of mass * change and of its moment. Each constraint has none where it is solved; as the vertices go on
- * during the pass, that holds for small changes. */
+/* Checks the sums of mass * change and of its moment. Each constraint keeps both where it is solved; since
+ * vertices move during the pass, this holds for small changes. */
 static void springs_and_hinges_keep_momentum(void **state) {
     (void)state;
     body b = make_sheet(10);
@@ -167,7 +167,8 @@ static void springs_and_hinges_keep_momentum(void **state) {
     body_free(&b);
 }
 
-/* Held at its upper edge for three seconds: no edge is more than 3 % longer, and it hangs still. */
+/* A sheet is held at its upper edge for three seconds: no edge is more than 3 % longer, and it hangs
+ * still. */
 static void a_hanging_sheet_stretches_little(void **state) {
     (void)state;
     enum { SIDE = 12, STEPS = 3000 };
@@ -200,7 +201,7 @@ static void a_hanging_sheet_stretches_little(void **state) {
     body_free(&b);
 }
 
-/* A vertex of mass 1 above a triangle that stays: vertex 0 over 1, 2, 3. */
+/* Makes a pair of a vertex of mass 1 above a triangle that stays: vertex 0 over 1, 2, 3. */
 static apart one_pair(apart_pair *pair) {
     *pair = (apart_pair){
         .stencil = {{0, 1, 2, 3}, {1.0, -0.5, -0.25, -0.25}}, .normal = {0.0, 0.0, 1.0}, .healing = 0.1};
@@ -231,7 +232,7 @@ static void what_approaches_is_stopped_at_the_thickness(void **state) {
     assert_true(fabs(x[2] - 0.062) < 1e-15 && previous[2] == 0.012);
 }
 
-/* What is too near parts without speed: position and start move alike. */
+/* Position and start move alike when a pair is too near. */
 static void what_is_too_near_parts_without_speed(void **state) {
     (void)state;
     double x[12], previous[12];
@@ -240,7 +241,7 @@ static void what_is_too_near_parts_without_speed(void **state) {
     assert_true(fabs(x[2] - previous[2]) < 1e-15);
 }
 
-/* The tangential motion is cut by friction times what was stopped, at most to nothing. */
+/* The tangential motion shrinks by friction times what was stopped, at most to zero. */
 static void friction_is_coulombs(void **state) {
     (void)state;
     double x[12], previous[12];
@@ -270,7 +271,7 @@ static void obstacles_move_as_told(void **state) {
         const double *p = shape.positions + v * 3, *q = x + v * 3;
         cloth_obstacle_place(&o, &shape, 0.9, x);
         for (int k = 0; k < 3; k++) assert_true(fabs(q[k] - (p[k] + o.centre[k])) < 1e-15);
-        cloth_obstacle_place(&o, &shape, 5.0, x); /* by a right angle */
+        cloth_obstacle_place(&o, &shape, 5.0, x); /* turned by a right angle */
         assert_true(fabs(q[0] - (1.0 - p[1])) < 1e-12 && fabs(q[1] - (2.0 + p[0])) < 1e-12);
         assert_true(fabs(q[2] - (3.4 + p[2])) < 1e-12);
     }

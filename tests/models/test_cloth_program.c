@@ -33,7 +33,7 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-/* A model and as many frames as the scene has, of which the first is the model. */
+/* Checks a model and its frames: as many as the scene has, of which the first is the model. */
 static void check_files(const char *obj, const char *pc2, uint32_t frame_count) {
     mesh_file mesh;
     animation *frames;
@@ -92,7 +92,7 @@ static void help_lists_the_scenes(void **state) {
 #define REFUSED(code, text, ...)                                                                             \
     model_program_refuses("cloth", (code), (text), (const char *const[]){__VA_ARGS__, NULL})
 
-/* Checked before anything is recorded. */
+/* Arguments are checked before anything is recorded. */
 static void what_makes_no_sense_is_refused(void **state) {
     (void)state;
     temp_folder empty = temp_folder_make();

@@ -1,4 +1,4 @@
-/* The cloth scenes, whole and small: nothing meets in any step, and yet much happens. */
+/* The cloth scenes, whole and small: there is no contact in any step, and yet much happens. */
 #include "models/cloth/cloth_simulation.h"
 #include "models/common/vec3.h"
 #include "tests/support/test.h"
@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Under sanitizers only the first frames, which know no folds. A brute-force test of all pairs now and then.
- */
+/* Sanitizers run only the first frames, which have no folds. Some intervals are also tested by brute
+ * force. */
 #ifdef __SANITIZE_ADDRESS__
 enum { FRAMES = 75, THREADED_FRAMES = 16, SEWN_FRAMES = 48, BRUTE_EVERY = 70 };
 #else
@@ -16,13 +16,13 @@ enum { FRAMES = 1000, THREADED_FRAMES = 30, SEWN_FRAMES = 70, BRUTE_EVERY = 70 }
 
 enum { RESOLUTION = 18 };
 
-/* A run of a scene beside detectors that know nothing of the solver's, on what a recording keeps: positions
- * in single precision. */
+/* A run of a scene and separate detectors, which check the positions that a recording keeps: in single
+ * precision. */
 typedef struct cloth_trial {
     cscd_context *context;
     cloth_simulation run;
     uint32_t vertex_count, garment_count;
-    cscd_detector *judge, *brute; /* of the whole scene; both find what touches */
+    cscd_detector *judge, *brute; /* of the whole scene; both find all contacts */
     double *before, *after;       /* rounded */
 } cloth_trial;
 
@@ -94,8 +94,8 @@ static void expect_embedded(cscd_detector *detector, const double *positions) {
     assert_int_equal(crossing.zero_area_triangles, 0);
 }
 
-/* Pairs nearer than 1.2 thicknesses: folds, of which the parts were more than six spacings apart at the
- * start, and pairs of the garment with each obstacle. */
+/* Numbers of pairs nearer than 1.2 thicknesses: folds, whose sides were more than six spacings apart at
+ * the start, and pairs of the garment with each obstacle. */
 typedef struct meetings {
     size_t folds, obstacles[CLOTH_OBSTACLES_MAX];
 } meetings;
@@ -122,7 +122,7 @@ static meetings count_meetings(cloth_trial *t) {
     return m;
 }
 
-/* The largest motion of a vertex of the garment in the last frame. */
+/* Returns the largest motion of a vertex of the garment in the last frame. */
 static double largest_motion(const cloth_trial *t) {
     double most = 0.0, between[3];
     for (uint32_t v = 0; v < t->garment_count; v++) {
@@ -132,8 +132,9 @@ static double largest_motion(const cloth_trial *t) {
     return most;
 }
 
-/* No contact from frame to frame, and so no frame that crosses; no obstacle that had to wait. *most_folds: of
- * a frame. True if that was the whole scene, which ends nearly at rest. */
+/* Runs a scene: there is no contact from frame to frame, so no frame has intersections, and no obstacle
+ * waits. *most_folds is the largest number in a frame. Returns true when that was the whole scene, which
+ * ends nearly at rest. */
 static bool run_scene(cloth_trial *t, size_t *most_folds) {
     *most_folds = 0;
     uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;
@@ -153,7 +154,7 @@ static bool run_scene(cloth_trial *t, size_t *most_folds) {
     return true;
 }
 
-/* It lies on the ball and the floor: above both, nowhere far from the ball's top where it covers it. */
+/* The sheet lies on the ball and the floor: above both, and near the ball's top where it covers it. */
 static void the_sheet_drapes_over_the_ball(void **state) {
     (void)state;
     cloth_trial t = begin_trial("cloth-drape", 1);
@@ -174,7 +175,7 @@ static void the_sheet_drapes_over_the_ball(void **state) {
     end_trial(&t);
 }
 
-/* Flat on the floor, below the ball. */
+/* The sleeve ends flat on the floor, below the height of the ball. */
 static void the_sleeve_lies_in_folds(void **state) {
     (void)state;
     cloth_trial t = begin_trial("sleeve", 1);
@@ -194,8 +195,8 @@ static void the_sleeve_lies_in_folds(void **state) {
     end_trial(&t);
 }
 
-/* The panels of the bag meet nothing but each other at their seams, where their vertices stay together, bit
- * for bit. */
+/* The panels of the bag touch only each other, at their seams, where their vertices stay equal bit for
+ * bit. */
 static void seams_hold(void **state) {
     (void)state;
     cloth_trial t = begin_trial("bag", 1);
@@ -214,8 +215,8 @@ static void seams_hold(void **state) {
     end_trial(&t);
 }
 
-/* Steps of the garment alone, by a method that culls: of the open sheet nothing can be culled, and the sleeve
- * is known to be embedded throughout. */
+/* Steps the garment alone with a method that culls: nothing of the open sheet can be culled, and the
+ * sleeve is known to be embedded throughout. */
 static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     cloth_trial t = begin_trial(name, 1);
     cscd_mesh *mesh;

@@ -1,4 +1,4 @@
-/* The IPC solver's energies against finite differences: barrier, mollifier, springs, pairs that are near. */
+/* The energies of the IPC solver against finite differences: barrier, mollifier, springs, near pairs. */
 #include "models/common/vec3.h"
 #include "models/ipc/barrier.h"
 #include "models/ipc/contact_energy.h"
@@ -27,7 +27,7 @@ static void barrier_has_its_derivatives(void **state) {
     }
 }
 
-/* Value and two derivatives go to 0 at the reach; the value is above every bound at 0. */
+/* The value and two derivatives go to 0 at the reach; the value exceeds every bound at 0. */
 static void barrier_begins_smoothly_and_has_no_end(void **state) {
     (void)state;
     ipc_curve before = ipc_barrier(1.0 - 1e-9, 1.0), at = ipc_barrier(1.0, 1.0), far = ipc_barrier(7.0, 1.0);
@@ -78,7 +78,8 @@ static double *moved_copy(const body *b, double scale, double noise, uint64_t se
     return out;
 }
 
-/* Each edge once, each vertex with a strut or more, all sorted; at rest no energy, moved or not. */
+/* Each edge is a spring once, each vertex has a strut or more, all sorted. At rest there is no energy,
+ * moved or not. */
 static void springs_hold_the_body(void **state) {
     (void)state;
     static const body_kind kinds[] = {BODY_SPHERE, BODY_TORUS, BODY_PAWN};
@@ -137,7 +138,8 @@ static void springs_have_their_gradient(void **state) {
     body_free(&b);
 }
 
-/* One spring: stretched, its Hessian is the derivative of the force; pressed, what is left is along it. */
+/* One spring: when it is stretched, its Hessian is the derivative of the force; when it is compressed, the
+ * part along it is left. */
 static void spring_hessians_are_semidefinite(void **state) {
     (void)state;
     ipc_spring spring = {0, 1, 1.0, 3.0};
@@ -216,7 +218,7 @@ static void find_contacts(near_fixture *f, const double *x, ipc_contacts *contac
     ipc_contacts_find(contacts, f->mesh, f->x, x, &near, &barrier);
 }
 
-/* The gradient along each coordinate, all pairs found anew at each point. */
+/* Checks the gradient along each coordinate; the pairs are found again at each point. */
 static void check_gradient(near_fixture *f, double tolerance) {
     ipc_contacts contacts = {0}, moved = {0};
     double gradient[24] = {0.0}, sum[3] = {0.0, 0.0, 0.0};
@@ -248,7 +250,7 @@ static void near_pairs_have_their_gradient(void **state) {
     }
 }
 
-/* So nearly parallel that they fade: the mollifier's part of the gradient counts. */
+/* The edges are so nearly parallel that they fade: the mollifier's part of the gradient counts. */
 static void nearly_parallel_edges_have_their_gradient(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {
@@ -263,7 +265,8 @@ static void nearly_parallel_edges_have_their_gradient(void **state) {
     }
 }
 
-/* x . Hessian x is curvature * (change of distance)^2, summed; the change of each distance by differences. */
+/* x . Hessian x is the sum of curvature * (change of distance)^2; differences give the change of each
+ * distance. */
 static void near_pairs_have_their_curvature(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 20; seed++) {

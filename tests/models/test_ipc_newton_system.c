@@ -1,5 +1,5 @@
-/* The linear system of the IPC solver: its product against a matrix, its solution, and vertices that are
- * moved. */
+/* The linear system of the IPC solver: its product against a matrix, its solution, and vertices with given
+ * motions. */
 #include "models/common/vec3.h"
 #include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
@@ -17,7 +17,7 @@ typedef struct system_fixture {
     ipc_contacts contacts;
     ipc_system system;
     double *inertia, *positions, *gradient, *x, *product;
-    uint32_t count; /* of coordinates */
+    uint32_t count; /* number of coordinates */
 } system_fixture;
 
 static void add_contacts(system_fixture *f, random_stream *random) {
@@ -72,8 +72,8 @@ static void free_system(system_fixture *f) {
     free(f->product);
 }
 
-/* Column by column: symmetric and positive where vertices are free, and the diagonal's blocks are those whose
- * inverses precondition. */
+/* Column by column, the matrix is symmetric and positive where vertices are free, and the preconditioner
+ * has the inverses of the blocks on its diagonal. */
 static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
     (void)state;
     system_fixture f = make_system(1);
@@ -119,13 +119,13 @@ static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
     free_system(&f);
 }
 
-/* matrix * x = -gradient where vertices are free; the others went where they were told. */
+/* matrix * x = -gradient where vertices are free; the others moved as given. */
 static void solution_solves(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 10; seed++) {
         system_fixture f = make_system(seed);
         for (uint32_t i = 0; i < FIXED * 3; i++) f.x[i] = 0.01 * i;
-        f.x[FIXED * 3] = 77.0; /* of no effect */
+        f.x[FIXED * 3] = 77.0; /* has no effect */
         uint32_t iterations = ipc_system_solve(&f.system, f.gradient, 1e-10, 10 * f.count, f.x);
         assert_true(iterations > 0 && iterations < 10 * f.count);
         ipc_system_product(&f.system, f.x, f.product);
@@ -139,7 +139,7 @@ static void solution_solves(void **state) {
     }
 }
 
-/* However early it stops. */
+/* Every iterate leads down, however early the solver stops. */
 static void every_iterate_leads_down(void **state) {
     (void)state;
     system_fixture f = make_system(5);

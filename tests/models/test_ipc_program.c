@@ -1,4 +1,4 @@
-/* The program `ipc`, as a user runs it: what it lists and what it refuses. */
+/* The program `ipc`, as a user runs it: its list of scenes and its errors. */
 #include "models/ipc/scenes.h"
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
@@ -35,7 +35,7 @@ static void help_lists_the_scenes(void **state) {
 #define REFUSED(code, text, ...)                                                                             \
     model_program_refuses("ipc", (code), (text), (const char *const[]){__VA_ARGS__, NULL})
 
-/* Checked before anything is recorded. */
+/* Arguments are checked before anything is recorded. */
 static void unknown_scenes_are_refused(void **state) {
     (void)state;
     temp_folder empty = temp_folder_make();

@@ -1,5 +1,5 @@
-/* The scenes of the IPC solver, small: every step it takes is free of contact by another detector's word, the
- * energy falls, links hold each other, and the motion is repeatable. */
+/* The scenes of the IPC solver, small: another detector finds no contact in any step, the energy falls,
+ * links hold each other, and the motion is repeatable. */
 #include "models/common/vec3.h"
 #include "models/ipc/solver.h"
 #include "tests/support/random_stream.h"
@@ -8,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* RING_TRIANGLES: of all; STRIDE: of time steps whose lines are checked by the other detectors. */
+/* RING_TRIANGLES: triangles of all rings; STRIDE: every so many time steps, the other detectors check the
+ * lines. */
 #ifdef __SANITIZE_ADDRESS__
 enum { RING_TRIANGLES = 480, RING_STEPS = 60, STRIDE = 25, REPEATED = 12 };
 #else
 enum { RING_TRIANGLES = 900, RING_STEPS = 90, STRIDE = 4, REPEATED = 30 };
 #endif
 
-/* The chain is taut after about 50 steps; the coil is pressed together most after 75. */
+/* The chain is taut after about 50 steps; the coil is compressed most after 75. */
 static const struct extent {
     const char *name;
     uint32_t triangles, steps;
@@ -40,7 +41,7 @@ static ipc_solver open_scene(const struct extent *e, cscd_context *context) {
     return p;
 }
 
-/* Others than the solver's: without the line, and one by brute force. */
+/* Detectors other than the solver's: without a line search, and one by brute force. */
 typedef struct judges {
     cscd_detector *apart, *touching, *brute;
     uint32_t judged;
@@ -73,7 +74,7 @@ static void expect_none(cscd_detector *detector, const double *from, const doubl
                  contacts.items[0].toi);
 }
 
-/* Nothing touches on the way nor comes nearer than allowed, and the end crosses nowhere. */
+/* Checks that there is no contact on the way, no pair nearer than allowed, and no intersection at the end. */
 static void judge_interval(judges *j, const double *from, const double *to) {
     cscd_intersections crossing;
     expect_none(j->touching, from, to);
@@ -83,7 +84,7 @@ static void judge_interval(judges *j, const double *from, const double *to) {
     assert_int_equal(crossing.count, 0);
 }
 
-/* The energy that the solver goes by is that of its positions and of the pairs that are near there. */
+/* Checks that the solver's energy is that of its positions and of the pairs that are near there. */
 static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     cscd_proximities near;
     ipc_contacts contacts = {0};
@@ -96,7 +97,7 @@ static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     ipc_contacts_free(&contacts);
 }
 
-/* One time step, its lines judged. */
+/* Takes one time step and checks its lines. */
 static void step_and_judge(ipc_solver *p, judges *j, double *from) {
     bool done = false;
     ipc_solver_begin_step(p);
@@ -139,8 +140,8 @@ static void mean_of(const ipc_solver *p, uint32_t object, double out[3]) {
         vec3_add_scaled(out, 1.0 / o.vertex_count, p->positions + (size_t)(o.first_vertex + v) * 3);
 }
 
-/* Without contact the links would be 11 below the first by then. Two that hold each other are at most two
- * inner radii of 0.78 apart, and somewhat more as they are stretched. */
+/* Without contact the links would be 11 below the first by then. Two linked rings are at most two inner
+ * radii of 0.78 apart, or somewhat more when they are stretched. */
 static void links_bear_each_other(void **state) {
     (void)state;
     cscd_context *context = open_context(1);
@@ -169,7 +170,7 @@ static void links_bear_each_other(void **state) {
     cscd_context_destroy(context);
 }
 
-/* Half way the upper plate is where it is to be, and the coil between the plates and on itself. */
+/* Half way, the upper plate has arrived, and the coil has contacts with the plates and itself. */
 static void the_press_arrives_and_the_coil_gives_way(void **state) {
     (void)state;
     cscd_context *context = open_context(1);
@@ -198,7 +199,7 @@ static void the_press_arrives_and_the_coil_gives_way(void **state) {
     cscd_context_destroy(context);
 }
 
-/* Vertices fly apart in all directions, so fast that Newton steps go too far. */
+/* Vertices fly apart in all directions, so fast that whole Newton steps go too far. */
 static void the_energy_falls_however_wild_the_motion(void **state) {
     (void)state;
     cscd_context *context = open_context(1);
@@ -241,7 +242,7 @@ static void motion_is_the_same_for_any_number_of_threads(void **state) {
     }
 }
 
-/* Frame 0 is in single precision, free of crossings and of pairs within the least distance. */
+/* Frame 0 is in single precision, without intersections and without pairs nearer than the least distance. */
 static void scenes_begin_apart(void **state) {
     (void)state;
     cscd_context *context = open_context(1);

@@ -1,4 +1,5 @@
-/* Scenes of several objects: numbering, obstacles that meet only what is none, positions in any layout. */
+/* Scenes of several objects: numbering, obstacles that have contacts only with other objects, positions in
+ * any layout. */
 #include "cscd/cscd.h"
 #include "tests/support/methods.h"
 #include "tests/support/random_stream.h"
@@ -10,7 +11,7 @@
 
 enum { OBJECTS = 3, SCENES = 24, OBJECT_TRIANGLES_MAX = 700 };
 
-/* Each closed, open or worse; together in one place, so that they meet. */
+/* Closed, open and worse objects, all in one place so that they have contacts. */
 static const scene_family families[] = {SCENE_NOISY_SPHERE, SCENE_TWO_SPHERES, SCENE_FOLDED_SHEET,
                                         SCENE_BENT_CAPSULE, SCENE_SOUP,        SCENE_GRID,
                                         SCENE_SPIKE,        SCENE_BOW_TIE};
@@ -45,7 +46,7 @@ typedef struct object_setting {
     cscd_detector *detector;
 } object_setting;
 
-/* obstacles: a bit per object. */
+/* obstacles has a bit for each object. */
 static object_setting set_up(unsigned obstacles, cscd_method method, uint32_t thread_count) {
     object_setting s;
     cscd_object_desc descs[OBJECTS];
@@ -196,7 +197,7 @@ static void check_guarantees(const object_setting *s, unsigned obstacles) {
     }
 }
 
-/* What is found is what is found without obstacles, less the contacts between two of them. */
+/* The list equals that without obstacles, less the contacts between two of them. */
 static void obstacles_meet_only_others(void **state) {
     (void)state;
     static const cscd_method methods[] = {CSCD_METHOD_BRUTE, CSCD_METHOD_NONE, CSCD_METHOD_SINGLE,
@@ -231,7 +232,7 @@ static void obstacles_cost_nothing(void **state) {
     tear_down(&s);
 }
 
-/* A plan by charge neither charges nor cuts an obstacle, and other objects are cut as they are alone. */
+/* A plan by charge neither charges nor cuts an obstacle, and cuts other objects as it cuts them alone. */
 static void obstacles_are_not_planned(void **state) {
     (void)state;
     for (int i = 0; i < OBJECTS; i++) scene_make(SCENE_BENT_CAPSULE, (uint64_t)i, &objects[i]);

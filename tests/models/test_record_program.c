@@ -63,7 +63,7 @@ static void records_a_scene(void **state) {
     assert_false(file_exists(temp_file_path(&folder, "dumbbell-stairs-free-scenery.pc2").text));
 }
 
-/* The model is what the recorder begins with and the first frame of the cache, which has as many frames as it
+/* The model is the recorder's first frame and the first frame of the cache, which has as many frames as it
  * says; the second frame is the recorder's too. */
 static void files_hold_the_recording(void **state) {
     (void)state;
@@ -93,7 +93,7 @@ static void files_hold_the_recording(void **state) {
     free(positions);
 }
 
-/* Ground and five steps, each a box. */
+/* The scenery is ground and five steps, each a box. */
 static void scenery_is_a_model(void **state) {
     (void)state;
     mesh_file mesh = read_mesh(scenery.text);
@@ -137,7 +137,7 @@ static void help_lists_the_scenes(void **state) {
 #define REFUSED(code, text, ...)                                                                             \
     model_program_refuses("record", (code), (text), (const char *const[]){__VA_ARGS__, NULL})
 
-/* Checked before anything is recorded. */
+/* Arguments are checked before anything is recorded. */
 static void unknown_scenes_are_refused(void **state) {
     (void)state;
     temp_folder empty = temp_folder_make();
@@ -147,7 +147,7 @@ static void unknown_scenes_are_refused(void **state) {
     temp_folder_remove(&empty);
 }
 
-/* The error names the path; no frames are left where they could be taken for a recording. */
+/* The error names the path, and no frames are left that could be taken for a recording. */
 static void what_cannot_be_written_is_an_error(void **state) {
     (void)state;
     temp_folder blocked = temp_folder_make();

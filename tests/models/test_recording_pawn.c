@@ -1,4 +1,5 @@
-/* pawn-drop as a whole is what a recording must be: soft, of moderate speed, in contact at times, healing. */
+/* The whole of pawn-drop is what a recording must be: soft, of moderate speed, with contacts at times,
+ * healing. */
 #include "models/common/motion.h"
 #include "models/softbody/recorder.h"
 #include "tests/support/test.h"
@@ -6,14 +7,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Under the sanitizers as far as the first contacts: the whole takes half a minute there. */
+/* Sanitizers run only to the first contacts: the whole takes half a minute there. */
 #ifdef __SANITIZE_ADDRESS__
 enum { FRAMES = 40 };
 #else
 enum { FRAMES = 150 };
 #endif
 
-/* What was measured, and where the mesh crosses itself. */
+/* The measurements, and the frames with intersections. */
 typedef struct measured {
     recording_motion totals;
     bool crosses[FRAMES];
@@ -46,7 +47,7 @@ static int record_pawn(void **state) {
     }
     recording_motion counts = m.totals;
     recording_motion_free(&m.totals);
-    m.totals = counts; /* its numbers; what it pointed to is gone */
+    m.totals = counts; /* its numbers only; its memory has been freed */
     recorder_close(&r);
     return 0;
 }
@@ -75,7 +76,7 @@ static void runs_into_itself_at_times(void **state) {
 #endif
 }
 
-/* Penetrations begin and end. */
+/* Intersections begin and end. */
 static void penetrations_heal(void **state) {
     (void)state;
     uint32_t begun = 0, healed = 0;
@@ -92,7 +93,7 @@ static void penetrations_heal(void **state) {
 #endif
 }
 
-/* Of what it had from its height it keeps what lies on the ground; it is never below that. */
+/* Of the energy of its height it keeps that of a body on the ground, and never less. */
 static void comes_down_on_the_ground(void **state) {
     (void)state;
     assert_true(m.most_energy <= m.first_energy * (1.0 + 1e-9));

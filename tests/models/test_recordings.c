@@ -1,4 +1,4 @@
-/* The recordings begin embedded, are repeatable bit for bit, gain no energy, and hold what files can hold. */
+/* The recordings begin embedded, are repeatable bit for bit, gain no energy, and fit into their files. */
 #include "models/softbody/recorder.h"
 #include "tests/support/test.h"
 
@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How far each scene is run here, and of that a second time. The first contacts with itself come with frame
- * 31 of pawn-drop, 30 of dumbbell-stairs, 71 of figure-balls. */
+/* How many frames of each scene are run, and how many of these a second time. The first contacts of a body
+ * with itself come in frame 31 of pawn-drop, 30 of dumbbell-stairs, and 71 of figure-balls. */
 static const struct extent {
     const char *name;
     uint32_t frames, repeated;
@@ -56,7 +56,7 @@ static void check_frame(const recorder *r, double start_energy) {
         fail_msg("%s: energy %.12g from %.12g", r->scene->name, recorder_energy(r), start_energy);
 }
 
-/* Frame 0 is the model, has no intersection, and is above what it falls onto. */
+/* Frame 0 is the model, has no intersection, and is above its obstacles. */
 static void scenes_begin_embedded(void **state) {
     (void)state;
     assert_int_equal(soft_scene_count, SCENE_COUNT);
@@ -80,7 +80,7 @@ static void scenes_begin_embedded(void **state) {
     }
 }
 
-/* The first frames of a scene, checked; their hash up to the frame `hashed`. */
+/* Runs and checks the first frames of a scene; returns the hash of the frames before `hashed`. */
 static uint64_t run_scene(const char *name, uint32_t frames, uint32_t hashed, bool *met_itself) {
     recorder r = open_scene(name);
     double energy = recorder_energy(&r);
@@ -111,7 +111,7 @@ static void first_frames_are_repeatable(void **state) {
     }
 }
 
-/* No two scenes are the same, and names are found, others not. */
+/* Scenes are found by their names, and no others are found. */
 static void scenes_have_their_names(void **state) {
     (void)state;
     for (uint32_t i = 0; i < soft_scene_count; i++) {

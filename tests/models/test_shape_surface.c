@@ -1,4 +1,4 @@
-/* What bodies are made with: edges of closed meshes flipped, split and collapsed; rings; nets made even. */
+/* The tools that make bodies: edges of closed meshes flipped, split and collapsed; rings; remeshing. */
 #include "models/shapes/remesh.h"
 #include "models/shapes/rings.h"
 #include "models/shapes/surface.h"
@@ -35,7 +35,7 @@ static void check_surface(const surface *s) {
     assert_int_equal(live, s->live_triangles);
 }
 
-/* Thousands of operations at random: the torus stays a torus. */
+/* The torus stays a torus over thousands of random operations. */
 static void operations_keep_a_manifold(void **state) {
     (void)state;
     body b = body_of(BODY_TORUS, 400);
@@ -71,7 +71,7 @@ static void operations_keep_a_manifold(void **state) {
     body_free(&b);
 }
 
-/* Nothing may be taken from a tetrahedron, and none of its edges turned. */
+/* No edge of a tetrahedron can be collapsed or flipped. */
 static void a_tetrahedron_stays(void **state) {
     (void)state;
     body b = {0};
@@ -92,7 +92,7 @@ static void a_tetrahedron_stays(void **state) {
     body_free(&b);
 }
 
-/* Every even count, of open outlines and closed ones. */
+/* Rings reach every even count, with open outlines and with closed ones. */
 static void rings_add_up(void **state) {
     (void)state;
     outline half = {.end = {0.0, -1.0}}, whole = {.closed = true, .end = {1.4, 0.0}};
@@ -138,7 +138,7 @@ static double to_ball(const double p[3]) {
 
 static const implicit ball = {to_ball, {-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
 
-/* Up and down from any count, always on the surface; what cannot be is refused. */
+/* Remeshing goes up and down from any count, always on the surface; impossible counts are refused. */
 static void remeshing_reaches_counts(void **state) {
     (void)state;
     const uint32_t counts[] = {1000, 998, 3002, 400, 5000, 60};

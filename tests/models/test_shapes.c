@@ -10,10 +10,10 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* What is to come out; a volume of 0 has no formula. */
+/* The expected result; a volume of 0 has no formula. */
 static const struct expectation {
     uint32_t components;
-    int64_t euler; /* of each */
+    int64_t euler; /* of each component */
     double volume, least_angle;
 } expected[BODY_KIND_COUNT] = {
     [BODY_PAWN] = {1, 2, 0.0, 30.0},
@@ -47,7 +47,7 @@ static int destroy_context(void **state) {
     return 0;
 }
 
-/* Enclosed by one component: above 0 where it is counter-clockwise from outside. */
+/* Returns the volume that one component encloses, above 0 where it is counter-clockwise from outside. */
 static double component_volume(const body *b, const cscd_mesh *mesh, uint32_t component) {
     body part = {b->vertex_count, 0, b->vertex_count, 0, b->positions, NULL};
     for (uint32_t t = 0; t < b->triangle_count; t++) {
@@ -92,7 +92,7 @@ static void check_body(body_kind kind, const body *b) {
     }
 }
 
-/* The largest area over the mean, the longest edge over the shortest. */
+/* Computes the largest area over the mean, and the longest edge over the shortest. */
 static void find_unevenness(const body *b, double *areas, double *lengths) {
     double sum = 0.0, most = 0.0, longest = 0.0, shortest = INFINITY;
     for (uint32_t t = 0; t < b->triangle_count; t++) {
@@ -161,8 +161,8 @@ static void find_extent(const body *b, double low[3], double high[3]) {
     }
 }
 
-/* From a count to four and sixteen times as many, the volume converges, to what it should be, and the body
- * stays where it is. */
+/* From a count to four and sixteen times as many, the volume converges to what it should be, and the body
+ * stays in place. */
 static void refinement_keeps_the_shape(void **state) {
     (void)state;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {
@@ -190,7 +190,8 @@ static void refinement_keeps_the_shape(void **state) {
     }
 }
 
-/* Volumes by Pappus: the tube's axis, and the slab's middle, run through the centres of their sections. */
+/* Volumes by the theorem of Pappus: the axis of the tube and the middle of the slab run through the
+ * centres of their sections. */
 static void bent_bodies_have_the_volume_of_straight_ones(void **state) {
     (void)state;
     double length = 5.0 * hypot(2.0 * pi, 0.7), tube = pi * 0.04 * length + 4.0 / 3.0 * pi * 0.008;

@@ -1,4 +1,4 @@
-/* A soft body keeps the laws of motion: momentum, fall, collisions with ground and balls, energy. */
+/* A soft body obeys the laws of motion: momentum, free fall, contacts with ground and balls, energy. */
 #include "models/common/vec3.h"
 #include "models/softbody/simulation.h"
 #include "tests/support/models/body_of.h"
@@ -64,7 +64,7 @@ static void placing_moves_everything(void **state) {
     soft_body_free(&b);
 }
 
-/* Turned about its centre of mass, whichever way it is thrown. */
+/* The body spins about its centre of mass, whichever way it is thrown. */
 static void throwing_gives_velocity_and_spin(void **state) {
     (void)state;
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
@@ -108,7 +108,8 @@ static void pushes_move_their_vertex(void **state) {
 
 /* ---- a free body ---- */
 
-/* Thrown, spinning, and swirling inside; what is lost of its angular momentum after two seconds. */
+/* Throws a body that spins and swirls inside; returns how much of its angular momentum is lost after two
+ * seconds. */
 static double angular_drift(double damping, uint32_t steps_per_second) {
     material m = rubber;
     m.damping = damping;
@@ -135,9 +136,9 @@ static double angular_drift(double damping, uint32_t steps_per_second) {
     return vec3_norm(lost) / vec3_norm(before.angular);
 }
 
-/* Linear momentum to rounding. Angular momentum as far as small steps go: steps that are implicit in the
- * positions brake a spin by its square times the step. Damping adds nothing to that: it leaves rigid motion
- * alone. */
+/* Linear momentum is kept up to rounding, angular momentum as far as small steps allow: steps that are
+ * implicit in the positions slow a spin by its square times the step. Damping adds nothing to that, since
+ * it leaves rigid motion alone. */
 static void free_bodies_keep_their_momentum(void **state) {
     (void)state;
     double undamped = angular_drift(0.0, 800), damped = angular_drift(4.0, 800),
@@ -164,7 +165,7 @@ static void damping_stills_vibrations(void **state) {
     assert_true(energies[1] < 0.1 * energies[0]);
 }
 
-/* n small steps of gravity after velocity; with finer steps a parabola. */
+/* Free fall is n small steps of gravity after velocity, a parabola with finer steps. */
 static void free_fall_is_a_parabola(void **state) {
     (void)state;
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
@@ -188,7 +189,7 @@ static void free_fall_is_a_parabola(void **state) {
 
 /* ---- collisions ---- */
 
-/* Down to rounding, nothing is ever below the ground, and the energy never rises. */
+/* Up to rounding, nothing is ever below the ground, and the energy never rises. */
 static void dropped_bodies_come_to_rest(void **state) {
     (void)state;
     material damped = rubber;
@@ -231,7 +232,7 @@ static void friction_alone_brakes(void **state) {
     assert_true(speeds[1] < 1.9 && speeds[2] < speeds[1] && speeds[2] > 0.0);
 }
 
-/* Coulomb: a box that slides on frictionless ground but for mu is braked by mu g, not more. */
+/* A box that slides is braked by mu g, as by Coulomb's law, and not more. */
 static void friction_is_coulombs(void **state) {
     (void)state;
     body box = box_body((double[3]){-1.0, -1.0, -0.25}, (double[3]){1.0, 1.0, 0.25});
@@ -250,7 +251,7 @@ static void friction_is_coulombs(void **state) {
     body_free(&box);
 }
 
-/* Off centre, with friction: what the ball gains the body loses. */
+/* A contact off centre, with friction: the ball gains what the body loses. */
 static void balls_and_bodies_share_their_momentum(void **state) {
     (void)state;
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);

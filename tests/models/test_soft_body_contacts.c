@@ -1,4 +1,5 @@
-/* The response to self-contacts, on a body of two parts: a slab and a block that comes down onto it. */
+/* The response to contacts of a body with itself, on a body of two parts: a slab, and a block that comes
+ * down onto it. */
 #include "models/common/vec3.h"
 #include "models/softbody/self_contact.h"
 #include "models/softbody/simulation.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The block hangs `distance` above the slab's top at rest: farther than the response asks for. */
+/* The block hangs `distance` above the slab's top at rest, farther than the response needs. */
 static const double spacing = 0.4, near = 0.8, distance = 1.1;
 static const material rubber = {.density = 1.0, .young = 300.0, .poisson = 0.4, .damping = 2.0};
 
@@ -64,7 +65,7 @@ static void free_parts(two_parts *p) {
     free(p->start);
 }
 
-/* On its corner, or flat and turned so that no edges are parallel. */
+/* Makes a block that stands on its corner, or flat and turned so that no edges are parallel. */
 static two_parts make_corner(void) {
     double turn[3][3];
     rotation_matrix((double[3]){1.0, -1.0, 0.1}, 0.955, turn);
@@ -83,7 +84,7 @@ static bool is_of_block(const two_parts *p, uint32_t node) {
     return p->soft.frame.rest[node * 3 + 2] > 0.5 * distance;
 }
 
-/* The block so far above the slab (below 0: inside), at rest. */
+/* Places the block at rest at this height above the slab, or below 0 inside it. */
 static void place_block(two_parts *p, double above, double x, double y) {
     lattice *l = &p->soft.frame;
     for (uint32_t n = 0; n < l->node_count; n++) {
@@ -102,7 +103,7 @@ static cscd_contacts find_contacts(two_parts *p, const double *start, const doub
     return found;
 }
 
-/* The block moves from one height to another; returns how many contacts the detector found. */
+/* Moves the block from one height to another; returns the number of contacts that the detector found. */
 static size_t move_block(two_parts *p, double from, double to) {
     place_block(p, from, 0.0, 0.0);
     memcpy(p->start, p->soft.vertices, (size_t)p->surface.vertex_count * 3 * sizeof *p->start);
@@ -141,7 +142,7 @@ static void pairs_on_the_way_out_are_left(void **state) {
     free_parts(&flat);
 }
 
-/* The corner comes out of the slab's lower side: it has been inside, so that is no collision. */
+/* The corner leaves through the lower side of the slab: it has been inside, so the response ignores it. */
 static void pairs_from_the_inside_are_left(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -177,7 +178,7 @@ static void pairs_are_sorted_and_single(void **state) {
     free_parts(&p);
 }
 
-/* Parts that are near at rest are kept apart by the lattice, or not at all. */
+/* Parts that are near at rest are left to the lattice. */
 static void near_pairs_are_ignored(void **state) {
     (void)state;
     two_parts p = make_flat();
@@ -204,7 +205,7 @@ static void pairs_are_kept_until_they_part_or_are_lost(void **state) {
     free_parts(&p);
 }
 
-/* What is too near is moved apart without getting a velocity from it: nodes and previous nodes alike. */
+/* Pairs that are too near are moved apart without gaining speed: nodes and previous nodes move alike. */
 static void healing_gives_no_velocity(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -220,7 +221,7 @@ static void healing_gives_no_velocity(void **state) {
     free_parts(&p);
 }
 
-/* Above the gap nothing is pushed at all. */
+/* Nothing is pushed above the gap. */
 static void pairs_apart_are_left_alone(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -247,7 +248,7 @@ static bool is_above(const two_parts *p, uint32_t vertex, uint32_t triangle) {
     return true;
 }
 
-/* The block slides over the slab: its corner's pair is always that with the triangle below. */
+/* The block slides over the slab: the pair of its corner always has the triangle below. */
 static void pairs_follow_a_sliding_vertex(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -280,7 +281,7 @@ static uint32_t count_intersections(two_parts *p) {
     return (uint32_t)crossing.count;
 }
 
-/* As the recorder does; with or without a response. */
+/* Runs an interval as the recorder does, with or without a response. */
 static void run_interval(two_parts *p, bool responds) {
     obstacles nothing = {0};
     memcpy(p->start, p->soft.vertices, (size_t)p->surface.vertex_count * 3 * sizeof *p->start);
@@ -289,8 +290,8 @@ static void run_interval(two_parts *p, bool responds) {
     if (responds) self_contacts_add(&p->contacts, &found, p->start, p->soft.vertices);
 }
 
-/* The parts meet, hold each other off and part. Momentum is kept; kinetic energy is never gained, but pushing
- * out what has got in deforms it, which is a few per cent here. In the end nothing crosses. */
+/* The parts touch, hold each other off and part. Momentum is kept. Kinetic energy is never gained, but
+ * pushing out deforms the parts, which costs a few per cent here. In the end there are no intersections. */
 static void check_bounce(two_parts *p) {
     size_t most_pairs = 0;
     uint32_t crossing_at_end = 1;

@@ -1,4 +1,5 @@
-/* Elastic tetrahedra: no energy at rest or turned, the formula's energy deformed, and momentum kept. */
+/* Elastic tetrahedra: no energy at rest or turned, the energy of the formula when deformed, and momentum
+ * kept. */
 #include "models/common/vec3.h"
 #include "models/softbody/elastic.h"
 #include "models/softbody/simulation.h"
@@ -49,8 +50,8 @@ static double determinant_of(double f[3][3]) {
     return vec3_dot(f[0], minors);
 }
 
-/* Macklin and Mueller's energy per volume above that of the rest shape, from Young's modulus and Poisson's
- * ratio. */
+/* Returns the energy per volume of Macklin and Mueller, above that of the rest shape, from Young's modulus
+ * and Poisson's ratio. */
 static double energy_density(double f[3][3]) {
     double shear = rubber.young / (2.0 * (1.0 + rubber.poisson));
     double bulk = rubber.young * rubber.poisson / ((1.0 + rubber.poisson) * (1.0 - 2.0 * rubber.poisson));
@@ -72,7 +73,7 @@ static void rest_and_turned_shapes_have_no_energy(void **state) {
     }
 }
 
-/* Neither turning before nor after the deformation matters: the material has no grain. */
+/* Turning before or after the deformation does not matter: the material has no grain. */
 static void energy_is_that_of_the_formula(void **state) {
     (void)state;
     double turn[3][3], shapes[4][3][3] = {{{1.0, 0.4, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
@@ -113,8 +114,8 @@ static void energy_grows_with_the_deformation(void **state) {
     }
 }
 
-/* Forces would move the nodes by a square of the step. What moves them here is that the two constraints,
- * whose forces cancel at rest, are met one after the other: a fourth power. */
+/* Forces would move the nodes by a square of the step. Here they move by a fourth power, since the two
+ * constraints, whose forces cancel at rest, are solved one after the other. */
 static void rest_shape_has_no_forces(void **state) {
     (void)state;
     double motion[3], step = 1.0 / 200.0;
@@ -128,7 +129,7 @@ static void rest_shape_has_no_forces(void **state) {
     assert_true(motion[0] > 12.0 * motion[1] && motion[1] > 12.0 * motion[2]);
 }
 
-/* A solve is a set of inner forces: the centre of mass stays, and the energy falls. */
+/* The constraints act as inner forces: the centre of mass stays, and the energy falls. */
 static void solving_keeps_the_centre_and_relaxes(void **state) {
     (void)state;
     double squash[3][3] = {{1.2, 0.1, 0.3}, {0.0, 0.9, -0.2}, {0.4, 0.0, 0.7}};
@@ -146,7 +147,7 @@ static void solving_keeps_the_centre_and_relaxes(void **state) {
     free(before);
 }
 
-/* Twice as stiff a material takes twice the energy. */
+/* A material of twice the stiffness has twice the energy. */
 static void stiffness_scales_energy(void **state) {
     (void)state;
     material stiffer = rubber;
@@ -161,7 +162,7 @@ static void stiffness_scales_energy(void **state) {
     free(twice);
 }
 
-/* A corner pushed through the opposite sides: all cells there are inside out. */
+/* A corner is pushed through the opposite sides: all cells there are inside out. */
 static void what_is_turned_inside_out_comes_back(void **state) {
     (void)state;
     body box = box_body((double[3]){-0.7, -0.7, -0.7}, (double[3]){0.7, 0.7, 0.7});

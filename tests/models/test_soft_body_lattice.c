@@ -1,4 +1,5 @@
-/* The lattice covers its surface, carries it along exactly, and its cells' tetrahedra fit together. */
+/* The lattice covers its surface and carries it along exactly, and the tetrahedra of its cells fit
+ * together. */
 #include "models/common/vec3.h"
 #include "models/softbody/elastic.h"
 #include "tests/support/models/body_of.h"
@@ -41,7 +42,7 @@ static int free_lattices(void **state) {
     return 0;
 }
 
-/* 0 inside of a cell; else along the axis that is farthest off. */
+/* Returns 0 inside a cell, else the distance along the axis on which it is largest. */
 static double distance_to_cells(const lattice *l, const double p[3]) {
     double nearest = INFINITY;
     for (uint32_t cell = 0; cell < l->cell_count; cell++) {
@@ -77,7 +78,7 @@ static void cells_are_cubes_of_the_grid(void **state) {
     }
 }
 
-/* A cube from -1 to 1: cells -2 0 2 along each axis, then those from -1.25 to 1.25. */
+/* The cube from -1 to 1 has the cells -2 0 2 along each axis, then those from -1.25 to 1.25. */
 static void counts_are_those_of_a_cube(void **state) {
     (void)state;
     body cube = body_of(BODY_CUBE, body_least_count(BODY_CUBE));
@@ -182,7 +183,7 @@ static void volumes_add_up(void **state) {
     }
 }
 
-/* A face of 3 or 4 nodes, ascending; without a fourth UINT32_MAX. */
+/* A face of 3 or 4 ascending nodes; a missing fourth is UINT32_MAX. */
 typedef struct face {
     uint32_t nodes[4];
 } face;
@@ -200,7 +201,7 @@ static int compare_faces(const void *left, const void *right) {
     return 0;
 }
 
-/* How many of the faces belong to one cell or tetrahedron only; none to three. */
+/* Returns how many faces belong to one cell or tetrahedron only, and fails if one belongs to three. */
 static uint32_t outer_faces(face *faces, uint32_t count) {
     uint32_t outer = 0;
     for (uint32_t i = 0; i < count; i++) qsort(faces[i].nodes, 4, sizeof *faces[i].nodes, compare_nodes);
@@ -239,7 +240,7 @@ static uint32_t outer_tetrahedron_faces(const lattice *l) {
     return outer;
 }
 
-/* Where two cells cut their common square along different diagonals, its four triangles would all be outer
+/* If two cells cut their common square along different diagonals, its four triangles would all be outer
  * ones. */
 static void diagonals_of_neighbours_match(void **state) {
     (void)state;

@@ -1,5 +1,4 @@
-/* The measures of a recording: what the best rigid motion leaves, softness, motion, contacts and crossings.
- */
+/* The measures of a recording: residuals of rigid motion, softness, speed, contacts and intersections. */
 #include "models/common/motion.h"
 #include "models/common/vec3.h"
 #include "tests/support/models/body_of.h"
@@ -33,7 +32,7 @@ static void assert_near(double a, double b, double tolerance) {
     if (!(fabs(a - b) <= tolerance)) fail_msg("%.17g is not within %g of %.17g", a, tolerance, b);
 }
 
-/* Half turns and more are the hard ones for quaternions. The residual is a root of a difference: half of the
+/* Half turns and more are hard for quaternions. The residual is the root of a difference, so half of the
  * digits are lost. */
 static void rigid_motions_leave_nothing(void **state) {
     (void)state;
@@ -51,12 +50,12 @@ static void rigid_motions_leave_nothing(void **state) {
     }
 }
 
-/* Points a b c ... in pairs of opposite ones, so that the best motion is none but the turn. */
+/* Points come in opposite pairs, so that the best motion is a pure rotation. */
 static void deformations_leave_what_they_must(void **state) {
     (void)state;
     const double cross_shape[6][3] = {{3, 0, 0}, {-3, 0, 0}, {0, 2, 0}, {0, -2, 0}, {0, 0, 1}, {0, 0, -1}};
     double stretched[6][3], turn[3][3];
-    /* Stretched by s along x: two points of six move by 3 (s - 1), turned or not. */
+    /* Stretched by s along x, two of six points move by 3 (s - 1), turned or not. */
     rotation_matrix((double[3]){1.0, 2.0, -1.0}, 2.0, turn);
     for (int i = 0; i < 8; i++) {
         double s = 0.8 + 0.1 * i, scale[3][3] = {{s, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -65,17 +64,18 @@ static void deformations_leave_what_they_must(void **state) {
         assert_near(rigid_residual(cross_shape[0], stretched[0], 6), 3.0 * fabs(s - 1.0) * sqrt(2.0 / 6.0),
                     1e-6);
     }
-    /* Sheared y by x with 2 g = amount, seen from the turn by g: a pure stretch of the square's diagonals. */
+    /* A shear of y by x with 2 g = amount is, seen after a rotation by g, a pure stretch of the square's
+     * diagonals. */
     const double square[4][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
     double shear[3][3] = {{1, 0.2, 0}, {0, 1, 0}, {0, 0, 1}}, sheared[4][3];
     affine_map(shear, no_offset, square[0], 4, sheared[0]);
-    /* trace of S = sum of b a^T is 4, its antisymmetric part 0.4: the best turn's cosine part is their norm.
-     */
+    /* The trace of S = sum of b a^T is 4, its antisymmetric part 0.4: the norm of both is the best
+     * rotation's part. */
     double squares = 4.0 + 4.0 + 2.0 * 0.04, best = sqrt(4.0 * 4.0 + 0.4 * 0.4);
     assert_near(rigid_residual(square[0], sheared[0], 4), sqrt((squares - 2.0 * best) / 4.0), 1e-9);
 }
 
-/* The figure is its own mirror image but for its arms; a screw of points is not at all. */
+/* Except for its arms, the figure is its own mirror image; a screw of points is not. */
 static void mirror_images_are_no_motions(void **state) {
     (void)state;
     double screw[40][3], mirrored[40][3], mirror[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
@@ -87,7 +87,7 @@ static void mirror_images_are_no_motions(void **state) {
     affine_map(mirror, no_offset, screw[0], 40, mirrored[0]);
     assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
     assert_near(rigid_residual(mirrored[0], mirrored[0], 40), 0.0, 1e-6);
-    /* Not even through the origin, where everything has the other sign. */
+    /* Nor is the inversion through the origin, which changes every sign. */
     double inverted[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     affine_map(inverted, no_offset, screw[0], 40, mirrored[0]);
     assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
@@ -101,7 +101,8 @@ static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t
     return mesh;
 }
 
-/* The tip of a tetrahedron flies through another: contacts in intervals 3 and 5, crossing from frame 4 on. */
+/* The tip of a tetrahedron flies through another: contacts in intervals 3 and 5, intersections from frame
+ * 4 on. */
 static void counts_contacts_and_crossings(void **state) {
     (void)state;
     enum { FRAMES = 8 };
@@ -152,7 +153,7 @@ static void measures_softness_and_speed(void **state) {
     body_free(&box);
 }
 
-/* Nothing is left to free, as the sanitizers check. */
+/* Nothing is left to free, which the sanitizers check. */
 static void bad_positions_are_refused(void **state) {
     (void)state;
     cscd_context *context;

@@ -1,10 +1,10 @@
-/* Ground, stairs and balls: how high they are, which way out of them, and how balls move. */
+/* Ground, stairs and balls: their heights, the ways out of them, and the motion of balls. */
 #include "models/common/vec3.h"
 #include "models/softbody/obstacles.h"
 #include "models/softbody/scenery.h"
 #include "tests/support/test.h"
 
-/* Tops at 1.5, 1 and 0.5; they end at x = 3, 5 and 7. */
+/* Tops at 1.5, 1 and 0.5, which end at x = 3, 5 and 7. */
 static const obstacles stairs = {.step_count = 3, .start = 1.0, .tread = 2.0, .riser = 0.5, .gravity = 10.0};
 static const double step = 1.0 / 800.0;
 
@@ -27,7 +27,8 @@ static void expect_way_out(const obstacles *o, double x, double z, double forwar
     assert_null(hit.pushed);
 }
 
-/* Upwards, or forwards through a riser where that is nearer; below the ground always upwards. */
+/* The way out leads upwards, or forwards through a riser when that is nearer; below the ground it always
+ * leads upwards. */
 static void way_out_is_the_nearer_one(void **state) {
     (void)state;
     const obstacles ground = {0};
@@ -43,7 +44,7 @@ static void way_out_is_the_nearer_one(void **state) {
     expect_way_out(&stairs, 8.0, -0.1, 0.0, 0.1);
 }
 
-/* Between walls: back over the wall, or up where it is deeper in the ground. */
+/* Between walls it leads back over the wall, or up where the point is deeper in the ground. */
 static void trays_have_walls(void **state) {
     (void)state;
     const obstacles o = {.tray = 2.0};
@@ -63,7 +64,7 @@ static void trays_have_walls(void **state) {
     assert_false(obstacles_hit_terrain(&o, (double[3]){1.9, -1.9, 0.1}, &hit));
 }
 
-/* Moved the way out, a point is outside of everything, or on it. */
+/* After moving along the way out, a point is outside of everything, or on a surface. */
 static void way_out_leads_out(void **state) {
     (void)state;
     uint32_t inside = 0, forwards = 0;
@@ -107,7 +108,7 @@ static void run_steps(obstacles *o, int steps) {
     }
 }
 
-/* The centre falls as n steps of gravity after velocity say; on the ground it stays. */
+/* The centre falls by n steps of gravity after velocity, and stays on the ground. */
 static void balls_fall_and_come_to_rest(void **state) {
     (void)state;
     const ball high = {.centre = {0.0, 0.0, 5.0}, .velocity = {1.0, 0.0, 0.0}, .radius = 0.5, .mass = 2.0};
@@ -139,7 +140,7 @@ static void balls_stay_on_the_stairs(void **state) {
     assert_true(o.balls[0].centre[0] > 8.0 && fabs(o.balls[0].centre[2] - 0.25) < 1e-12);
 }
 
-/* Off centre, of unequal mass: momentum stays, energy does not rise, they come apart. */
+/* Balls of unequal mass touch off centre: momentum stays, energy does not rise, and they part. */
 static void colliding_balls_keep_their_momentum(void **state) {
     (void)state;
     obstacles o = {.ball_count = 2};
@@ -164,7 +165,8 @@ static void colliding_balls_keep_their_momentum(void **state) {
     assert_true(obstacles_energy(&o) < 0.99 * energy);
 }
 
-/* A box for the ground and one for each step, as high as they are; then the balls, which follow. */
+/* The scenery has a box for the ground and one for each step, as high as they are, then the balls, which
+ * follow. */
 static void scenery_shows_them(void **state) {
     (void)state;
     obstacles o = stairs;

@@ -4,7 +4,7 @@
 #include "cscd/cscd.h"
 
 typedef struct counting_allocator {
-    size_t calls;       /* of allocate */
+    size_t calls;       /* calls of allocate */
     size_t fail_at;     /* the number of the call that fails; SIZE_MAX: none */
     size_t live, bytes; /* blocks and bytes not yet released */
 } counting_allocator;

@@ -16,11 +16,11 @@ void shape_add_triangle(shape *s, uint32_t a, uint32_t b, uint32_t c);
 void shape_add_quad(shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 void shape_add_tetrahedron(shape *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
 
-/* Vertices 0 to 7: the bits are x, y, z. */
+/* Adds a cube; the bits of its vertices' numbers, 0 to 7, are x, y, z. */
 void shape_add_cube(shape *s);
 
-/* rows x columns quads, joined or not across the ends: a sheet, a cylinder, a torus. */
+/* Adds rows x columns quads, joined or not across the ends: a sheet, a cylinder, a torus. */
 void shape_add_grid(shape *s, uint32_t rows, uint32_t columns, bool rows_close, bool columns_close);
 
-/* count quads in a ring with half a twist. */
+/* Adds `count` quads in a ring with half a twist. */
 void shape_add_moebius_strip(shape *s, uint32_t count);

@@ -17,11 +17,11 @@ typedef struct oracle_list {
     size_t count, capacity;
 } oracle_list;
 
-/* All VF and EE pairs without a common vertex, each given to the elementary test; no volumes, no stars.
- * Sorted by (toi, kind, a, b). Edges are numbered as the public API says, by its own reckoning. */
+/* Gives all VF and EE pairs without a common vertex to the elementary test, without volumes or stars. The
+ * list is sorted by (toi, kind, a, b). Edges are numbered as the public API says, but by separate code. */
 void oracle_find(const scene *s, oracle_list *out);
 
-/* The same with the test for minimum separation. */
+/* The same with the test of minimum separation. */
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out);
 
 void oracle_free(oracle_list *list);

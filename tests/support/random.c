@@ -1,4 +1,4 @@
-/* One random stream for a whole test program; random_seed starts it anew. */
+/* One random stream for a whole test program; random_seed starts it again. */
 #include "tests/support/random.h"
 
 #include "tests/support/random_stream.h"

@@ -1,4 +1,4 @@
-/* One random stream for a whole test program; random_seed starts it anew. */
+/* One random stream for a whole test program; random_seed starts it again. */
 #pragma once
 
 #include <stdint.h>
@@ -7,11 +7,11 @@ void random_seed(uint64_t seed);
 
 uint64_t random_bits(void);
 
-/* Both ends included. */
+/* Returns a whole number in [lowest, highest]. */
 int random_integer(int lowest, int highest);
 
-/* In [-1, 1), all bits of the double in use. */
+/* Returns a number in [-1, 1) that uses all bits of a double. */
 double random_unit(void);
 
-/* In [low, high], up to rounding. */
+/* Returns a number in [low, high], up to rounding. */
 double random_between(double low, double high);

@@ -13,7 +13,7 @@ static inline uint64_t stream_mix(uint64_t z) {
     return z ^ (z >> 31);
 }
 
-/* Mixed, or neighbouring seeds would give one stream, shifted. */
+/* Mixes the seed: otherwise neighbouring seeds would give one stream, shifted. */
 static inline random_stream stream_start(uint64_t seed) {
     return (random_stream){stream_mix(seed + 0x243f6a8885a308d3u)};
 }
@@ -22,7 +22,7 @@ static inline uint64_t stream_bits(random_stream *random) {
     return stream_mix(random->state += 0x9e3779b97f4a7c15u);
 }
 
-/* 0 .. limit - 1; limit > 0 */
+/* Returns a number in 0 .. limit - 1; limit > 0. */
 static inline uint32_t stream_below(random_stream *random, uint32_t limit) {
     return (uint32_t)((stream_bits(random) >> 32) * limit >> 32);
 }

@@ -1,4 +1,4 @@
-/* A context, a mesh and a detector for a scene; anything that fails there fails the test. */
+/* A context, a mesh and a detector for a scene; any failure fails the test. */
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

@@ -1,4 +1,4 @@
-/* A context, a mesh and a detector for a scene; anything that fails there fails the test. */
+/* A context, a mesh and a detector for a scene; any failure fails the test. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -10,7 +10,7 @@ typedef struct rig {
     cscd_detector *detector;
 } rig;
 
-/* options NULL: the defaults */
+/* options: NULL for the defaults. */
 rig rig_create(const scene *s, uint32_t thread_count, const cscd_detector_options *options);
 void rig_destroy(rig *r);
 cscd_contacts rig_step(const rig *r, const scene *s);

@@ -1,4 +1,4 @@
-/* Shapes that scenes are made of. */
+/* The shapes of which scenes are made. */
 #include "tests/support/scenes.h"
 
 #include <assert.h>
@@ -30,7 +30,7 @@ static void add_quad(scene *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     add_triangle(s, a, c, d);
 }
 
-/* A surface of revolution about the z axis between two poles; z and radius of each ring are given. */
+/* Adds a surface of revolution about the z axis between two poles; z and radius of each ring are given. */
 static void add_revolved(scene *s, const double centre[3], double low_pole, double high_pole, int rings,
                          int segments, const double (*profile)[2]) {
     uint32_t low = add_vertex(s, centre[0], centre[1], centre[2] + low_pole), first = s->vertex_count;

@@ -166,7 +166,7 @@ static void make_spike(scene *s, random_stream *random) {
     for (uint32_t k = 0; k < 3; k++) s->x1[v * 3 + k] = far * s->x0[v * 3 + k];
 }
 
-/* Tilts what lies above z = 0 by a[0] and below by a[1] about the y axis. */
+/* Tilts the vertices above z = 0 by a[0] and those below by a[1] about the y axis. */
 static void tilt_halves(const double rest[3], const double *a, double out[3]) {
     double angle = rest[2] > 0 ? a[0] : a[1];
     out[0] = rest[0] * cos(angle) + rest[2] * sin(angle);

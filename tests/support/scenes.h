@@ -16,7 +16,7 @@ typedef struct scene {
 /* Each family yields intervals with contacts as well as without. */
 typedef enum scene_family {
     SCENE_NOISY_SPHERE,   /* a sphere with waves that change */
-    SCENE_BENT_CAPSULE,   /* bends until it meets itself */
+    SCENE_BENT_CAPSULE,   /* bends until it touches itself */
     SCENE_SQUASHED_TORUS, /* is pressed flat */
     SCENE_FOLDED_SHEET,   /* open; rolls up */
     SCENE_TWO_SPHERES,    /* fly at or past each other */
@@ -32,11 +32,12 @@ typedef enum scene_family {
 
 const char *scene_family_name(scene_family family);
 
-/* The same seed gives the same scene. jitter: generic position, to a few per cent of an edge (SCENE_GRID
- * has none). */
+/* Makes a scene; the same seed gives the same scene. jitter: brings it into generic position, moving
+ * vertices by up to a few per cent of an edge (SCENE_GRID has none). */
 void scene_make(scene_family family, uint64_t seed, scene *out);
 
-/* Building blocks: replace the scene's mesh by one shape, or add a shape to it. They set x0; x1 = x0. */
+/* Building blocks, which replace the mesh of the scene by one shape or add a shape to it. They set x0, and
+ * x1 = x0. */
 void scene_clear(scene *s);
 void scene_add_sphere(scene *s, const double centre[3], double radius, int rings, int segments);
 void scene_add_torus(scene *s, const double centre[3], double major, double minor, int rings, int segments,

@@ -1,4 +1,4 @@
-/* Random recordings whose meshes go into themselves, lie still, come out, and go in again. */
+/* Random recordings whose meshes pass into themselves, lie still, come out, and pass in again. */
 #include "tests/support/sequences.h"
 
 #include "tests/support/random_stream.h"
@@ -16,7 +16,7 @@ static void turn_inwards(scene *s) {
 
 /* ---- scenes ------------------------------------------------------------------------------------------ */
 
-/* The surface about a vertex is pulled towards another, and through it. */
+/* Pulls the surface around a vertex towards another vertex, and through it. */
 typedef struct dent {
     uint32_t from, to;
     double width, depth;
@@ -67,7 +67,8 @@ static void make_scene(sequence *q, random_stream *random) {
 
 /* ---- grids ------------------------------------------------------------------------------------------- */
 
-/* Vertices at 4 i and 4 i + 1, i.e. corners of a box: 12 triangles; or an octahedron, or a tetrahedron. */
+/* Adds a polyhedron with vertices at 4 i and 4 i + 1, the corners of a box: with 12 triangles, an
+ * octahedron, or a tetrahedron. */
 static void add_polyhedron(scene *s, uint32_t kind, const double centre[3]) {
     static const double corners[3][8][3] = {
         {{2, 2, 2}, {-2, -2, 2}, {-2, 2, -2}, {2, -2, -2}},
@@ -113,7 +114,7 @@ static void add_grid_shape(scene *s, random_stream *random) {
     for (uint32_t i = first * 3; i < s->vertex_count * 3; i++) s->x0[i] = round(s->x0[i]);
 }
 
-/* Some vertices step on the grid, a few go home, at times all do. */
+/* Moves some vertices on the grid and a few back home; at times all go home. */
 static void move_on_grid(sequence *q, const double *from, double *to, random_stream *random) {
     uint32_t vertex_count = q->shape.vertex_count, movers = stream_below(random, 5),
              reach = 1 + stream_below(random, 5);

@@ -1,4 +1,4 @@
-/* Shell commands in tests: what they print, and how they end. */
+/* Shell commands in tests: their output and their exit codes. */
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
 
@@ -8,7 +8,7 @@
 
 enum { COMMAND_MAX = 8192 };
 
-/* To be freed. */
+/* Returns all that the pipe gives, to be freed. */
 static char *read_all(FILE *pipe) {
     size_t size = 0, capacity = 4096;
     char *text = malloc(capacity);

@@ -1,9 +1,9 @@
-/* Shell commands in tests: what they print, and how they end. */
+/* Shell commands in tests: their output and their exit codes. */
 #pragma once
 
-/* Runs the command, made as by printf, in sh. The test fails, and prints
- * what the command printed, when its exit code is not `code`. Returns both outputs, to be freed. */
+/* Runs a command, formatted as by printf, in sh. When its exit code is not `code`, the test fails and
+ * prints the output. Returns both outputs together, to be freed. */
 __attribute__((format(printf, 2, 3))) char *shell_output(int code, const char *format, ...);
 
-/* The same for commands that end with 0 and whose output does not matter. */
+/* The same for commands that must end with 0 and whose output does not matter. */
 __attribute__((format(printf, 1, 2))) void shell(const char *format, ...);

@@ -11,15 +11,15 @@ typedef struct temp_path {
     char text[512];
 } temp_path;
 
-/* All of these end the program when the file system refuses: a test cannot go on without them. */
+/* All functions end the program when the file system refuses, since no test can continue then. */
 
-/* A new, empty folder. */
+/* Makes a new, empty folder. */
 temp_folder temp_folder_make(void);
 
 /* Removes the folder and the files in it. */
 void temp_folder_remove(const temp_folder *folder);
 
-/* The path of the file `name` in the folder; nothing is created. */
+/* Returns the path of the file `name` in the folder, without creating it. */
 temp_path temp_file_path(const temp_folder *folder, const char *name);
 
 /* Writes the bytes to the file `name` in the folder and returns its path. */

@@ -1,4 +1,4 @@
-/* What every test program includes: cmocka, and the headers that must stand before it. */
+/* Included by every test program: cmocka, and the headers that must come before it. */
 #pragma once
 
 #include <setjmp.h>

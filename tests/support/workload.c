@@ -1,4 +1,4 @@
-/* Every call of the API that takes long, one after the other, and a digest of what each gave. */
+/* Runs every call of the API that takes long, one after the other, and computes a digest of each result. */
 #include "tests/support/workload.h"
 
 #include "src/core/methods.h"
@@ -39,7 +39,8 @@ static void add_digest(workload_state *r, const void *data, size_t size) {
     for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
 }
 
-/* But rebuilds: trees that a failed call has built anew are there when it is repeated. */
+/* Adds the counters except the number of rebuilds: a call that failed may have rebuilt trees already,
+ * which are there when it is repeated. */
 static void digest_counters(workload_state *r) {
     cscd_counters counters = cscd_detector_counters(r->detector);
     r->result.rebuilds += counters.rebuilds;
@@ -138,7 +139,7 @@ static void begin_line(workload_state *r, const double *x0, const double *x1) {
     end_call(r, status);
 }
 
-/* Two lengths and two moments of the line begun last. */
+/* Asks for two lengths and two moments on the line that was begun last. */
 static void ask_line(workload_state *r) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     for (int i = 0; i < 2; i++) {

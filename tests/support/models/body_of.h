@@ -3,5 +3,6 @@
 
 #include "models/shapes/catalogue.h"
 
-/* Exactly that many triangles, 0: the default; to be freed. The test fails where they cannot be made. */
+/* Makes a body with exactly that many triangles, or its default number when that is 0; to be freed. The
+ * test fails when it cannot be made. */
 body body_of(body_kind kind, uint32_t triangle_count);

@@ -1,10 +1,10 @@
 /* Which program run_tool runs: the tool, or one of models/. */
 #pragma once
 
-/* From here on run_tool runs models/NAME, NULL: the tool again. Without the variables that tests/run.sh sets
- * the test fails. */
+/* From now on run_tool runs models/NAME, or the tool again when name is NULL. Fails the test without the
+ * variables that tests/run.sh sets. */
 void model_program_use(const char *name);
 
-/* The program `name` refuses the arguments (up to NULL) with that exit code, in one line "name: ..." that
- * holds the text, and without any other output. */
+/* Expects that the program `name` refuses the arguments, a list up to NULL, with that exit code and one
+ * line "name: ..." that contains the text, and prints nothing else. */
 void model_program_refuses(const char *name, int code, const char *text, const char *const *arguments);

@@ -1,4 +1,4 @@
-/* Soft bodies for tests, far above the ground, and what they have that the laws of motion keep. */
+/* Soft bodies for tests, far above the ground, and the quantities that the laws of motion keep. */
 #include "tests/support/models/soft_fixture.h"
 
 #include "models/common/vec3.h"

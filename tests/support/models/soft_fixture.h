@@ -1,20 +1,20 @@
-/* Soft bodies for tests, far above the ground, and what they have that the laws of motion keep. */
+/* Soft bodies for tests, far above the ground, and the quantities that the laws of motion keep. */
 #pragma once
 
 #include "models/shapes/body.h"
 #include "models/softbody/soft_body.h"
 
-/* to = matrix * from + offset, for each point. */
+/* Computes to = matrix * from + offset for each point. */
 void affine_map(double matrix[3][3], const double offset[3], const double *from, uint32_t point_count,
                 double *to);
 
-/* A rotation by the angle (radians) about the axis, which need not have length 1. */
+/* Computes a rotation by the angle (radians) about the axis, which may have any length. */
 void rotation_matrix(const double axis[3], double angle, double out[3][3]);
 
-/* Twelve triangles, the corners' bits x, y, z. */
+/* Makes a box of twelve triangles; the bits of its corners' numbers are x, y, z. */
 body box_body(const double low[3], const double high[3]);
 
-/* At rest, so far up that it does not reach the ground within a test. */
+/* The height of bodies at rest, from which they do not reach the ground within a test. */
 extern const double soft_fixture_height;
 soft_body soft_body_of(const body *b, double spacing, const material *m);
 void soft_body_lift(soft_body *b, double height);
@@ -25,7 +25,7 @@ typedef struct soft_momentum {
 
 soft_momentum soft_momentum_of(const soft_body *b);
 
-/* The largest distance between corresponding points. */
+/* Returns the largest distance between corresponding points. */
 double largest_distance(const double *a, const double *b, uint32_t point_count);
 
 double lowest_vertex(const soft_body *b);
