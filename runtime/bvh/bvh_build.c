@@ -18,7 +18,7 @@ typedef struct builder {
     bvh_regions given;
     ordering triangles, regions;
     uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
-    uint32_t *record_of;      /* per vertex, in the part at hand if not below its first */
+    uint32_t *record_of;      /* per vertex, in the tree at hand if not below its first */
 } builder;
 
 /* ---- order --------------------------------------------------------------------------------------------- */
@@ -130,29 +130,29 @@ static void list_triangles(builder *b) {
     for (uint32_t t = 0; t < triangle_count; t++) b->triangles.items[next[b->given.of_triangle[t]]++] = t;
 }
 
-/* ---- parts, leaves, records ---------------------------------------------------------------------------- */
+/* ---- trees, leaves, records ---------------------------------------------------------------------------- */
 
 static uint32_t rounded_up(uint32_t count) {
     return (count + LANES - 1) / LANES * LANES;
 }
 
-static uint32_t record_of(builder *b, bvh *f, const bvh_tree *p, uint32_t vertex) {
+static uint32_t record_of(builder *b, bvh *f, const bvh_tree *tree, uint32_t vertex) {
     uint32_t known = b->record_of[vertex];
-    if (known != UINT32_MAX && known >= p->first_record) return known;
+    if (known != UINT32_MAX && known >= tree->first_record) return known;
     f->record_vertices[f->record_count] = vertex;
     return b->record_of[vertex] = f->record_count++;
 }
 
-static void fill_leaf(builder *b, bvh *f, const bvh_tree *p, const uint32_t *triangles, uint32_t count) {
+static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *triangles, uint32_t count) {
     uint32_t index = f->leaf_count++;
     bvh_leaf *out = &f->leaves[index];
-    f->leaf_parts[index] = (uint32_t)(p - f->parts);
+    f->leaf_trees[index] = (uint32_t)(tree - f->trees);
     f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
     for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = triangles[lane < count ? lane : 0];
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
-            uint32_t record = record_of(b, f, p, b->mesh->triangles[t][i]);
+            uint32_t record = record_of(b, f, tree, b->mesh->triangles[t][i]);
             out->corners[i][lane] = record;
             if (lane < count) f->record_weights[record] += (float)(b->given.triangle_weights[t] / 3.0);
         }
@@ -160,28 +160,28 @@ static void fill_leaf(builder *b, bvh *f, const bvh_tree *p, const uint32_t *tri
     }
 }
 
-/* Chunks of a part's records. */
+/* Chunks of a tree's records. */
 static void add_chunks(bvh *f, uint32_t index) {
-    const bvh_tree *p = &f->parts[index];
-    uint32_t end = p->first_record + p->record_count;
-    for (uint32_t i = p->first_record; i < end; i += CHUNK_RECORDS) {
+    const bvh_tree *tree = &f->trees[index];
+    uint32_t end = tree->first_record + tree->record_count;
+    for (uint32_t i = tree->first_record; i < end; i += CHUNK_RECORDS) {
         uint32_t stop = end - i < CHUNK_RECORDS ? end : i + CHUNK_RECORDS;
-        f->chunks[f->chunk_count++] = (record_chunk){.part = index, .begin = i, .end = stop};
+        f->chunks[f->chunk_count++] = (record_chunk){.tree = index, .begin = i, .end = stop};
     }
 }
 
-static void fill_part(builder *b, bvh *f, uint32_t index) {
-    bvh_tree *p = &f->parts[index];
+static void fill_tree(builder *b, bvh *f, uint32_t index) {
+    bvh_tree *tree = &f->trees[index];
     uint32_t region = b->regions.items[index];
     uint32_t begin = b->region_offsets[region], end = b->region_offsets[region + 1];
     order_run(&b->triangles, begin, end);
-    *p = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
+    *tree = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
     for (uint32_t i = begin; i < end; i += LANES)
-        fill_leaf(b, f, p, b->triangles.items + i, end - i < LANES ? end - i : LANES);
-    p->leaf_count = f->leaf_count - p->first_leaf;
+        fill_leaf(b, f, tree, b->triangles.items + i, end - i < LANES ? end - i : LANES);
+    tree->leaf_count = f->leaf_count - tree->first_leaf;
     while (f->record_count % LANES != 0)
-        f->record_vertices[f->record_count++] = f->record_vertices[p->first_record];
-    p->record_count = f->record_count - p->first_record;
+        f->record_vertices[f->record_count++] = f->record_vertices[tree->first_record];
+    tree->record_count = f->record_count - tree->first_record;
     add_chunks(f, index);
 }
 
@@ -209,26 +209,26 @@ static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, 
     return at;
 }
 
-/* How many levels the largest part has, at least one. */
+/* How many levels the largest tree has, at least one. */
 static int height_of(const bvh *f) {
     int height = 1;
-    for (uint32_t p = 0; p < f->part_count; p++) {
+    for (uint32_t p = 0; p < f->tree_count; p++) {
         int own = 1;
-        for (uint32_t n = blocks_over(f->parts[p].leaf_count); n > 1; n = blocks_over(n)) own++;
+        for (uint32_t n = blocks_over(f->trees[p].leaf_count); n > 1; n = blocks_over(n)) own++;
         height = own > height ? own : height;
     }
     return height;
 }
 
-/* Blocks of one level of all parts; counts: of each part's children there, and then of its blocks. */
-static bool add_part_level(bvh *f, int level, uint32_t *counts) {
+/* Blocks of one level of all trees; counts: of each tree's children there, and then of its blocks. */
+static bool add_tree_level(bvh *f, int level, uint32_t *counts) {
     uint32_t total = 0, at = 0, child = 0;
-    for (uint32_t p = 0; p < f->part_count; p++) total += blocks_over(counts[p]);
+    for (uint32_t p = 0; p < f->tree_count; p++) total += blocks_over(counts[p]);
     if (!allocate_level(f->mesh->context, &f->levels[level], total, f->axis_count)) return false;
-    for (uint32_t p = 0; p < f->part_count; p++) {
-        uint32_t first = f->parts[p].first_blocks[level] = at;
+    for (uint32_t p = 0; p < f->tree_count; p++) {
+        uint32_t first = f->trees[p].first_blocks[level] = at;
         at = add_blocks(&f->levels[level], at, child, counts[p]);
-        for (uint32_t i = first; level == 0 && i < at; i++) f->block_parts[i] = p;
+        for (uint32_t i = first; level == 0 && i < at; i++) f->block_trees[i] = p;
         child += counts[p];
         counts[p] = at - first;
     }
@@ -237,17 +237,17 @@ static bool add_part_level(bvh *f, int level, uint32_t *counts) {
 
 static bool build_levels(bvh *f, uint32_t *counts) {
     uint32_t blocks = 0;
-    f->part_level = f->level_count = height_of(f);
-    for (uint32_t p = 0; p < f->part_count; p++) {
-        counts[p] = f->parts[p].leaf_count;
+    f->tree_level = f->level_count = height_of(f);
+    for (uint32_t p = 0; p < f->tree_count; p++) {
+        counts[p] = f->trees[p].leaf_count;
         blocks += blocks_over(counts[p]);
     }
-    f->block_parts = context_allocate(f->mesh->context, blocks, sizeof *f->block_parts);
-    if (f->block_parts == NULL) return false;
-    for (int level = 0; level < f->part_level; level++) {
-        if (!add_part_level(f, level, counts)) return false;
+    f->block_trees = context_allocate(f->mesh->context, blocks, sizeof *f->block_trees);
+    if (f->block_trees == NULL) return false;
+    for (int level = 0; level < f->tree_level; level++) {
+        if (!add_tree_level(f, level, counts)) return false;
     }
-    uint32_t children = f->part_count;
+    uint32_t children = f->tree_count;
     do {
         bvh_level *level = &f->levels[f->level_count++];
         if (!allocate_level(f->mesh->context, level, blocks_over(children), f->axis_count)) return false;
@@ -279,7 +279,7 @@ static void free_builder(builder *b) {
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(b->context, blocks[i]);
 }
 
-/* A vertex has a record in each part that it is in: at most one per corner. */
+/* A vertex has a record in each tree that it is in: at most one per corner. */
 static uint32_t most_records(const builder *b) {
     const cscd_mesh *mesh = b->mesh;
     uint64_t sum = 0;
@@ -305,18 +305,18 @@ static uint32_t all_leaves(const builder *b) {
 static bool allocate_bvh(const builder *b, bvh *f) {
     cscd_context *context = b->context;
     uint32_t leaf_count = all_leaves(b), record_count = most_records(b);
-    f->parts = context_allocate(context, f->part_count, sizeof *f->parts);
+    f->trees = context_allocate(context, f->tree_count, sizeof *f->trees);
     f->leaves = context_allocate(context, leaf_count, sizeof *f->leaves);
     f->leaf_flags = context_allocate(context, leaf_count, sizeof *f->leaf_flags);
     f->flags_before = context_allocate(context, leaf_count, sizeof *f->flags_before);
-    f->leaf_parts = context_allocate(context, leaf_count, sizeof *f->leaf_parts);
+    f->leaf_trees = context_allocate(context, leaf_count, sizeof *f->leaf_trees);
     f->record_vertices = context_allocate(context, record_count, sizeof *f->record_vertices);
     f->record_weights = context_allocate(context, record_count, sizeof *f->record_weights);
     f->records = context_allocate(context, record_count, sizeof *f->records);
-    f->chunks = context_allocate(context, record_count / CHUNK_RECORDS + f->part_count, sizeof *f->chunks);
+    f->chunks = context_allocate(context, record_count / CHUNK_RECORDS + f->tree_count, sizeof *f->chunks);
     f->slots = context_allocate(context, f->mesh->triangle_count, sizeof *f->slots);
-    return f->parts != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
-           f->leaf_parts != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
+    return f->trees != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
+           f->leaf_trees != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
            f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
@@ -342,7 +342,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
     bvh f = {.mesh = mesh,
              .kernels = bvh_kernels_of(mesh->context),
              .axis_count = axis_count,
-             .part_count = regions.count,
+             .tree_count = regions.count,
              .scale = scale_for(mesh, positions)};
     bool made = allocate_builder(&b);
     if (made) {
@@ -350,7 +350,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
         find_centres(&b, positions, f.scale);
         order_run(&b.regions, 0, regions.count);
         made = allocate_bvh(&b, &f);
-        for (uint32_t p = 0; made && p < f.part_count; p++) fill_part(&b, &f, p);
+        for (uint32_t p = 0; made && p < f.tree_count; p++) fill_tree(&b, &f, p);
         made = made && build_levels(&f, b.regions.items) && bvh_mark_obstacles(&f);
     }
     free_builder(&b);
@@ -365,30 +365,30 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
 void bvh_free(bvh *f) {
     if (f->mesh == NULL) return;
     cscd_context *context = f->mesh->context;
-    void *blocks[] = {f->parts,       f->leaves,      f->leaf_flags,      f->flags_before,
-                      f->leaf_within, f->block_parts, f->record_vertices, f->record_weights,
-                      f->records,     f->slots,       f->chunks,          f->leaf_parts};
+    void *blocks[] = {f->trees,           f->leaves,      f->leaf_flags,      f->flags_before,
+                      f->leaf_self_pairs, f->block_trees, f->record_vertices, f->record_weights,
+                      f->records,         f->slots,       f->chunks,          f->leaf_trees};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     for (int i = 0; i < BVH_LEVEL_MAX; i++) {
         context_free(context, f->levels[i].first_children);
         context_free(context, f->levels[i].bounds);
         context_free(context, f->levels[i].flags);
-        context_free(context, f->levels[i].within);
-        context_free(context, f->levels[i].passive);
+        context_free(context, f->levels[i].self_pairs);
+        context_free(context, f->levels[i].obstacle_lanes);
     }
     *f = (bvh){0};
 }
 
 bool bvh_allow_hiding(bvh *f) {
     cscd_context *context = f->mesh->context;
-    if (f->leaf_within == NULL)
-        f->leaf_within = context_allocate(context, f->leaf_count, sizeof *f->leaf_within);
-    bool allocated = f->leaf_within != NULL;
-    for (int i = 0; i < f->part_level; i++) {
+    if (f->leaf_self_pairs == NULL)
+        f->leaf_self_pairs = context_allocate(context, f->leaf_count, sizeof *f->leaf_self_pairs);
+    bool allocated = f->leaf_self_pairs != NULL;
+    for (int i = 0; i < f->tree_level; i++) {
         bvh_level *level = &f->levels[i];
-        if (level->within == NULL)
-            level->within = context_allocate(context, level->block_count, sizeof *level->within);
-        allocated &= level->within != NULL;
+        if (level->self_pairs == NULL)
+            level->self_pairs = context_allocate(context, level->block_count, sizeof *level->self_pairs);
+        allocated &= level->self_pairs != NULL;
     }
     bvh_show_all(f);
     return allocated;

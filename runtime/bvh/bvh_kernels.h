@@ -21,19 +21,19 @@ typedef struct extents {
 } extents;
 
 typedef struct bvh_kernels {
-    /* Fills records begin to end - 1, multiples of 8, of a part; see runtime/bvh/bvh.h. */
-    void (*copy_in)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
+    /* Fills records begin to end - 1, multiples of 8, of a tree; see runtime/bvh/bvh.h. */
+    void (*copy_in)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                     const double *x0, const double *x1, copied *out);
 
-    /* Bounds of the children of blocks begin to end - 1 of any level but the part level. */
+    /* Bounds of the children of blocks begin to end - 1 of any level but the tree level. */
     void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
 
     /* How far leaves, and their triangles, extend at the start. */
     extents (*extents_at_start)(const struct bvh *f);
 
-    /* Writes the flags of leaves begin to end - 1 of a part, and the orientations of their triangles. clean: per
+    /* Writes the flags of leaves begin to end - 1 of a tree, and the orientations of their triangles. clean: per
      * triangle of the mesh; all others are ZERO; NULL: all are clean. */
-    void (*orient)(const struct bvh *f, const struct bvh_tree *p, uint32_t begin, uint32_t end,
+    void (*orient)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                    const bool *clean, uint8_t *orientations);
 
     /* Visits block pairs of the lane's stack, at most visits_max, until it is empty or there is no room for

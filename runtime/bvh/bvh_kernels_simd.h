@@ -5,10 +5,10 @@
 #include "runtime/bvh/traversal.h"
 #include "src/core/simd.h"
 
-void SIMD_NAME(copy_in)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const double *x0,
+void SIMD_NAME(copy_in)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end, const double *x0,
                         const double *x1, copied *out);
 void SIMD_NAME(refit)(const bvh *f, int level, uint32_t begin, uint32_t end);
 extents SIMD_NAME(extents_at_start)(const bvh *f);
-void SIMD_NAME(orient)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const bool *clean,
+void SIMD_NAME(orient)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end, const bool *clean,
                        uint8_t *orientations);
 void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_max);

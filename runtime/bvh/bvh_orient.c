@@ -9,40 +9,40 @@ typedef struct orienting {
     uint8_t *orientations;
 } orienting;
 
-/* A point in a part's frame is where it is there by definition: rounding only moves the detector point. */
-static void place_detector(const bvh *f, bvh_tree *p, const orientation_query *view) {
+/* A point in a tree's frame is where it is there by definition: rounding only moves the detector point. */
+static void place_detector(const bvh *f, bvh_tree *tree, const orientation_query *view) {
     for (int e = 0; e < 2; e++) {
         for (int k = 0; k < 3; k++) {
-            double offset = view->detector_offsets[p->region][k];
-            p->detector[e][k] = (float)(p->weighted[e][k] + offset * f->scale);
+            double offset = view->detector_offsets[tree->region][k];
+            tree->detector[e][k] = (float)(tree->weighted[e][k] + offset * f->scale);
             if (view->still && e == 1)
-                p->detector[1][k] =
-                    (float)((double)p->detector[0][k] + (p->origin[0][k] - p->origin[1][k]) * f->scale);
+                tree->detector[1][k] = (float)((double)tree->detector[0][k] +
+                                               (tree->origin[0][k] - tree->origin[1][k]) * f->scale);
         }
     }
 }
 
 void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]) {
-    for (uint32_t i = 0; i < f->part_count; i++) {
-        const bvh_tree *p = &f->parts[i];
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        const bvh_tree *tree = &f->trees[i];
         for (int e = 0; e < 2; e++) {
             int end = view->still ? 0 : e;
             for (int k = 0; k < 3; k++)
-                points[p->region][e][k] =
-                    p->origin[end][k] + p->weighted[end][k] / f->scale + view->detector_offsets[p->region][k];
+                points[tree->region][e][k] = tree->origin[end][k] + tree->weighted[end][k] / f->scale +
+                                             view->detector_offsets[tree->region][k];
         }
     }
 }
 
-static uint32_t component_of(const bvh *f, const bvh_tree *p) {
-    return f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
+static uint32_t component_of(const bvh *f, const bvh_tree *tree) {
+    return f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
 }
 
-static uint32_t part_of_leaf(const bvh *f, uint32_t index) {
-    uint32_t first = 0, last = f->part_count - 1;
+static uint32_t tree_of_leaf(const bvh *f, uint32_t index) {
+    uint32_t first = 0, last = f->tree_count - 1;
     while (first < last) {
         uint32_t middle = first + (last - first + 1) / 2;
-        if (f->parts[middle].first_leaf <= index)
+        if (f->trees[middle].first_leaf <= index)
             first = middle;
         else
             last = middle - 1;
@@ -55,12 +55,12 @@ static void orient_task(void *data, uint32_t index) {
     const bvh *f = now->bvh;
     uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
     end = end < f->leaf_count ? end : f->leaf_count;
-    for (uint32_t i = part_of_leaf(f, begin); i < f->part_count && f->parts[i].first_leaf < end; i++) {
-        const bvh_tree *p = &f->parts[i];
-        if (!now->view->culled[component_of(f, p)]) continue;
-        uint32_t stop = p->first_leaf + p->leaf_count;
-        f->kernels->orient(f, p, begin > p->first_leaf ? begin : p->first_leaf, end < stop ? end : stop,
-                           now->view->clean, now->orientations);
+    for (uint32_t i = tree_of_leaf(f, begin); i < f->tree_count && f->trees[i].first_leaf < end; i++) {
+        const bvh_tree *tree = &f->trees[i];
+        if (!now->view->culled[component_of(f, tree)]) continue;
+        uint32_t stop = tree->first_leaf + tree->leaf_count;
+        f->kernels->orient(f, tree, begin > tree->first_leaf ? begin : tree->first_leaf,
+                           end < stop ? end : stop, now->view->clean, now->orientations);
     }
 }
 
@@ -74,18 +74,18 @@ typedef struct marking {
 static void mark_block(const bvh *f, int index, uint32_t block) {
     const bvh_level *level = &f->levels[index];
     lane_flags *flags = &level->flags[block];
-    uint32_t plus = 0, minus = 0, fresh = 0;
+    uint32_t plus = 0, minus = 0, newly_kept = 0;
     const lane_flags *children =
         (index == 0 ? f->leaf_flags : f->levels[index - 1].flags) + level->first_children[block];
     for (uint32_t i = 0; i < LANES && (flags->used >> i & 1) != 0; i++) {
         plus |= (uint32_t)(children[i].plus == children[i].used) << i;
         minus |= (uint32_t)(children[i].minus == children[i].used) << i;
-        fresh |= (uint32_t)(children[i].fresh != 0) << i;
+        newly_kept |= (uint32_t)(children[i].newly_kept != 0) << i;
     }
-    bool one_part = index < f->part_level;
-    flags->plus = (uint8_t)(one_part ? plus : 0);
-    flags->minus = (uint8_t)(one_part ? minus : 0);
-    flags->fresh = (uint8_t)fresh;
+    bool one_tree = index < f->tree_level;
+    flags->plus = (uint8_t)(one_tree ? plus : 0);
+    flags->minus = (uint8_t)(one_tree ? minus : 0);
+    flags->newly_kept = (uint8_t)newly_kept;
 }
 
 static void mark_task(void *data, uint32_t index) {
@@ -126,7 +126,7 @@ static void refresh_task(void *data, uint32_t index) {
     uint32_t begin = index * LEAVES_PER_TASK, end = begin + LEAVES_PER_TASK;
     for (uint32_t i = begin; i < end && i < f->leaf_count; i++) {
         lane_flags earlier = flags_of(f, i, r->before), flags = flags_of(f, i, r->now);
-        flags.fresh = (uint8_t)((earlier.plus | earlier.minus) & ~(flags.plus | flags.minus));
+        flags.newly_kept = (uint8_t)((earlier.plus | earlier.minus) & ~(flags.plus | flags.minus));
         f->flags_before[i] = earlier;
         f->leaf_flags[i] = flags;
     }
@@ -137,17 +137,17 @@ static void run_over_leaves(const bvh *f, parallel_task *task, void *data) {
                  data);
 }
 
-void bvh_mark_fresh(bvh *f, const uint8_t *before, const uint8_t *now) {
+void bvh_mark_newly_kept(bvh *f, const uint8_t *before, const uint8_t *now) {
     refreshing r = {f, before, now};
     run_over_leaves(f, refresh_task, &r);
     mark_blocks(f);
 }
 
-void bvh_mark_suspects(bvh *f, const bool *suspects) {
+void bvh_mark_unproven(bvh *f, const bool *unproven) {
     for (uint32_t i = 0; i < f->leaf_count; i++) {
         lane_flags flags = {.used = f->leaf_flags[i].used};
         for (uint32_t lane = 0; lane < LANES && (flags.used >> lane & 1) != 0; lane++)
-            flags.fresh |= (uint8_t)(suspects[f->leaves[i].triangles[lane]] << lane);
+            flags.newly_kept |= (uint8_t)(unproven[f->leaves[i].triangles[lane]] << lane);
         f->leaf_flags[i] = flags;
     }
     mark_blocks(f);
@@ -155,7 +155,7 @@ void bvh_mark_suspects(bvh *f, const bool *suspects) {
 
 void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations) {
     orienting now = {f, view, orientations};
-    for (uint32_t i = 0; i < f->part_count; i++) place_detector(f, &f->parts[i], view);
+    for (uint32_t i = 0; i < f->tree_count; i++) place_detector(f, &f->trees[i], view);
     run_over_leaves(f, orient_task, &now);
     mark_blocks(f);
 }

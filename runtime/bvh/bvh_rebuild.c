@@ -13,11 +13,11 @@ static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bv
     return bvh_build(r->mesh, r->regions, positions, r->axis_count, out);
 }
 
-/* How far blocks of parts extend, as a multiple of their parts; 0 where there is one block only. */
-static double spread_of_parts(const bvh *f) {
-    const bvh_level *level = &f->levels[f->part_level];
+/* How far blocks of trees extend, as a multiple of their trees; 0 where there is one block only. */
+static double spread_of_trees(const bvh *f) {
+    const bvh_level *level = &f->levels[f->tree_level];
     const size_t stride = (size_t)f->axis_count * 2 * LANES;
-    double whole = 0.0, of_parts = 0.0;
+    double whole = 0.0, of_trees = 0.0;
     for (uint32_t block = 0; level->block_count > 1 && block < level->block_count; block++) {
         for (int k = 0; k < BOX_AXES; k++) {
             const float *low = level->bounds + block * stride + 2 * k * LANES, *high = low + LANES;
@@ -25,21 +25,21 @@ static double spread_of_parts(const bvh *f) {
             for (int i = 0; i < LANES && (level->flags[block].used >> i & 1) != 0; i++) {
                 least = fminf(least, low[i]);
                 greatest = fmaxf(greatest, high[i]);
-                of_parts += (double)(high[i] - low[i]);
+                of_trees += (double)(high[i] - low[i]);
             }
             whole += (double)(greatest - least);
         }
     }
-    return of_parts > 0.0 ? whole / of_parts : 0.0;
+    return of_trees > 0.0 ? whole / of_trees : 0.0;
 }
 
 static bvh_spread spread_of(const bvh *f) {
     extents sum = f->kernels->extents_at_start(f);
-    return (bvh_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_parts(f)};
+    return (bvh_spread){sum.triangles > 0.0 ? sum.leaves / sum.triangles : 0.0, spread_of_trees(f)};
 }
 
 static bool is_beyond(bvh_spread now, bvh_spread before, double factor) {
-    return now.leaves > factor * before.leaves || now.parts > factor * before.parts;
+    return now.leaves > factor * before.leaves || now.trees > factor * before.trees;
 }
 
 static bool replace_trees(bvh_rebuild *r, bvh *f, const double *positions) {

@@ -3,9 +3,9 @@
 
 #include "runtime/bvh/bvh.h"
 
-/* How far leaves extend, as a multiple of their triangles, and blocks of parts, as a multiple of their parts. */
+/* How far leaves extend, as a multiple of their triangles, and blocks of trees, as a multiple of their trees. */
 typedef struct bvh_spread {
-    double leaves, parts;
+    double leaves, trees;
 } bvh_spread;
 
 /* What trees are built from, and how they have fared since. */

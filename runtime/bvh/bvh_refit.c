@@ -21,21 +21,21 @@ typedef struct moving {
 /* ---- frames and records -------------------------------------------------------------------------------- */
 
 /* The origins are the means of a few vertices: any points serve. What lies between them at the two ends is
- * the part's common displacement, which is so taken out of all its volumes. */
-static void place_frame(const bvh *f, bvh_tree *p, const moving *m) {
-    uint32_t step = p->record_count / SAMPLE_COUNT + 1, count = 0;
+ * the tree's common displacement, which is so taken out of all its volumes. */
+static void place_frame(const bvh *f, bvh_tree *tree, const moving *m) {
+    uint32_t step = tree->record_count / SAMPLE_COUNT + 1, count = 0;
     double sums[2][3] = {{0.0}};
-    const double *first = m->x0 + (size_t)f->record_vertices[p->first_record] * 3;
-    for (uint32_t i = 0; i < p->record_count; i += step, count++) {
-        size_t at = (size_t)f->record_vertices[p->first_record + i] * 3;
+    const double *first = m->x0 + (size_t)f->record_vertices[tree->first_record] * 3;
+    for (uint32_t i = 0; i < tree->record_count; i += step, count++) {
+        size_t at = (size_t)f->record_vertices[tree->first_record + i] * 3;
         for (size_t k = 0; k < 3; k++) {
             sums[0][k] += m->x0[at + k] - first[k];
             sums[1][k] += m->x1[at + k] - first[k];
         }
     }
     for (int k = 0; k < 3; k++) {
-        p->origin[0][k] = first[k] + sums[0][k] / count;
-        p->origin[1][k] = first[k] + sums[1][k] / count;
+        tree->origin[0][k] = first[k] + sums[0][k] / count;
+        tree->origin[1][k] = first[k] + sums[1][k] / count;
     }
 }
 
@@ -43,7 +43,7 @@ static void copy_chunk(void *data, uint32_t index) {
     const moving *now = data;
     const bvh *f = now->bvh;
     record_chunk *c = &f->chunks[index];
-    f->kernels->copy_in(f, &f->parts[c->part], c->begin, c->end, now->x0, now->x1, &c->copied);
+    f->kernels->copy_in(f, &f->trees[c->tree], c->begin, c->end, now->x0, now->x1, &c->copied);
 }
 
 /* Copies all records; returns the largest magnitude of a coordinate. */
@@ -65,29 +65,29 @@ static float float_above(double x) {
  * 2.1 u M along axes. Along diagonals it is 3 u M, 5 u M for two additions of sums up to 2 M and 3 M, and
  * 3 u M: 11.1 u M. 4 u M and 16 u M are taken. Volumes that are each widened by half a distance d, along
  * diagonals by sqrt 3 / 2 of it, overlap where features come within d. */
-static void finish_part(bvh_tree *p, double distance, const copied *sum) {
-    p->reach = float_above(sum->reach);
-    p->slack[0] = float_above(sum->reach * 0x1p-22 + 0.5 * distance);
-    p->slack[1] = float_above(sum->reach * 0x1p-20 + 0.8660254038 * distance);
-    memcpy(p->weighted, sum->weighted, sizeof p->weighted);
+static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
+    tree->reach = float_above(sum->reach);
+    tree->slack[0] = float_above(sum->reach * 0x1p-22 + 0.5 * distance);
+    tree->slack[1] = float_above(sum->reach * 0x1p-20 + 0.8660254038 * distance);
+    memcpy(tree->weighted, sum->weighted, sizeof tree->weighted);
 }
 
-/* Chunks stand in the order of parts. */
-static void finish_parts(const bvh *f, double distance) {
-    for (uint32_t i = 0, at = 0; i < f->part_count; i++) {
+/* Chunks stand in the order of trees. */
+static void finish_trees(const bvh *f, double distance) {
+    for (uint32_t i = 0, at = 0; i < f->tree_count; i++) {
         copied sum = {0};
-        for (; at < f->chunk_count && f->chunks[at].part == i; at++) {
+        for (; at < f->chunk_count && f->chunks[at].tree == i; at++) {
             const copied *c = &f->chunks[at].copied;
             sum.reach = c->reach > sum.reach ? c->reach : sum.reach;
             for (int k = 0; k < 6; k++) sum.weighted[k / 3][k % 3] += c->weighted[k / 3][k % 3];
         }
-        finish_part(&f->parts[i], distance * f->scale, &sum);
+        finish_tree(&f->trees[i], distance * f->scale, &sum);
     }
 }
 
 static void move_records(moving *now) {
     bvh *f = now->bvh;
-    for (uint32_t i = 0; i < f->part_count; i++) place_frame(f, &f->parts[i], now);
+    for (uint32_t i = 0; i < f->tree_count; i++) place_frame(f, &f->trees[i], now);
     double reach = copy_records(now);
     if (reach > greatest_reach || (reach > 0.0 && reach < least_reach)) {
         int exponent;
@@ -95,7 +95,7 @@ static void move_records(moving *now) {
         f->scale = ldexp(f->scale, -exponent);
         copy_records(now);
     }
-    finish_parts(f, now->distance);
+    finish_trees(f, now->distance);
 }
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
@@ -121,25 +121,19 @@ static void refit_level(moving *now) {
     parallel_run(f->mesh->context->threads, tasks, refit_task, now);
 }
 
-static double along(const double v[3], int axis) {
-    static const double axes[KDOP_AXES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
-                                              {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
-    return axes[axis][0] * v[0] + axes[axis][1] * v[1] + axes[axis][2] * v[2];
-}
-
-/* A part's volume over the interval in the frame of another one, rounded outward by 2^-20 of what is added.
+/* A tree's volume over the interval in the frame of another one, rounded outward by 2^-20 of what is added.
  */
-static void place_part(const bvh *f, const bvh_tree *p, const float *own, const bvh_tree *frame,
+static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, const bvh_tree *frame,
                        float *bounds) {
-    double from[2][3], size = 4.0 * (double)p->reach;
+    double from[2][3], size = 4.0 * (double)tree->reach;
     for (int i = 0; i < 6; i++) {
-        double origin = p->origin[i / 3][i % 3], at = frame->origin[i / 3][i % 3];
+        double origin = tree->origin[i / 3][i % 3], at = frame->origin[i / 3][i % 3];
         from[i / 3][i % 3] = (origin - at) * f->scale;
         size += fabs(from[i / 3][i % 3]) + 0x1p-30 * f->scale * (fabs(origin) + fabs(at));
     }
     for (int k = 0; k < f->axis_count; k++) {
         double low = INFINITY, high = -INFINITY;
-        double start = along(from[0], k), end = along(from[1], k);
+        double start = kdop_along(from[0], k), end = kdop_along(from[1], k);
         for (int i = 0; i < LANES; i++) {
             low = fmin(low, (double)own[2 * k * LANES + i]);
             high = fmax(high, (double)own[(2 * k + 1) * LANES + i]);
@@ -156,15 +150,15 @@ static void place_nothing(const bvh *f, float *bounds) {
     }
 }
 
-/* The part level: each part has one block on the level below, of its own number. */
-static void place_parts(const bvh *f) {
-    const bvh_level *level = &f->levels[f->part_level];
+/* The tree level: each tree has one block on the level below, of its own number. */
+static void place_trees(const bvh *f) {
+    const bvh_level *level = &f->levels[f->tree_level];
     size_t stride = (size_t)f->axis_count * 2 * LANES;
-    const float *roots = f->levels[f->part_level - 1].bounds;
-    for (uint32_t i = 0; f->part_count > 1 && i < level->block_count * LANES; i++) {
+    const float *roots = f->levels[f->tree_level - 1].bounds;
+    for (uint32_t i = 0; f->tree_count > 1 && i < level->block_count * LANES; i++) {
         float *bounds = level->bounds + i / LANES * stride + i % LANES;
-        if (i < f->part_count)
-            place_part(f, &f->parts[i], roots + i * stride, &f->parts[0], bounds);
+        if (i < f->tree_count)
+            place_tree(f, &f->trees[i], roots + i * stride, &f->trees[0], bounds);
         else
             place_nothing(f, bounds);
     }
@@ -177,10 +171,12 @@ static void clear_flags(lane_flags *flags, uint32_t count) {
 }
 
 void bvh_show_all(bvh *f) {
-    if (f->leaf_within != NULL) memset(f->leaf_within, 0xff, f->leaf_count * sizeof *f->leaf_within);
-    for (int i = 0; i < f->part_level; i++) {
+    if (f->leaf_self_pairs != NULL)
+        memset(f->leaf_self_pairs, 0xff, f->leaf_count * sizeof *f->leaf_self_pairs);
+    for (int i = 0; i < f->tree_level; i++) {
         bvh_level *level = &f->levels[i];
-        if (level->within != NULL) memset(level->within, 0xff, level->block_count * sizeof *level->within);
+        if (level->self_pairs != NULL)
+            memset(level->self_pairs, 0xff, level->block_count * sizeof *level->self_pairs);
     }
 }
 
@@ -188,8 +184,8 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
     moving now = {f, x0, x1, distance, 0};
     move_records(&now);
     for (; now.level < f->level_count; now.level++) {
-        if (now.level == f->part_level)
-            place_parts(f);
+        if (now.level == f->tree_level)
+            place_trees(f);
         else
             refit_level(&now);
         clear_flags(f->levels[now.level].flags, f->levels[now.level].block_count);
@@ -199,9 +195,9 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
 }
 
 void bvh_skip_adjacent(bvh *f, const bool *components) {
-    for (uint32_t i = 0; i < f->part_count; i++) {
-        bvh_tree *p = &f->parts[i];
-        uint32_t component = f->mesh->triangle_components[f->leaves[p->first_leaf].triangles[0]];
-        p->skip_adjacent = components != NULL && components[component];
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        bvh_tree *tree = &f->trees[i];
+        uint32_t component = f->mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
+        tree->skip_adjacent = components != NULL && components[component];
     }
 }

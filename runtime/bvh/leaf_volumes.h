@@ -25,6 +25,7 @@ typedef struct leaf_volumes {
     f32x8 low[2][KDOP_AXES], high[2][KDOP_AXES], swept[BOX_AXES][2];
 } leaf_volumes;
 
+/* The directions of kdop_axes beyond those of boxes. */
 static inline void diagonals_of(const f32x8 p[3], f32x8 out[KDOP_AXES - BOX_AXES]) {
     f32x8 sum = p[0] + p[1], difference = p[0] - p[1];
     out[0] = sum + p[2];

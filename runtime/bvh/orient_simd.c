@@ -3,7 +3,7 @@
  * s(t) = c . (a x b), with a = p1 - p0, b = p2 - p0 and c = p0 - d moving linearly, is a cubic in t; its
  * Bernstein coefficients are compared with a bound on their error, the middle two times 3.
  *
- * With u = 2^-24 and M the part's reach, a coordinate of a record is off by at most u M (1 + 2^-20); d is
+ * With u = 2^-24 and M the tree's reach, a coordinate of a record is off by at most u M (1 + 2^-20); d is
  * what it is by definition. So components of a and b are off by 2.01 u M + u |a|, those of c by 1.01 u M + u
  * |c|. Let A, B and C be the largest magnitudes of computed components over both ends, A, B <= 2 M. A
  * coefficient (times 3 for the middle ones, which are sums of three determinants) is at most a sum of 18
@@ -32,20 +32,20 @@ static f32x8 dot(const f32x8 a[3], const f32x8 b[3]) {
 }
 
 /* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
-static void orient(const bvh_tree *p, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+static void orient(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
     f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
     float detector_reach = 0.0f;
     for (int e = 0; e < 2; e++) {
         for (int k = 0; k < 3; k++) {
             a[e][k] = corners[1][e][k] - corners[0][e][k];
             b[e][k] = corners[2][e][k] - corners[0][e][k];
-            c[e][k] = corners[0][e][k] - f32x8_all(p->detector[e][k]);
-            float d = p->detector[e][k] < 0.0f ? -p->detector[e][k] : p->detector[e][k];
+            c[e][k] = corners[0][e][k] - f32x8_all(tree->detector[e][k]);
+            float d = tree->detector[e][k] < 0.0f ? -tree->detector[e][k] : tree->detector[e][k];
             detector_reach = d > detector_reach ? d : detector_reach;
         }
     }
     f32x8 size_a = largest_component(a), size_b = largest_component(b), size_c = largest_component(c);
-    f32x8 bound = f32x8_all(0x1p-18f * (p->reach + detector_reach)) *
+    f32x8 bound = f32x8_all(0x1p-18f * (tree->reach + detector_reach)) *
                       (size_c * (size_a + size_b) + f32x8_all(4.0f) * size_a * size_b) +
                   f32x8_all(0x1p-100f);
     cross(a[0], b[0], start);
@@ -83,14 +83,14 @@ static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, 
     }
 }
 
-static void orient_leaf(const bvh *f, const bvh_tree *p, uint32_t index, const bool *clean,
+static void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const bool *clean,
                         uint8_t *orientations) {
     const bvh_leaf *l = &f->leaves[index];
     uint32_t plus, minus, used = f->leaf_flags[index].used;
     uint32_t counted = clean != NULL ? clean_lanes(l, used, clean) : used;
     leaf_corners corners;
     load_corners(f, l, corners);
-    orient(p, corners, &plus, &minus);
+    orient(tree, corners, &plus, &minus);
     plus &= counted;
     minus &= counted;
     f->leaf_flags[index].plus = (uint8_t)plus;
@@ -98,7 +98,7 @@ static void orient_leaf(const bvh *f, const bvh_tree *p, uint32_t index, const b
     store_orientations(l, used, plus, minus, orientations);
 }
 
-void SIMD_NAME(orient)(const bvh *f, const bvh_tree *p, uint32_t begin, uint32_t end, const bool *clean,
+void SIMD_NAME(orient)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint32_t end, const bool *clean,
                        uint8_t *orientations) {
-    for (uint32_t i = begin; i < end; i++) orient_leaf(f, p, i, clean, orientations);
+    for (uint32_t i = begin; i < end; i++) orient_leaf(f, tree, i, clean, orientations);
 }

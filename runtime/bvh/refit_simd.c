@@ -39,7 +39,7 @@ static void store_diagonals(leaf_corners corners, const float slack[2], int lane
 
 /* A block of level 0. */
 static void enclose_leaves(const bvh *f, uint32_t block) {
-    const bvh_tree *p = &f->parts[f->block_parts[block]];
+    const bvh_tree *tree = &f->trees[f->block_trees[block]];
     const bvh_level *level = &f->levels[0];
     float *bounds = level->bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
     f32x8 low[8], high[8];
@@ -58,9 +58,9 @@ static void enclose_leaves(const bvh *f, uint32_t block) {
         if (f->axis_count == BOX_AXES) continue;
         leaf_corners corners;
         load_corners(f, &f->leaves[index], corners);
-        store_diagonals(corners, p->slack, (int)lane, bounds);
+        store_diagonals(corners, tree->slack, (int)lane, bounds);
     }
-    store_boxes(low, high, p->slack[0], bounds);
+    store_boxes(low, high, tree->slack[0], bounds);
 }
 
 /* A block of a higher level. */

@@ -11,16 +11,16 @@ typedef struct triangle_pair {
 } triangle_pair;
 
 /* Two blocks of one level whose children are still to be compared; the same block twice: with itself. Parts
- * are those of the blocks, below the part level. */
+ * are those of the blocks, below the tree level. */
 typedef struct block_pair {
-    uint32_t a, b, part_a, part_b;
+    uint32_t a, b, tree_a, tree_b;
     int32_t level;
 } block_pair;
 
 /* Which pairs of triangles are looked for, of those whose volumes overlap: all but those that are marked as
  * never touching (by flags, or by `within`); those that the flags before left out and the present ones do
- * not; those of two suspects. */
-typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_FRESH, TRAVERSAL_SUSPECTS } traversal_pass;
+ * not; those of two unproven. */
+typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_NEWLY_KEPT, TRAVERSAL_UNPROVEN } traversal_pass;
 
 /* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
  * They are the kernels' own (leaf_volumes); here is only how large they are. */

@@ -3,17 +3,11 @@
 
 #include "runtime/bvh/leaf_volumes.h"
 
-/* Where part b lies relative to part a, per axis at each end of the interval, and how far that is rounded;
+/* Where tree b lies relative to tree a, per axis at each end of the interval, and how far that is rounded;
  * low and high hold it throughout. Volumes of a, moved by as much back, are compared with those of b. */
 typedef struct displacement {
     float at[2][KDOP_AXES], slack, low[KDOP_AXES], high[KDOP_AXES];
 } displacement;
-
-static double along(const double v[3], int axis) {
-    static const signed char axes[KDOP_AXES][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
-                                                   {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
-    return axes[axis][0] * v[0] + axes[axis][1] * v[1] + axes[axis][2] * v[2];
-}
 
 /* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
  * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
@@ -31,8 +25,8 @@ static displacement between(const bvh *f, const bvh_tree *a, const bvh_tree *b) 
     }
     out.slack = (float)(size * 0x1p-20);
     for (int axis = 0; axis < KDOP_AXES; axis++) {
-        out.at[0][axis] = (float)along(start, axis);
-        out.at[1][axis] = (float)along(end, axis);
+        out.at[0][axis] = (float)kdop_along(start, axis);
+        out.at[1][axis] = (float)kdop_along(end, axis);
         bool forward = out.at[0][axis] < out.at[1][axis];
         out.low[axis] = out.at[forward ? 0 : 1][axis] - out.slack;
         out.high[axis] = out.at[forward ? 1 : 0][axis] + out.slack;
@@ -80,9 +74,9 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
 typedef struct comparison {
     lane_flags a, b;
     lane_flags before_a, before_b; /* leaves in pass FRESH */
-    uint64_t within;
-    uint32_t passive_a, passive_b; /* lanes that hold obstacles only */
-    bool itself, one_part, leaves;
+    uint64_t self_pairs;
+    uint32_t obstacles_a, obstacles_b; /* lanes that hold obstacles only */
+    bool itself, one_tree, leaves;
     traversal_pass pass;
 } comparison;
 
@@ -93,15 +87,15 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
 /* Of b's lanes, those to be compared with lane i of a. */
 static inline uint32_t wanted(const comparison *c, int i) {
     uint32_t lanes = c->b.used;
-    if ((c->passive_a >> i & 1) != 0) lanes &= ~c->passive_b;
-    if (c->itself) lanes &= (uint32_t)(c->within >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
-    if (c->pass == TRAVERSAL_SUSPECTS) return (c->a.fresh >> i & 1) != 0 ? lanes & c->b.fresh : 0;
-    if (c->pass == TRAVERSAL_FRESH) {
-        if (!c->one_part) return 0;
-        if ((c->a.fresh >> i & 1) == 0) lanes &= c->b.fresh;
+    if ((c->obstacles_a >> i & 1) != 0) lanes &= ~c->obstacles_b;
+    if (c->itself) lanes &= (uint32_t)(c->self_pairs >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
+    if (c->pass == TRAVERSAL_UNPROVEN) return (c->a.newly_kept >> i & 1) != 0 ? lanes & c->b.newly_kept : 0;
+    if (c->pass == TRAVERSAL_NEWLY_KEPT) {
+        if (!c->one_tree) return 0;
+        if ((c->a.newly_kept >> i & 1) == 0) lanes &= c->b.newly_kept;
         if (c->leaves)
             lanes &= one_sign(c->before_a.plus, c->before_a.minus, c->before_b.plus, c->before_b.minus, i);
-    } else if (c->one_part) {
+    } else if (c->one_tree) {
         lanes &= ~one_sign(c->a.plus, c->a.minus, c->b.plus, c->b.minus, i);
     }
     return lanes;
@@ -113,13 +107,13 @@ _Static_assert(sizeof(leaf_volumes) == LEAF_VOLUME_FLOATS * sizeof(float),
                "traversal.h makes room for these");
 
 static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint32_t index,
-                                           const bvh_tree *p) {
+                                           const bvh_tree *tree) {
     uint32_t place = index % LEAF_CACHE_SIZE;
     leaf_volumes *out = (leaf_volumes *)cache->volumes + place;
     if (cache->tags[place] == index + 1) return out;
     leaf_corners corners;
     load_corners(f, &f->leaves[index], corners);
-    volumes_of(corners, p->slack, out);
+    volumes_of(corners, tree->slack, out);
     cache->tags[place] = index + 1;
     return out;
 }
@@ -144,9 +138,9 @@ typedef struct leaf_pair {
 } leaf_pair;
 
 /* Of lanes, those of b whose triangles share no vertex with triangle i of a. */
-static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes, bool one_part) {
+static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes, bool one_tree) {
     const bvh_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
-    if (one_part) {
+    if (one_tree) {
         i32x8 shared = {0};
         for (int j = 0; j < 3; j++) {
             i32x8 corner = i32x8_load(b->corners[j]);
@@ -166,15 +160,15 @@ static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uin
 }
 
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
-                                  bool skip_adjacent, bool one_part, const displacement *d) {
+                                  bool skip_adjacent, bool one_tree, const displacement *d) {
     const bvh *f = t->bvh;
     const comparison c = {.a = f->leaf_flags[pair->a],
                           .b = f->leaf_flags[pair->b],
                           .before_a = f->flags_before[pair->a],
                           .before_b = f->flags_before[pair->b],
-                          .within = f->leaf_within != NULL ? f->leaf_within[pair->a] : UINT64_MAX,
+                          .self_pairs = f->leaf_self_pairs != NULL ? f->leaf_self_pairs[pair->a] : UINT64_MAX,
                           .itself = pair->a == pair->b,
-                          .one_part = one_part,
+                          .one_tree = one_tree,
                           .leaves = true,
                           .pass = t->pass};
     for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
@@ -184,7 +178,7 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
         if (lanes != 0 && skip_adjacent) {
-            uint32_t kept = strangers(f, pair, i, lanes, one_part);
+            uint32_t kept = strangers(f, pair, i, lanes, one_tree);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
@@ -202,25 +196,25 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
     const bvh *f = t->bvh;
     const bvh_level *level = &f->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
-    bool skip_adjacent = f->parts[at->part_a].skip_adjacent; /* part b is of the component, or not adjacent */
+    bool skip_adjacent = f->trees[at->tree_a].skip_adjacent; /* tree b is of the component, or not adjacent */
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     for (; lanes != 0; lanes &= lanes - 1) {
         int j = __builtin_ctz(lanes);
         uint32_t child_b = first_b + (uint32_t)j;
         if (at->level > 0) {
-            bool parts = at->level == f->part_level;
-            lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, parts ? child_a : at->part_a,
-                                                            parts ? child_b : at->part_b, at->level - 1};
+            bool trees = at->level == f->tree_level;
+            lane->stack[lane->stack_count++] = (block_pair){child_a, child_b, trees ? child_a : at->tree_a,
+                                                            trees ? child_b : at->tree_b, at->level - 1};
             continue;
         }
         leaf_pair pair = {child_a, child_b, NULL, NULL, ALL_LANES, ALL_LANES};
-        pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->parts[at->part_a]);
+        pair.volumes_a = leaf_volumes_of(f, &lane->cache, child_a, &f->trees[at->tree_a]);
         if (child_a % LEAF_CACHE_SIZE == child_b % LEAF_CACHE_SIZE && child_a != child_b) {
             leaf_volumes *copy = (leaf_volumes *)lane->cache.volumes + LEAF_CACHE_SIZE;
             *copy = *pair.volumes_a;
             pair.volumes_a = copy;
         }
-        pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->parts[at->part_b]);
+        pair.volumes_b = leaf_volumes_of(f, &lane->cache, child_b, &f->trees[at->tree_b]);
         if (child_a != child_b) {
             pair.columns = near_lane(pair.volumes_b, level->bounds + at->a * stride, i, d);
             if (pair.columns == 0) continue;
@@ -236,19 +230,19 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
 static inline void visit(const traversal *t, traversal_lane *lane, block_pair at) {
     const bvh *f = t->bvh;
     const bvh_level *level = &f->levels[at.level];
-    bool below = at.level < f->part_level, crosses = below && at.part_a != at.part_b;
-    displacement between_parts;
-    if (crosses) between_parts = between(f, &f->parts[at.part_a], &f->parts[at.part_b]);
-    const displacement *d = crosses ? &between_parts : NULL;
+    bool below = at.level < f->tree_level, crosses = below && at.tree_a != at.tree_b;
+    displacement between_trees;
+    if (crosses) between_trees = between(f, &f->trees[at.tree_a], &f->trees[at.tree_b]);
+    const displacement *d = crosses ? &between_trees : NULL;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
     const comparison c = {.a = level->flags[at.a],
                           .b = level->flags[at.b],
-                          .within = level->within != NULL ? level->within[at.a] : UINT64_MAX,
-                          .passive_a = level->passive != NULL ? level->passive[at.a] : 0,
-                          .passive_b = level->passive != NULL ? level->passive[at.b] : 0,
+                          .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
+                          .obstacles_a = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.a] : 0,
+                          .obstacles_b = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.b] : 0,
                           .itself = at.a == at.b,
-                          .one_part = below && !crosses,
+                          .one_tree = below && !crosses,
                           .pass = t->pass};
     for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
@@ -258,9 +252,9 @@ static inline void visit(const traversal *t, traversal_lane *lane, block_pair at
             lanes &= ~apart(bounds_a, bounds_b, i, f->axis_count, d);
         }
         if (c.itself) {
-            bool own = (c.within >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
-            if (t->pass != TRAVERSAL_KEPT) own = (c.a.fresh >> i & 1) != 0;
-            if (own && (c.passive_a >> i & 1) == 0) lanes |= 1u << i;
+            bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
+            if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;
+            if (own && (c.obstacles_a >> i & 1) == 0) lanes |= 1u << i;
         }
         if (lanes != 0) descend(t, lane, &at, i, lanes, d);
     }

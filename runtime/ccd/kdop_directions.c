@@ -1,6 +1,7 @@
 /* Features that a direction parts throughout an interval. */
 #include "runtime/ccd/kdop_directions.h"
 
+#include "src/core/kdop.h"
 #include "src/core/vec3.h"
 
 /* Of points, along one direction. */
@@ -21,13 +22,13 @@ static span span_along_axis(const double (*points)[3], int count, int axis) {
  * u = 2^-53 differences are off by u of themselves, their sum by 2 u more, and widening it by u: 4 u of the
  * sum of magnitudes, of 8 u taken. */
 static span span_along_diagonal(const double (*points)[3], int count, int diagonal, const double origin[3]) {
-    static const double signs[4][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    const double *signs = kdop_axes[BOX_AXES + diagonal];
     span s = {INFINITY, -INFINITY};
     for (int i = 0; i < count; i++) {
         double sum = 0.0, size = 0.0;
         for (int k = 0; k < 3; k++) {
             double offset = points[i][k] - origin[k];
-            sum += signs[diagonal][k] * offset;
+            sum += signs[k] * offset;
             size += fabs(offset);
         }
         s.low = min_of(s.low, sum - 0x1p-50 * size);
@@ -46,13 +47,13 @@ static bool stay_beyond(span a0, span b0, span a1, span b1, double gap) {
 bool directions_part(const elementary_query *query, cscd_contact_kind kind, double distance) {
     const double(*x0)[3] = (const double(*)[3])query->x0, (*x1)[3] = (const double(*)[3])query->x1;
     int a = points_of_first(kind), b = 4 - a;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < BOX_AXES; k++) {
         if (stay_beyond(span_along_axis(x0, a, k), span_along_axis(x0 + a, b, k), span_along_axis(x1, a, k),
                         span_along_axis(x1 + a, b, k), distance))
             return true;
     }
     double along_diagonal = 1.7320508075688774 * distance * (1.0 + 0x1p-50);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < KDOP_AXES - BOX_AXES; k++) {
         if (stay_beyond(span_along_diagonal(x0, a, k, x0[0]), span_along_diagonal(x0 + a, b, k, x0[0]),
                         span_along_diagonal(x1, a, k, x1[0]), span_along_diagonal(x1 + a, b, k, x1[0]),
                         along_diagonal))

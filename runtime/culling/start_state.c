@@ -247,7 +247,7 @@ static void find_clean_patches(start_states *s) {
 
 /* ---- static checks ------------------------------------------------------------------------------------- */
 
-uint32_t start_states_suspect(start_states *s, bool *unproven) {
+uint32_t start_states_mark_unproven(start_states *s, bool *unproven) {
     const cscd_mesh *mesh = s->mesh;
     bool *wanted = s->component_scratch, any = false;
     uint32_t count = 0;

@@ -63,7 +63,7 @@ void start_states_begin(start_states *s, const double *x);
  * known to be free, of closed manifold components that hold unknown ones and need not wait. Components that wait do so
  * for one interval less from now on. After a check that leaves too little of a component clean (start_states_pay), its
  * next one waits for 1 interval, then for 2, 4, 8 and always 16. Where nothing is marked, unproven is not written. */
-uint32_t start_states_suspect(start_states *s, bool *unproven);
+uint32_t start_states_mark_unproven(start_states *s, bool *unproven);
 
 /* The unproven triangles were compared with one another; crossing marks those that intersect another one of them, or
  * have no area. */

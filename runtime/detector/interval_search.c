@@ -52,7 +52,7 @@ static void divide_time(interval_search *search, double together_ms) {
 cscd_status interval_search_traverse(interval_search *search, traversal_pass pass) {
     search_space *space = search->space;
     double since = timer_now_ms(), together = 0.0;
-    bool last = pass == TRAVERSAL_FRESH;
+    bool last = pass == TRAVERSAL_NEWLY_KEPT;
     progress_stage(&space->context->progress, last ? "further passes" : "traversal", last ? 0.9 : 0.3,
                    last ? 1.0 : 0.9);
     traversal_begin(&space->traversal, &space->bvh, pass);

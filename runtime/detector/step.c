@@ -56,7 +56,7 @@ static cscd_status prove_starts(step_work *work) {
     if (!detector_culls(d) || d->rules.assumes_clean || d->options.start != CSCD_START_PROVE) return CSCD_OK;
     double since = timer_now_ms();
     cscd_status status = CSCD_OK;
-    work->unproven = start_states_suspect(&d->starts, d->check.unproven);
+    work->unproven = start_states_mark_unproven(&d->starts, d->check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
         status =
@@ -191,9 +191,9 @@ static cscd_status close_contacts(step_work *work) {
         double since = timer_now_ms();
         culling_pass_done(&d->culling);
         if (taint_by_contacts(work) == 0) return CSCD_OK;
-        bvh_mark_fresh(&d->space.bvh, d->culling.earlier, d->culling.orientations);
+        bvh_mark_newly_kept(&d->space.bvh, d->culling.earlier, d->culling.orientations);
         timer_lap(&since, &work->search.timings.orientation_ms);
-        cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_FRESH);
+        cscd_status status = interval_search_traverse(&work->search, TRAVERSAL_NEWLY_KEPT);
         if (status != CSCD_OK) return status;
         work->search.counters.passes++;
     }

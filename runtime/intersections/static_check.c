@@ -163,8 +163,8 @@ static void mark_crossing(static_check *c) {
 
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions) {
     check_work work = {c, t, f, positions, true};
-    bvh_mark_suspects(f, c->unproven);
-    cscd_status status = compare_triangles(&work, f, TRAVERSAL_SUSPECTS);
+    bvh_mark_unproven(f, c->unproven);
+    cscd_status status = compare_triangles(&work, f, TRAVERSAL_UNPROVEN);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
 }

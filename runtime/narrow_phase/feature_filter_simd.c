@@ -4,8 +4,8 @@
  * ends of the interval, stay apart throughout, since their points move linearly. The directions are those of
  * 14-DOPs. A lane is a pair of triangles, so that all fifteen are decided for eight at once.
  *
- * With u = 2^-24, and M the sum of both parts' reaches and of what lies between the parts, a coordinate of a
- * record is off by u M at most, moved into the other part's frame by 3 u M; a gap is a difference of two
+ * With u = 2^-24, and M the sum of both trees' reaches and of what lies between the trees, a coordinate of a
+ * record is off by u M at most, moved into the other tree's frame by 3 u M; a gap is a difference of two
  * such, rounded once more: off by less than 6 u M. A sum of three coordinates carries their errors and two
  * roundings of numbers below 3 M, 9 u M + 6 u M, and a gap of such sums less than 36 u M. Gaps count from
  * 8 u M and 48 u M on. */
@@ -88,7 +88,7 @@ static inline i32x8 near_along_axes(const pairs_x8 *o, i32x8 features) {
     return keep_near(gaps, f32x8_load(o->gap), features);
 }
 
-/* x+y+z, x+y-z, x-y+z, -x+y+z. */
+/* Along direction BOX_AXES + k of kdop_axes. */
 static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
     return k == 0   ? p[0] + p[1] + p[2]
            : k == 1 ? p[0] + p[1] - p[2]
@@ -99,7 +99,7 @@ static inline f32x8 along_diagonal(const f32x8 p[3], int k) {
 static inline i32x8 near_along_diagonals(const pairs_x8 *o, i32x8 features) {
     f32x8 gaps[FEATURE_COUNT];
     for (int i = 0; i < FEATURE_COUNT; i++) gaps[i] = f32x8_all(-1.0f);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < KDOP_AXES - BOX_AXES; k++) {
         coordinates at;
         for (int i = 0; i < 12; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
         widen((const f32x8(*)[6])at, gaps);
@@ -124,15 +124,15 @@ static inline i32x8 sharing(const pairs_x8 *o) {
     return features;
 }
 
-/* What is known of two parts, whichever. */
-typedef struct part_pair {
+/* What is known of two trees, whichever. */
+typedef struct tree_pair {
     uint32_t a, b;
     f32x8 between;   /* what is to be added to a record of b */
     float gap, wide; /* as in an pairs_x8 */
-} part_pair;
+} tree_pair;
 
-static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, part_pair *out) {
-    const bvh_tree *p = &f->parts[a], *q = &f->parts[b];
+static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, tree_pair *out) {
+    const bvh_tree *p = &f->trees[a], *q = &f->trees[b];
     float between[LANES] = {0.0f};
     double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
     for (int i = 0; i < 6 && a != b; i++) {
@@ -149,22 +149,22 @@ static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, part_p
 
 /* The places of the last pair are filled up with itself. */
 static inline void load(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
-                        part_pair *parts, pairs_x8 *out) {
+                        tree_pair *trees, pairs_x8 *out) {
     f32x8 rows[6][LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         triangle_pair pair = pairs[lane < count ? lane : count - 1];
         const bvh_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
-        uint32_t part_a = f->leaf_parts[pair.a / LANES], part_b = f->leaf_parts[pair.b / LANES];
-        if (part_a != parts->a || part_b != parts->b) relate(f, part_a, part_b, distance, parts);
+        uint32_t tree_a = f->leaf_trees[pair.a / LANES], tree_b = f->leaf_trees[pair.b / LANES];
+        if (tree_a != trees->a || tree_b != trees->b) relate(f, tree_a, tree_b, distance, trees);
         for (int i = 0; i < 3; i++) {
             uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
             rows[i][lane] = f32x8_load(f->records[record_a]);
-            rows[3 + i][lane] = f32x8_load(f->records[record_b]) + parts->between;
-            out->vertices[i][lane] = part_a == part_b ? record_a : f->record_vertices[record_a];
-            out->vertices[3 + i][lane] = part_a == part_b ? record_b : f->record_vertices[record_b];
+            rows[3 + i][lane] = f32x8_load(f->records[record_b]) + trees->between;
+            out->vertices[i][lane] = tree_a == tree_b ? record_a : f->record_vertices[record_a];
+            out->vertices[3 + i][lane] = tree_a == tree_b ? record_b : f->record_vertices[record_b];
         }
-        out->gap[lane] = parts->gap;
-        out->wide[lane] = parts->wide;
+        out->gap[lane] = trees->gap;
+        out->wide[lane] = trees->wide;
     }
     for (int i = 0; i < 6; i++) {
         f32x8_transpose(rows[i]);
@@ -178,11 +178,11 @@ static inline bool any(i32x8 features) {
 
 void SIMD_NAME(feature_filter)(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
                                uint16_t *features) {
-    part_pair parts = {.a = UINT32_MAX};
+    tree_pair trees = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         pairs_x8 o;
-        load(f, pairs + p, lanes, distance, &parts, &o);
+        load(f, pairs + p, lanes, distance, &trees, &o);
         i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
         if (any(kept)) kept = near_along_diagonals(&o, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];

@@ -21,7 +21,7 @@ static child_place places[BVH_LEVEL_MAX][SCENE_TRIANGLES_MAX];
 
 static uint32_t child_count(const bvh *f, int level) {
     if (level == 0) return f->leaf_count;
-    return level == f->part_level ? f->part_count : f->levels[level - 1].block_count;
+    return level == f->tree_level ? f->tree_count : f->levels[level - 1].block_count;
 }
 
 /* Each child has one place. */
@@ -42,7 +42,7 @@ static void find_places(const bvh *f) {
             assert_int_not_equal(places[level][c].block, UINT32_MAX);
     }
     assert_int_equal(f->levels[f->level_count - 1].block_count, 1);
-    assert_int_equal(f->levels[f->part_level - 1].block_count, f->part_count);
+    assert_int_equal(f->levels[f->tree_level - 1].block_count, f->tree_count);
 }
 
 /* ---- what lies where ----------------------------------------------------------------------------------- */
@@ -50,7 +50,7 @@ static void find_places(const bvh *f) {
 static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint32_t *seen) {
     const bvh *f = &r->bvh;
     const bvh_leaf *l = &f->leaves[index];
-    assert_ptr_equal(&f->parts[f->leaf_parts[index]], p);
+    assert_ptr_equal(&f->trees[f->leaf_trees[index]], p);
     for (uint32_t lane = 0; lane < LANES; lane++) {
         uint32_t t = l->triangles[lane], from = t != UINT32_MAX ? t : l->triangles[0];
         assert_int_equal(f->leaf_flags[index].used >> lane & 1, t != UINT32_MAX);
@@ -72,14 +72,14 @@ static void check_layout(const bvh_rig *r) {
     const bvh *f = &r->bvh;
     uint32_t leaf = 0, record = 0;
     memset(seen, 0, sizeof seen);
-    for (uint32_t i = 0; i < f->part_count; i++) {
-        const bvh_tree *p = &f->parts[i];
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        const bvh_tree *p = &f->trees[i];
         assert_int_equal(p->first_leaf, leaf);
         assert_int_equal(p->first_record, record);
         assert_int_equal(p->record_count % LANES, 0);
         for (; leaf < p->first_leaf + p->leaf_count; leaf++) {
             check_leaf(r, leaf, p, seen);
-            assert_int_equal(f->block_parts[places[0][leaf].block], i);
+            assert_int_equal(f->block_trees[places[0][leaf].block], i);
         }
         record += p->record_count;
     }
@@ -112,12 +112,12 @@ static const float *bounds_of(const bvh *f, int level, child_place at, int axis)
 
 /* Part level and above have no bounds where there is nothing to tell apart. */
 static int bounded_levels(const bvh *f) {
-    return f->part_count > 1 ? f->level_count : f->part_level;
+    return f->tree_count > 1 ? f->level_count : f->tree_level;
 }
 
 /* All bounds above a triangle hold one of its corners, and what lies within half the distance of it. */
 static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, double distance) {
-    const bvh_tree *p = &f->parts[f->leaf_parts[leaf]];
+    const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int moment = 0; moment < 3; moment++) {
         long double own[3], common[3];
         in_frame(f, p, m, vertex, moment, own);
@@ -127,7 +127,7 @@ static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, d
             child_place at = places[level][child];
             for (int axis = 0; axis < f->axis_count; axis++) {
                 long double wide = (axis < BOX_AXES ? 0.5L : 0.5L * sqrtl(3.0L)) * distance * f->scale;
-                long double value = along_direction(level < f->part_level ? own : common, axis);
+                long double value = along_direction(level < f->tree_level ? own : common, axis);
                 const float *low = bounds_of(f, level, at, axis);
                 assert_true((long double)low[0] <= value - wide);
                 assert_true((long double)low[LANES] >= value + wide);
@@ -139,7 +139,7 @@ static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, d
 
 /* Bounds of a leaf are no wider than documented. */
 static void check_leaf_tight(const bvh *f, uint32_t leaf, motion m) {
-    const bvh_tree *p = &f->parts[f->leaf_parts[leaf]];
+    const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int axis = 0; axis < f->axis_count; axis++) {
         long double least = INFINITY, greatest = -INFINITY;
         for (int i = 0; i < 6 * LANES; i++) {
@@ -168,7 +168,7 @@ static void check_union(const bvh *f, int level, uint32_t child) {
             least = used ? fminf(least, low[0]) : least;
             greatest = used ? fmaxf(greatest, low[LANES]) : greatest;
         }
-        if (level == f->part_level) continue;
+        if (level == f->tree_level) continue;
         const float *low = bounds_of(f, level, places[level][child], axis);
         assert_true(low[0] == least && low[LANES] == greatest);
     }
@@ -272,9 +272,9 @@ static void assert_same_bvh(const bvh *a, const bvh *b) {
         size_t floats = (size_t)a->levels[level].block_count * (size_t)a->axis_count * 2 * LANES;
         assert_memory_equal(a->levels[level].bounds, b->levels[level].bounds, floats * sizeof(float));
     }
-    for (uint32_t i = 0; i < a->part_count; i++) {
-        assert_memory_equal(a->parts[i].weighted, b->parts[i].weighted, sizeof a->parts[i].weighted);
-        assert_memory_equal(a->parts[i].slack, b->parts[i].slack, sizeof a->parts[i].slack);
+    for (uint32_t i = 0; i < a->tree_count; i++) {
+        assert_memory_equal(a->trees[i].weighted, b->trees[i].weighted, sizeof a->trees[i].weighted);
+        assert_memory_equal(a->trees[i].slack, b->trees[i].slack, sizeof a->trees[i].slack);
     }
 }
 

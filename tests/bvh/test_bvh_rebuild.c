@@ -71,7 +71,7 @@ static cscd_counters step(run *r) {
 }
 
 static void pulled_flat(void **state) {
-    run one, three, fresh;
+    run one, three, rebuilt;
     cscd_counters last = {0};
     uint64_t rebuilds = 0;
     (void)state;
@@ -86,8 +86,8 @@ static void pulled_flat(void **state) {
         assert_memory_equal(&last, &other, sizeof last);
         rebuilds += last.rebuilds;
     }
-    open_run(&fresh, 1);
-    cscd_counters best = step(&fresh);
+    open_run(&rebuilt, 1);
+    cscd_counters best = step(&rebuilt);
     print_message("built anew %llu times; %llu boxes at the end, %llu with new trees\n",
                   (unsigned long long)rebuilds, (unsigned long long)last.boxes_tested,
                   (unsigned long long)best.boxes_tested);
@@ -96,12 +96,12 @@ static void pulled_flat(void **state) {
     assert_true(last.boxes_tested * 4 <= best.boxes_tested * 5);
     close_run(&one);
     close_run(&three);
-    close_run(&fresh);
+    close_run(&rebuilt);
 }
 
 /* Lines alone keep the trees as steps do. */
 static void lines_build_anew(void **state) {
-    run r, fresh;
+    run r, rebuilt;
     cscd_line *line = NULL;
     (void)state;
     make_strip();
@@ -113,15 +113,15 @@ static void lines_build_anew(void **state) {
         assert_int_equal(cscd_line_begin(line, &before[0][0], &after[0][0], 0.01), CSCD_OK);
     }
     cscd_counters last = step(&r);
-    open_run(&fresh, 1);
-    cscd_counters best = step(&fresh);
+    open_run(&rebuilt, 1);
+    cscd_counters best = step(&rebuilt);
     print_message("%llu boxes, %llu with new trees\n", (unsigned long long)last.boxes_tested,
                   (unsigned long long)best.boxes_tested);
     assert_int_equal(last.rebuilds, 0);
     assert_true(last.boxes_tested * 4 <= best.boxes_tested * 5);
     cscd_line_destroy(line);
     close_run(&r);
-    close_run(&fresh);
+    close_run(&rebuilt);
 }
 
 /* What only moves and bends keeps its trees. */
@@ -138,7 +138,7 @@ static void flat_stays(void **state) {
     close_run(&r);
 }
 
-/* ---- many parts -------------------------------------------------------------------------------------- */
+/* ---- many trees -------------------------------------------------------------------------------------- */
 
 enum { BODIES = 400 };
 
@@ -174,10 +174,10 @@ static cscd_counters step_bodies(run *r) {
     return cscd_detector_counters(r->detector);
 }
 
-/* Bodies that change places leave the blocks of parts in disorder, though each of them stays as it is. */
+/* Bodies that change places leave the blocks of trees in disorder, though each of them stays as it is. */
 static void bodies_change_places(void **state) {
     const cscd_mesh_desc desc = {BODIES * 4, BODIES * 4, &faces[0][0]};
-    run r, fresh;
+    run r, rebuilt;
     (void)state;
     make_bodies();
     place_bodies(0.0, rest);
@@ -197,14 +197,14 @@ static void bodies_change_places(void **state) {
     place_bodies(0.125, moved);
     uint64_t in_disorder = step_bodies(&r).boxes_tested;
     for (int i = 0; i < 16; i++) step_bodies(&r);
-    open_run_on(&fresh, 1, desc);
-    uint64_t best = step_bodies(&fresh).boxes_tested, afterwards = step_bodies(&r).boxes_tested;
+    open_run_on(&rebuilt, 1, desc);
+    uint64_t best = step_bodies(&rebuilt).boxes_tested, afterwards = step_bodies(&r).boxes_tested;
     print_message("%llu boxes, in disorder %llu, afterwards %llu, with new trees %llu\n",
                   (unsigned long long)at_first, (unsigned long long)in_disorder,
                   (unsigned long long)afterwards, (unsigned long long)best);
     assert_true(in_disorder > 2 * best && afterwards <= best + best / 4);
     close_run(&r);
-    close_run(&fresh);
+    close_run(&rebuilt);
 }
 
 int main(void) {

@@ -58,11 +58,11 @@ static void add_determinant(const exact_vector *a, const exact_vector *b, const 
     mpz_clear(minor);
 }
 
-/* The signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the part's detector point.
+/* The signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the tree's detector point.
  */
 static void exact_signs(const double x0[9], const double x1[9], const bvh *f, int signs[4]) {
     static const double zero[3] = {0.0, 0.0, 0.0};
-    const bvh_tree *p = &f->parts[0];
+    const bvh_tree *p = &f->trees[0];
     static exact_triangle t;
     static bool ready;
     exact_vector *vectors[6] = {&t.c[0], &t.c[1], &t.a[0], &t.a[1], &t.b[0], &t.b[1]};
@@ -118,7 +118,7 @@ static void move_triangles(double offset, double speed) {
 static void put_into_plane(bvh *f, uint32_t t, int end) {
     const double *x = (end == 0 ? shape.x0 : shape.x1) + (size_t)t * 9;
     double u = 3.0 * random_unit(), v = 3.0 * random_unit();
-    bvh_tree *p = &f->parts[0];
+    bvh_tree *p = &f->trees[0];
     for (int k = 0; k < 3; k++) {
         double at = x[k] + u * (x[3 + k] - x[k]) + v * (x[6 + k] - x[k]);
         p->detector[end][k] = nudged((float)((at - p->origin[end][k]) * f->scale));
@@ -126,7 +126,7 @@ static void put_into_plane(bvh *f, uint32_t t, int end) {
 }
 
 static void place_detector(bvh *f, double speed, bool near_zero) {
-    bvh_tree *p = &f->parts[0];
+    bvh_tree *p = &f->trees[0];
     for (int k = 0; k < 3; k++) {
         p->detector[0][k] = (float)(2.0 * random_unit() * f->scale);
         p->detector[1][k] = p->detector[0][k] + (float)(speed * random_unit() * f->scale);
@@ -147,7 +147,7 @@ static uint32_t open_levels(bvh_rig levels[CSCD_SIMD_AVX512]) {
 }
 
 static void orient_all(bvh *f, uint8_t *flags) {
-    f->kernels->orient(f, &f->parts[0], 0, f->leaf_count, NULL, flags);
+    f->kernels->orient(f, &f->trees[0], 0, f->leaf_count, NULL, flags);
 }
 
 static void check_batch(const bvh *f, const uint8_t *flags, int count[4], int *lost) {
@@ -176,7 +176,7 @@ static void signs_are_exact(void **state) {
             bvh *f = &levels[l].bvh;
             bvh_refit(f, shape.x0, shape.x1, 0.0);
             if (l == 0) place_detector(f, speed, i % 3 == 0);
-            memcpy(f->parts[0].detector, levels[0].bvh.parts[0].detector, sizeof f->parts[0].detector);
+            memcpy(f->trees[0].detector, levels[0].bvh.trees[0].detector, sizeof f->trees[0].detector);
             orient_all(f, flags[l]);
             assert_memory_equal(flags[l], flags[0], sizeof flags[l]);
         }
@@ -193,7 +193,7 @@ static uint8_t orientation_from(bvh *f, double end_height, const double start[3]
     uint8_t flag;
     for (int i = 0; i < 3; i++) shape.x1[3 * i + 2] = end_height;
     bvh_refit(f, shape.x0, shape.x1, 0.0);
-    bvh_tree *p = &f->parts[0];
+    bvh_tree *p = &f->trees[0];
     for (int k = 0; k < 3; k++) {
         p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * f->scale);
         p->detector[1][k] = (float)((end[k] - p->origin[1][k]) * f->scale);
@@ -239,8 +239,8 @@ static void expected_point(const bvh_rig *r, uint32_t region, const double *x, l
 static void check_points(const bvh_rig *r, const double (*offsets)[3], bool still) {
     const bvh *f = &r->bvh;
     double extent = motion_extent((motion){shape.x0, shape.x1}, shape.vertex_count);
-    for (uint32_t i = 0; i < f->part_count; i++) {
-        const bvh_tree *p = &f->parts[i];
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        const bvh_tree *p = &f->trees[i];
         for (int end = 0; end < 2; end++) {
             long double expected[3];
             expected_point(r, p->region, end == 0 || still ? shape.x0 : shape.x1, expected);

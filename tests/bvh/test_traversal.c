@@ -190,7 +190,7 @@ static void many_rounds(void **state) {
  */
 
 static uint8_t before[TRIANGLES_MAX], now[TRIANGLES_MAX];
-static bool suspects[TRIANGLES_MAX];
+static bool unproven[TRIANGLES_MAX];
 
 static bool hidden(const bvh_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
     return r->regions[a] == r->regions[b] && !orientations_may_touch(orientations[a], orientations[b]);
@@ -206,7 +206,7 @@ static bool has_come(const bvh_rig *r, uint32_t a, uint32_t b) {
 
 static bool both_suspect(const bvh_rig *r, uint32_t a, uint32_t b) {
     (void)r;
-    return suspects[a] && suspects[b];
+    return unproven[a] && unproven[b];
 }
 
 static bool adjacent(uint32_t a, uint32_t b) {
@@ -239,7 +239,7 @@ static void choose_flags(random_stream *random, uint32_t run) {
         if (stream_below(random, run) == 0) flag = (uint8_t)(1 + stream_below(random, 3));
         before[t] = flag;
         now[t] = stream_below(random, 2 * run) == 0 ? ORIENTATION_ZERO : flag;
-        suspects[t] = stream_below(random, 1 + run / 4) == 0;
+        unproven[t] = stream_below(random, 1 + run / 4) == 0;
     }
 }
 
@@ -250,11 +250,11 @@ static void check_passes(random_stream *random, uint32_t region_count) {
     traverse(&r, TRAVERSAL_KEPT, &all);
     for (uint32_t run = 1; run < 1000; run *= 6) {
         choose_flags(random, run);
-        bvh_mark_fresh(&r.bvh, before, now);
+        bvh_mark_newly_kept(&r.bvh, before, now);
         check_pass(&r, TRAVERSAL_KEPT, stays);
-        check_pass(&r, TRAVERSAL_FRESH, has_come);
-        bvh_mark_suspects(&r.bvh, suspects);
-        check_pass(&r, TRAVERSAL_SUSPECTS, both_suspect);
+        check_pass(&r, TRAVERSAL_NEWLY_KEPT, has_come);
+        bvh_mark_unproven(&r.bvh, unproven);
+        check_pass(&r, TRAVERSAL_UNPROVEN, both_suspect);
     }
     bvh_rig_destroy(&r);
 }

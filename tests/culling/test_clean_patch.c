@@ -10,7 +10,7 @@
 enum { RINGS = 9, SEGMENTS = 6 };
 
 static scene s; /* large; one test at a time */
-static bool suspects[SCENE_TRIANGLES_MAX], crossing[SCENE_TRIANGLES_MAX];
+static bool unproven[SCENE_TRIANGLES_MAX], crossing[SCENE_TRIANGLES_MAX];
 
 typedef struct states {
     rig r;
@@ -40,10 +40,10 @@ static double height(uint32_t triangle) {
 /* A check that finds the triangles between two heights in contact. */
 static void check_with_belt(states *c, double low, double high) {
     for (uint32_t t = 0; t < s.triangle_count; t++) {
-        suspects[t] = true;
+        unproven[t] = true;
         crossing[t] = height(t) > low && height(t) < high;
     }
-    start_states_checked(&c->starts, suspects, crossing);
+    start_states_checked(&c->starts, unproven, crossing);
 }
 
 static uint32_t count(const states *c, triangle_state state, double low, double high) {
@@ -84,12 +84,12 @@ static void clean_spreads_through_what_has_healed(void **state) {
     uint32_t cap = count(&c, TRIANGLE_FREE, 0.6, 2);
     assert_true(cap > 0);
     for (uint32_t t = 0; t < s.triangle_count; t++) {
-        suspects[t] = c.starts.triangles[t] == TRIANGLE_CROSSING;
-        crossing[t] = suspects[t] && s.x0[s.triangles[(size_t)t * 3] * 3] > 0.0;
+        unproven[t] = c.starts.triangles[t] == TRIANGLE_CROSSING;
+        crossing[t] = unproven[t] && s.x0[s.triangles[(size_t)t * 3] * 3] > 0.0;
     }
     start_states_end(&c.starts, s.x0, (bool[1]){false});
     assert_int_equal(count(&c, TRIANGLE_UNKNOWN, 0.1, 0.6), count(&c, TRIANGLE_UNKNOWN, -2, 2));
-    start_states_checked(&c.starts, suspects, crossing);
+    start_states_checked(&c.starts, unproven, crossing);
     assert_int_equal(count(&c, TRIANGLE_CLEAN, 0.6, 2), cap);
     assert_true(count(&c, TRIANGLE_CROSSING, 0.1, 0.6) > 0);
     states_destroy(&c);
@@ -126,7 +126,7 @@ static void states_follow_positions(void **state) {
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].clean, half);
     assert_int_equal(c.starts.of[1].unknown, half);
-    assert_int_equal(start_states_suspect(&c.starts, suspects), half);
+    assert_int_equal(start_states_mark_unproven(&c.starts, unproven), half);
     start_states_end(&c.starts, s.x0, (bool[2]){true, false});
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].unknown, half);
@@ -152,7 +152,7 @@ static void checks_in_vain_wait(void **state) {
     states c = states_of_sphere(1);
     uint32_t checks = 0;
     for (int i = 0; i < 40; i++) {
-        if (start_states_suspect(&c.starts, suspects) > 0) {
+        if (start_states_mark_unproven(&c.starts, unproven) > 0) {
             check_with_belt(&c, -0.9, 2);
             checks++;
         }

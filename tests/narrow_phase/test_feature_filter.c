@@ -56,11 +56,11 @@ static bool share_vertex(const feature_points *p) {
     return false;
 }
 
-/* As documented: 48 u of both reaches and of what lies between the parts, along diagonals; as much again is
+/* As documented: 48 u of both reaches and of what lies between the trees, along diagonals; as much again is
  * what a gap may be off. */
 static long double slack_between(const bvh *f, triangle_pair pair) {
-    const bvh_tree *p = &f->parts[f->leaf_parts[pair.a / LANES]];
-    const bvh_tree *q = &f->parts[f->leaf_parts[pair.b / LANES]];
+    const bvh_tree *p = &f->trees[f->leaf_trees[pair.a / LANES]];
+    const bvh_tree *q = &f->trees[f->leaf_trees[pair.b / LANES]];
     long double size = (long double)p->reach + q->reach;
     for (int i = 0; i < 6; i++) {
         double from = p->origin[i / 3][i % 3], to = q->origin[i / 3][i % 3];

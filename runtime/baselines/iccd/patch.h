@@ -24,7 +24,7 @@ typedef struct patches {
     uint64_t contours, sealed;    /* tests made, patches that passed */
 } patches;
 
-/* For a BVH that is built, whose marks `within` are allocated; bounds do not matter. On failure there is
+/* For a BVH that is built, that can hide pairs; bounds do not matter. On failure there is
  * nothing to free. */
 cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out);
 void patches_free(cscd_context *context, patches *p);

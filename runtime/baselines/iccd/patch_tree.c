@@ -3,7 +3,7 @@
 
 enum { LEAF_HEIGHT = 3, HEIGHT_PER_LEVEL = 3, DEPTH_MAX = 64 };
 
-/* Slots [0, count) of a part from `first` on, in 2^height of them; parent: whose right child it is. */
+/* Slots [0, count) of a tree from `first` on, in 2^height of them; parent: whose right child it is. */
 typedef struct pending_node {
     uint32_t first, height, parent;
 } pending_node;
@@ -14,7 +14,7 @@ static uint32_t triangles_of(const bvh *f, const bvh_tree *p) {
 }
 
 static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
-    const bvh_tree *p = &f->parts[index];
+    const bvh_tree *p = &f->trees[index];
     uint32_t count = triangles_of(f, p), depth = 0, height = 0;
     pending_node stack[DEPTH_MAX];
     while ((uint64_t)1 << height < count) height++;
@@ -25,7 +25,7 @@ static void add_tree(const bvh *f, uint32_t index, patch_tree *tree) {
         while (at.height > 0 && at.first + (1u << (at.height - 1)) >= count) at.height--;
         uint32_t node = tree->node_count++;
         if (at.parent != UINT32_MAX) tree->nodes[at.parent].right = node;
-        tree->nodes[node] = (patch_node){.part = index, .first_slot = at.first, .height = at.height};
+        tree->nodes[node] = (patch_node){.tree = index, .first_slot = at.first, .height = at.height};
         if (at.height == 0) {
             const bvh_leaf *l = &f->leaves[p->first_leaf + at.first / LANES];
             tree->nodes[node].triangle = l->triangles[at.first % LANES];
@@ -41,12 +41,12 @@ cscd_status patch_tree_build(const bvh *f, patch_tree *out) {
     cscd_context *context = f->mesh->context;
     patch_tree tree = {0};
     tree.nodes = context_allocate(context, (size_t)f->mesh->triangle_count * 2, sizeof *tree.nodes);
-    tree.roots = context_allocate(context, f->part_count, sizeof *tree.roots);
+    tree.roots = context_allocate(context, f->tree_count, sizeof *tree.roots);
     if (tree.nodes == NULL || tree.roots == NULL) {
         patch_tree_free(context, &tree);
         return CSCD_OUT_OF_MEMORY;
     }
-    for (uint32_t i = 0; i < f->part_count; i++) add_tree(f, i, &tree);
+    for (uint32_t i = 0; i < f->tree_count; i++) add_tree(f, i, &tree);
     *out = tree;
     return CSCD_OK;
 }
@@ -66,15 +66,15 @@ static uint64_t square(uint32_t first, uint32_t count) {
 
 static void hide(const patch_node *node, bvh *f) {
     if (node->height <= LEAF_HEIGHT) {
-        uint32_t index = f->parts[node->part].first_leaf + node->first_slot / LANES;
-        f->leaf_within[index] &= ~square(node->first_slot % LANES, 1u << node->height);
+        uint32_t index = f->trees[node->tree].first_leaf + node->first_slot / LANES;
+        f->leaf_self_pairs[index] &= ~square(node->first_slot % LANES, 1u << node->height);
         return;
     }
     int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
     uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
     uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
-    uint32_t block = f->parts[node->part].first_blocks[level] + child / LANES;
-    f->levels[level].within[block] &= ~square(child % LANES, count);
+    uint32_t block = f->trees[node->tree].first_blocks[level] + child / LANES;
+    f->levels[level].self_pairs[block] &= ~square(child % LANES, count);
 }
 
 void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f) {

@@ -3,19 +3,19 @@
 
 #include "runtime/bvh/bvh.h"
 
-/* Nodes stand in depth-first order, the trees of the parts one after another: the left child follows its
+/* Nodes stand in depth-first order, the trees over the BVH's trees one after another: the left child follows its
  * parent, so children come after parents. A node of height h covers the slots from a multiple of 2^h, counted
- * in its part, to the next. */
+ * in its tree, to the next. */
 typedef struct patch_node {
     uint32_t right;    /* index of the right child; 0 marks a leaf */
     uint32_t triangle; /* of a leaf */
-    uint32_t part, first_slot, height;
+    uint32_t tree, first_slot, height;
 } patch_node;
 
 typedef struct patch_tree {
     patch_node *nodes;
     uint32_t node_count;
-    uint32_t *roots; /* per part */
+    uint32_t *roots; /* per tree of the BVH */
     uint32_t root_count;
 } patch_tree;
 

@@ -59,7 +59,7 @@ void in_frame(const bvh *f, const bvh_tree *p, motion m, uint32_t vertex, int mo
     long double t = 0.5L * moment;
     for (size_t k = 0; k < 3; k++) {
         size_t at = (size_t)vertex * 3 + k;
-        const bvh_tree *frame = p != NULL ? p : &f->parts[0];
+        const bvh_tree *frame = p != NULL ? p : &f->trees[0];
         long double start = (long double)m.x0[at] - frame->origin[0][k];
         long double end = (long double)m.x1[at] - frame->origin[1][k];
         out[k] = ((1.0L - t) * start + t * end) * f->scale;
