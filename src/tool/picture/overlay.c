@@ -51,8 +51,8 @@ static bool marker_hidden(const picture_visibility *visibility, const placed_mar
     uint32_t columns = visibility->width * visibility->samples,
              rows = visibility->height * visibility->samples;
     if (!(x >= 0.0 && y >= 0.0 && x < columns && y < rows)) return false;
-    double proximity = visibility->proximity[(size_t)y * columns + (size_t)x];
-    return (marker->depth - ball_radius) * proximity > 1.0;
+    double inverse_depth = visibility->inverse_depth[(size_t)y * columns + (size_t)x];
+    return (marker->depth - ball_radius) * inverse_depth > 1.0;
 }
 
 bool picture_draw_markers(picture_image *image, const picture_visibility *visibility,

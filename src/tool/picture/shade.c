@@ -162,10 +162,10 @@ static double wire_darkness(const picture_edges *edges, const double *projected,
     return 0.55 * line * fade;
 }
 
-/* Lights the colour by the surface's normal at pixel coordinates (x, y), 1 / proximity away. */
+/* Lights the colour by the surface's normal at pixel coordinates (x, y), 1 / inverse_depth away. */
 static void light_point(const shading_pass *pass, const picture_surface *surface, const uint32_t corners[3],
                         const picture_edges *edges, const double weights[3], double x, double y,
-                        double proximity, double colour[3]) {
+                        double inverse_depth, double colour[3]) {
     const picture_camera *camera = pass->camera;
     double normal[3];
     double view[3] = {(camera->centre[0] - x) / camera->focal, (camera->centre[1] - y) / camera->focal, -1.0};
@@ -173,8 +173,8 @@ static void light_point(const shading_pass *pass, const picture_surface *surface
     seen_normal(camera, edges, normal);
     if (surface->normals != NULL) interpolate_normal(surface, corners, weights, edges->front, normal);
     light_surface(normal, view, surface->ground == NULL ? 0.10 : 0.0, colour);
-    if (surface->ground == NULL || !(proximity > 0.0)) return;
-    double share = picture_ground_light(surface->ground, camera, normal, view, x, y, 1.0 / proximity);
+    if (surface->ground == NULL || !(inverse_depth > 0.0)) return;
+    double share = picture_ground_light(surface->ground, camera, normal, view, x, y, 1.0 / inverse_depth);
     for (int i = 0; i < 3; i++) colour[i] *= share;
 }
 

@@ -17,21 +17,21 @@ bool picture_visibility_create(uint32_t width, uint32_t height, uint32_t samples
         return io_fail(error, "picture with %u x %u samples a pixel: 1 to %u are possible", (unsigned)samples,
                        (unsigned)samples, PICTURE_SAMPLES_MAX);
     size_t count = (size_t)width * samples * height * samples;
-    float *proximity = calloc(count, sizeof *proximity);
+    float *inverse_depth = calloc(count, sizeof *inverse_depth);
     uint32_t *triangle = malloc(count * sizeof *triangle);
-    if (proximity == NULL || triangle == NULL) {
-        free(proximity);
+    if (inverse_depth == NULL || triangle == NULL) {
+        free(inverse_depth);
         free(triangle);
         return io_fail(error, "picture of %u x %u pixels: out of memory for %zu samples", (unsigned)width,
                        (unsigned)height, count);
     }
     memset(triangle, 0xff, count * sizeof *triangle);
-    *out = (picture_visibility){width, height, samples, proximity, triangle};
+    *out = (picture_visibility){width, height, samples, inverse_depth, triangle};
     return true;
 }
 
 void picture_visibility_free(picture_visibility *visibility) {
-    free(visibility->proximity);
+    free(visibility->inverse_depth);
     free(visibility->triangle);
     *visibility = (picture_visibility){0};
 }
@@ -61,9 +61,9 @@ bool picture_edges_set(const double *projected, const uint32_t corners[3], pictu
 }
 
 typedef struct bounds {
-    double min[2], max[2]; /* pixels */
-    double proximity[2];   /* least and greatest 1 / depth */
-    double limit;          /* of 1 / depth: at the near plane for a triangle that passes through it */
+    double min[2], max[2];   /* pixels */
+    double inverse_depth[2]; /* least and greatest 1 / depth */
+    double limit;            /* of 1 / depth: at the near plane for a triangle that passes through it */
 } bounds;
 
 static void bounds_add(bounds *box, double x, double y, double depth) {
@@ -71,8 +71,8 @@ static void bounds_add(bounds *box, double x, double y, double depth) {
     box->max[0] = fmax(box->max[0], x / depth);
     box->min[1] = fmin(box->min[1], y / depth);
     box->max[1] = fmax(box->max[1], y / depth);
-    box->proximity[0] = fmin(box->proximity[0], 1.0 / depth);
-    box->proximity[1] = fmax(box->proximity[1], 1.0 / depth);
+    box->inverse_depth[0] = fmin(box->inverse_depth[0], 1.0 / depth);
+    box->inverse_depth[1] = fmax(box->inverse_depth[1], 1.0 / depth);
 }
 
 /* Bounds what of the triangle lies beyond the near plane: its corners there and the points where an edge
@@ -118,7 +118,7 @@ static void draw_samples(picture_visibility *visibility, const picture_edges *ed
         double y = (row + 0.5) * step;
         double r0 = edge[0][1] * y + edge[0][2], r1 = edge[1][1] * y + edge[1][2],
                r2 = edge[2][1] * y + edge[2][2];
-        float *proximity = visibility->proximity + (size_t)row * columns;
+        float *inverse_depth = visibility->inverse_depth + (size_t)row * columns;
         uint32_t *triangles = visibility->triangle + (size_t)row * columns;
         for (uint32_t column = first_column; column < end_column; column++) {
             double x = (column + 0.5) * step;
@@ -128,9 +128,9 @@ static void draw_samples(picture_visibility *visibility, const picture_edges *ed
             if (exact > box->limit) continue;
             /* Rounding throws the depth of a triangle seen nearly edge-on far off; it lies within its bounds.
              */
-            float near = (float)fmin(fmax(exact, box->proximity[0]), box->proximity[1]);
-            if (near <= proximity[column]) continue;
-            proximity[column] = near;
+            float near = (float)fmin(fmax(exact, box->inverse_depth[0]), box->inverse_depth[1]);
+            if (near <= inverse_depth[column]) continue;
+            inverse_depth[column] = near;
             triangles[column] = triangle;
         }
     }

@@ -13,7 +13,7 @@
  * ((i + 1/2) / samples, (j + 1/2) / samples). */
 typedef struct picture_visibility {
     uint32_t width, height, samples; /* width and height in pixels */
-    float *proximity;                /* 1 / depth, 0 where nothing is seen */
+    float *inverse_depth;            /* 1 / depth, 0 where nothing is seen */
     uint32_t *triangle;              /* PICTURE_NO_TRIANGLE where nothing is seen */
 } picture_visibility;
 

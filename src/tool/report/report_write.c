@@ -180,7 +180,7 @@ static bool put_json(FILE *file, const char *text) {
 }
 
 static bool put_array(FILE *file, const page_array *array) {
-    return fprintf(file, "<script type=\"application/pairs_x8-stream\" id=\"cscd-array-%s\">", array->name) >
+    return fprintf(file, "<script type=\"application/octet-stream\" id=\"cscd-array-%s\">", array->name) >
                0 &&
            packed_array_write(array->values, file) && fputs("</script>\n", file) != EOF;
 }

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <zlib.h>
 
-#define OCTETS "<script type=\"application/pairs_x8-stream\" id=\"cscd-array-"
+#define OCTETS "<script type=\"application/octet-stream\" id=\"cscd-array-"
 #define JSON   "<script type=\"application/json\" id=\"cscd-report\">"
 #define END    "</script>\n"
 
