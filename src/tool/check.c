@@ -62,7 +62,7 @@ typedef struct check_run {
     frame_list intersecting;
 } check_run;
 
-/* As in MODEL, the smaller first: welding keeps the order. */
+/* Triangles are numbered as in MODEL. The smaller comes first, because welding keeps the order. */
 static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *found) {
     json *out = &c->out;
     json_break_line(out);

@@ -51,7 +51,8 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 int main(int argument_count, char **arguments) {
-    signal(SIGPIPE, SIG_IGN); /* a closed pipe is a write error like any other: files still get finished */
+    signal(SIGPIPE, SIG_IGN); /* a closed pipe is then a write error like any other, so that files still
+                               * get finished */
     int code = run_command(argument_count, arguments);
     if ((fflush(stdout) != 0 || ferror(stdout)) && code != EXIT_BAD_INPUT)
         code = fail_input("standard output: %s", strerror(errno));

@@ -124,7 +124,7 @@ static bool check_interval(json_object *interval, size_t index, io_error *error)
            elements_have(find_member(interval, "guarantee"), of_guarantee, where, error);
 }
 
-/* One after the other: the page has a place for each frame between the first and the last. */
+/* Frames must follow each other, because the page has a place for each between the first and the last. */
 static bool check_intervals(json_object *intervals, io_error *error) {
     int64_t first = 0;
     for (size_t i = 0; i < json_object_array_length(intervals); i++) {
@@ -179,7 +179,7 @@ static bool check_summary(json_object *root, io_error *error) {
            strings_only(find_member(provenance, "arguments"), "the arguments", error);
 }
 
-/* The whole file and a 0, *size without it; NULL with the reason. */
+/* Reads the whole file and ends it with a 0, which *size does not count; NULL with the reason. */
 static char *read_text(const char *path, size_t *size, io_error *error) {
     FILE *file = fopen(path, "rb");
     char *text = NULL, buffer[65536];
@@ -228,7 +228,7 @@ static json_object *parse_text(const char *path, const char *text, size_t size, 
     return root;
 }
 
-/* Numbers as JSON has them: json-c also reads "1." and NaN, and would write them so. */
+/* Makes numbers those of JSON: json-c also reads "1." and NaN, and would write them so. */
 static bool numbers_are_plain(json_object *value) {
     switch (json_object_get_type(value)) {
     case json_type_double:
@@ -250,7 +250,7 @@ static bool numbers_are_plain(json_object *value) {
     }
 }
 
-/* The text anew, as strict as a browser wants it; NULL with the reason. */
+/* Writes the checked text again, as strictly as a browser requires it; NULL with the reason. */
 static char *checked_text(const char *path, json_object *root, io_error *error) {
     static const char expected[] = "expected what cscd replay --json wrote";
     io_error reason;

@@ -5,6 +5,6 @@
 
 #include <stdbool.h>
 
-/* A summary as JSON, to be freed, after a look at all members that a report shows; NULL, with the reason and
- * the place: file and line, or the member that is missing. */
+/* Reads a summary and checks all members that a report shows. Returns it as JSON, to be freed; NULL with
+ * the reason and the place: file and line, or the missing member. */
 char *summary_file_read(const char *path, io_error *error);

@@ -21,7 +21,7 @@
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;
 
-/* In the place of the writer's own. */
+/* Replaces the writer's own allocation. */
 void *io_realloc(void *memory, size_t size) {
     if (allocations_left == 0) return NULL;
     if (allocations_left > 0) allocations_left--;
@@ -106,7 +106,7 @@ static rlim_t size_of_report(void) {
     return (rlim_t)status.st_size;
 }
 
-/* What the disk does when it is full: a device that is, and a limit to the size of files. */
+/* A full disk, as a device that is always full and as a limit to the size of files. */
 static void a_full_disk_leaves_the_older_file(void **state) {
     (void)state;
     expect_failure("/dev/full", "cannot write: No space left");

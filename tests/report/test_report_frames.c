@@ -13,7 +13,7 @@
 /* How many allocations still succeed; negative: all. */
 static int allocations_left = -1;
 
-/* In the place of the writer's own. */
+/* Replaces the writer's own allocation. */
 void *io_realloc(void *memory, size_t size) {
     if (allocations_left == 0) return NULL;
     if (allocations_left > 0) allocations_left--;
@@ -22,7 +22,7 @@ void *io_realloc(void *memory, size_t size) {
 
 enum { VERTICES = 50, FRAMES = 24, VALUES = VERTICES * 3 };
 
-/* What a recording does in its frames. */
+/* A recording by rule. */
 typedef struct frame_motion {
     const char *name;
     void (*place)(uint32_t frame, double *positions);
@@ -110,7 +110,7 @@ static void jumping_motion(uint32_t frame, double *positions) {
     place_vertices(positions, 1.0, frame % 2 == 0 ? 16000.0 : -16000.0);
 }
 
-/* Beyond all that a page can show: what is stated is still true. */
+/* Motion beyond everything that a page can show; the stated error is still true. */
 static void bursting_motion(uint32_t frame, double *positions) {
     place_vertices(positions, frame < 5 ? 1.0 : frame % 2 == 0 ? 1e80 : 1e-60, 0.0);
     if (frame == 20) place_vertices(positions, 0.0, 1e80);
@@ -163,7 +163,7 @@ static void compare_positions(const double *shown, const double *given, const fr
     }
 }
 
-/* Below relative_max, a share of the longest side. */
+/* The error must stay below relative_max, a share of the longest side. */
 static void check_motion(const frame_motion *m, double relative_max) {
     frame_stream stream;
     double given[VALUES], *shown;
@@ -220,7 +220,7 @@ static void still_frames_are_small(void **state) {
     frame_stream_free(&stream);
 }
 
-/* Every length modulo three, over more than one buffer. */
+/* Arrays of every length modulo three, longer than a buffer. */
 static void bytes_come_back(void **state) {
     (void)state;
     for (size_t size = 0; size < 20000; size = size * 3 / 2 + 1) {

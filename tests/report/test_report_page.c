@@ -1,5 +1,4 @@
-/* What a report holds, read back: scene, plan and frames of every kind of report, and names that are markup.
- */
+/* The content of reports, read back: scene, plan and frames of every kind, and names that are markup. */
 #include "src/tool/report/template.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
@@ -98,7 +97,7 @@ static void expect_plan(const page *p, const report_rig *rig) {
     assert_true(json_node_item(capacitances, 0)->number == cscd_plan_capacitance(rig->plan, 0));
 }
 
-/* The rank of a charge: how many of the component are less, counted. */
+/* The rank of a charge, by counting how many of the component are less. */
 static void expect_ranks(const page *p, const report_rig *rig) {
     page_bytes bytes = page_array(p, "equalized");
     for (uint32_t t = 0; t < rig->shape.triangle_count; t++) {
@@ -142,7 +141,7 @@ static void scene_and_plan_come_back(void **state) {
     report_rig_destroy(&rig);
 }
 
-/* Coordinates that float32 has not: the page is told in another unit, and loses no more than else. */
+/* Coordinates out of the range of float32 reach the page in another unit, and lose no more than others. */
 static void huge_scenes_have_a_unit(void **state) {
     (void)state;
     static const double scales[] = {0x1p280, 0x1p-280};

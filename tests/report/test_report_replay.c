@@ -1,5 +1,5 @@
-/* What a report keeps of a replay: contacts, orientations, detector points, and of long ones every n-th
- * frame. */
+/* The parts of a replay that a report keeps: contacts, orientations, detector points, and every n-th frame
+ * of long ones. */
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
 #include "tests/support/test.h"
@@ -39,7 +39,7 @@ static report *create_report(const report_options *options) {
     return r;
 }
 
-/* What a replay of its own finds, as the page's arrays should have it. */
+/* The arrays that the page should have, from a replay of the test's own. */
 typedef struct expected {
     uint32_t count, interval[CONTACTS_MAX], vertices[CONTACTS_MAX][4];
     uint8_t kind[CONTACTS_MAX];
@@ -269,7 +269,7 @@ static void number_vertices(void *user, const cscd_contact *contact, uint32_t ve
     for (uint32_t i = 0; i < 4; i++) vertices[i] = *(const uint32_t *)user + contact->a + i;
 }
 
-/* Contacts that nobody found: how many are kept is decided by their number alone. */
+/* Made-up contacts, because their number alone decides how many are kept. */
 enum { INTERVALS = 30, MANY = 5000, SHARE = REPORT_CONTACTS_MAX / INTERVALS };
 
 /* The first three intervals have none; the next have what these leave, and the last no less than their share.

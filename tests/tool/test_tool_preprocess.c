@@ -216,7 +216,8 @@ static void takes_the_plan_that_it_is_given(void **state) {
                  recorded_write_mesh(&folder, "mesh.ply", &spindle, 0).text);
 }
 
-/* At the model's own place it is left aside, and the reason said; given by name it is an error. */
+/* A plan that does not fit is left aside with a reason at the model's own place; given by name it is an
+ * error. */
 static void refuses_the_plan_of_another_mesh(void **state) {
     (void)state;
     recorded torus = recorded_torus(20, 10);

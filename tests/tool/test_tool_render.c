@@ -361,7 +361,7 @@ static void render_refuses_what_does_not_go_together(void **state) {
     EXPECT_ERROR(1, TEXTS("none.obj", "No such file"), REFUSED("--scenery", "none.obj"));
 }
 
-/* What was there before stays when a later frame cannot be read. */
+/* An older picture stays when a later frame cannot be read. */
 static void failed_strip_keeps_the_picture_that_was_there(void **state) {
     (void)state;
     recorded flight = recorded_tetrahedra(FRAMES), other = recorded_cube(false);

@@ -1,4 +1,4 @@
-/* What a replay writes: contacts, summary and table, on scenes whose contacts are known. */
+/* The output of a replay: contacts, summary and table, on scenes whose contacts are known. */
 #include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"

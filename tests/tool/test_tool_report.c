@@ -150,7 +150,7 @@ static void what_is_no_summary_is_named(void **state) {
     EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
 }
 
-/* Of a true summary, with one part of it replaced. */
+/* Writes a true summary with one part of it replaced. */
 static void a_changed_summary_is_refused(void **state) {
     (void)state;
     static const struct {
@@ -272,7 +272,7 @@ static void a_pipe_gets_the_page(void **state) {
     json_node_free(read_page(page.text));
 }
 
-/* Whose first coordinate in a frame is infinite. */
+/* Writes a recording whose first coordinate in a frame is infinite. */
 static temp_path write_spoilt(uint32_t frame) {
     recorded scene = recorded_tetrahedra(8);
     temp_path spoilt = recorded_write_cache(&folder, "spoilt.pc2", &scene);

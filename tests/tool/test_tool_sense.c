@@ -49,7 +49,7 @@ static size_t count_of(const char *text, const char *part) {
     return count;
 }
 
-/* Of the intervals that the scene was built for: 3 and 5. */
+/* The warnings of intervals 3 and 5, which the scene was built for. */
 static void confirms_the_contacts_and_no_others(void **state) {
     (void)state;
     EXPECT_TOOL(0, "sense", SENSE, "--csv", csv.text);

@@ -107,7 +107,7 @@ static void check_keeps_what_precedes_a_bad_frame(void **state) {
     recorded_free(&other);
 }
 
-/* What info prints about a mesh, on stdout and stderr together. */
+/* Everything that info prints about a mesh, on stdout and stderr. */
 static void expect_info(const recorded *r, const char *out, const char *error) {
     temp_path path = recorded_write_mesh(&folder, "info.obj", r, 0);
     tool_run run = RUN_TOOL("info", path.text);

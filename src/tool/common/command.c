@@ -1,4 +1,4 @@
-/* What the tool's commands share: exit codes, error lines, option values. */
+/* Exit codes, error lines and numbers of the command line, for all commands of the tool. */
 #include "src/tool/common/command.h"
 
 #include <errno.h>
@@ -33,7 +33,7 @@ int fail_usage(const char *command, const char *format, ...) {
     return EXIT_USAGE;
 }
 
-/* optopt is 0 after an unknown long option; a short one may stand in the middle of its argument. */
+/* optopt is 0 after an unknown long option. A short option may stand in the middle of an argument. */
 int fail_option(const char *command, int id, char **arguments) {
     const char *last = arguments[optind - 1];
     if (id == ':') return fail_usage(command, "%s needs a value", last);

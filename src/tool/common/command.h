@@ -1,4 +1,4 @@
-/* What the tool's commands share: exit codes, error lines, option values. */
+/* Exit codes, error lines and numbers of the command line, for all commands of the tool. */
 #pragma once
 
 #include <stdbool.h>
@@ -12,7 +12,7 @@ typedef enum exit_code {
     EXIT_INTERRUPTED = 130
 } exit_code;
 
-/* Each takes the arguments from the command's name on. */
+/* Each command is given the arguments from its name on and returns an exit code. */
 int command_preprocess(int argument_count, char **arguments);
 int command_replay(int argument_count, char **arguments);
 int command_sense(int argument_count, char **arguments);
@@ -21,7 +21,7 @@ int command_info(int argument_count, char **arguments);
 int command_report(int argument_count, char **arguments);
 int command_render(int argument_count, char **arguments);
 
-/* One line on stderr, "cscd: ..."; return the exit code that fits. */
+/* Prints one line on stderr, "cscd: ...", and returns the exit code for it. */
 int fail_input(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The same with a hint to COMMAND --help. */
 int fail_usage(const char *command, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -30,6 +30,6 @@ int fail_option(const char *command, int id, char **arguments);
 /* "cscd: warning: ..." on stderr. */
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Whole strings only; false leaves *out untouched. */
+/* Both read whole strings only. When they return false, *out is untouched. */
 bool parse_unsigned(const char *text, uint32_t *out);
 bool parse_double(const char *text, double *out);

@@ -1,10 +1,12 @@
 /* A growing list of frames, printed as ranges. */
 #include "src/tool/common/frame_list.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 bool frame_list_add(frame_list *list, uint32_t frame) {
+    assert(list->count == 0 || frame > list->spans[list->count - 1].last);
     if (list->count > 0 && list->spans[list->count - 1].last + 1 == frame) {
         list->spans[list->count - 1].last = frame;
         return true;

@@ -13,11 +13,11 @@ typedef struct frame_list {
     uint32_t count, capacity;
 } frame_list;
 
-/* frame: larger than all before. False when out of memory. */
+/* Adds a frame, which is larger than all before. False when out of memory. */
 bool frame_list_add(frame_list *list, uint32_t frame);
 /* How many frames the list holds. */
 uint32_t frame_list_frames(const frame_list *list);
 
-/* prefix, then "3, 7-12, 20", and a line end; an empty list prints the line end only. */
+/* Prints prefix, then "3, 7-12, 20", and a line end; for an empty list the line end only. */
 void frame_list_print(const frame_list *list, const char *prefix);
 void frame_list_free(frame_list *list);

@@ -9,7 +9,7 @@ frame_range frame_range_all(void) {
     return (frame_range){0, UINT32_MAX, 1};
 }
 
-/* Splits at colons, in place; 0 for more than three parts. */
+/* Splits a text at its colons, in place. Returns the number of parts, 0 if there are more than three. */
 static int split_range(char *text, char *parts[3]) {
     int count = 0;
     for (char *next = text; next != NULL; count++) {

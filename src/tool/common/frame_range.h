@@ -15,10 +15,10 @@ typedef struct frame_range {
 /* Every frame. */
 frame_range frame_range_all(void);
 
-/* Whole strings only; false leaves *out untouched. */
+/* Reads a whole string. When it returns false, *out is untouched. */
 bool frame_range_parse(const char *text, frame_range *out);
 
-/* Closes an open end; false, with a sentence, where the recording lacks a frame of the range. */
+/* Closes an open end. False, with a sentence, if the recording lacks a frame of the range. */
 bool frame_range_close(frame_range *range, uint32_t frame_count, io_error *error);
 
 /* How many frames a closed range has. */

@@ -44,7 +44,7 @@ static uint32_t mesh_triangle(const recording *r, uint32_t file_triangle) {
     return low < r->weld.triangle_count && r->weld.file_triangle[low] == file_triangle ? low : UINT32_MAX;
 }
 
-/* Two numbers below limit and nothing else. */
+/* Reads two numbers below limit; false if there is anything else in the text. */
 static bool parse_pair(const char *text, uint32_t limit, uint32_t pair[2]) {
     char *end = NULL;
     for (int i = 0; i < 2; i++) {

@@ -1,4 +1,4 @@
-/* Pairs of objects, of warnings and of contacts, as sets that can be compared. */
+/* Sets of object pairs, those of warnings and those of contacts, so that they can be compared. */
 #include "src/tool/common/object_pairs.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ uint32_t object_pairs_common(const object_pairs *a, const object_pairs *b) {
     return common;
 }
 
-/* Per cell: cells are numbered part by part. */
+/* Finds the part of each cell first, because cells are numbered part by part. */
 static void fill_map(const cscd_mesh *mesh, const cscd_partition *partition, uint32_t *cell_parts,
                      object_map *map) {
     for (uint32_t p = 0; p < cscd_partition_part_count(partition); p++) {

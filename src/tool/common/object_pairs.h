@@ -1,4 +1,4 @@
-/* Pairs of objects, of warnings and of contacts, as sets that can be compared. */
+/* Sets of object pairs, those of warnings and those of contacts, so that they can be compared. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -20,7 +20,7 @@ uint32_t object_pairs_count(const object_pairs *pairs);
 /* How many pairs both have; both closed. */
 uint32_t object_pairs_common(const object_pairs *a, const object_pairs *b);
 
-/* Object and part of every vertex; UINT32_MAX for one without a triangle. */
+/* The object and the part of every vertex; UINT32_MAX for a vertex without a triangle. */
 typedef struct object_map {
     uint32_t *objects, *parts;
 } object_map;
@@ -28,10 +28,11 @@ typedef struct object_map {
 bool object_map_make(const cscd_mesh *mesh, const cscd_partition *partition, object_map *out);
 void object_map_free(object_map *map);
 
-/* The pairs of objects of contacts, closed; with `within` also an object with itself, where the first
- * vertices of two features are of different parts. False when out of memory. */
+/* Makes the closed set of object pairs of contacts. With `within`, an object also counts as a pair with
+ * itself, if the first vertices of the two features belong to different parts. False when out of memory. */
 bool object_pairs_of_contacts(const cscd_mesh *mesh, const object_map *map, const cscd_contacts *contacts,
                               bool within, object_pairs *out);
 
-/* Those of warnings, closed; confirmed_only: whose exact check has found a contact. */
+/* Makes the closed set of object pairs of warnings; confirmed_only: of those whose exact check has found a
+ * contact. */
 bool object_pairs_of_warnings(const cscd_warnings *warnings, bool confirmed_only, object_pairs *out);

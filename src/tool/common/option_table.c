@@ -66,7 +66,7 @@ static void print_help(const option_table *table) {
 
 /* ---- command line ------------------------------------------------------------------------------------ */
 
-/* What getopt_long wants to know. */
+/* The options in the form that getopt_long takes. */
 typedef struct getopt_tables {
     struct option names[OPTION_ROWS_MAX + 2];
     char letters[2 * OPTION_ROWS_MAX + 2];
@@ -74,7 +74,7 @@ typedef struct getopt_tables {
 
 static void fill_tables(const option_table *table, getopt_tables *out) {
     size_t names = 0, letters = 0;
-    out->letters[letters++] = ':'; /* a missing value is told from an unknown option */
+    out->letters[letters++] = ':'; /* getopt_long tells a missing value from an unknown option */
     for (size_t i = 0; i < table->count; i++) {
         const option_row *row = &table->rows[i];
         int has_value = row->value != NULL ? required_argument : no_argument;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Two names of a file that does not exist yet: the same name in the same folder. */
+/* Do two paths name one file that does not exist yet: the same name in the same folder? */
 static bool same_place(const char *a, const char *b) {
     const char *names[2] = {a, b};
     char *folders[2] = {NULL, NULL};
@@ -43,14 +43,14 @@ static bool named_like_input(const char *path) {
     return false;
 }
 
-/* The file that was opened to see whether it can be; a link that led to nothing stays. */
+/* Removes the file that was created to see whether it can be; a link that led to nothing stays. */
 static void remove_created(const char *path) {
     char *target = realpath(path, NULL);
     if (target != NULL) unlink(target);
     free(target);
 }
 
-/* A pipe is asked only, for its reader takes the end of the first writer for the end of all. */
+/* A pipe is not opened: its reader would take the end of this writer for the end of the data. */
 static bool try_open(const char *path) {
     struct stat status;
     bool exists = stat(path, &status) == 0;

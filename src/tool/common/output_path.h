@@ -6,14 +6,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* False, with the reason, when `path` is one of the files in others (links followed; NULLs among them are
- * skipped). path NULL is fine. */
+/* False, with the reason, when `path` is one of the files in others. Links are followed, and NULLs among
+ * the others are skipped. path may be NULL. */
 bool output_path_differs(const char *path, const char *const *others, size_t other_count, io_error *error);
 
-/* The same, and false too when it is named like a mesh or a point cache: it may then be a frame of a pattern
- * or a folder. */
+/* The same, but false also when the path is named like a mesh or a point cache, because it may then be a
+ * frame of a pattern or of a folder. */
 bool output_path_is_safe(const char *path, const char *const *others, size_t other_count, io_error *error);
 
-/* Can path be opened for writing? What it holds stays as it is. Asked of all outputs before any is truncated.
- * NULL is fine. */
+/* Can path be opened for writing? Its content stays as it is. A command asks this of all outputs before it
+ * truncates any. path may be NULL. */
 bool output_path_opens(const char *path, io_error *error);

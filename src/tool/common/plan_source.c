@@ -1,4 +1,5 @@
-/* Where a plan comes from: a file, or made in memory, or none; and by which method pairs are then culled. */
+/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector
+ * then uses. */
 #include "src/tool/common/plan_source.h"
 
 #include "src/io/path_name.h"
@@ -65,7 +66,7 @@ static bool read_named(const plan_request *request, const recording *r, plan_cho
     return false;
 }
 
-/* The model's own plan, if it is there and fits; else the remark says why not. */
+/* Takes the model's own plan, if there is one that fits; otherwise the remark says why not. */
 static void try_model_plan(const plan_request *request, const recording *r, plan_choice *choice) {
     char *path = plan_path_of_model(request->model_path);
     cscd_plan *plan = NULL;
@@ -116,8 +117,8 @@ static void add_remark(plan_choice *choice, const char *text) {
     if (choice->remark[0] == '\0') snprintf(choice->remark, sizeof choice->remark, "%s", text);
 }
 
-/* Nobody asked for a certain plan: where charge finds no answer there is one region per component, and where
- * that fails too nothing is culled. */
+/* No plan was asked for, so failures are not errors: if charge fails, there is one region per component;
+ * if that fails too, nothing is culled. */
 static bool make_best(const plan_request *request, const recording *r, plan_choice *choice, io_error *error) {
     bool small = cscd_mesh_triangle_count(r->mesh) <= PLAN_IN_MEMORY_TRIANGLES;
     if (!insists_on_plan(request) && !any_closed(r->mesh)) {

@@ -1,9 +1,10 @@
-/* Where a plan comes from: a file, or made in memory, or none; and by which method pairs are then culled. */
+/* Finds a plan: in a file, or by making it in memory, or none; and chooses the method that the detector
+ * then uses. */
 #pragma once
 
 #include "src/tool/common/recording.h"
 
-/* Up to so many triangles a plan of method charge is made without being asked for. */
+/* Up to this number of triangles a plan of method charge is made without being asked for. */
 enum { PLAN_IN_MEMORY_TRIANGLES = 6000 };
 
 /* pawn.obj -> pawn.plan.ply, in the same folder; to be freed, NULL when out of memory. */
@@ -29,7 +30,7 @@ typedef struct plan_choice {
     plan_source source;
     char *path;       /* of the file */
     double made_ms;   /* in memory */
-    char remark[600]; /* why not something better, for people; "" where there is nothing to say */
+    char remark[600]; /* a sentence for people: why no better plan was taken; "" if there is nothing to say */
 } plan_choice;
 
 /* On false *out holds nothing. */

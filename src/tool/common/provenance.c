@@ -1,4 +1,4 @@
-/* Where a result comes from: version, machine, options, input hashes. */
+/* The origin of a result: version, machine, options and hashes of the inputs. */
 #include "src/tool/common/provenance.h"
 
 #include "cscd/cscd.h"
@@ -35,7 +35,7 @@ uint64_t provenance_hash(uint64_t hash, const void *bytes, size_t size) {
     return hash;
 }
 
-/* "model name" of the first processor, "" where the system does not say. */
+/* The "model name" of the first processor, "" if the system does not give it. */
 static void read_processor(char *name, size_t size) {
     name[0] = '\0';
     FILE *file = fopen("/proc/cpuinfo", "r");

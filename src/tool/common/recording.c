@@ -1,8 +1,10 @@
-/* A model file and its recorded frames, welded when asked, as a mesh and one array of positions per frame. */
+/* A model file and its recorded frames, welded if the user asks for it, as a mesh and an array of
+ * positions for each frame. */
 #include "src/tool/common/recording.h"
 
 #include "src/tool/common/provenance.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +27,7 @@ static bool open_frames(const recording_options *options, recording *r, io_error
     return true;
 }
 
-/* The file's own positions of a frame, in file_positions. */
+/* Reads the file's own positions of a frame into file_positions. */
 static bool read_file_positions(recording *r, uint32_t frame, io_error *error) {
     if (r->frames != NULL) return animation_read(r->frames, frame, r->file_positions, error);
     memcpy(r->file_positions, r->file.positions,
@@ -65,6 +67,9 @@ uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
         else
             low = middle;
     }
+    uint32_t found[2];
+    cscd_mesh_edge(mesh, low, found);
+    assert(found[0] == smaller && found[1] == larger);
     return low;
 }
 
@@ -126,7 +131,7 @@ void recording_close(recording *r) {
     *r = (recording){0};
 }
 
-/* What the library accepts, told in the file's own terms. */
+/* Checks the range that the library accepts, so that the error can name vertices as the file numbers them. */
 static bool check_range(const recording *r, uint32_t frame, io_error *error) {
     for (size_t i = 0; i < (size_t)r->file.vertex_count * 3; i++) {
         double x = r->file_positions[i], magnitude = fabs(x);

@@ -1,4 +1,5 @@
-/* A model file and its recorded frames, welded when asked, as a mesh and one array of positions per frame. */
+/* A model file and its recorded frames, welded if the user asks for it, as a mesh and an array of
+ * positions for each frame. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -39,17 +40,17 @@ typedef struct recording {
 bool recording_open(const recording_options *options, recording *out, io_error *error);
 void recording_close(recording *r);
 
-/* positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as the file counts
- * them. */
+/* Reads a frame. positions: cscd_mesh_vertex_count(mesh) * 3. The error names the frame, and vertices as
+ * the file numbers them. */
 bool recording_read(recording *r, uint32_t frame, double *positions, io_error *error);
 
-/* The positions of the model file itself, as they are there; positions as above. */
+/* Copies the positions of the model file itself, unchecked; positions as above. */
 void recording_rest(const recording *r, double *positions);
 
 /* Adds the file's positions of the frame read last to frames_hash. */
 void recording_hash_frame(recording *r);
 
-/* The contact in the vertices of the model file. */
+/* A contact, with the vertices that the model file numbers. */
 contact_record recording_contact(const recording *r, uint32_t frame, const cscd_contact *contact);
 
 /* The model file's own number of a triangle of the mesh. */
@@ -58,6 +59,6 @@ uint32_t recording_file_triangle(const recording *r, uint32_t triangle);
 /* The number of the edge between two vertices of the mesh, which must have it. */
 uint32_t recording_find_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b);
 
-/* Lines on stderr about triangles dropped by welding and about open, non-manifold and inconsistently oriented
- * components. */
+/* Warns on stderr about triangles that welding has dropped, and about open, non-manifold and
+ * inconsistently oriented components. */
 void recording_warn(recording *r);

@@ -1,4 +1,4 @@
-/* What a person should know about a mesh before trusting its results. */
+/* Warnings about a mesh, which a person should know before trusting its results. */
 #include "src/tool/common/command.h"
 #include "src/tool/common/recording.h"
 

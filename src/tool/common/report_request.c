@@ -1,4 +1,4 @@
-/* What a command is told about the report that it writes. */
+/* The options of a command about the report that it writes. */
 #include "src/tool/common/report_request.h"
 
 #include "src/tool/common/output_path.h"

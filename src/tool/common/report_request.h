@@ -1,4 +1,4 @@
-/* What a command is told about the report that it writes. */
+/* The options of a command about the report that it writes. */
 #pragma once
 
 #include "src/io/io_error.h"
@@ -12,7 +12,7 @@ typedef struct report_request {
     int up_axis;                                    /* 1: y, 2: z */
 } report_request;
 
-/* False, with the reason, where the options do not go together, or the report would be written over one of
- * others (NULLs among them are skipped). */
+/* False, with the reason, if the options contradict each other, or if the report would be written over one
+ * of the others (NULLs among them are skipped). */
 bool report_request_is_safe(const report_request *r, const char *const *others, size_t other_count,
                             io_error *error);

@@ -26,7 +26,7 @@ bool scenery_open(const char *model_path, const char *frames_path, uint32_t fram
     return true;
 }
 
-/* What can be drawn: products of a few coordinates must stay finite. */
+/* Checks the range that can be drawn: products of a few coordinates must stay finite. */
 static bool check_range(const scenery *s, uint32_t frame, io_error *error) {
     const double *x = s->file.positions;
     for (size_t i = 0; i < (size_t)s->file.vertex_count * 3; i++)

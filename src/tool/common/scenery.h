@@ -18,8 +18,8 @@ typedef struct scenery {
 bool scenery_open(const char *model_path, const char *frames_path, uint32_t frame_count, scenery *out,
                   io_error *error);
 
-/* Puts it where it is in that frame of the recording. */
+/* Moves it to its place in that frame of the recording. */
 bool scenery_read(scenery *s, uint32_t frame, io_error *error);
 
-/* Closes what open left; a zeroed struct is fine. */
+/* Closes the files and frees the memory; a zeroed struct is fine. */
 void scenery_close(scenery *s);

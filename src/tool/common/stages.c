@@ -8,7 +8,7 @@
 #define TIME_OF(member)  offsetof(cscd_timings, member)
 #define COUNT_OF(member) offsetof(cscd_counters, member)
 
-const timing_row timing_rows[TIMING_COUNT] = {
+const timing_row timing_rows[] = {
     {"update", "BVH update", "update", "bvh", TIMING_OF_ALL, TIME_OF(update_ms)},
     {"orientation", "orientation", "orient", "orient", TIMING_OF_REGIONS, TIME_OF(orientation_ms)},
     {"contour", "contour", "contour", "cnc", TIMING_OF_CONTOURS, TIME_OF(contour_ms)},
@@ -19,7 +19,10 @@ const timing_row timing_rows[TIMING_COUNT] = {
     {"total", "total", "total", "ttcd", TIMING_TOTAL, TIME_OF(total_ms)},
 };
 
-const counter_row counter_rows[COUNTER_COUNT] = {
+_Static_assert(sizeof timing_rows / sizeof *timing_rows == TIMING_COUNT,
+               "a member of cscd_timings has no row");
+
+const counter_row counter_rows[] = {
     {"vf", COUNTER_OF_CONTACTS, COUNT_OF(vf)},
     {"ee", COUNTER_OF_CONTACTS, COUNT_OF(ee)},
     {"bounded", COUNTER_OF_CONTACTS, COUNT_OF(bounded)},
@@ -32,6 +35,8 @@ const counter_row counter_rows[COUNTER_COUNT] = {
     {"clean_triangles", COUNTER_AVERAGED, COUNT_OF(clean)},
     {"passes", COUNTER_AVERAGED, COUNT_OF(passes)},
 };
+
+_Static_assert(sizeof counter_rows / sizeof *counter_rows == COUNTER_COUNT, "COUNTER_COUNT is not the count");
 
 double timing_ms(const cscd_timings *timings, const timing_row *row) {
     double value;

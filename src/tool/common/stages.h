@@ -23,7 +23,7 @@ typedef struct timing_row {
 
 /* All members of cscd_timings: the stages of a step, the check, the total. */
 enum { TIMING_COUNT = sizeof(cscd_timings) / sizeof(double), TIMING_STAGES = TIMING_COUNT - 2 };
-extern const timing_row timing_rows[TIMING_COUNT];
+extern const timing_row timing_rows[]; /* TIMING_COUNT of them */
 
 double timing_ms(const cscd_timings *timings, const timing_row *row);
 bool timing_applies(const timing_row *row, cscd_method method);
@@ -48,15 +48,16 @@ typedef struct counter_row {
 
 /* The counters that a summary has. */
 enum { COUNTER_COUNT = 11 };
-extern const counter_row counter_rows[COUNTER_COUNT];
+extern const counter_row counter_rows[]; /* COUNTER_COUNT of them */
 
 uint64_t counter_value(const cscd_counters *counters, const counter_row *row);
 
 /* Adds to the sums, and raises the maxima, of the counters that have a row. */
 void counters_add(cscd_counters *sum, cscd_counters *max, const cscd_counters *counters);
 
-/* What an interval of a summary is: free of intersections at its start and without contact; with contact; with
- * intersections at its start; or without contact and not checked at its start. */
+/* The state of an interval. CLEAN: no intersection at the start, and no contact. CONTACT: no intersection
+ * at the start, or not checked, and contact. PENETRATING: an intersection at the start. UNKNOWN: not
+ * checked at the start, and no contact. */
 typedef enum interval_state {
     INTERVAL_CLEAN,
     INTERVAL_CONTACT,

@@ -1,4 +1,4 @@
-/* A line on the terminal that says how far a long command is; silent elsewhere. */
+/* A line on the terminal that shows how far a long command is, and signals that interrupt it. */
 #include "src/tool/common/terminal.h"
 
 #include <signal.h>

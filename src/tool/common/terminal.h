@@ -1,4 +1,4 @@
-/* A line on the terminal that says how far a long command is; silent elsewhere. */
+/* A line on the terminal that shows how far a long command is, and signals that interrupt it. */
 #pragma once
 
 #include <stdbool.h>
@@ -9,7 +9,7 @@ typedef struct terminal_progress {
     double last_ms; /* of the last redraw */
 } terminal_progress;
 
-/* Shows only when stderr is a terminal and quiet is false. */
+/* The line is shown only if stderr is a terminal and quiet is false. */
 void terminal_progress_begin(terminal_progress *p, bool quiet);
 void terminal_progress_update(terminal_progress *p, uint32_t done, uint32_t total, const char *what);
 /* A text instead of the bar. */

@@ -6,7 +6,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Half the angle of view over the shorter side: moderate, so that depth shows and nothing looks bulged. */
+/* Half the angle of view across the shorter side. It is moderate, so that depth shows and nothing looks
+ * bulged. */
 static const double half_view_degrees = 14.0;
 
 /* Share of the shorter side that stays free on every side. */
@@ -30,8 +31,8 @@ static void orient_camera(picture_camera *camera, double azimuth, double elevati
     }
 }
 
-/* The greatest extent of the points along an axis, or, for a single point, a small share of its distance from
- * the origin: what the eye must not come nearer than. */
+/* The least distance of the eye: the greatest extent of the points along an axis or, for a single point, a
+ * small share of its distance from the origin. */
 static double least_distance(const double *points, size_t point_count) {
     double extent = 0.0, magnitude = 0.0;
     for (size_t i = 0; i < 3 * point_count; i++) {

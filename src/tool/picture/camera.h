@@ -10,7 +10,7 @@ typedef struct picture_camera {
     double right[3], down[3], forward[3], eye[3];
     double focal;      /* pixels */
     double centre[2];  /* pixels from the upper left corner */
-    double near_depth; /* what is nearer along `forward` is not drawn, 0.5 to 1 */
+    double near_depth; /* nearer than this along `forward` nothing is drawn; 0.5 to 1 */
     double unit;       /* depths are lengths times this power of two: single precision holds any model's */
 } picture_camera;
 
@@ -22,8 +22,8 @@ void picture_camera_frame(const double *points, size_t point_count, double azimu
 
 enum { PICTURE_OUTERMOST = 5 };
 
-/* Of many points those that decide where picture_camera_frame, with the same arguments, places the eye: a
- * motion can be framed as a whole with a few points of each of its frames. */
+/* Picks those of many points that decide where picture_camera_frame, with the same arguments, places the
+ * eye. So a whole motion can be framed with a few points of each of its frames. */
 void picture_camera_outermost(const double *points, size_t point_count, double azimuth, double elevation,
                               bool y_up, uint32_t width, uint32_t height, double out[PICTURE_OUTERMOST][3]);
 

@@ -10,7 +10,7 @@ typedef struct view {
     const picture_options *options;
 } view;
 
-/* As if the picture began at (left, top). */
+/* Shifts the camera as if the picture began at (left, top). */
 static void frame_beside(const view *v, double left, double top, picture_camera *out) {
     const picture_options *o = v->options;
     picture_camera_frame(v->points, v->count, o->azimuth, o->elevation, o->y_up, o->width - (uint32_t)left,

@@ -1,4 +1,4 @@
-/* What makes scenery readable as the ground below a body: faint squares, and the body's shadow. */
+/* Faint squares and the shadow of the body, which let a viewer read scenery as the ground below it. */
 #pragma once
 
 #include "src/tool/picture/camera.h"

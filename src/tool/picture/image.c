@@ -119,7 +119,7 @@ static bool write_file(const char *path, const uint8_t *bytes, size_t size, io_e
         reason = errno;
     }
     if (written) return true;
-    /* A device or a pipe is not ours to remove. */
+    /* Removes a file, but not a device or a pipe. */
     if (regular) remove(path);
     return io_fail(error, "%s: cannot write %zu bytes: %s", path, size, strerror(reason));
 }

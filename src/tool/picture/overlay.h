@@ -1,4 +1,4 @@
-/* What is drawn over the surface: markers, caption and legend. */
+/* Markers, caption and legend, which are drawn over the surface. */
 #pragma once
 
 #include "src/tool/picture/camera.h"
@@ -21,7 +21,7 @@ typedef struct picture_legend {
 } picture_legend;
 
 /* Draws from far to near. A marker counts as a ball of its radius: it is hidden when all of it lies behind
- * the surface. False only for want of memory. */
+ * the surface. False when out of memory. */
 bool picture_draw_markers(picture_image *image, const picture_visibility *visibility,
                           const picture_camera *camera, const picture_marker *markers, size_t count,
                           io_error *error);
@@ -30,7 +30,7 @@ bool picture_draw_markers(picture_image *image, const picture_visibility *visibi
 void picture_caption_size(uint32_t width, uint32_t height, double enlarged, const char *caption,
                           const picture_legend *legend, size_t count, double size[2]);
 
-/* In the upper left corner, `enlarged` times the usual size; caption may be NULL. Printable ASCII; anything
- * else becomes '?'. */
+/* Draws caption and legend in the upper left corner, `enlarged` times the usual size; caption may be NULL.
+ * Texts are printable ASCII; any other byte becomes '?'. */
 void picture_draw_caption(picture_image *image, double enlarged, const char *caption,
                           const picture_legend *legend, size_t count);

@@ -1,4 +1,5 @@
-/* Rendering as a whole: frame, project, see, shade, mark, write. */
+/* Renders a scene: places the camera, projects, finds what is visible, shades, draws the markers and
+ * writes the file. */
 #include "src/tool/picture/scene.h"
 
 #include <stdlib.h>

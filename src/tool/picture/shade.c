@@ -17,8 +17,8 @@ static void normalise_vector(double v[3]) {
     for (int i = 0; i < 3; i++) v[i] /= length;
 }
 
-/* To each corner by the angle there: the parts of a flat side then count as one, however it is cut, and a
- * large side of a box no more than a small one. */
+/* Weights a triangle's normal at each corner by the angle there. So the parts of a flat side count as one,
+ * however it is cut, and a large side of a box counts no more than a small one. */
 static void add_face_normal(const double *positions, const uint32_t corners[3], float *out) {
     double edge[3][3];
     for (int k = 0; k < 3; k++) {
@@ -79,7 +79,7 @@ static void light_surface(const double normal[3], const double view[3], double g
     for (int i = 0; i < 3; i++) half[i] = lights[0].direction[i] + view[i];
     normalise_vector(half);
     double glint = gloss * pow(fmax(dot_product(normal, half), 0.0), 40.0);
-    /* Darker towards the outline, which a white background would otherwise swallow. */
+    /* Darkens towards the outline, which could hardly be seen on a white background otherwise. */
     double facing = fmin(fmax(dot_product(normal, view), 0.0), 1.0);
     double outline = 1.0 - 0.45 * pow(1.0 - facing, 3.0);
     for (int i = 0; i < 3; i++) colour[i] = (colour[i] * sum[i] + glint) * outline;
@@ -162,7 +162,7 @@ static double wire_darkness(const picture_edges *edges, const double *projected,
     return 0.55 * line * fade;
 }
 
-/* Lights the colour by the surface's normal at pixel coordinates (x, y), 1 / inverse_depth away. */
+/* Lights the colour by the surface's normal at pixel coordinates (x, y), at the depth 1 / inverse_depth. */
 static void light_point(const shading_pass *pass, const picture_surface *surface, const uint32_t corners[3],
                         const picture_edges *edges, const double weights[3], double x, double y,
                         double inverse_depth, double colour[3]) {

@@ -1,4 +1,4 @@
-/* From the z-buffer to pixels: colours, lights and wires. */
+/* Turns the z-buffer into pixels: colours, lights and wires. */
 #pragma once
 
 #include "src/tool/picture/camera.h"

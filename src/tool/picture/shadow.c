@@ -11,7 +11,7 @@ static const double resolution = 192.0;
 /* The radius of a cell's shadow per height, and at most, as a share of the body's extent. */
 static const double widening = 0.4, widest = 0.18;
 
-/* What lies no higher than that above the point touches it. Heights are shares of the body's extent. */
+/* A body that is no higher above the point than this touches it. Heights are shares of the body's extent. */
 static const double nothing = 1e-3;
 
 /* Points of a disc of the widest shadow, in cells, the denser the nearer to its middle, and the area that
@@ -41,7 +41,7 @@ static void add_height(picture_shadow *shadow, size_t cell, double height) {
     shadow->high[cell] = fmaxf(shadow->high[cell], (float)height);
 }
 
-/* Cells whose middles the triangle covers; those of a closed surface leave no hole. */
+/* Visits the cells whose middles the triangle covers. The triangles of a closed surface leave no hole. */
 static void add_triangle(picture_shadow *shadow, const double *const corners[3]) {
     double u[3], v[3], height[3];
     for (int k = 0; k < 3; k++) {

@@ -1,6 +1,7 @@
 /* Many pictures of one size in one: a grid of tiles. */
 #include "src/tool/picture/sheet.h"
 
+#include <assert.h>
 #include <string.h>
 
 static const uint8_t line_colour[3] = {150, 152, 156};
@@ -37,6 +38,8 @@ void picture_sheet_place(picture_sheet *sheet, uint32_t index, const picture_ima
     uint32_t left = index % sheet->columns * sheet->tile_width,
              top = index / sheet->columns * sheet->tile_height;
     picture_image *image = &sheet->image;
+    assert(top + sheet->tile_height <= image->height);
+    assert(tile->width == sheet->tile_width && tile->height == sheet->tile_height);
     for (uint32_t row = 0; row < sheet->tile_height; row++)
         memcpy(image->pixels + 4 * ((size_t)(top + row) * image->width + left),
                tile->pixels + 4 * (size_t)row * tile->width, 4 * (size_t)tile->width);

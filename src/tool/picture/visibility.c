@@ -42,8 +42,8 @@ static void cross_product(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* A shared edge gives its two triangles exactly opposite coefficients (cross is exactly antisymmetric), so no
- * sample falls between them. */
+/* A shared edge gives its two triangles exactly opposite coefficients (cross_product is exactly
+ * antisymmetric), so no sample falls between them. */
 bool picture_edges_set(const double *projected, const uint32_t corners[3], picture_edges *out) {
     const double *a = projected + 3 * (size_t)corners[0], *b = projected + 3 * (size_t)corners[1],
                  *c = projected + 3 * (size_t)corners[2];
@@ -75,8 +75,8 @@ static void bounds_add(bounds *box, double x, double y, double depth) {
     box->inverse_depth[1] = fmax(box->inverse_depth[1], 1.0 / depth);
 }
 
-/* Bounds what of the triangle lies beyond the near plane: its corners there and the points where an edge
- * passes through that plane. False where nothing does. */
+/* Bounds the part of the triangle beyond the near plane by its corners there and by the points where an
+ * edge passes through that plane. False if there is no such part. */
 static bool visible_bounds(const double *projected, const uint32_t corners[3], double near_depth,
                            bounds *box) {
     bool any = false;

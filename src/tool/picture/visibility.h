@@ -29,7 +29,7 @@ typedef struct picture_edges {
  * seen exactly edge-on. */
 bool picture_edges_set(const double *projected, const uint32_t corners[3], picture_edges *out);
 
-/* Nothing seen yet. On false *out is untouched. */
+/* Creates a buffer in which nothing is seen yet. On false *out is untouched. */
 bool picture_visibility_create(uint32_t width, uint32_t height, uint32_t samples, picture_visibility *out,
                                io_error *error);
 void picture_visibility_free(picture_visibility *visibility);

@@ -1,4 +1,4 @@
-/* A frame of a recording as a scene, the contacts of its interval marked when wanted. */
+/* A frame of a recording as a scene, with the contacts of its interval if they are wanted. */
 #include "src/tool/render/contact_picture.h"
 
 #include <math.h>

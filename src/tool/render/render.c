@@ -9,7 +9,8 @@
 
 #include <math.h>
 
-/* Charge wants a plan that has some; without FRAMES the mesh is at rest, where the detector points belong. */
+/* To draw charge, the plan must have some. Detector points belong to the mesh at rest, which is drawn
+ * without FRAMES. */
 static bool paint_plan(const render_options *o, const recording *r, contact_picture *picture,
                        plan_legend *legend, io_error *error) {
     bool by_charge = o->colouring == COLOUR_CHARGE, at_rest = o->source.frame_path_count == 0;

@@ -18,7 +18,7 @@ typedef struct strip {
     picture_sheet sheet;
 } strip;
 
-/* The middle of the body's box where the camera follows it, else the origin. */
+/* The middle of the body's box if the camera follows it, else the origin. */
 static void find_middle(const strip *s, double out[3]) {
     for (int k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
@@ -34,7 +34,7 @@ static uint32_t frame_of(const strip *s, uint32_t tile) {
     return s->frames.first + tile * s->frames.step;
 }
 
-/* Frames all frames that are drawn, seen from their middles. */
+/* Places the camera so that it holds all frames that are drawn, each seen from its middle. */
 static bool place_camera(strip *s, io_error *error) {
     const picture_options *o = &s->options->picture;
     const size_t each = PICTURE_OUTERMOST;

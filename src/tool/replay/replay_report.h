@@ -1,4 +1,4 @@
-/* The report of a replay. What goes wrong with it ends the report, not the replay, and is told at the end. */
+/* The report of a replay. An error in it ends the report and not the replay, and is printed at the end. */
 #pragma once
 
 #include "src/tool/common/provenance.h"

@@ -10,7 +10,7 @@
 struct summary_writer {
     FILE *file; /* NULL: nothing is written */
     char *path;
-    FILE *memory; /* what is written comes here first: text, size bytes of it */
+    FILE *memory; /* everything is written here first: text, size bytes of it */
     char *text;
     size_t size;
     bool keeps_text;  /* all of it, for summary_close */
@@ -60,7 +60,7 @@ bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summa
     return true;
 }
 
-/* Hands the file what is new in memory. A stream in memory fails only for want of it. */
+/* Hands the new part of the text to the file. A stream in memory fails only when memory runs out. */
 static bool forward_text(summary_writer *w, io_error *error) {
     if (fflush(w->memory) != 0 || ferror(w->memory)) return io_fail(error, "out of memory for the summary");
     size_t begin = w->keeps_text ? w->forwarded : 0, count = w->size - begin;

@@ -3,15 +3,15 @@
 
 #include "src/tool/replay/table.h"
 
-/* What is known of a frame after its static check. */
+/* The result of the static check of a frame. */
 typedef enum frame_state { FRAME_UNCHECKED, FRAME_EMBEDDED, FRAME_CROSSING } frame_state;
 
 typedef struct summary_writer summary_writer;
 
-/* path NULL: no file. keep_text: summary_close can give all of it. */
+/* Opens a summary. path NULL: there is no file. keep_text: summary_close can return the whole text. */
 bool summary_open(const char *path, bool keep_text, const cscd_mesh *mesh, summary_writer **out,
                   io_error *error);
-/* Each interval reaches the system at once. */
+/* Writes an interval, which is handed to the system at once. */
 bool summary_add_interval(summary_writer *w, const interval_result *result, io_error *error);
 bool summary_add_frame(summary_writer *w, uint32_t frame, frame_state state, io_error *error);
 

@@ -19,7 +19,7 @@ void totals_add(replay_totals *t, const interval_result *r, const cscd_mesh *mes
     counters_add(&t->counter_sum, &t->counter_max, &r->counters);
 }
 
-/* The stages that the method has, X for the others; the pairs; the total and the check. */
+/* Prints the stages that the method has, X for the others; the pairs; the total and the check. */
 static void print_row(const char *name, cscd_method method, const cscd_timings *ms, double count, double pcp,
                       const char *what) {
     printf("%-14s", name);

@@ -1,4 +1,4 @@
-/* What a report holds while it is being collected, for the files of this folder that make it. */
+/* The state of a report while it is collected, shared by the files of this folder. */
 #pragma once
 
 #include "src/io/growable.h"
@@ -19,5 +19,5 @@ struct report {
     orientation_arrays orientations; /* of a replay whose method has them */
 };
 
-/* Puts the last frame into the stream, if it is not there. */
+/* Puts the last frame into the stream, if it is not there yet. */
 bool report_keep_last(report *r);

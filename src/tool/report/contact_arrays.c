@@ -65,7 +65,8 @@ static bool keep_contact(contact_arrays *a, const report_options *options, uint3
            packed_array_add_f64(a->toi, &contact->toi, 1) && packed_array_add_f64(a->point, point, 3);
 }
 
-/* How many of an interval's may be kept: each of those to come is left its share of the whole. */
+/* How many contacts of an interval may be kept, so that each later interval is left its share of the
+ * whole. */
 static size_t room_for(const contact_arrays *a, const report_options *options, uint32_t interval) {
     uint32_t intervals = options->last - options->first, to_come = options->last - 1 - interval;
     size_t reserved = (size_t)(REPORT_CONTACTS_MAX / intervals) * to_come;

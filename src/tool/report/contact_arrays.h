@@ -7,7 +7,7 @@
 typedef struct contact_arrays {
     uint64_t found;
     uint32_t kept;
-    uint32_t *heat; /* per triangle: contacts of which it is the face, or has the vertex or an edge */
+    uint32_t *heat; /* per triangle: how many contacts have it as the face, or have its vertex or edge */
     packed_array *interval, *kind, *vertices, *toi, *point;
     packed_array *file_vertices; /* NULL where the file has the mesh's numbers */
 } contact_arrays;

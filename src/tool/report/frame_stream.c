@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a new grid; and the coarsest that serves: half of it, and float32's 2^-25, are below 2^-15.9 of the
- * side. */
+/* Steps of the grid, as shares of the longest side: that of a new grid, and the coarsest that may be kept.
+ * Half of the latter and float32's 2^-25 together are below 2^-15.9 of the side. */
 #define STEP_OF_SIDE     0x1p-16
 #define STEP_OF_SIDE_MAX 0x1p-15
 #define VALUE_LIMIT      0x1p30
@@ -61,7 +61,7 @@ static box box_of(const frame_stream *s, const double *positions) {
     return b;
 }
 
-/* Fine enough for the frame, and no value out of range. */
+/* Is the grid fine enough for the frame, and no value out of range? */
 static bool grid_serves(const frame_stream *s, const box *b) {
     if (!(s->step > 0.0 && s->step <= b->side * STEP_OF_SIDE_MAX)) return false;
     double reach = (VALUE_LIMIT - 1.0) * s->step;
@@ -84,8 +84,8 @@ static double position_of(const frame_stream *s, size_t axis, int32_t value) {
     return s->origin[axis] + s->step * value;
 }
 
-/* What the page shows along an axis: float32 from the middle. Returns the largest error, and how long the
- * frame is there. */
+/* Computes what the page shows along an axis, float32 from the middle. Returns the largest error, and how
+ * long the frame is along the axis. */
 static double measure_axis(const frame_stream *s, const double *positions, size_t axis, double *length) {
     const int32_t *values = s->values + axis * s->vertex_count;
     int32_t low = values[0], high = values[0];
@@ -123,7 +123,7 @@ static bool add_key(frame_stream *s) {
            packed_array_add_f64(s->bytes, s->origin, 3) && packed_array_add_f64(s->bytes, &s->step, 1);
 }
 
-/* How far the vertices have come on average, which the prediction then is moved by. */
+/* How far the vertices have moved on average; the prediction is moved by it. */
 static bool add_shift(frame_stream *s) {
     uint32_t shifts[3];
     for (size_t k = 0; k < 3; k++) {
@@ -142,7 +142,7 @@ static uint32_t zigzag_code(uint32_t r) {
     return r << 1 ^ (r >> 31 != 0 ? UINT32_MAX : 0);
 }
 
-/* Returns all bits that any of them has. */
+/* Returns the bitwise or of all values. */
 static uint32_t take_residuals(frame_stream *s) {
     uint32_t all = 0;
     for (size_t k = 0; k < 3; k++) {

@@ -16,9 +16,9 @@ bool orientation_arrays_create(uint32_t triangle_count, uint32_t kept_count, uin
                                orientation_arrays *out);
 void orientation_arrays_free(orientation_arrays *arrays); /* a zeroed struct is fine */
 
-/* Of the detector's last step: 0 S0, 1 S+, 2 S- in bits 2(t mod 4) of byte t / 4, XORed with the bytes added
- * before. False: out of memory. */
+/* Adds the orientations of the detector's last step: 0 for S0, 1 for S+, 2 for S- in the bits 2 (t mod 4)
+ * and up of byte t / 4, XORed with the bytes added before. False: out of memory. */
 bool orientation_arrays_add(orientation_arrays *arrays, const cscd_detector *detector);
 
-/* Of the detector's last step: each region's point at the start and at the end, times scale. */
+/* Adds each region's detector point at the start and at the end of the last step, times scale. */
 bool orientation_arrays_add_points(orientation_arrays *arrays, const cscd_detector *detector, double scale);

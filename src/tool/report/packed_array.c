@@ -50,7 +50,7 @@ void packed_array_destroy(packed_array *array) {
     free(array);
 }
 
-/* Room for more of the stream, doubling. */
+/* Makes room for more of the stream, by doubling. */
 static bool make_room(packed_array *array) {
     growable *bytes = &array->bytes;
     if (bytes->count == bytes->capacity) {

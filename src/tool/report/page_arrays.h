@@ -17,7 +17,7 @@ typedef struct page_arrays {
     size_t count;
 } page_arrays;
 
-/* All of them, finished. False: out of memory, and *out is to be freed all the same. */
+/* Finishes all arrays of the page. False: out of memory; *out is to be freed all the same. */
 bool page_arrays_list(report *r, page_arrays *out);
 void page_arrays_free(page_arrays *arrays);
 

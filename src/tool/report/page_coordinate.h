@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* Where a body grows or flies 2^100 times as far as it was large at the start, it is shown at this limit. */
+/* A body that grows or flies 2^100 times as far as its size at the start is shown at this limit. */
 #define PAGE_COORDINATE_MAX 0x1p100
 
 static inline double page_coordinate(double x, double scale) {

@@ -22,7 +22,7 @@ static char *name_beside(const char *path, const char *name) {
     return joined;
 }
 
-/* Where path leads, whether something is there or not; to be freed. */
+/* The path that a link leads to, whether a file is there or not; to be freed. */
 static char *follow_links(const char *path) {
     char *target = name_beside("", path);
     for (int i = 0; i < LINKS_MAX && target != NULL; i++) {
@@ -39,7 +39,8 @@ static char *follow_links(const char *path) {
     return NULL;
 }
 
-/* A new file in the target's folder. Its name is short, for the target's may be as long as names can be. */
+/* Creates a new file in the target's folder. Its name is short, because the target's may be as long as
+ * names can be. */
 static int create_temporary(replacing_file *f) {
     for (int i = 0; i < NAMES_MAX; i++) {
         char name[64];

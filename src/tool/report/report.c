@@ -1,4 +1,4 @@
-/* Collects a report: which frames are kept, and what goes into its arrays as the replay goes. */
+/* Collects a report while the replay runs: chooses the frames that are kept, and fills the arrays. */
 #include "src/tool/report/report.h"
 
 #include "src/tool/report/collected.h"
@@ -15,7 +15,8 @@ static bool out_of_memory(io_error *error) {
     return io_fail(error, "out of memory for the report");
 }
 
-/* So that the positions of all frames kept, at equal distances and the last one, stay below the limit. */
+/* Chooses the stride so that the positions of all kept frames, the last one included, stay below the
+ * limit. */
 static uint32_t choose_stride(const report_options *o) {
     uint64_t vertices = cscd_mesh_vertex_count(o->mesh), steps = o->last - o->first;
     if (o->scenery.triangles != NULL && o->scenery.moves) vertices += o->scenery.vertex_count;
@@ -60,8 +61,8 @@ void report_destroy(report *r) {
     free(r);
 }
 
-/* A power of two near the size of the frame, or how far it is from 0 where it is a point; 1 for sizes that
- * the page has no trouble with. */
+/* A power of two near the size of the frame or, for a frame of one point, near its distance from 0; 1 for
+ * sizes that need no scale. */
 static double choose_unit(const double *positions, uint32_t vertex_count) {
     double side = 0.0, reach = 0.0;
     for (size_t k = 0; k < 3; k++) {

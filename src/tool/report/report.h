@@ -9,7 +9,8 @@ typedef enum report_kind { REPORT_REPLAY, REPORT_PREPROCESS, REPORT_COMPARE } re
 enum {
     REPORT_POSITIONS_MAX = 4000000,      /* of vertices, over all frames kept, the scenery's included */
     REPORT_INTERVAL_CONTACTS_MAX = 4000, /* kept of one interval: the earliest */
-    REPORT_CONTACTS_MAX = 100000,        /* kept in all; each interval has room for its share, at least */
+    REPORT_CONTACTS_MAX = 100000,        /* all contacts that are kept; each interval has room for its
+                                          * share at least */
     REPORT_MARKS_MAX = 16 * 1024 * 1024, /* bytes of orientations, and of detector points: else left out */
 };
 
@@ -20,7 +21,7 @@ typedef struct report_scenery {
     bool moves;                /* has positions of its own for every frame */
 } report_scenery;
 
-/* What is known at the start. All that it points to outlives the report. */
+/* Options of a report. Everything that they point to outlives the report. */
 typedef struct report_options {
     report_kind kind;
     const char *title, *generator;
@@ -39,8 +40,9 @@ typedef struct report_options {
 
 typedef struct report report;
 
-/* In this order: _create, _begin, _add_interval for every interval, the scenery, _write. _begin and the two
- * behind it only with a mesh. After a failure there is only _destroy: a report is whole, or none. */
+/* Call in this order: _create, _begin, _add_interval for every interval, the scenery, _write. Without a
+ * mesh, leave out _begin and the two after it. After a failure only _destroy may follow: a report is
+ * whole, or there is none. */
 bool report_create(const report_options *options, report **out, io_error *error);
 void report_destroy(report *r);
 
@@ -59,7 +61,7 @@ uint32_t report_frame(const report *r, uint32_t index);
 /* The scenery's positions: once if it stands still, else for each frame kept, in their order. */
 bool report_add_scenery(report *r, const double *positions, io_error *error);
 
-/* What `--json` wrote, as text; any `<` in it is taken care of. */
+/* The text that `--json` wrote; any `<` in it is escaped here. */
 typedef struct report_summary {
     const char *name, *text;
 } report_summary;

@@ -114,7 +114,7 @@ static void write_scene(json *out, const report *r, const page_arrays *arrays) {
     json_end_object(out);
 }
 
-/* What comes with the arrays: summaries and a preprocess are JSON already. */
+/* Writes the document that goes with the arrays; summaries and a preprocess are JSON already. */
 typedef struct attached {
     const report_summary *summaries;
     size_t summary_count;

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-/* Text up to the place of the data, and from there on. */
+/* The text before the place of the data, and the text behind it. */
 typedef struct report_template {
     const char *head, *tail;
     size_t head_size, tail_size;

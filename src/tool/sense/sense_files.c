@@ -29,7 +29,7 @@ static uint32_t file_vertex(const recording *r, uint32_t vertex) {
     return r->welded ? r->weld.file_vertex[vertex] : vertex;
 }
 
-/* Whether there is a contact nobody knows without the exact check. */
+/* Without the exact check the columns contact and toi stay empty. */
 static void write_warnings(FILE *csv, const sense_subject *subject, const sense_interval *interval) {
     for (size_t i = 0; i < interval->warnings->count; i++) {
         const cscd_warning *w = &interval->warnings->items[i];
@@ -78,7 +78,7 @@ static void write_interval(json *out, const sense_options *o, const sense_interv
     json_end_object(out);
 }
 
-/* Each interval reaches the system at once. */
+/* Writes an interval, which is handed to the system at once. */
 bool sense_files_add(sense_files *f, const sense_subject *subject, const sense_interval *interval,
                      io_error *error) {
     const sense_options *o = subject->options;

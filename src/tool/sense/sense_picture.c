@@ -1,4 +1,4 @@
-/* Cells, particles and where they have been, as a picture. */
+/* A picture of cells, particles and the vertices that these have visited. */
 #include "src/tool/sense/sense_picture.h"
 
 #include "src/tool/picture/colour.h"

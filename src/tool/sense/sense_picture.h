@@ -1,4 +1,4 @@
-/* Cells, particles and where they have been, as a picture. */
+/* A picture of cells, particles and the vertices that these have visited. */
 #pragma once
 
 #include "src/io/growable.h"
@@ -14,10 +14,10 @@ typedef struct sense_paths {
 sense_paths sense_paths_none(void);
 void sense_paths_free(sense_paths *paths);
 
-/* After an interval. False when out of memory. */
+/* Adds the steps of an interval. False when out of memory. */
 bool sense_paths_follow(sense_paths *paths, const cscd_sensors *sensors);
 
-/* The particles get new numbers now; the ways so far stay. */
+/* Call it when particles get new numbers; the paths so far stay. */
 void sense_paths_break(sense_paths *paths);
 
 typedef struct sense_view {

@@ -1,4 +1,4 @@
-/* What `cscd sense` found, interval by interval and in all; as a table and as files. */
+/* Results of `cscd sense`, for each interval and in all, as a table and as files. */
 #pragma once
 
 #include "src/io/json.h"
@@ -7,7 +7,8 @@
 
 #include <stdio.h>
 
-/* Pairs of objects: with warnings, with confirmed ones, in contact by the detector, and what they share. */
+/* Numbers of object pairs: with warnings, with confirmed warnings, in contact by the detector, and in
+ * common. */
 typedef struct pair_counts {
     uint32_t warned, confirmed, touching, found, confirmed_found;
 } pair_counts;
@@ -16,7 +17,7 @@ typedef struct sense_interval {
     uint32_t frame;
     const cscd_warnings *warnings;
     uint32_t confirmed; /* warnings whose exact check has found a contact */
-    uint32_t renewed;   /* parts whose cells were made anew after it */
+    uint32_t renewed;   /* parts that got new cells after it */
     pair_counts pairs;
     cscd_sensor_timings timings;
     cscd_sensor_counters counters;
@@ -39,8 +40,8 @@ enum {
     SENSE_TIMINGS = sizeof(cscd_sensor_timings) / sizeof(double),
     SENSE_COUNTERS = sizeof(cscd_sensor_counters) / sizeof(uint64_t)
 };
-extern const sense_timing_row sense_timing_rows[SENSE_TIMINGS];
-extern const sense_counter_row sense_counter_rows[SENSE_COUNTERS];
+extern const sense_timing_row sense_timing_rows[];   /* SENSE_TIMINGS of them */
+extern const sense_counter_row sense_counter_rows[]; /* SENSE_COUNTERS of them */
 
 double sense_timing_ms(const cscd_sensor_timings *timings, const sense_timing_row *row);
 uint64_t sense_counter_value(const cscd_sensor_counters *counters, const sense_counter_row *row);
@@ -56,7 +57,8 @@ typedef struct sense_totals {
 
 void sense_totals_add(sense_totals *t, const sense_interval *interval);
 
-/* Found of those in contact, and found of those warned of; 1 where there is none. */
+/* The share of the pairs in contact that were found, and the share of the warned pairs that are in
+ * contact; 1 if there is no such pair. */
 double sense_recall(const sense_totals *t);
 double sense_precision(const sense_totals *t);
 /* The share of the pairs in contact that have a confirmed warning. */
@@ -65,7 +67,7 @@ double sense_confirmed_recall(const sense_totals *t);
 void sense_print_head(bool compare);
 void sense_print_row(const sense_interval *interval, bool compare);
 
-/* What the run was of, for people and for files. */
+/* The objects of a run, for the table and the files. */
 typedef struct sense_subject {
     const sense_options *options;
     const recording *recording;
@@ -76,7 +78,7 @@ typedef struct sense_subject {
 
 void sense_print_totals(const sense_subject *subject, const sense_totals *t);
 
-/* The warnings as CSV and the intervals as JSON, whatever of both is wanted. */
+/* The warnings as CSV and the intervals as JSON; either may be absent. */
 typedef struct sense_files {
     FILE *csv;
     json out; /* file NULL: not wanted */

@@ -8,18 +8,23 @@
 #define TIME_OF(member)  offsetof(cscd_sensor_timings, member)
 #define COUNT_OF(member) offsetof(cscd_sensor_counters, member)
 
-const sense_timing_row sense_timing_rows[SENSE_TIMINGS] = {
+const sense_timing_row sense_timing_rows[] = {
     {"walk", TIME_OF(walk_ms)},       {"verdict", TIME_OF(verdict_ms)}, {"exact", TIME_OF(exact_ms)},
     {"renewal", TIME_OF(renewal_ms)}, {"total", TIME_OF(total_ms)},
 };
 
-const sense_counter_row sense_counter_rows[SENSE_COUNTERS] = {
+const sense_counter_row sense_counter_rows[] = {
     {"rounds", "walk_rounds", COUNT_OF(rounds)},
     {"cycles", "cycles", COUNT_OF(cycles)},
     {"vertices", "walk_vertices", COUNT_OF(vertices)},
     {"particle_pairs", "particle_pairs", COUNT_OF(particle_pairs)},
     {"tests", "tests", COUNT_OF(tests)},
 };
+
+_Static_assert(sizeof sense_timing_rows / sizeof *sense_timing_rows == SENSE_TIMINGS,
+               "a member of cscd_sensor_timings has no row");
+_Static_assert(sizeof sense_counter_rows / sizeof *sense_counter_rows == SENSE_COUNTERS,
+               "a member of cscd_sensor_counters has no row");
 
 double sense_timing_ms(const cscd_sensor_timings *timings, const sense_timing_row *row) {
     double value;

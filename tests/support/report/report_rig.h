@@ -12,14 +12,14 @@ typedef struct report_rig {
     cscd_detector *detector;
 } report_rig;
 
-/* Of the method, with a plan of it. The rig owns the shape. */
+/* Makes a rig for a method, with a plan of that method. The rig owns the shape. */
 report_rig report_rig_create(recorded shape, cscd_method method);
 void report_rig_destroy(report_rig *rig);
 
 /* Of a replay of all frames. */
 report_options report_rig_options(const report_rig *rig);
 
-/* Begins the report and adds every interval; false where the report failed. */
+/* Begins the report and adds every interval; false if the report has failed. */
 bool report_rig_replay(const report_rig *rig, report *r, io_error *error);
 
 /* The report of the whole replay, with one summary, at path; false where that failed. */

@@ -31,7 +31,7 @@ void run_tool_expect_error(int code, const char *const *texts, const char *const
 #define EXPECT_ERROR(code, texts, ...)                                                                       \
     run_tool_expect_error((code), (texts), (const char *const[]){__VA_ARGS__, NULL})
 
-/* The same in two steps, for what happens in between. */
+/* The same in two steps, so that a test can act while the tool runs. */
 typedef struct tool_process {
     pid_t pid;
     int out, error; /* open files */

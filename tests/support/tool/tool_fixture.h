@@ -13,10 +13,11 @@ typedef struct recorded {
     double *frames;      /* frame_count * vertex_count * 3 */
 } recorded;
 
-/* The tetrahedron 4 5 6 7 flies with its tip 4 at (3.5 - k, 1, 1) in frame k through the tetrahedron 0 1 2 3,
- * of which the face 0 1 2 (triangle 0) lies in x = 0 and the opposite one passes through x = -2 there. So the
- * tip meets triangle 0 at (0, 1, 1) half way through interval 3, frames 4 and later cross, nothing happens in
- * interval 4, and the tip leaves at (-2, 1, 1) half way through interval 5. */
+/* The tetrahedron 4 5 6 7 flies with its tip 4 at (3.5 - k, 1, 1) in frame k through the tetrahedron 0 1 2
+ * 3, whose face 0 1 2 (triangle 0) lies in x = 0 and whose opposite face passes through x = -2 there. So
+ * the tip touches triangle 0 at (0, 1, 1) half way through interval 3, frames 4 and later have an
+ * intersection, nothing happens in interval 4, and the tip leaves at (-2, 1, 1) half way through interval
+ * 5. */
 recorded recorded_tetrahedra(uint32_t frame_count);
 
 /* An open strip of columns by rows quads (columns: 8 or more), slightly wavy, whose right half folds over by
@@ -34,8 +35,8 @@ recorded recorded_bow_tie(void);
 /* A closed torus of rings by segments quads. One frame. */
 recorded recorded_torus(uint32_t rings, uint32_t segments);
 
-/* A closed spindle of rings by segments quads and two tips, twelve units long, that bends, from 30 degrees to
- * 400: its tips meet shortly before the last frame. */
+/* A closed spindle of rings by segments quads and two tips, twelve units long, that bends from 30 degrees
+ * to 400: its tips touch shortly before the last frame. */
 recorded recorded_spindle(uint32_t rings, uint32_t segments, uint32_t frame_count);
 
 void recorded_free(recorded *r);
