@@ -1,4 +1,5 @@
-/* From a mesh at rest to its plan: charge, regions, detector points, what these see. */
+/* Preprocessing, step by step: from a mesh at rest to its plan, by charge, regions, detector points and what
+ * these see. */
 #include "src/mesh/plan.h"
 
 #include "preprocess/charge/charge.h"
@@ -21,7 +22,7 @@ cscd_plan_options cscd_plan_defaults(void) {
                                .threshold = 0.1};
 }
 
-/* What the steps fill before the plan is made. */
+/* The steps' results, before the plan is made. */
 typedef struct draft {
     const cscd_mesh *mesh;
     const double *positions;
@@ -83,7 +84,7 @@ static cscd_status find_regions(draft *d) {
     }
 }
 
-/* Detector points of a method that brings none. */
+/* Finds detector points for the methods that do not bring their own. */
 static cscd_status place_detector_points(draft *d) {
     if (d->options.method == CSCD_METHOD_KMEANS) return CSCD_OK;
     d->detector_points = context_allocate(d->mesh->context, d->region_count, sizeof(double[3]));
@@ -94,57 +95,63 @@ static cscd_status place_detector_points(draft *d) {
 
 /* ---- regions of the plan --------------------------------------------------------------------------- */
 
-static void count_regions(cscd_plan *plan, const draft *d) {
+static void count_regions(cscd_plan *plan, const cscd_mesh *mesh, const double *positions) {
     for (uint32_t t = 0; t < plan->triangle_count; t++) {
-        cscd_region *region = &plan->regions[d->regions[t]];
-        region->component = d->mesh->triangle_components[t];
+        cscd_region *region = &plan->regions[plan->triangle_regions[t]];
+        region->component = mesh->triangle_components[t];
         region->triangle_count++;
-        region->area += surface_area(d->mesh, d->positions, t);
+        region->area += surface_area(mesh, positions, t);
     }
 }
 
-/* Triangle weights, and the way from the weighted centroid to the detector point. */
-static void weigh_triangles(cscd_plan *plan, const draft *d) {
+/* Weighs triangles, and finds the offset from the weighted centroid to the detector point. */
+static void weigh_triangles(cscd_plan *plan, const cscd_mesh *mesh, const double *positions) {
     for (uint32_t r = 0; r < plan->region_count; r++)
         memcpy(plan->detector_offsets[r], plan->regions[r].detector_point, sizeof(double[3]));
     for (uint32_t t = 0; t < plan->triangle_count; t++) {
-        const cscd_region *region = &plan->regions[d->regions[t]];
-        double weight = region->area > 0.0 ? surface_area(d->mesh, d->positions, t) / region->area
+        const cscd_region *region = &plan->regions[plan->triangle_regions[t]];
+        double weight = region->area > 0.0 ? surface_area(mesh, positions, t) / region->area
                                            : 1.0 / region->triangle_count;
         plan->triangle_weights[t] = weight;
         for (int i = 0; i < 3; i++) {
-            const double *p = d->positions + (size_t)d->mesh->triangles[t][i] * 3;
-            for (int k = 0; k < 3; k++) plan->detector_offsets[d->regions[t]][k] -= weight / 3.0 * p[k];
+            const double *p = positions + (size_t)mesh->triangles[t][i] * 3;
+            for (int k = 0; k < 3; k++)
+                plan->detector_offsets[plan->triangle_regions[t]][k] -= weight / 3.0 * p[k];
         }
     }
 }
 
-static cscd_status fill_plan(cscd_plan *plan, const draft *d) {
+static cscd_status fill_plan(cscd_plan *plan, const cscd_mesh *mesh, const double *positions,
+                             const cscd_plan_parts *parts) {
     double *shares = context_allocate(plan->context, plan->region_count, sizeof *shares);
     if (shares == NULL) return context_out_of_memory(plan->context);
-    cscd_status status =
-        visible_shares(d->mesh, d->positions, d->regions, plan->region_count, d->detector_points, shares);
+    cscd_status status = visible_shares(mesh, positions, parts->triangle_regions, plan->region_count,
+                                        parts->detector_points, shares);
     if (status == CSCD_OK) {
-        memcpy(plan->triangle_regions, d->regions, plan->triangle_count * sizeof *plan->triangle_regions);
-        count_regions(plan, d);
+        memcpy(plan->triangle_regions, parts->triangle_regions,
+               plan->triangle_count * sizeof *plan->triangle_regions);
+        count_regions(plan, mesh, positions);
         for (uint32_t r = 0; r < plan->region_count; r++) {
             plan->regions[r].visible_share = shares[r];
-            memcpy(plan->regions[r].detector_point, d->detector_points + (size_t)r * 3, sizeof(double[3]));
+            memcpy(plan->regions[r].detector_point, parts->detector_points + (size_t)r * 3,
+                   sizeof(double[3]));
         }
-        weigh_triangles(plan, d);
+        weigh_triangles(plan, mesh, positions);
         if (plan->charges != NULL) {
-            memcpy(plan->charges, d->charges, plan->triangle_count * sizeof *plan->charges);
-            memcpy(plan->capacitances, d->capacitances, plan->component_count * sizeof *plan->capacitances);
+            memcpy(plan->charges, parts->charges, plan->triangle_count * sizeof *plan->charges);
+            memcpy(plan->capacitances, parts->capacitances,
+                   plan->component_count * sizeof *plan->capacitances);
         }
     }
     context_free(plan->context, shares);
     return status;
 }
 
-static cscd_status make_plan(const draft *d, cscd_plan **out) {
-    cscd_plan *plan = plan_allocate(d->mesh, d->options.method, d->region_count);
-    if (plan == NULL) return context_out_of_memory(d->mesh->context);
-    cscd_status status = fill_plan(plan, d);
+static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, const cscd_plan_parts *parts,
+                             cscd_plan **out) {
+    cscd_plan *plan = plan_allocate(mesh, parts->method, parts->region_count);
+    if (plan == NULL) return context_out_of_memory(mesh->context);
+    cscd_status status = fill_plan(plan, mesh, positions, parts);
     if (status != CSCD_OK) {
         cscd_plan_destroy(plan);
         return status;
@@ -153,13 +160,25 @@ static cscd_status make_plan(const draft *d, cscd_plan **out) {
     return CSCD_OK;
 }
 
+static cscd_plan_parts parts_of_draft(const draft *d) {
+    return (cscd_plan_parts){.method = d->options.method,
+                             .region_count = d->region_count,
+                             .triangle_regions = d->regions,
+                             .detector_points = d->detector_points,
+                             .charges = d->charges,
+                             .capacitances = d->capacitances};
+}
+
 static cscd_status run_draft(draft *d, cscd_plan **out) {
     double start = timer_now_ms(), since = start;
     cscd_status status = d->options.method == CSCD_METHOD_CHARGE ? solve_charge(d) : CSCD_OK;
     since = timer_now_ms();
     if (status == CSCD_OK) status = find_regions(d);
     if (status == CSCD_OK) status = place_detector_points(d);
-    if (status == CSCD_OK) status = make_plan(d, out);
+    if (status == CSCD_OK) {
+        cscd_plan_parts parts = parts_of_draft(d);
+        status = make_plan(d->mesh, d->positions, &parts, out);
+    }
     if (status != CSCD_OK) return status;
     timer_lap(&since, &d->timings.regions_ms);
     timer_lap(&start, &d->timings.total_ms);
@@ -228,17 +247,6 @@ static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *par
     return CSCD_OK;
 }
 
-/* The pointers of parts are copied from, not written through. */
-static draft draft_of_parts(const cscd_mesh *mesh, const double *positions, const cscd_plan_parts *parts) {
-    draft d = {.mesh = mesh, .positions = positions, .region_count = parts->region_count};
-    d.options.method = parts->method;
-    d.regions = (uint32_t *)(uintptr_t)parts->triangle_regions;
-    d.detector_points = (double *)(uintptr_t)parts->detector_points;
-    d.charges = (double *)(uintptr_t)parts->charges;
-    d.capacitances = (double *)(uintptr_t)parts->capacitances;
-    return d;
-}
-
 cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
                                         const cscd_plan_parts *parts, cscd_plan **out) {
     if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
@@ -256,6 +264,5 @@ cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *pos
     status = check_parts(mesh, parts, component_of);
     context_free(context, component_of);
     if (status != CSCD_OK) return status;
-    draft d = draft_of_parts(mesh, positions, parts);
-    return make_plan(&d, out);
+    return make_plan(mesh, positions, parts, out);
 }

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-/* All that a call takes, in one block. */
+/* Workspace of one call, in one block of memory. */
 typedef struct workspace {
     uint32_t *triangles; /* sorted by component */
     uint32_t *offsets;   /* component c has triangles[offsets[c] .. offsets[c + 1]) */
@@ -16,10 +16,11 @@ typedef struct workspace {
     charge_system system;
 } workspace;
 
-/* Of cscd_plan_create; the rest goes to the regions. */
+/* The charge's share of cscd_plan_create, by estimate; the regions take the rest. */
 static const double part_of_call = 0.95;
 
-/* Triangles of a component that are charged: of an obstacle, which is not cut, none. */
+/* The number of triangles of a component that are charged. Obstacles are not charged, since they are not cut.
+ * */
 static uint32_t charged_triangles(const cscd_mesh *mesh, uint32_t component) {
     return component_is_obstacle(mesh, component) ? 0 : mesh->components[component].triangle_count;
 }
@@ -65,7 +66,7 @@ static void sort_by_component(workspace *work, const cscd_mesh *mesh) {
     work->offsets[0] = 0;
 }
 
-/* Charges of unknowns to densities of triangles, in the lengths of the caller. */
+/* Turns the charges of unknowns into densities of triangles, in the caller's lengths. */
 static void store_component(workspace *work) {
     const charge_system *system = &work->system;
     double capacitance = 0.0;

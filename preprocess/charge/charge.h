@@ -9,7 +9,8 @@ typedef struct charge_timings { /* sums over the components */
 } charge_timings;
 
 /* Bytes that charge_solve takes at its peak through the context's allocator; the largest component's matrix,
- * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted. */
+ * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted. External for
+ * the tests of memory limits. */
 size_t charge_memory(const cscd_mesh *mesh);
 
 /* Each component is a conductor of its own, alone in space, at potential 1, in Gaussian units:

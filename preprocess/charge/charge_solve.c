@@ -8,7 +8,7 @@
 
 enum { COLUMNS_PER_TASK = 8, POINTS_PER_BLOCK = 256, CORRECTIONS_MAX = 20 };
 
-/* Of the largest density: what may be missing in the end. */
+/* The largest error of a density, as a share of the largest density. */
 static const double TOLERANCE = 1e-10;
 
 static uint32_t tasks_of(uint32_t count, uint32_t per_task) {
@@ -43,8 +43,8 @@ static void assemble_columns(void *data, uint32_t task) {
     }
 }
 
-/* residual = 1 - (potential of charges) at one block of points, with entries in double precision, computed
- * anew. */
+/* residual = 1 - (potential of charges) at one block of points, with entries computed again in double
+ * precision. */
 static void evaluate_residual(void *data, uint32_t task) {
     charge_system *system = data;
     uint32_t begin = task * POINTS_PER_BLOCK, size = block_size(system, begin);
@@ -74,8 +74,8 @@ static double apply_correction(charge_system *system) {
     return change / largest;
 }
 
-/* The triangle whose pivot is the smallest against what was its diagonal, the potential of a disc of its
- * area. */
+/* Returns the triangle whose pivot is the smallest share of its diagonal entry, which was about the potential
+ * of a disc of its area. */
 static uint32_t most_dependent_triangle(const charge_system *system) {
     uint32_t worst = 0;
     double smallest = INFINITY;
@@ -100,8 +100,8 @@ static cscd_status fail_singular(const charge_system *system) {
         system->component, system->count, most_dependent_triangle(system));
 }
 
-/* In ns on one thread, by estimate: entries take some 10 each, in the matrix and in three residuals, and a
- * multiplication of the factors a hundredth. */
+/* Work is estimated in ns on one thread: an entry takes some 10, in the matrix and in three residuals, and a
+ * multiplication of the factors a hundredth of that. */
 static double entries_work(double n) {
     return 10.0 * n * n;
 }
@@ -120,14 +120,14 @@ static void enter_stage(const charge_system *system, const char *name, double be
     progress_stage(&system->context->progress, name, begin / work, end / work);
 }
 
-static cscd_status assemble(charge_system *system) {
+static cscd_status assemble_matrix(charge_system *system) {
     enter_stage(system, "charge: matrix", 0.0, entries_work(system->count));
     parallel_run(system->context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns,
                  system);
     return context_progress_status(system->context);
 }
 
-static cscd_status factor(charge_system *system, uint32_t *zero_pivot) {
+static cscd_status factor_matrix(charge_system *system, uint32_t *zero_pivot) {
     double begin = entries_work(system->count);
     enter_stage(system, "charge: factors", begin, begin + factors_work(system->count));
     return dense_factor(system->context, system->matrix, system->count, system->pivots, zero_pivot);
@@ -135,7 +135,7 @@ static cscd_status factor(charge_system *system, uint32_t *zero_pivot) {
 
 /* Iterative refinement. Each step shrinks the error by about condition number * 2^-24, so from two steps the
  * next one is known: change * (change / change before). */
-static cscd_status refine(charge_system *system) {
+static cscd_status refine_charges(charge_system *system) {
     parallel *threads = system->context->threads;
     double before = 1.0, work = charge_system_work(system->count);
     for (uint32_t k = 0; k < system->count; k++) {
@@ -163,11 +163,11 @@ cscd_status charge_system_solve(charge_system *system, charge_timings *timings) 
     if (system->count == 0) return CSCD_OK;
     uint32_t zero_pivot = 0;
     double clock = timer_now_ms();
-    cscd_status status = assemble(system);
+    cscd_status status = assemble_matrix(system);
     timer_lap(&clock, &timings->assembly_ms);
-    if (status == CSCD_OK) status = factor(system, &zero_pivot);
+    if (status == CSCD_OK) status = factor_matrix(system, &zero_pivot);
     timer_lap(&clock, &timings->factor_ms);
-    if (status == CSCD_OK) status = zero_pivot == 0 ? refine(system) : fail_singular(system);
+    if (status == CSCD_OK) status = zero_pivot == 0 ? refine_charges(system) : fail_singular(system);
     timer_lap(&clock, &timings->refine_ms);
     return status;
 }

@@ -1,12 +1,12 @@
-/* The system of equations for the charges of one component: its unknowns, and its arrays. */
+/* Sets up the system of equations for the charges of one component: its unknowns and its arrays. */
 #include "preprocess/charge/charge_system.h"
 
 #include "src/core/sort.h"
 
 #include <math.h>
 
-/* The next count elements of memory, on a cache line of their own; used grows, up to SIZE_MAX. */
-static void *take(char *memory, size_t *used, size_t count, size_t size) {
+/* Takes the next count elements of memory, on a cache line of their own; *used grows, up to SIZE_MAX. */
+static void *take_array(char *memory, size_t *used, size_t count, size_t size) {
     void *taken = memory != NULL ? memory + *used : NULL;
     size_t room = (SIZE_MAX / 2 - *used) / size;
     *used = *used > SIZE_MAX / 2 || count > room
@@ -17,21 +17,21 @@ static void *take(char *memory, size_t *used, size_t count, size_t size) {
 
 size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *memory) {
     size_t n = capacity, used = 0;
-    system->points = take(memory, &used, n, sizeof *system->points);
-    system->scratch = take(memory, &used, n, sizeof *system->scratch);
-    system->sources = take(memory, &used, n, sizeof *system->sources);
-    system->x = take(memory, &used, n, sizeof *system->x);
-    system->y = take(memory, &used, n, sizeof *system->y);
-    system->z = take(memory, &used, n, sizeof *system->z);
-    system->charges = take(memory, &used, n, sizeof *system->charges);
-    system->residual = take(memory, &used, n, sizeof *system->residual);
-    system->correction = take(memory, &used, n, sizeof *system->correction);
-    system->pivots = take(memory, &used, n, sizeof *system->pivots);
-    system->matrix = take(memory, &used, n * n, sizeof *system->matrix);
+    system->points = take_array(memory, &used, n, sizeof *system->points);
+    system->scratch = take_array(memory, &used, n, sizeof *system->scratch);
+    system->sources = take_array(memory, &used, n, sizeof *system->sources);
+    system->x = take_array(memory, &used, n, sizeof *system->x);
+    system->y = take_array(memory, &used, n, sizeof *system->y);
+    system->z = take_array(memory, &used, n, sizeof *system->z);
+    system->charges = take_array(memory, &used, n, sizeof *system->charges);
+    system->residual = take_array(memory, &used, n, sizeof *system->residual);
+    system->correction = take_array(memory, &used, n, sizeof *system->correction);
+    system->pivots = take_array(memory, &used, n, sizeof *system->pivots);
+    system->matrix = take_array(memory, &used, n * n, sizeof *system->matrix);
     return used;
 }
 
-/* The middle of the component's box, and the scale. */
+/* Finds the middle of the component's box, and the scale. */
 static void find_frame(charge_system *system, const cscd_mesh *mesh, const double *positions,
                        const uint32_t *triangles, uint32_t triangle_count, double middle[3]) {
     double extent = 0.0;
@@ -58,7 +58,8 @@ static void scaled_corners(const charge_system *system, const cscd_mesh *mesh, c
     }
 }
 
-/* The same bits for any order of the corners, so that triangles that coincide have one collocation point. */
+/* Gives the same bits for any order of the corners, so that triangles that coincide have one collocation
+ * point. */
 static double mean_of_three(double a, double b, double c) {
     double low = a < b ? a : b, high = a < b ? b : a;
     double middle = c;
@@ -84,7 +85,7 @@ static bool same_position(const double a[3], const double b[3]) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Whether each corner of a lies where one of b does; both have an area. */
+/* Does each corner of a lie at a corner of b? Both have an area. */
 static bool triangles_coincide(const cscd_mesh *mesh, const double *positions, uint32_t a, uint32_t b) {
     for (int i = 0; i < 3; i++) {
         const double *p = positions + (size_t)mesh->triangles[a][i] * 3;
@@ -98,7 +99,7 @@ static bool triangles_coincide(const cscd_mesh *mesh, const double *positions, u
     return true;
 }
 
-/* The points of all triangles that have an area, sorted. */
+/* Collects the points of all triangles that have an area, sorted. */
 static void collect_points(charge_system *system, const cscd_mesh *mesh, const double *positions,
                            const double middle[3], const uint32_t *triangles, uint32_t triangle_count) {
     system->point_count = 0;

@@ -15,8 +15,8 @@ typedef struct charge_point {
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. */
 typedef struct charge_system {
     cscd_context *context;
-    uint32_t component, count;  /* of unknowns */
-    uint32_t point_count;       /* of triangles with an area */
+    uint32_t component, count;  /* the number of unknowns */
+    uint32_t point_count;       /* the number of triangles with an area */
     double scale;               /* scaled length / length */
     charge_point *points;       /* sorted by position, so by unknown too */
     charge_point *scratch;      /* for sorting */
@@ -36,7 +36,7 @@ size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *mem
 cscd_status charge_system_collect(charge_system *system, const cscd_mesh *mesh, const double *positions,
                                   uint32_t component, const uint32_t *triangles, uint32_t triangle_count);
 
-/* What a system of so many unknowns costs, to be compared with others. */
+/* The estimated cost of a system of so many unknowns, to compare it with others. */
 double charge_system_work(uint32_t count);
 
 /* Assembles, factors and solves; adds to timings. CANCELLED: nothing is solved. */

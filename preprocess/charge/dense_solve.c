@@ -15,13 +15,13 @@
 
 _Static_assert(sizeof(lapack_int) == sizeof(int32_t), "LAPACKE with 64-bit integers");
 
-/* By measurement (docs/theory/charge.md): narrower panels leave the products thin, wider ones few tasks. */
+/* Measured (docs/theory/charge.md): narrower panels make the products thin, wider ones leave few tasks. */
 enum { PANEL_WIDTH = 256 };
 
 /* ---- OpenBLAS's threads ------------------------------------------------------------------------------- */
 
-/* OpenBLAS keeps one thread count for the whole process. While we are in it, on any thread, it is 1, for the
- * tasks are ours; the first to come stores the count and the last to go puts it back. The lock is held for
+/* OpenBLAS keeps one thread count for the whole process. While we are in it, on any thread, it is 1, since
+ * the tasks are ours; the first to come stores the count and the last to go restores it. The lock is held for
  * these moments only: a host's loop may lend a thread that waits in the midst of a solve to another context's
  * solve, which would wait for ever for a lock held by the first. Weak: another BLAS may be linked, which then
  * runs with the threads it likes. */
@@ -59,76 +59,76 @@ typedef struct factoring {
     double done;         /* of the whole work */
 } factoring;
 
-static uint32_t least(uint32_t a, uint32_t b) {
+static uint32_t smaller_count(uint32_t a, uint32_t b) {
     return a < b ? a : b;
 }
 
-static float *entry(const factoring *f, uint32_t row, uint32_t column) {
+static float *entry_at(const factoring *f, uint32_t row, uint32_t column) {
     return f->matrix + (size_t)column * f->count + row;
 }
 
-/* Rows begin and below, of columns begin to end - 1. The _work forms: the plain ones would look for NaN in
- * the whole matrix first. */
+/* Factors the rows from `begin` on of columns begin to end - 1. The plain forms of LAPACKE would search the
+ * whole matrix for NaN first, the _work forms do not. */
 static void factor_panel(factoring *f, uint32_t begin, uint32_t end) {
     lapack_int info =
         LAPACKE_sgetrf_work(LAPACK_COL_MAJOR, (lapack_int)(f->count - begin), (lapack_int)(end - begin),
-                            entry(f, begin, begin), (lapack_int)f->count, f->pivots + begin);
+                            entry_at(f, begin, begin), (lapack_int)f->count, f->pivots + begin);
     if (info > 0 && f->zero_pivot == 0) f->zero_pivot = begin + (uint32_t)info;
 }
 
-/* The swaps of the panel [begin, end) in columns first to last - 1. */
+/* Swaps rows as the panel [begin, end) does, in columns first to last - 1. */
 static void swap_rows(const factoring *f, uint32_t begin, uint32_t end, uint32_t first, uint32_t last) {
-    LAPACKE_slaswp_work(LAPACK_COL_MAJOR, (lapack_int)(last - first), entry(f, begin, first),
+    LAPACKE_slaswp_work(LAPACK_COL_MAJOR, (lapack_int)(last - first), entry_at(f, begin, first),
                         (lapack_int)f->count, 1, (lapack_int)(end - begin), f->pivots + begin, 1);
 }
 
-/* Of columns first to last - 1, right of the panel. */
+/* Brings columns first to last - 1, right of the panel, up to date. */
 static void update_columns(const factoring *f, uint32_t first, uint32_t last) {
     uint32_t begin = f->begin, end = f->end;
     lapack_int n = (lapack_int)f->count, width = (lapack_int)(end - begin);
     lapack_int columns = (lapack_int)(last - first);
     swap_rows(f, begin, end, first, last);
     cblas_strsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, width, columns, 1.0f,
-                entry(f, begin, begin), n, entry(f, begin, first), n);
+                entry_at(f, begin, begin), n, entry_at(f, begin, first), n);
     cblas_sgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, n - (lapack_int)end, columns, width, -1.0f,
-                entry(f, end, begin), n, entry(f, begin, first), n, 1.0f, entry(f, end, first), n);
+                entry_at(f, end, begin), n, entry_at(f, begin, first), n, 1.0f, entry_at(f, end, first), n);
 }
 
-/* One of the panels to come; the next one is factored, too. */
-static void advance(void *data, uint32_t task) {
+/* A task: updates one of the panels to come; the next one is factored, too. */
+static void advance_panel(void *data, uint32_t task) {
     factoring *f = data;
-    uint32_t begin = f->end + task * PANEL_WIDTH, end = least(f->count, begin + PANEL_WIDTH);
+    uint32_t begin = f->end + task * PANEL_WIDTH, end = smaller_count(f->count, begin + PANEL_WIDTH);
     if (!progress_go_on(&f->context->progress, f->done)) return;
     update_columns(f, begin, end);
     if (task == 0) factor_panel(f, begin, end);
 }
 
-/* The swaps of all panels right of it, in columns of one panel. */
+/* A task: does the swaps of all panels on the right in the columns of one panel. */
 static void swap_left(void *data, uint32_t task) {
     const factoring *f = data;
     uint32_t first = task * PANEL_WIDTH, last = first + PANEL_WIDTH;
     for (uint32_t begin = last; begin < f->count; begin += PANEL_WIDTH)
-        swap_rows(f, begin, least(f->count, begin + PANEL_WIDTH), first, last);
+        swap_rows(f, begin, smaller_count(f->count, begin + PANEL_WIDTH), first, last);
 }
 
-/* What is left of n columns is a cube. */
+/* The share of the work that is done: what is left of n columns costs the cube of their number. */
 static double share_done(const factoring *f) {
     double left = 1.0 - (double)f->end / (double)f->count;
     return 1.0 - left * left * left;
 }
 
-static cscd_status factor(factoring *f) {
+static cscd_status factor_panels(factoring *f) {
     parallel *threads = f->context->threads;
     uint32_t panels = f->count / PANEL_WIDTH + (f->count % PANEL_WIDTH != 0);
-    f->end = least(f->count, PANEL_WIDTH);
+    f->end = smaller_count(f->count, PANEL_WIDTH);
     factor_panel(f, 0, f->end);
     for (uint32_t left = panels - 1; left > 0; left--) {
         f->done = share_done(f);
-        parallel_run(threads, left, advance, f);
+        parallel_run(threads, left, advance_panel, f);
         cscd_status status = context_progress_status(f->context);
         if (status != CSCD_OK) return status;
         f->begin = f->end;
-        f->end = least(f->count, f->end + PANEL_WIDTH);
+        f->end = smaller_count(f->count, f->end + PANEL_WIDTH);
     }
     parallel_run(threads, panels - 1, swap_left, f);
     for (uint32_t i = 0; i < f->count; i++) f->pivots[i] += (lapack_int)(i / PANEL_WIDTH * PANEL_WIDTH);
@@ -139,7 +139,7 @@ cscd_status dense_factor(cscd_context *context, float *matrix, uint32_t count, i
                          uint32_t *zero_pivot) {
     factoring f = {.context = context, .matrix = matrix, .pivots = pivots, .count = count};
     begin_single_thread();
-    cscd_status status = factor(&f);
+    cscd_status status = factor_panels(&f);
     end_single_thread();
     *zero_pivot = f.zero_pivot;
     return status;

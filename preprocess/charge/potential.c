@@ -119,7 +119,7 @@ INLINED double half_solid_angle(const double distances[3], const double lengths2
     return half_plane_angle(triple * all, whole * radii * all - fraction);
 }
 
-INLINED double potential(const potential_source *source, double x, double y, double z) {
+INLINED double potential_at_point(const potential_source *source, double x, double y, double z) {
     double to[3][3], distances[3], lengths2[3], lines2[3];
     UNROLLED
     for (int i = 0; i < 3; i++) {
@@ -148,7 +148,7 @@ INLINED double potential(const potential_source *source, double x, double y, dou
 INLINED void potentials_of(const potential_source *source, const double *restrict x, const double *restrict y,
                            const double *restrict z, size_t count, double *restrict potentials) {
     const potential_source local = *source; /* nothing aliases it */
-    for (size_t i = 0; i < count; i++) potentials[i] = potential(&local, x[i], y[i], z[i]);
+    for (size_t i = 0; i < count; i++) potentials[i] = potential_at_point(&local, x[i], y[i], z[i]);
 }
 
 /* The same code for wider vectors. Without fused multiply-add (-ffp-contract=off) the bits are the same. */
@@ -181,7 +181,7 @@ void potential_at(const potential_source *source, const double *x, const double 
 /* Corners, edge lengths, directions and the normal; returns twice the area, or 0 when it is lost in rounding.
  * The normal is the product of the two shorter edges, and then turned square to the longest: in a sliver its
  * error along that edge would be large. */
-static double measure(potential_source *s, const double corners[3][3]) {
+static double measure_triangle(potential_source *s, const double corners[3][3]) {
     int longest = 0;
     memcpy(s->corners, corners, sizeof s->corners);
     for (int i = 0; i < 3; i++) {
@@ -207,7 +207,7 @@ static double measure(potential_source *s, const double corners[3][3]) {
 
 bool potential_source_set(potential_source *source, const double corners[3][3]) {
     potential_source s;
-    double doubled = measure(&s, corners);
+    double doubled = measure_triangle(&s, corners);
     if (doubled == 0.0) return false;
     s.area = 0.5 * doubled;
     for (int i = 0; i < 3; i++) vec3_cross(s.along[i], s.normal, s.outward[i]);

@@ -1,11 +1,12 @@
-/* Cells of parts: near vertices with like normals, connected. */
+/* Divides parts into cells: connected groups of near vertices with similar normals. */
 #include "preprocess/partition/cells.h"
 #include "src/mesh/surface.h"
 
 #include <string.h>
 
-/* Edges between vertices of equal labels, in both directions, ascending from each vertex; those labelled
- * PARTITION_NONE have no edge. offsets: vertex_count + 1, neighbours: 2 * edge_count. */
+/* Lists the edges between vertices of equal labels, in both directions, ascending from each vertex. Vertices
+ * with the label PARTITION_NONE have no edge. offsets has vertex_count + 1 elements, neighbours 2 *
+ * edge_count. */
 static void list_neighbours(const cscd_mesh *mesh, const uint32_t *labels, uint32_t *offsets,
                             uint32_t *neighbours) {
     uint32_t *ends = offsets + 1, begin = 0;
@@ -29,49 +30,26 @@ static void list_neighbours(const cscd_mesh *mesh, const uint32_t *labels, uint3
     }
 }
 
-/* ---- room -------------------------------------------------------------------------------------------- */
+/* ---- memory ------------------------------------------------------------------------------------------ */
 
-static cscd_status allocate(cell_maker *maker, size_t largest) {
+static array_list list_arrays(cell_maker *maker) {
     const cscd_mesh *mesh = maker->partition->mesh;
-    cscd_context *context = mesh->context;
-    size_t vertices = mesh->vertex_count, edges = mesh->edge_count, parts = maker->partition->part_count;
-    maker->offsets = context_allocate(context, vertices + 1, sizeof(uint32_t));
-    maker->neighbours = context_allocate(context, 2 * edges, sizeof(uint32_t));
-    maker->labels = context_allocate(context, vertices, sizeof(uint32_t));
-    maker->counts = context_allocate(context, parts, sizeof(uint32_t));
-    maker->distortions = context_allocate(context, parts, sizeof(double));
-    maker->vectors = context_allocate(context, largest * LBG_DIMENSIONS, sizeof(double));
-    maker->vector_labels = context_allocate(context, largest, sizeof(uint32_t));
-    maker->order = context_allocate(context, largest, sizeof(uint32_t));
-    maker->candidates = context_allocate(context, largest, sizeof(uint32_t));
-    maker->codes = context_allocate(context, largest, sizeof(lbg_code));
     connect_work *c = &maker->connecting;
-    c->pieces = context_allocate(context, vertices, sizeof(uint32_t));
-    c->queue = context_allocate(context, largest, sizeof(uint32_t));
-    c->piece_offsets = context_allocate(context, largest + 1, sizeof(uint32_t));
-    c->piece_labels = context_allocate(context, largest, sizeof(uint32_t));
-    c->settled = context_allocate(context, largest, sizeof(bool));
-    c->best = context_allocate(context, largest, sizeof(uint32_t));
-    bool complete = maker->offsets != NULL && maker->neighbours != NULL && maker->labels != NULL &&
-                    maker->counts != NULL && maker->distortions != NULL && maker->vectors != NULL &&
-                    maker->vector_labels != NULL && maker->order != NULL && maker->candidates != NULL &&
-                    maker->codes != NULL && c->pieces != NULL && c->queue != NULL &&
-                    c->piece_offsets != NULL && c->piece_labels != NULL && c->settled != NULL &&
-                    c->best != NULL;
-    return complete ? CSCD_OK : context_out_of_memory(context);
+    size_t vertices = mesh->vertex_count, parts = maker->partition->part_count, largest = maker->largest;
+    return (array_list){
+        {ARRAY(maker->offsets, vertices + 1), ARRAY(maker->neighbours, 2 * (size_t)mesh->edge_count),
+         ARRAY(maker->labels, vertices), ARRAY(maker->counts, parts), ARRAY(maker->distortions, parts),
+         ARRAY(maker->vectors, largest * LBG_DIMENSIONS), ARRAY(maker->vector_labels, largest),
+         ARRAY(maker->order, largest), ARRAY(maker->candidates, largest), ARRAY(maker->codes, largest),
+         ARRAY(c->pieces, vertices), ARRAY(c->queue, largest), ARRAY(c->piece_offsets, largest + 1),
+         ARRAY(c->piece_labels, largest), ARRAY(c->settled, largest), ARRAY(c->best, largest)}};
 }
 
 void cell_maker_free(cell_maker *maker) {
-    connect_work *c = &maker->connecting;
-    void *blocks[] = {maker->offsets,       maker->neighbours, maker->labels, maker->counts,
-                      maker->distortions,   maker->vectors,    maker->order,  maker->candidates,
-                      maker->vector_labels, maker->codes,      c->pieces,     c->queue,
-                      c->piece_offsets,     c->piece_labels,   c->settled,    c->best};
-    cscd_context *context = maker->partition->context;
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(maker->partition->context, list_arrays(maker));
 }
 
-/* Cells as they are, numbered from 0 in each part. */
+/* Takes over the partition's present cells, numbered from 0 in each part. */
 static void take_cells(cell_maker *maker) {
     const cscd_partition *partition = maker->partition;
     for (uint32_t v = 0; v < partition->mesh->vertex_count; v++) {
@@ -87,12 +65,9 @@ static void take_cells(cell_maker *maker) {
 
 cscd_status cell_maker_create(cscd_partition *partition, const double *positions, uint32_t largest,
                               cell_maker *out) {
-    *out = (cell_maker){.partition = partition, .positions = positions};
-    cscd_status status = allocate(out, largest);
-    if (status != CSCD_OK) {
-        cell_maker_free(out);
-        return status;
-    }
+    *out = (cell_maker){.partition = partition, .positions = positions, .largest = largest};
+    if (!context_allocate_all(partition->context, list_arrays(out)))
+        return context_out_of_memory(partition->context);
     list_neighbours(partition->mesh, partition->vertex_parts, out->offsets, out->neighbours);
     out->connecting.offsets = out->offsets;
     out->connecting.neighbours = out->neighbours;
@@ -103,7 +78,7 @@ cscd_status cell_maker_create(cscd_partition *partition, const double *positions
 
 /* ---- vectors ----------------------------------------------------------------------------------------- */
 
-/* Of all triangles about the vertex, weighted by their areas; of length 1, or 0. */
+/* The normal of the triangles around a vertex, weighted by their areas; its length is 1, or 0. */
 static void vertex_normal(const cscd_mesh *mesh, const double *positions, uint32_t vertex, double out[3]) {
     memset(out, 0, 3 * sizeof *out);
     for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
@@ -115,28 +90,30 @@ static void vertex_normal(const cscd_mesh *mesh, const double *positions, uint32
     for (int k = 0; k < 3 && norm > 0.0; k++) out[k] /= norm;
 }
 
-/* Differences to the first vertex only, so that a part that is moved without rounding has the same ones. */
-static void difference(const cell_maker *maker, const uint32_t *vertices, uint32_t i, double out[3]) {
+/* Only differences to the first vertex count, so that a part that is moved without rounding keeps its
+ * vectors. */
+static void offset_from_first(const cell_maker *maker, const uint32_t *vertices, uint32_t i, double out[3]) {
     const double *p = maker->positions + (size_t)vertices[i] * 3;
     const double *first = maker->positions + (size_t)vertices[0] * 3;
     for (int k = 0; k < 3; k++) out[k] = p[k] - first[k];
 }
 
-/* Positions about their mean, of a root mean square of 1; beside them weighted normals. */
+/* Fills each vector with the position relative to the mean, scaled to a root mean square of 1, and the
+ * weighted normal. */
 static void fill_vectors(const cell_maker *maker, const uint32_t *vertices, uint32_t count) {
     double mean[3] = {0, 0, 0}, squares = 0.0, d[3];
     for (uint32_t i = 0; i < count; i++) {
-        difference(maker, vertices, i, d);
+        offset_from_first(maker, vertices, i, d);
         for (int k = 0; k < 3; k++) mean[k] += d[k] / count;
     }
     for (uint32_t i = 0; i < count; i++) {
-        difference(maker, vertices, i, d);
+        offset_from_first(maker, vertices, i, d);
         for (int k = 0; k < 3; k++) squares += (d[k] - mean[k]) * (d[k] - mean[k]);
     }
     double radius = sqrt(squares / count), weight = maker->partition->options.normal_weight;
     for (uint32_t i = 0; i < count; i++) {
         double *vector = maker->vectors + (size_t)i * LBG_DIMENSIONS;
-        difference(maker, vertices, i, d);
+        offset_from_first(maker, vertices, i, d);
         for (int k = 0; k < 3; k++) vector[k] = radius > 0.0 ? (d[k] - mean[k]) / radius : 0.0;
         vertex_normal(maker->partition->mesh, maker->positions, vertices[i], vector + 3);
         for (int k = 3; k < LBG_DIMENSIONS; k++) vector[k] *= weight;

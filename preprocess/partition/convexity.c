@@ -1,4 +1,4 @@
-/* Which components are convex. */
+/* Finds the convex components. */
 #include "preprocess/partition/convexity.h"
 #include "src/mesh/surface.h"
 
@@ -22,8 +22,10 @@ static void find_extents(const cscd_mesh *mesh, const double *positions, extent 
     }
 }
 
-/* How far a triangle's corners, two of which it shares, are outside of another triangle's plane. */
-static double outside(const cscd_mesh *mesh, const double *positions, uint32_t triangle, uint32_t plane) {
+/* How far the corners of a triangle, which shares two of them with `plane`, lie outside the plane of that
+ * triangle. */
+static double distance_outside(const cscd_mesh *mesh, const double *positions, uint32_t triangle,
+                               uint32_t plane) {
     double normal[3], farthest = 0.0;
     surface_normal(mesh, positions, plane, normal);
     double norm = surface_norm(normal);
@@ -50,8 +52,8 @@ cscd_status find_convex_components(const cscd_mesh *mesh, const double *position
         uint32_t c = mesh->triangle_components[star[0]];
         if (!convex[c]) continue;
         double allowed = tolerance * extents[c].size;
-        convex[c] = outside(mesh, positions, star[0], star[1]) <= allowed &&
-                    outside(mesh, positions, star[1], star[0]) <= allowed;
+        convex[c] = distance_outside(mesh, positions, star[0], star[1]) <= allowed &&
+                    distance_outside(mesh, positions, star[1], star[0]) <= allowed;
     }
     context_free(mesh->context, extents);
     return CSCD_OK;

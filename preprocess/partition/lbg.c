@@ -22,13 +22,13 @@ double lbg_distortion(const lbg *l, uint32_t code_count) {
     return sum / D / l->vector_count;
 }
 
-static void tell(const lbg *l, uint32_t code_count) {
+static void report_codes(const lbg *l, uint32_t code_count) {
     if (l->observe != NULL) l->observe(l->user, code_count, lbg_distortion(l, code_count));
 }
 
 /* ---- means ------------------------------------------------------------------------------------------- */
 
-/* Sums are of differences to the first vector, so that equal vectors have themselves as their mean. */
+/* Sums differences to the first vector, so that the mean of equal vectors is that vector. */
 static void add_to_sum(const lbg *l, uint32_t i) {
     lbg_code *code = &l->codes[l->labels[i]];
     if (!code->changed) return;
@@ -37,7 +37,7 @@ static void add_to_sum(const lbg *l, uint32_t i) {
     for (int k = 0; k < D; k++) code->sum[k] += v[k] - first[k];
 }
 
-/* Of the codes that have changed; one without a vector keeps its mean. */
+/* Finds the means of the codes that have changed; a code without a vector keeps its mean. */
 static void find_means(const lbg *l, uint32_t code_count) {
     for (uint32_t c = 0; c < code_count; c++) {
         lbg_code *code = &l->codes[c];
@@ -71,7 +71,7 @@ void lbg_find_codes(const lbg *l, uint32_t code_count) {
 
 /* ---- the nearest code -------------------------------------------------------------------------------- */
 
-/* Vectors by codes, ascending in each: those of code c end at its end. */
+/* Sorts vectors by codes, ascending in each; the vectors of code c end at codes[c].end. */
 static void sort_by_code(const lbg *l, uint32_t code_count) {
     uint32_t begin = 0;
     for (uint32_t c = 0; c < code_count; c++) {
@@ -81,8 +81,9 @@ static void sort_by_code(const lbg *l, uint32_t code_count) {
     for (uint32_t i = 0; i < l->vector_count; i++) l->order[l->codes[l->labels[i]].end++] = i;
 }
 
-/* Codes that may be as near to a vector of this one as its own: where that has not moved, one that has; and
- * by the triangle inequality none farther off than twice the farthest vector, whatever the rounding. */
+/* Lists the codes that may be as near to a vector of this code as its own. If this code has not moved, only
+ * codes that have moved can be. By the triangle inequality none is farther off than twice the farthest
+ * vector; the factor leaves room for rounding. */
 static uint32_t find_candidates(const lbg *l, uint32_t code, uint32_t code_count) {
     const lbg_code *own = &l->codes[code];
     double farthest = 0.0;
@@ -112,8 +113,8 @@ static uint32_t nearest_code(const lbg *l, uint32_t i, uint32_t candidate_count)
     return nearest;
 }
 
-/* Has any vector found a nearer code? */
-static bool assign(const lbg *l, uint32_t code_count) {
+/* Returns whether any vector found a nearer code. */
+static bool assign_vectors(const lbg *l, uint32_t code_count) {
     bool any = false;
     sort_by_code(l, code_count);
     for (uint32_t c = 0; c < code_count; c++) {
@@ -140,7 +141,7 @@ static void scale_to_trace_one(double a[D][D]) {
     }
 }
 
-static void covariance(const lbg *l, uint32_t code, double out[D][D]) {
+static void find_covariance(const lbg *l, uint32_t code, double out[D][D]) {
     memset(out, 0, D * sizeof *out);
     for (uint32_t i = 0; i < l->vector_count; i++) {
         if (l->labels[i] != code) continue;
@@ -152,11 +153,11 @@ static void covariance(const lbg *l, uint32_t code, double out[D][D]) {
     }
 }
 
-/* The direction of largest variance, of any length: powers of the covariance tend to a projection onto it,
- * and where several are equal, onto all of them. */
+/* Finds the direction of largest variance, of any length: powers of the covariance tend to the projection
+ * onto it, or, if several directions have the largest variance, onto all of them. */
 static void widest_direction(const lbg *l, uint32_t code, double out[D]) {
     double a[D][D], square[D][D];
-    covariance(l, code, a);
+    find_covariance(l, code, a);
     scale_to_trace_one(a);
     for (int squaring = 0; squaring < SQUARINGS; squaring++) {
         memset(square, 0, sizeof square);
@@ -173,28 +174,28 @@ static void widest_direction(const lbg *l, uint32_t code, double out[D]) {
     memcpy(out, a[widest], D * sizeof *out);
 }
 
-static double projection(const lbg *l, uint32_t i, uint32_t code, const double direction[D]) {
+static double project_vector(const lbg *l, uint32_t i, uint32_t code, const double direction[D]) {
     double sum = 0.0;
     for (int k = 0; k < D; k++) sum += (vector_at(l, i)[k] - l->codes[code].mean[k]) * direction[k];
     return sum;
 }
 
-/* Gives the vectors of one side to the other code; the first vector's side stays. False where rounding leaves
- * one side only. */
-static bool divide(const lbg *l, uint32_t code, uint32_t other) {
+/* Gives the vectors of one side to the other code; the side of the first vector stays. Returns false when
+ * rounding leaves all vectors on one side. */
+static bool divide_code(const lbg *l, uint32_t code, uint32_t other) {
     double direction[D], low = INFINITY, high = -INFINITY;
     widest_direction(l, code, direction);
     for (uint32_t i = 0; i < l->vector_count; i++) {
         if (l->labels[i] != code) continue;
-        double x = projection(l, i, code, direction);
+        double x = project_vector(l, i, code, direction);
         low = x < low ? x : low;
         high = x > high ? x : high;
     }
     if (!(low < high)) return false;
     double middle = low <= 0.0 && high > 0.0 ? 0.0 : low;
-    bool side = projection(l, l->codes[code].first, code, direction) > middle;
+    bool side = project_vector(l, l->codes[code].first, code, direction) > middle;
     for (uint32_t i = 0; i < l->vector_count; i++) {
-        if (l->labels[i] == code && (projection(l, i, code, direction) > middle) != side)
+        if (l->labels[i] == code && (project_vector(l, i, code, direction) > middle) != side)
             l->labels[i] = other;
     }
     return true;
@@ -210,12 +211,13 @@ static uint32_t largest_distortion(const lbg *l, uint32_t code_count) {
     return largest;
 }
 
-/* Half of the code of largest distortion for an empty one; false where no code can be split. */
-static bool fill(const lbg *l, uint32_t empty, uint32_t code_count) {
+/* Fills an empty code with half of the code of largest distortion. Returns false when no code can be split.
+ * */
+static bool fill_code(const lbg *l, uint32_t empty, uint32_t code_count) {
     for (;;) {
         uint32_t largest = largest_distortion(l, code_count);
         if (largest == NONE) return false;
-        if (divide(l, largest, empty)) {
+        if (divide_code(l, largest, empty)) {
             l->codes[largest].changed = l->codes[empty].changed = l->codes[empty].moved = true;
             return true;
         }
@@ -228,24 +230,24 @@ static bool fill(const lbg *l, uint32_t empty, uint32_t code_count) {
 static void fill_empty(const lbg *l, uint32_t code_count) {
     for (uint32_t c = 0; c < code_count; c++) {
         if (l->codes[c].count > 0) continue;
-        if (!fill(l, c, code_count)) return;
+        if (!fill_code(l, c, code_count)) return;
         find_means(l, code_count);
     }
 }
 
-static void settle(const lbg *l, uint32_t code_count) {
+static void settle_codes(const lbg *l, uint32_t code_count) {
     double distortion = lbg_distortion(l, code_count);
-    for (int round = 0; round < LBG_ROUNDS_MAX && assign(l, code_count); round++) {
+    for (int round = 0; round < LBG_ROUNDS_MAX && assign_vectors(l, code_count); round++) {
         find_means(l, code_count);
         fill_empty(l, code_count);
-        tell(l, code_count);
+        report_codes(l, code_count);
         double before = distortion;
         distortion = lbg_distortion(l, code_count);
         if (before - distortion <= l->epsilon * before) return;
     }
 }
 
-/* Codes that nothing could fill leave; the others keep their order. */
+/* Drops the codes that nothing could fill; the others keep their order. */
 static uint32_t drop_empty(const lbg *l, uint32_t code_count) {
     uint32_t kept = 0;
     for (uint32_t c = 0; c < code_count; c++) {
@@ -263,11 +265,11 @@ uint32_t lbg_run(const lbg *l) {
     memset(l->codes, 0, l->codes_max * sizeof *l->codes);
     l->codes[0].changed = l->codes[0].moved = true;
     find_means(l, code_count);
-    tell(l, code_count);
-    while (code_count < l->codes_max && fill(l, code_count, code_count)) {
+    report_codes(l, code_count);
+    while (code_count < l->codes_max && fill_code(l, code_count, code_count)) {
         find_means(l, ++code_count);
-        tell(l, code_count);
-        settle(l, code_count);
+        report_codes(l, code_count);
+        settle_codes(l, code_count);
     }
     return drop_empty(l, code_count);
 }

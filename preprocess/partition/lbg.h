@@ -11,13 +11,13 @@ typedef struct lbg_code {
     double mean[LBG_DIMENSIONS], sum[LBG_DIMENSIONS];
     double distortion; /* the sum of squared distances to the mean */
     uint32_t first, count;
-    uint32_t end;     /* of its vectors in the order */
-    bool changed;     /* it got or lost a vector: its mean is to be found */
-    bool moved;       /* its mean is another: vectors are to be compared with it */
+    uint32_t end;     /* where its vectors end in `order` */
+    bool changed;     /* it got or lost a vector: its mean must be found again */
+    bool moved;       /* its mean has changed: vectors must be compared with it */
     bool indivisible; /* until it changes */
 } lbg_code;
 
-/* Vectors, and where the result goes. */
+/* The vectors, the parameters and the result. */
 typedef struct lbg {
     const double *vectors;            /* LBG_DIMENSIONS each */
     uint32_t vector_count, codes_max; /* 1 or more each */
@@ -41,8 +41,8 @@ typedef struct lbg {
  * half of the code of largest distortion. The smaller number wins every tie. */
 uint32_t lbg_run(const lbg *l);
 
-/* The codes of labels that are given, all below code_count; codes has room for them. */
+/* Finds the codes of given labels, which are all below code_count; codes has room for them. */
 void lbg_find_codes(const lbg *l, uint32_t code_count);
 
-/* (3.10): of code_count codes over all vectors. */
+/* The mean distortion per dimension (3.10) of code_count codes over all vectors. */
 double lbg_distortion(const lbg *l, uint32_t code_count);

@@ -1,4 +1,4 @@
-/* Partitions of parts into cells, each for one particle of the sensors. */
+/* The partition of the public API: divides parts into cells, each for one particle of the sensors. */
 #include "preprocess/partition/cells.h"
 #include "preprocess/partition/convexity.h"
 #include "preprocess/partition/parts.h"
@@ -34,21 +34,20 @@ static cscd_status check_options(cscd_context *context, const cscd_partition_opt
 
 /* ---- making cells ------------------------------------------------------------------------------------ */
 
-/* What is measured of all parts, for how many cells one gets depends on the others. */
+/* Measures of all parts: the number of cells that one gets depends on the others. */
 typedef struct measures {
     double *radii;
     bool *convex, *convex_components;
     uint32_t *counts;
 } measures;
 
-static void free_measures(cscd_context *context, measures *m) {
-    context_free(context, m->radii);
-    context_free(context, m->convex);
-    context_free(context, m->convex_components);
-    context_free(context, m->counts);
+static array_list list_measures(const cscd_partition *partition, measures *m) {
+    return (array_list){{ARRAY(m->radii, partition->part_count), ARRAY(m->convex, partition->part_count),
+                         ARRAY(m->convex_components, partition->mesh->component_count),
+                         ARRAY(m->counts, partition->part_count)}};
 }
 
-/* A part is convex where it is its whole object, and that is one convex component. */
+/* A part is convex if it is a whole object that consists of one convex component. */
 static void find_convex_parts(const cscd_partition *partition, measures *m) {
     const cscd_mesh *mesh = partition->mesh;
     for (uint32_t p = 0; p < partition->part_count; p++) m->counts[p] = 0;
@@ -62,15 +61,9 @@ static void find_convex_parts(const cscd_partition *partition, measures *m) {
     }
 }
 
-static cscd_status measure(const cscd_partition *partition, const double *positions, measures *m) {
-    cscd_context *context = partition->context;
-    m->radii = context_allocate(context, partition->part_count, sizeof *m->radii);
-    m->convex = context_allocate(context, partition->part_count, sizeof *m->convex);
-    m->convex_components =
-        context_allocate(context, partition->mesh->component_count, sizeof *m->convex_components);
-    m->counts = context_allocate(context, partition->part_count, sizeof *m->counts);
-    if (m->radii == NULL || m->convex == NULL || m->convex_components == NULL || m->counts == NULL)
-        return context_out_of_memory(context);
+static cscd_status measure_parts(const cscd_partition *partition, const double *positions, measures *m) {
+    if (!context_allocate_all(partition->context, list_measures(partition, m)))
+        return context_out_of_memory(partition->context);
     find_radii(partition, positions, m->radii);
     cscd_status status = find_convex_components(partition->mesh, positions, m->convex_components);
     if (status != CSCD_OK) return status;
@@ -87,11 +80,12 @@ static uint32_t most_vertices(const cscd_partition *partition, uint32_t first, u
     return most;
 }
 
-/* Cells of the parts in [first, end); all or nothing. */
-static cscd_status make(cscd_partition *partition, const double *positions, uint32_t first, uint32_t end) {
+/* Makes the cells of the parts in [first, end), all or none of them. */
+static cscd_status make_cells_of(cscd_partition *partition, const double *positions, uint32_t first,
+                                 uint32_t end) {
     measures m = {0};
     cell_maker maker;
-    cscd_status status = measure(partition, positions, &m);
+    cscd_status status = measure_parts(partition, positions, &m);
     if (status == CSCD_OK)
         status = cell_maker_create(partition, positions, most_vertices(partition, first, end), &maker);
     if (status == CSCD_OK) {
@@ -106,7 +100,7 @@ static cscd_status make(cscd_partition *partition, const double *positions, uint
         hand_over_cells(&maker);
         cell_maker_free(&maker);
     }
-    free_measures(partition->context, &m);
+    context_free_all(partition->context, list_measures(partition, &m));
     return status;
 }
 
@@ -129,7 +123,7 @@ cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan, 
     cscd_partition *partition = partition_of_parts(mesh, plan);
     if (partition == NULL) return context_out_of_memory(context);
     partition->options = chosen;
-    status = make(partition, positions, 0, partition->part_count);
+    status = make_cells_of(partition, positions, 0, partition->part_count);
     if (status == CSCD_OK)
         *out = partition;
     else
@@ -147,5 +141,5 @@ cscd_status cscd_partition_renew(cscd_partition *partition, const double *positi
         positions_check(partition->context, positions, partition->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     bool all = part == UINT32_MAX;
-    return make(partition, positions, all ? 0 : part, all ? partition->part_count : part + 1);
+    return make_cells_of(partition, positions, all ? 0 : part, all ? partition->part_count : part + 1);
 }

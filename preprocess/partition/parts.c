@@ -1,9 +1,9 @@
-/* Objects and their parts: which triangles and vertices belong to each. */
+/* Gives triangles and vertices to objects and their parts. */
 #include "preprocess/partition/parts.h"
 
 #include <string.h>
 
-/* One mesh alone has its components as objects. */
+/* In a scene of one object, its components are the objects of the partition. */
 static bool objects_are_components(const cscd_mesh *mesh) {
     return mesh->object_count == 1;
 }
@@ -28,7 +28,8 @@ static void give_triangles(cscd_partition *partition, const cscd_plan *plan) {
     }
 }
 
-/* counts: zeros, one per part, and so again afterwards. */
+/* Returns the part of most triangles around a vertex. counts holds a zero per part, and does so again
+ * afterwards. */
 static uint32_t part_with_most(const cscd_partition *partition, uint32_t vertex, uint32_t *counts) {
     const cscd_mesh *mesh = partition->mesh;
     uint32_t begin = mesh->vertex_star_offsets[vertex], end = mesh->vertex_star_offsets[vertex + 1];

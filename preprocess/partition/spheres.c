@@ -1,4 +1,4 @@
-/* Parts as spheres of their areas, and how many spheres touch one: so many cells a part gets. */
+/* Takes parts as spheres of their areas: a part gets as many cells as other spheres can touch it at once. */
 #include "preprocess/partition/spheres.h"
 #include "src/mesh/surface.h"
 
@@ -34,7 +34,7 @@ typedef struct smallest {
 
 static const smallest none = {{PARTITION_NONE, PARTITION_NONE}, {INFINITY, INFINITY}};
 
-static void see(smallest *s, uint32_t key, double radius) {
+static void add_radius(smallest *s, uint32_t key, double radius) {
     if (radius < s->radii[0]) {
         if (key != s->keys[0]) {
             s->keys[1] = s->keys[0];
@@ -53,25 +53,25 @@ static double smallest_but(const smallest *s, uint32_t key) {
 }
 
 typedef struct spheres {
-    smallest all, bodies; /* by object; those of obstacles among all only */
-    smallest *own;        /* by part, of each object */
+    smallest all, bodies; /* by object; `bodies` leaves out obstacles */
+    smallest *own;        /* per object, by its parts */
 } spheres;
 
-/* What has no area or no vertex of its own is not a sphere that could touch. */
-static void see_parts(const cscd_partition *partition, const double *radii, spheres *s) {
+/* Parts without an area or a vertex of their own are left out, since nothing touches them. */
+static void collect_radii(const cscd_partition *partition, const double *radii, spheres *s) {
     s->all = s->bodies = none;
     for (uint32_t object = 0; object < partition->object_count; object++) s->own[object] = none;
     for (uint32_t p = 0; p < partition->part_count; p++) {
         uint32_t object = partition->parts[p].object;
         if (radii[p] == 0.0 || partition->part_vertex_offsets[p] == partition->part_vertex_offsets[p + 1])
             continue;
-        see(&s->all, object, radii[p]);
-        if (!partition->object_obstacles[object]) see(&s->bodies, object, radii[p]);
-        see(&s->own[object], p, radii[p]);
+        add_radius(&s->all, object, radii[p]);
+        if (!partition->object_obstacles[object]) add_radius(&s->bodies, object, radii[p]);
+        add_radius(&s->own[object], p, radii[p]);
     }
 }
 
-/* INFINITY where nothing is watched. */
+/* The radius of the smallest sphere that is watched with a part; INFINITY if there is none. */
 static double smallest_watched(const cscd_partition *partition, const spheres *s, uint32_t part) {
     uint32_t object = partition->parts[part].object;
     bool obstacle = partition->object_obstacles[object];
@@ -94,7 +94,7 @@ cscd_status count_cells(const cscd_partition *partition, const double *radii, co
                         uint32_t *counts) {
     spheres s = {.own = context_allocate(partition->context, partition->object_count, sizeof *s.own)};
     if (s.own == NULL) return context_out_of_memory(partition->context);
-    see_parts(partition, radii, &s);
+    collect_radii(partition, radii, &s);
     bool two_convex = partition->object_count == 2 && partition->part_count == 2 && convex[0] && convex[1];
     const uint32_t *offsets = partition->part_vertex_offsets;
     for (uint32_t p = 0; p < partition->part_count; p++) {

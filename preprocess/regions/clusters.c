@@ -1,8 +1,9 @@
 /* Clusters: edge-connected triangles of low charge. */
 #include "preprocess/regions/clusters.h"
 
-/* Appends what can be reached from the list's triangles from `next` on; marks are taken back on the way. */
-static uint32_t collect(const dual_graph *graph, uint32_t *list, uint32_t next, bool *marked) {
+/* Appends all marked triangles that can be reached from those at `next` and after it, and takes their marks
+ * back. */
+static uint32_t collect_cluster(const dual_graph *graph, uint32_t *list, uint32_t next, bool *marked) {
     uint32_t end = next + 1;
     for (; next < end; next++) {
         for (uint32_t i = graph->offsets[list[next]]; i < graph->offsets[list[next] + 1]; i++) {
@@ -18,14 +19,11 @@ static uint32_t collect(const dual_graph *graph, uint32_t *list, uint32_t next, 
 cscd_status clusters_find(const cscd_mesh *mesh, const dual_graph *graph, const double *equalized,
                           double threshold, clusters *out) {
     cscd_context *context = mesh->context;
-    clusters found = {0, context_allocate(context, (size_t)mesh->triangle_count + 1, sizeof(uint32_t)),
-                      context_allocate(context, mesh->triangle_count, sizeof(uint32_t))};
-    bool *marked = context_allocate(context, mesh->triangle_count, sizeof *marked);
-    if (found.offsets == NULL || found.triangles == NULL || marked == NULL) {
-        clusters_free(mesh, &found);
-        context_free(context, marked);
-        return context_out_of_memory(context);
-    }
+    clusters found = {0};
+    bool *marked;
+    array_list lists = {{ARRAY(found.offsets, (size_t)mesh->triangle_count + 1),
+                         ARRAY(found.triangles, mesh->triangle_count), ARRAY(marked, mesh->triangle_count)}};
+    if (!context_allocate_all(context, lists)) return context_out_of_memory(context);
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
         marked[t] = equalized[t] <= threshold && !triangle_of_obstacle(mesh, t);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
@@ -33,7 +31,7 @@ cscd_status clusters_find(const cscd_mesh *mesh, const dual_graph *graph, const 
         uint32_t first = found.offsets[found.count];
         found.triangles[first] = t;
         marked[t] = false;
-        found.offsets[++found.count] = collect(graph, found.triangles, first, marked);
+        found.offsets[++found.count] = collect_cluster(graph, found.triangles, first, marked);
     }
     context_free(context, marked);
     *out = found;

@@ -1,9 +1,9 @@
-/* Labels of vertices made connected along edges. */
+/* Makes the labels of vertices connected along edges. */
 #include "preprocess/regions/connect.h"
 
 enum { NONE = UINT32_MAX };
 
-/* Breadth first; the vertices of a piece are together in the queue. */
+/* Finds pieces breadth first; the vertices of a piece are consecutive in the queue. */
 static uint32_t find_pieces(const connect_work *work, const uint32_t *vertices, uint32_t count) {
     uint32_t piece_count = 0, end = 0;
     for (uint32_t i = 0; i < count; i++) work->pieces[vertices[i]] = NONE;
@@ -41,7 +41,7 @@ static void settle_largest(const connect_work *work, uint32_t piece_count, uint3
     for (uint32_t p = 0; p < piece_count; p++) work->settled[p] = work->best[work->piece_labels[p]] == p;
 }
 
-/* Of the settled pieces beside this one, the label with most edges to it; NONE without any. */
+/* Returns the label with most edges to this piece among the settled pieces beside it; NONE without any. */
 static uint32_t most_common(const connect_work *work, uint32_t piece) {
     uint32_t most = NONE, *edges = work->best, begin = work->piece_offsets[piece];
     for (uint32_t i = begin; i < work->piece_offsets[piece + 1]; i++) {
@@ -75,7 +75,7 @@ static bool join_neighbours(const connect_work *work, uint32_t piece_count) {
     return joined;
 }
 
-/* Returns how many labels there are then. */
+/* Settles all pieces, and returns how many labels there are afterwards. */
 static uint32_t settle_all(const connect_work *work, uint32_t piece_count, uint32_t label_count) {
     uint32_t p = 0;
     for (;;) {

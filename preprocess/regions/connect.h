@@ -1,4 +1,4 @@
-/* Labels of vertices made connected along edges. */
+/* Makes the labels of vertices connected along edges. */
 #pragma once
 
 #include "src/core/context.h"
@@ -12,7 +12,7 @@ typedef struct connect_work {
     uint32_t *piece_offsets;              /* and one more */
     uint32_t *piece_labels;
     bool *settled;  /* per piece */
-    uint32_t *best; /* per label: something of each */
+    uint32_t *best; /* per label: a piece, a count or a number, by the step */
 } connect_work;
 
 /* vertices: all of a part, ascending; labels are below label_count. A label keeps its largest connected piece

@@ -3,45 +3,34 @@
 
 enum { NO_LEVEL = UINT32_MAX };
 
+static array_list list_arrays(cutter *c) {
+    size_t n = c->mesh->triangle_count;
+    return (array_list){{ARRAY(c->residuals, c->graph->link_count), ARRAY(c->supplies, n),
+                         ARRAY(c->drains, n), ARRAY(c->levels, n), ARRAY(c->current, n), ARRAY(c->queue, n),
+                         ARRAY(c->path, n)}};
+}
+
 cscd_status cutter_create(const cscd_mesh *mesh, const dual_graph *graph, const int64_t *capacities,
                           cutter *out) {
-    cscd_context *context = mesh->context;
-    size_t n = mesh->triangle_count;
     cutter c = {.mesh = mesh, .graph = graph, .capacities = capacities};
-    c.residuals = context_allocate(context, graph->link_count, sizeof *c.residuals);
-    c.supplies = context_allocate(context, n, sizeof *c.supplies);
-    c.drains = context_allocate(context, n, sizeof *c.drains);
-    c.levels = context_allocate(context, n, sizeof *c.levels);
-    c.current = context_allocate(context, n, sizeof *c.current);
-    c.queue = context_allocate(context, n, sizeof *c.queue);
-    c.path = context_allocate(context, n, sizeof *c.path);
-    if (!c.residuals || !c.supplies || !c.drains || !c.levels || !c.current || !c.queue || !c.path) {
-        cutter_destroy(&c);
-        return context_out_of_memory(context);
-    }
+    if (!context_allocate_all(mesh->context, list_arrays(&c))) return context_out_of_memory(mesh->context);
     *out = c;
     return CSCD_OK;
 }
 
 void cutter_destroy(cutter *c) {
     if (c->mesh == NULL) return;
-    cscd_context *context = c->mesh->context;
-    context_free(context, c->residuals);
-    context_free(context, c->supplies);
-    context_free(context, c->drains);
-    context_free(context, c->levels);
-    context_free(context, c->current);
-    context_free(context, c->queue);
-    context_free(context, c->path);
+    context_free_all(c->mesh->context, list_arrays(c));
 }
 
-static int64_t least(int64_t a, int64_t b) {
+static int64_t smaller_amount(int64_t a, int64_t b) {
     return a < b ? a : b;
 }
 
-/* Capacities to the parts become supplies and drains; what flows straight through a triangle is settled. */
-static void prepare(cutter *c, const uint32_t *parts, const uint32_t *band, uint32_t band_size,
-                    uint32_t part) {
+/* Turns capacities to the parts into supplies and drains, and settles the flow straight through each
+ * triangle. */
+static void set_supplies(cutter *c, const uint32_t *parts, const uint32_t *band, uint32_t band_size,
+                         uint32_t part) {
     c->cost = 0;
     for (uint32_t i = 0; i < band_size; i++) {
         uint32_t t = band[i];
@@ -52,15 +41,15 @@ static void prepare(cutter *c, const uint32_t *parts, const uint32_t *band, uint
             if (other == part) c->supplies[t] += c->capacities[j];
             if (other != 0 && other != part) c->drains[t] += c->capacities[j];
         }
-        int64_t through = least(c->supplies[t], c->drains[t]);
+        int64_t through = smaller_amount(c->supplies[t], c->drains[t]);
         c->supplies[t] -= through;
         c->drains[t] -= through;
         c->cost += through;
     }
 }
 
-/* Breadth first along what can still flow, from all supplies. Returns how many triangles are reached: they
- * are at the front of the queue. */
+/* Goes breadth first from all supplies along links that can still carry flow. Returns how many triangles are
+ * reached; they are at the front of the queue. */
 static uint32_t find_levels(cutter *c, const uint32_t *band, uint32_t band_size) {
     uint32_t end = 0;
     for (uint32_t i = 0; i < band_size; i++) {
@@ -81,7 +70,7 @@ static uint32_t find_levels(cutter *c, const uint32_t *band, uint32_t band_size)
     return end;
 }
 
-/* Walks on from t to the next level, or false when no link is left. */
+/* Steps from t to the next level. Returns false when no link is left. */
 static bool step_forward(cutter *c, uint32_t *t, uint32_t *length) {
     for (; c->current[*t] < c->graph->offsets[*t + 1]; c->current[*t]++) {
         uint32_t j = c->current[*t], neighbour = c->graph->neighbours[j];
@@ -93,7 +82,7 @@ static bool step_forward(cutter *c, uint32_t *t, uint32_t *length) {
     return false;
 }
 
-/* Back along the last link, which is not tried again; false at the path's start. */
+/* Steps back along the last link, which is not tried again. Returns false at the start of the path. */
 static bool step_back(cutter *c, uint32_t *t, uint32_t *length) {
     if (*length == 0) return false;
     *t = c->graph->neighbours[c->graph->twins[c->path[--*length]]];
@@ -109,8 +98,8 @@ static bool send_from(cutter *c, uint32_t source) {
         while (c->drains[t] == 0) {
             if (!step_forward(c, &t, &length) && !step_back(c, &t, &length)) return sent;
         }
-        int64_t amount = least(c->supplies[source], c->drains[t]);
-        for (uint32_t i = 0; i < length; i++) amount = least(amount, c->residuals[c->path[i]]);
+        int64_t amount = smaller_amount(c->supplies[source], c->drains[t]);
+        for (uint32_t i = 0; i < length; i++) amount = smaller_amount(amount, c->residuals[c->path[i]]);
         for (uint32_t i = 0; i < length; i++) {
             c->residuals[c->path[i]] -= amount;
             c->residuals[c->graph->twins[c->path[i]]] += amount;
@@ -126,7 +115,7 @@ static bool send_from(cutter *c, uint32_t source) {
 /* Dinic's algorithm. Capacities are integers, so the flow is exact and the same on every machine. */
 uint32_t cutter_separate(cutter *c, const uint32_t *parts, const uint32_t *band, uint32_t band_size,
                          uint32_t part, uint32_t *out) {
-    prepare(c, parts, band, band_size, part);
+    set_supplies(c, parts, band, band_size, part);
     for (;;) {
         uint32_t reached = find_levels(c, band, band_size);
         bool sent = false;

@@ -3,7 +3,7 @@
 
 #include "preprocess/regions/dual_graph.h"
 
-/* What a cut needs again and again. Capacities are those of the graph's links, the same at both ends. */
+/* Workspace for many cuts. Capacities belong to the graph's links and are the same at both ends. */
 typedef struct cutter {
     const cscd_mesh *mesh;
     const dual_graph *graph;

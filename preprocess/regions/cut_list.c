@@ -6,20 +6,21 @@
 #include <math.h>
 #include <string.h>
 
-typedef struct search {
+typedef struct cut_search {
     const cscd_mesh *mesh;
     const double *areas;
     cut_limits limits;
+    uint32_t link_count; /* of the dual graph */
     double *component_areas;
     int64_t *capacities;
     uint32_t *band, *side; /* triangles */
     growth growth;
     cutter cutter;
-} search;
+} cut_search;
 
 /* Weights become integers of up to 2^24, none of them 0, so that sums of them are exact. Links without an
  * edge cost nothing. */
-static void set_capacities(search *s, const dual_graph *graph, const double *weights) {
+static void set_capacities(cut_search *s, const dual_graph *graph, const double *weights) {
     double largest = 0.0;
     for (uint32_t e = 0; e < s->mesh->edge_count; e++) largest = fmax(largest, weights[e]);
     for (uint32_t i = 0; i < graph->link_count; i++) {
@@ -29,14 +30,16 @@ static void set_capacities(search *s, const dual_graph *graph, const double *wei
     }
 }
 
-static cscd_status prepare(search *s, const dual_graph *graph, const double *weights) {
+static array_list list_arrays(cut_search *s) {
+    return (array_list){{ARRAY(s->component_areas, s->mesh->component_count),
+                         ARRAY(s->capacities, s->link_count), ARRAY(s->band, s->mesh->triangle_count),
+                         ARRAY(s->side, s->mesh->triangle_count)}};
+}
+
+static cscd_status prepare_search(cut_search *s, const dual_graph *graph, const double *weights) {
     const cscd_mesh *mesh = s->mesh;
-    cscd_context *context = mesh->context;
-    s->component_areas = context_allocate(context, mesh->component_count, sizeof(double));
-    s->capacities = context_allocate(context, graph->link_count, sizeof(int64_t));
-    s->band = context_allocate(context, mesh->triangle_count, sizeof(uint32_t));
-    s->side = context_allocate(context, mesh->triangle_count, sizeof(uint32_t));
-    if (!s->component_areas || !s->capacities || !s->band || !s->side) return context_out_of_memory(context);
+    s->link_count = graph->link_count;
+    if (!context_allocate_all(mesh->context, list_arrays(s))) return context_out_of_memory(mesh->context);
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
         s->component_areas[mesh->triangle_components[t]] += s->areas[t];
     set_capacities(s, graph, weights);
@@ -44,18 +47,14 @@ static cscd_status prepare(search *s, const dual_graph *graph, const double *wei
     return status == CSCD_OK ? cutter_create(mesh, graph, s->capacities, &s->cutter) : status;
 }
 
-static void clean_up(search *s) {
-    cscd_context *context = s->mesh->context;
-    context_free(context, s->component_areas);
-    context_free(context, s->capacities);
-    context_free(context, s->band);
-    context_free(context, s->side);
+static void clean_up(cut_search *s) {
+    context_free_all(s->mesh->context, list_arrays(s));
     growth_destroy(&s->growth);
     cutter_destroy(&s->cutter);
 }
 
-/* Room for one more cut of that many triangles. */
-static cscd_status make_room(const cscd_mesh *mesh, cut_list *cuts, size_t triangle_count) {
+/* Makes room for one more cut of that many triangles. */
+static cscd_status reserve_cut(const cscd_mesh *mesh, cut_list *cuts, size_t triangle_count) {
     cscd_context *context = mesh->context;
     if (cuts->offsets == NULL || cuts->count == cuts->capacity) {
         uint32_t capacity = cuts->capacity * 2 + 16;
@@ -78,10 +77,10 @@ static cscd_status make_room(const cscd_mesh *mesh, cut_list *cuts, size_t trian
     return CSCD_OK;
 }
 
-/* A cut of the triangles of a part and those of the band that stay with it. */
-static cscd_status add_cut(search *s, uint32_t part, uint32_t side_size, cut_list *cuts) {
+/* Adds the cut that separates the triangles of a part and those of the band that stay with it. */
+static cscd_status add_cut(cut_search *s, uint32_t part, uint32_t side_size, cut_list *cuts) {
     const growth *g = &s->growth;
-    cscd_status status = make_room(s->mesh, cuts, (size_t)g->reached_count);
+    cscd_status status = reserve_cut(s->mesh, cuts, (size_t)g->reached_count);
     if (status != CSCD_OK) return status;
     size_t end = cuts->offsets[cuts->count];
     for (uint32_t i = 0; i < g->reached_count; i++) {
@@ -93,7 +92,7 @@ static cscd_status add_cut(search *s, uint32_t part, uint32_t side_size, cut_lis
     return CSCD_OK;
 }
 
-static cscd_status add_cuts_of_band(search *s, cut_list *cuts) {
+static cscd_status add_cuts_of_band(cut_search *s, cut_list *cuts) {
     const growth *g = &s->growth;
     uint32_t band_size = 0;
     for (uint32_t i = 0; i < g->reached_count; i++) {
@@ -108,7 +107,7 @@ static cscd_status add_cuts_of_band(search *s, cut_list *cuts) {
     return CSCD_OK;
 }
 
-static cscd_status find_all(search *s, const clusters *found, cut_list *cuts) {
+static cscd_status find_all(cut_search *s, const clusters *found, cut_list *cuts) {
     cscd_context *context = s->mesh->context;
     for (uint32_t i = 0; i < found->count; i++) {
         if (!progress_go_on(&context->progress, (double)i / found->count))
@@ -127,10 +126,10 @@ static cscd_status find_all(search *s, const clusters *found, cut_list *cuts) {
 
 cscd_status cut_list_find(const cscd_mesh *mesh, const dual_graph *graph, const clusters *found,
                           const double *areas, const double *weights, cut_limits limits, cut_list *out) {
-    search s = {.mesh = mesh, .areas = areas, .limits = limits};
+    cut_search s = {.mesh = mesh, .areas = areas, .limits = limits};
     cut_list cuts = {0};
-    cscd_status status = prepare(&s, graph, weights);
-    if (status == CSCD_OK) status = make_room(mesh, &cuts, 0);
+    cscd_status status = prepare_search(&s, graph, weights);
+    if (status == CSCD_OK) status = reserve_cut(mesh, &cuts, 0);
     if (status == CSCD_OK) status = find_all(&s, found, &cuts);
     clean_up(&s);
     if (status == CSCD_OK)

@@ -1,4 +1,4 @@
-/* Which cuts pay: those after which detector points see more. */
+/* Selects the cuts that pay: those after which detector points see more. */
 #include "preprocess/regions/cut_selection.h"
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
@@ -20,7 +20,7 @@ typedef struct sight {
  * triangle away. */
 #define FIRM_SINE 0.1
 
-/* The component at work, and arrays over the mesh's triangles. */
+/* The present component, and arrays over the mesh's triangles. */
 typedef struct selection {
     const cscd_mesh *mesh;
     const dual_graph *graph;
@@ -29,7 +29,7 @@ typedef struct selection {
     uint32_t size; /* list: the component's triangles, ascending */
     uint32_t *regions, *pieces, *scratch;
     piece_sums *sums;
-    const uint32_t *own; /* cuts of the component, and the what is seen after each */
+    const uint32_t *own; /* the component's cuts; `found` has what is seen after each */
     uint32_t own_count;
     sight *found;
     double area;
@@ -48,8 +48,8 @@ static void add_triangle(const selection *s, uint32_t t, piece_sums *sums) {
     }
 }
 
-/* What the centroids of the pieces see; false when one piece is smaller than least_area. */
-static bool look(const selection *s, uint32_t piece_count, double least_area, sight *out) {
+/* Finds what the centroids of the pieces see. Returns false when a piece is smaller than least_area. */
+static bool find_sight(const selection *s, uint32_t piece_count, double least_area, sight *out) {
     *out = (sight){0.0, 0.0};
     memset(s->sums, 0, piece_count * sizeof *s->sums);
     for (uint32_t i = 0; i < s->size; i++) add_triangle(s, s->list[i], &s->sums[s->pieces[s->list[i]]]);
@@ -89,8 +89,8 @@ static void begin_component(selection *s) {
     s->inside_out = volume < 0.0;
 }
 
-/* What each of the component's cuts would let see, and the most of it that is firm; -1: it does not cut, or
- * too little off, or less would be visible. -1, too, when the call is cancelled. */
+/* Finds what would be seen after each of the component's cuts, and returns the largest firm area. It is -1
+ * for a cut that does not cut, cuts off too little, or makes less visible, and when the call is cancelled. */
 static double try_cuts(const selection *s, const cut_list *cuts, uint32_t region_count, double least_area,
                        double least_visible) {
     double most = -1.0;
@@ -98,7 +98,7 @@ static double try_cuts(const selection *s, const cut_list *cuts, uint32_t region
         if (!progress_go_on(&s->mesh->context->progress, (double)i / s->own_count)) return -1.0;
         sight *found = &s->found[i];
         uint32_t piece_count = cut_pieces(s, cuts, s->own[i]);
-        if (piece_count == region_count || !look(s, piece_count, least_area, found) ||
+        if (piece_count == region_count || !find_sight(s, piece_count, least_area, found) ||
             found->visible < least_visible)
             found->firm = -1.0;
         most = fmax(most, found->firm);
@@ -106,7 +106,7 @@ static double try_cuts(const selection *s, const cut_list *cuts, uint32_t region
     return most;
 }
 
-/* The cheapest of the cuts that reach least; there is one. */
+/* Returns the cheapest of the cuts that reach least; there is at least one. */
 static uint32_t cheapest_cut(const selection *s, const cut_list *cuts, double least) {
     uint32_t best = UINT32_MAX;
     for (uint32_t i = 0; i < s->own_count; i++) {
@@ -120,7 +120,7 @@ static void select_in_component(selection *s, const cut_list *cuts, double gain,
     begin_component(s);
     if (s->own_count == 0) return;
     sight seen;
-    look(s, 1, 0.0, &seen);
+    find_sight(s, 1, 0.0, &seen);
     double step = gain * s->area;
     for (uint32_t region_count = 1;;) {
         double most = try_cuts(s, cuts, region_count, part_share * s->area, gain >= 0.0 ? seen.visible : 0.0);
@@ -138,10 +138,9 @@ typedef struct grouping {
 } grouping;
 
 /* keys[i] is the component of i. */
-static cscd_status group(const cscd_mesh *mesh, const uint32_t *keys, uint32_t count, grouping *out) {
-    out->offsets = context_allocate(mesh->context, (size_t)mesh->component_count + 2, sizeof(uint32_t));
-    out->items = context_allocate(mesh->context, count, sizeof(uint32_t));
-    if (out->offsets == NULL || out->items == NULL) return context_out_of_memory(mesh->context);
+static cscd_status group_items(const cscd_mesh *mesh, const uint32_t *keys, uint32_t count, grouping *out) {
+    array_list groups = {{ARRAY(out->offsets, (size_t)mesh->component_count + 2), ARRAY(out->items, count)}};
+    if (!context_allocate_all(mesh->context, groups)) return context_out_of_memory(mesh->context);
     uint32_t *ends = out->offsets + 1; /* of the groups, once all items are in */
     for (uint32_t i = 0; i < count; i++) ends[keys[i] + 1]++;
     for (uint32_t c = 0; c < mesh->component_count; c++) ends[c + 1] += ends[c];
@@ -149,7 +148,7 @@ static cscd_status group(const cscd_mesh *mesh, const uint32_t *keys, uint32_t c
     return CSCD_OK;
 }
 
-static void ungroup(const cscd_mesh *mesh, grouping *g) {
+static void free_groups(const cscd_mesh *mesh, grouping *g) {
     context_free(mesh->context, g->offsets);
     context_free(mesh->context, g->items);
 }
@@ -159,20 +158,15 @@ static cscd_status group_cuts(const cscd_mesh *mesh, const cut_list *cuts, group
     if (keys == NULL) return context_out_of_memory(mesh->context);
     for (uint32_t i = 0; i < cuts->count; i++)
         keys[i] = mesh->triangle_components[cuts->triangles[cuts->offsets[i]]];
-    cscd_status status = group(mesh, keys, cuts->count, out);
+    cscd_status status = group_items(mesh, keys, cuts->count, out);
     context_free(mesh->context, keys);
     return status;
 }
 
-static cscd_status allocate_selection(selection *s, uint32_t cut_count) {
-    cscd_context *context = s->mesh->context;
+static array_list list_arrays(selection *s, uint32_t cut_count) {
     uint32_t n = s->mesh->triangle_count;
-    s->pieces = context_allocate(context, n, sizeof *s->pieces);
-    s->scratch = context_allocate(context, n, sizeof *s->scratch);
-    s->sums = context_allocate(context, n, sizeof *s->sums);
-    s->found = context_allocate(context, cut_count, sizeof *s->found);
-    bool complete = s->pieces && s->scratch && s->sums && s->found;
-    return complete ? CSCD_OK : context_out_of_memory(context);
+    return (array_list){
+        {ARRAY(s->pieces, n), ARRAY(s->scratch, n), ARRAY(s->sums, n), ARRAY(s->found, cut_count)}};
 }
 
 cscd_status select_cuts(const cscd_mesh *mesh, const dual_graph *graph, const double *positions,
@@ -180,8 +174,11 @@ cscd_status select_cuts(const cscd_mesh *mesh, const dual_graph *graph, const do
                         uint32_t *regions) {
     selection s = {.mesh = mesh, .graph = graph, .positions = positions, .areas = areas, .regions = regions};
     grouping triangles = {NULL, NULL}, own = {NULL, NULL};
-    cscd_status status = allocate_selection(&s, cuts->count);
-    if (status == CSCD_OK) status = group(mesh, mesh->triangle_components, mesh->triangle_count, &triangles);
+    if (!context_allocate_all(mesh->context, list_arrays(&s, cuts->count)))
+        return context_out_of_memory(mesh->context);
+    cscd_status status = CSCD_OK;
+    if (status == CSCD_OK)
+        status = group_items(mesh, mesh->triangle_components, mesh->triangle_count, &triangles);
     if (status == CSCD_OK) status = group_cuts(mesh, cuts, &own);
     for (uint32_t c = 0; status == CSCD_OK && c < mesh->component_count; c++) {
         s.list = triangles.items + triangles.offsets[c];
@@ -191,11 +188,8 @@ cscd_status select_cuts(const cscd_mesh *mesh, const dual_graph *graph, const do
         select_in_component(&s, cuts, gain, part_share);
         status = context_progress_status(mesh->context);
     }
-    ungroup(mesh, &triangles);
-    ungroup(mesh, &own);
-    context_free(mesh->context, s.pieces);
-    context_free(mesh->context, s.scratch);
-    context_free(mesh->context, s.sums);
-    context_free(mesh->context, s.found);
+    free_groups(mesh, &triangles);
+    free_groups(mesh, &own);
+    context_free_all(mesh->context, list_arrays(&s, cuts->count));
     return status;
 }

@@ -1,4 +1,4 @@
-/* Which cuts pay: those after which detector points see more. */
+/* Selects the cuts that pay: those after which detector points see more. */
 #pragma once
 
 #include "preprocess/regions/cut_list.h"

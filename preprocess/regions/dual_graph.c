@@ -52,16 +52,17 @@ static void put_links(const link_list *links, dual_graph *graph) {
     offsets[0] = 0;
 }
 
+static array_list list_arrays(dual_graph *graph) {
+    return (array_list){{ARRAY(graph->offsets, (size_t)graph->triangle_count + 1),
+                         ARRAY(graph->neighbours, graph->link_count), ARRAY(graph->edges, graph->link_count),
+                         ARRAY(graph->twins, graph->link_count)}};
+}
+
 static cscd_status allocate_graph(const cscd_mesh *mesh, uint32_t link_count, dual_graph *graph) {
     cscd_context *context = mesh->context;
-    size_t twice = (size_t)link_count * 2;
     graph->triangle_count = mesh->triangle_count;
     graph->link_count = link_count * 2;
-    graph->offsets = context_allocate(context, (size_t)mesh->triangle_count + 1, sizeof(uint32_t));
-    graph->neighbours = context_allocate(context, twice, sizeof(uint32_t));
-    graph->edges = context_allocate(context, twice, sizeof(uint32_t));
-    graph->twins = context_allocate(context, twice, sizeof(uint32_t));
-    bool complete = graph->offsets && graph->neighbours && graph->edges && graph->twins;
+    bool complete = context_allocate_all(context, list_arrays(graph));
     return complete ? CSCD_OK : context_out_of_memory(context);
 }
 
@@ -81,7 +82,7 @@ cscd_status dual_graph_build(const cscd_mesh *mesh, dual_graph *out) {
     uint32_t *sets = context_allocate(context, mesh->triangle_count, sizeof *sets);
     cscd_status status = CSCD_OUT_OF_MEMORY;
     if (links.items != NULL && sets != NULL) {
-        for (uint32_t t = 0; t < mesh->triangle_count; t++) sets[t] = t;
+        sets_begin(sets, mesh->triangle_count);
         link_edges(mesh, &links, sets);
         link_patches(mesh, &links, sets);
         status = allocate_graph(mesh, links.count, &graph);
@@ -100,10 +101,7 @@ cscd_status dual_graph_build(const cscd_mesh *mesh, dual_graph *out) {
 }
 
 void dual_graph_free(const cscd_mesh *mesh, dual_graph *graph) {
-    context_free(mesh->context, graph->offsets);
-    context_free(mesh->context, graph->neighbours);
-    context_free(mesh->context, graph->edges);
-    context_free(mesh->context, graph->twins);
+    context_free_all(mesh->context, list_arrays(graph));
     *graph = (dual_graph){0};
 }
 

@@ -1,4 +1,4 @@
-/* Equalization of charge densities: from values to the share of triangles that have no higher one. */
+/* Equalizes charge densities: a value becomes the share of triangles that have no higher one. */
 #include "preprocess/regions/equalize.h"
 #include "src/core/sort.h"
 
@@ -54,13 +54,9 @@ cscd_status equalize(const cscd_mesh *mesh, const double *density, bool publishe
                                 "the charge density of triangle %u is %g; densities must be finite", t,
                                 density[t]);
     }
-    ranked *items = context_allocate(context, mesh->triangle_count, sizeof *items);
-    ranked *scratch = context_allocate(context, mesh->triangle_count, sizeof *items);
-    if (items == NULL || scratch == NULL) {
-        context_free(context, items);
-        context_free(context, scratch);
-        return context_out_of_memory(context);
-    }
+    ranked *items, *scratch;
+    array_list lists = {{ARRAY(items, mesh->triangle_count), ARRAY(scratch, mesh->triangle_count)}};
+    if (!context_allocate_all(context, lists)) return context_out_of_memory(context);
     for (uint32_t t = 0; t < mesh->triangle_count; t++)
         items[t] = (ranked){mesh->triangle_components[t], t, round_to_24_bits(density[t])};
     sort_items(items, scratch, mesh->triangle_count, sizeof *items, compare_ranked);
@@ -70,7 +66,6 @@ cscd_status equalize(const cscd_mesh *mesh, const double *density, bool publishe
         (published ? rank_by_bins : rank_exactly)(first, count, equalized);
         first += count;
     }
-    context_free(context, items);
-    context_free(context, scratch);
+    context_free_all(context, lists);
     return CSCD_OK;
 }

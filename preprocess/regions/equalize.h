@@ -1,4 +1,4 @@
-/* Equalization of charge densities: from values to the share of triangles that have no higher one. */
+/* Equalizes charge densities: a value becomes the share of triangles that have no higher one. */
 #pragma once
 
 #include "src/mesh/mesh.h"

@@ -2,40 +2,27 @@
 #include "preprocess/regions/grow.h"
 #include "src/core/disjoint_sets.h"
 
+static array_list list_arrays(growth *g) {
+    size_t n = g->mesh->triangle_count;
+    return (array_list){{ARRAY(g->reached, n), ARRAY(g->rings, n), ARRAY(g->parts, n), ARRAY(g->sets, n),
+                         ARRAY(g->relevant_counts, n + 1), ARRAY(g->vertex_stamps, g->mesh->vertex_count),
+                         ARRAY(g->set_areas, n)}};
+}
+
 cscd_status growth_create(const cscd_mesh *mesh, const dual_graph *graph, const double *areas, growth *out) {
-    cscd_context *context = mesh->context;
-    size_t n = mesh->triangle_count;
     growth g = {.mesh = mesh, .graph = graph, .areas = areas};
-    g.reached = context_allocate(context, n, sizeof *g.reached);
-    g.rings = context_allocate(context, n, sizeof *g.rings);
-    g.parts = context_allocate(context, n, sizeof *g.parts);
-    g.sets = context_allocate(context, n, sizeof *g.sets);
-    g.relevant_counts = context_allocate(context, n + 1, sizeof *g.relevant_counts);
-    g.vertex_stamps = context_allocate(context, mesh->vertex_count, sizeof *g.vertex_stamps);
-    g.set_areas = context_allocate(context, n, sizeof *g.set_areas);
-    if (!g.reached || !g.rings || !g.parts || !g.sets || !g.relevant_counts || !g.vertex_stamps ||
-        !g.set_areas) {
-        growth_destroy(&g);
-        return context_out_of_memory(context);
-    }
-    for (size_t t = 0; t < n; t++) g.rings[t] = UINT32_MAX;
+    if (!context_allocate_all(mesh->context, list_arrays(&g))) return context_out_of_memory(mesh->context);
+    for (size_t t = 0; t < mesh->triangle_count; t++) g.rings[t] = UINT32_MAX;
     *out = g;
     return CSCD_OK;
 }
 
 void growth_destroy(growth *g) {
     if (g->mesh == NULL) return;
-    cscd_context *context = g->mesh->context;
-    context_free(context, g->reached);
-    context_free(context, g->rings);
-    context_free(context, g->parts);
-    context_free(context, g->sets);
-    context_free(context, g->relevant_counts);
-    context_free(context, g->vertex_stamps);
-    context_free(context, g->set_areas);
+    context_free_all(g->mesh->context, list_arrays(g));
 }
 
-static void reach(growth *g, uint32_t triangle, uint32_t ring) {
+static void reach_triangle(growth *g, uint32_t triangle, uint32_t ring) {
     if (g->rings[triangle] != UINT32_MAX) return;
     g->rings[triangle] = ring;
     g->reached[g->reached_count++] = triangle;
@@ -51,20 +38,20 @@ static void reach_next_ring(growth *g, uint32_t first) {
             if (g->vertex_stamps[v] == g->stamp) continue;
             g->vertex_stamps[v] = g->stamp;
             for (uint32_t j = mesh->vertex_star_offsets[v]; j < mesh->vertex_star_offsets[v + 1]; j++)
-                reach(g, mesh->vertex_stars[j], ring);
+                reach_triangle(g, mesh->vertex_stars[j], ring);
         }
     }
 }
 
-static void start(growth *g, const uint32_t *cluster, uint32_t cluster_size) {
+static void start_growth(growth *g, const uint32_t *cluster, uint32_t cluster_size) {
     for (uint32_t i = 0; i < g->reached_count; i++) g->rings[g->reached[i]] = UINT32_MAX;
     g->reached_count = 0;
     g->stamp++;
-    for (uint32_t i = 0; i < cluster_size; i++) reach(g, cluster[i], 0);
+    for (uint32_t i = 0; i < cluster_size; i++) reach_triangle(g, cluster[i], 0);
     reach_next_ring(g, 0);
 }
 
-/* Ring 1 hangs together, so nothing can lie on two sides of the cluster. */
+/* Is ring 1 connected? Then nothing lies on two sides of the cluster. */
 static bool ring_is_whole(growth *g, uint32_t cluster_size) {
     for (uint32_t i = cluster_size; i < g->reached_count; i++) g->sets[g->reached[i]] = g->reached[i];
     uint32_t pieces = g->reached_count - cluster_size;
@@ -132,7 +119,7 @@ static bool choose_band(growth *g, bool may_grow) {
 }
 
 /* Floods the part of a triangle outside the band; `queue` has room for the component. Returns its area. */
-static double flood(growth *g, uint32_t from, uint32_t label, uint32_t *queue, uint32_t *size) {
+static double flood_part(growth *g, uint32_t from, uint32_t label, uint32_t *queue, uint32_t *size) {
     double area = 0.0;
     uint32_t end = 1;
     queue[0] = from;
@@ -159,7 +146,7 @@ static void label_parts(growth *g, double relevant_area) {
     for (uint32_t i = 0; i < g->reached_count; i++) {
         uint32_t t = g->reached[i], size;
         if (g->parts[t] != UINT32_MAX) continue;
-        double area = flood(g, t, g->part_count + 1, g->sets, &size);
+        double area = flood_part(g, t, g->part_count + 1, g->sets, &size);
         if (area < relevant_area) { /* an island */
             for (uint32_t j = 0; j < size; j++) g->parts[g->sets[j]] = 0;
             continue;
@@ -174,7 +161,7 @@ static void label_parts(growth *g, double relevant_area) {
 
 bool growth_separates(growth *g, const uint32_t *cluster, uint32_t cluster_size, bool may_grow,
                       double relevant_area) {
-    start(g, cluster, cluster_size);
+    start_growth(g, cluster, cluster_size);
     if (!may_grow && ring_is_whole(g, cluster_size)) return false;
     if (g->reached_count > cluster_size) reach_all(g, cluster_size);
     count_relevant_parts(g, relevant_area);

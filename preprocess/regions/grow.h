@@ -3,7 +3,7 @@
 
 #include "preprocess/regions/dual_graph.h"
 
-/* What a growth needs again and again, and the last one's result. */
+/* Workspace for many growths, and the result of the last one. */
 typedef struct growth {
     const cscd_mesh *mesh;
     const dual_graph *graph;

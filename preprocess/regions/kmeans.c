@@ -8,10 +8,11 @@
 
 enum { NONE = UINT32_MAX };
 
-typedef struct work {
+typedef struct kmeans_work {
     const cscd_mesh *mesh;
     const double *positions;
     dual_graph graph;
+    uint32_t capacity;             /* the most regions that there can be */
     uint32_t *used, *used_offsets; /* vertices with triangles, by component */
     uint32_t *shares, *firsts;     /* centroids by component: how many, and the first */
     uint32_t centroid_count;
@@ -22,44 +23,28 @@ typedef struct work {
     uint32_t *queue;
     uint32_t *regions, *pieces, *scratch; /* of triangles */
     uint32_t *piece_sizes;
-    uint32_t *best; /* something of each centroid */
-} work;
+    uint32_t *best; /* per centroid: a vertex, a piece or a number, by the step */
+} kmeans_work;
 
 uint32_t kmeans_capacity(const cscd_mesh *mesh, uint32_t k) {
     uint32_t useful = k < mesh->vertex_count ? k : mesh->vertex_count;
     return useful > mesh->component_count ? useful : mesh->component_count;
 }
 
-static cscd_status allocate_work(work *w, uint32_t capacity) {
-    cscd_context *context = w->mesh->context;
+static array_list list_arrays(kmeans_work *w) {
     size_t vertices = w->mesh->vertex_count, triangles = w->mesh->triangle_count;
-    size_t larger = vertices > triangles ? vertices : triangles;
-    size_t component_count = w->mesh->component_count;
-    w->used = context_allocate(context, vertices, sizeof(uint32_t));
-    w->used_offsets = context_allocate(context, component_count + 2, sizeof(uint32_t));
-    w->shares = context_allocate(context, component_count, sizeof(uint32_t));
-    w->firsts = context_allocate(context, component_count, sizeof(uint32_t));
-    w->centroids = context_allocate(context, (size_t)capacity * 3, sizeof(double));
-    w->counts = context_allocate(context, capacity, sizeof(uint64_t));
-    w->labels = context_allocate(context, vertices, sizeof(uint32_t));
-    w->distances = context_allocate(context, vertices, sizeof(uint32_t));
-    w->queue = context_allocate(context, larger, sizeof(uint32_t));
-    w->regions = context_allocate(context, triangles, sizeof(uint32_t));
-    w->pieces = context_allocate(context, triangles, sizeof(uint32_t));
-    w->scratch = context_allocate(context, triangles, sizeof(uint32_t));
-    w->best = context_allocate(context, capacity, sizeof(uint32_t));
-    w->piece_sizes = context_allocate(context, triangles, sizeof(uint32_t));
-    bool complete = w->used && w->used_offsets && w->shares && w->firsts && w->centroids && w->counts &&
-                    w->labels && w->distances && w->queue && w->regions && w->pieces && w->scratch &&
-                    w->best && w->piece_sizes;
-    return complete ? CSCD_OK : context_out_of_memory(context);
+    size_t components = w->mesh->component_count, capacity = w->capacity;
+    return (array_list){
+        {ARRAY(w->used, vertices), ARRAY(w->used_offsets, components + 2), ARRAY(w->shares, components),
+         ARRAY(w->firsts, components), ARRAY(w->centroids, capacity * 3), ARRAY(w->counts, capacity),
+         ARRAY(w->labels, vertices), ARRAY(w->distances, vertices),
+         ARRAY(w->queue, vertices > triangles ? vertices : triangles), ARRAY(w->regions, triangles),
+         ARRAY(w->pieces, triangles), ARRAY(w->scratch, triangles), ARRAY(w->best, capacity),
+         ARRAY(w->piece_sizes, triangles)}};
 }
 
-static void free_work(work *w) {
-    void *blocks[] = {w->used,   w->used_offsets, w->shares, w->firsts,     w->centroids,
-                      w->counts, w->labels,       w->queue,  w->distances,  w->regions,
-                      w->pieces, w->scratch,      w->best,   w->piece_sizes};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(w->mesh->context, blocks[i]);
+static void free_work(kmeans_work *w) {
+    context_free_all(w->mesh->context, list_arrays(w));
     dual_graph_free(w->mesh, &w->graph);
 }
 
@@ -71,7 +56,7 @@ static uint32_t vertex_component(const cscd_mesh *mesh, uint32_t vertex) {
     return mesh->triangle_components[mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]];
 }
 
-static void list_vertices(work *w) {
+static void list_vertices(kmeans_work *w) {
     const cscd_mesh *mesh = w->mesh;
     uint32_t *ends = w->used_offsets + 1;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -83,12 +68,12 @@ static void list_vertices(work *w) {
     }
 }
 
-static uint32_t vertices_of(const work *w, uint32_t component) {
+static uint32_t vertices_of(const kmeans_work *w, uint32_t component) {
     return w->used_offsets[component + 1] - w->used_offsets[component];
 }
 
-/* One each, the others one by one to the component with most vertices per centroid. */
-static void share_out(work *w, uint32_t k) {
+/* Gives one centroid to each component, and the others one by one to that with most vertices per centroid. */
+static void share_out(kmeans_work *w, uint32_t k) {
     uint32_t component_count = w->mesh->component_count, given = component_count;
     for (uint32_t c = 0; c < component_count; c++) w->shares[c] = 1;
     for (; given < k; given++) {
@@ -106,8 +91,8 @@ static void share_out(work *w, uint32_t k) {
     for (uint32_t c = 1; c < component_count; c++) w->firsts[c] = w->firsts[c - 1] + w->shares[c - 1];
 }
 
-/* labels become numbers over all components. */
-static cscd_status find_centroids(work *w, uint32_t seed) {
+/* Finds the centroids of each component, and numbers labels over all components. */
+static cscd_status find_centroids(kmeans_work *w, uint32_t seed) {
     for (uint32_t c = 0; c < w->mesh->component_count; c++) {
         lloyd l = {w->mesh->context,  w->positions, w->used + w->used_offsets[c],
                    vertices_of(w, c), w->shares[c], w->centroids + (size_t)w->firsts[c] * 3,
@@ -123,7 +108,7 @@ static cscd_status find_centroids(work *w, uint32_t seed) {
 }
 
 /* best[i] = the vertex of cluster i that is nearest to its centroid; NONE in an empty cluster. */
-static void find_anchors(work *w) {
+static void find_anchors(kmeans_work *w) {
     uint32_t used_count = w->used_offsets[w->mesh->component_count];
     for (uint32_t i = 0; i < w->centroid_count; i++) w->best[i] = NONE;
     for (uint32_t i = 0; i < used_count; i++) {
@@ -135,8 +120,9 @@ static void find_anchors(work *w) {
     }
 }
 
-/* Breadth first along edges from all anchors at once; the queue keeps labels of one distance in order. */
-static void measure_edges(work *w) {
+/* Measures distances in edges, breadth first from all anchors at once; the queue keeps labels of one distance
+ * in order. */
+static void measure_edges(kmeans_work *w) {
     const cscd_mesh *mesh = w->mesh;
     uint32_t end = 0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) w->distances[v] = NONE;
@@ -160,7 +146,7 @@ static void measure_edges(work *w) {
     }
 }
 
-static void assign_triangles(work *w) {
+static void assign_triangles(kmeans_work *w) {
     for (uint32_t t = 0; t < w->mesh->triangle_count; t++) {
         const uint32_t *v = w->mesh->triangles[t];
         uint32_t nearest = v[0];
@@ -174,8 +160,8 @@ static void assign_triangles(work *w) {
     }
 }
 
-/* Of each region its largest piece stays; the others are taken over by neighbours, ring by ring. */
-static void join_strays(work *w) {
+/* Keeps the largest piece of each region; its neighbours take over the other pieces, ring by ring. */
+static void join_strays(kmeans_work *w) {
     uint32_t n = w->mesh->triangle_count, end = 0;
     for (uint32_t t = 0; t < n; t++) w->queue[t] = t;
     dual_graph_pieces(&w->graph, w->queue, n, w->regions, w->pieces, w->scratch);
@@ -203,8 +189,9 @@ static void join_strays(work *w) {
     }
 }
 
-/* Numbers what has triangles, and moves the centroids along. */
-static void write_result(work *w, uint32_t *region_of_triangle, uint32_t *region_count, double *points) {
+/* Numbers the regions that have triangles, and puts their centroids in that order. */
+static void write_result(kmeans_work *w, uint32_t *region_of_triangle, uint32_t *region_count,
+                         double *points) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < w->centroid_count; i++) w->best[i] = NONE;
     for (uint32_t t = 0; t < w->mesh->triangle_count; t++) {
@@ -221,8 +208,9 @@ static void write_result(work *w, uint32_t *region_of_triangle, uint32_t *region
 cscd_status regions_kmeans(const cscd_mesh *mesh, const double *positions, uint32_t k, uint32_t seed,
                            uint32_t *region_of_triangle, uint32_t *region_count, double *detector_points) {
     if (k == 0) return context_fail(mesh->context, CSCD_INVALID_ARGUMENT, "k-means wants one region or more");
-    work w = {.mesh = mesh, .positions = positions};
-    cscd_status status = allocate_work(&w, kmeans_capacity(mesh, k));
+    kmeans_work w = {.mesh = mesh, .positions = positions, .capacity = kmeans_capacity(mesh, k)};
+    if (!context_allocate_all(mesh->context, list_arrays(&w))) return context_out_of_memory(mesh->context);
+    cscd_status status = CSCD_OK;
     if (status == CSCD_OK) status = dual_graph_build(mesh, &w.graph);
     if (status == CSCD_OK) {
         list_vertices(&w);

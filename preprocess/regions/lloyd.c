@@ -1,5 +1,6 @@
 /* Lloyd's iteration: k centroids of a set of points. */
 #include "preprocess/regions/lloyd.h"
+#include "src/core/vec3.h"
 
 #include <string.h>
 
@@ -13,8 +14,8 @@ static uint64_t next_random(uint64_t *state) {
     return z ^ (z >> 31);
 }
 
-/* The first k of a random order. */
-static void begin(const lloyd *l, uint64_t seed) {
+/* Begins with the first k points of a random order. */
+static void choose_centroids(const lloyd *l, uint64_t seed) {
     uint64_t state = seed;
     memcpy(l->scratch, l->points, l->point_count * sizeof *l->scratch);
     for (uint32_t i = 0; i < l->k; i++) {
@@ -30,7 +31,7 @@ static uint32_t nearest_centroid(const lloyd *l, const double p[3]) {
     double least = 0.0;
     for (uint32_t i = 0; i < l->k; i++) {
         const double *c = l->centroids + (size_t)i * 3;
-        double x = p[0] - c[0], y = p[1] - c[1], z = p[2] - c[2], squared = x * x + y * y + z * z;
+        double squared = vec3_squared_distance(p, c);
         if (i > 0 && squared >= least) continue;
         least = squared;
         nearest = i;
@@ -38,7 +39,7 @@ static uint32_t nearest_centroid(const lloyd *l, const double p[3]) {
     return nearest;
 }
 
-static bool assign(const lloyd *l, int round) {
+static bool assign_points(const lloyd *l, int round) {
     bool changed = round == 0;
     for (uint32_t i = 0; i < l->point_count; i++) {
         double share = (round + (double)i / l->point_count) / LLOYD_ROUNDS_MAX;
@@ -65,7 +66,7 @@ static void move_centroids(const lloyd *l) {
 }
 
 cscd_status lloyd_run(const lloyd *l, uint64_t seed) {
-    begin(l, seed);
-    for (int round = 0; round < LLOYD_ROUNDS_MAX && assign(l, round); round++) move_centroids(l);
+    choose_centroids(l, seed);
+    for (int round = 0; round < LLOYD_ROUNDS_MAX && assign_points(l, round); round++) move_centroids(l);
     return context_progress_status(l->context);
 }

@@ -1,4 +1,4 @@
-/* Regions of a mesh, from its charge; or one per component. */
+/* Finds the regions of a mesh from its charge, or takes its components. */
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/cut_selection.h"
 #include "preprocess/regions/equalize.h"
@@ -18,8 +18,8 @@ region_options region_options_defaults(void) {
 /* A weight of 1 for the highest charge, and this much less for the lowest. */
 #define CHARGE_FAVOUR 0.85
 
-/* Arrays over triangles, edges last. */
-typedef struct work {
+/* Workspace: arrays over triangles, and the weights of edges. */
+typedef struct region_work {
     const cscd_mesh *mesh;
     const double *positions;
     double *areas, *equalized, *weights;
@@ -27,7 +27,7 @@ typedef struct work {
     dual_graph graph;
     clusters clusters;
     cut_list cuts;
-} work;
+} region_work;
 
 static bool is_share(double value) {
     return value >= 0.0 && value <= 1.0;
@@ -43,34 +43,21 @@ static cscd_status check_options(cscd_context *context, const region_options *o)
         o->threshold, o->growing_share, o->part_share, o->gain);
 }
 
-static cscd_status allocate_work(work *w) {
-    cscd_context *context = w->mesh->context;
+static array_list list_arrays(region_work *w) {
     size_t n = w->mesh->triangle_count;
-    w->areas = context_allocate(context, n, sizeof *w->areas);
-    w->equalized = context_allocate(context, n, sizeof *w->equalized);
-    w->weights = context_allocate(context, w->mesh->edge_count, sizeof *w->weights);
-    w->regions = context_allocate(context, n, sizeof *w->regions);
-    w->list = context_allocate(context, n, sizeof *w->list);
-    w->scratch = context_allocate(context, n, sizeof *w->scratch);
-    bool complete = w->areas && w->equalized && w->weights && w->regions && w->list && w->scratch;
-    return complete ? CSCD_OK : context_out_of_memory(context);
+    return (array_list){{ARRAY(w->areas, n), ARRAY(w->equalized, n), ARRAY(w->weights, w->mesh->edge_count),
+                         ARRAY(w->regions, n), ARRAY(w->list, n), ARRAY(w->scratch, n)}};
 }
 
-static void free_work(work *w) {
-    cscd_context *context = w->mesh->context;
-    context_free(context, w->areas);
-    context_free(context, w->equalized);
-    context_free(context, w->weights);
-    context_free(context, w->regions);
-    context_free(context, w->list);
-    context_free(context, w->scratch);
+static void free_work(region_work *w) {
+    context_free_all(w->mesh->context, list_arrays(w));
     dual_graph_free(w->mesh, &w->graph);
     clusters_free(w->mesh, &w->clusters);
     cut_list_free(w->mesh, &w->cuts);
 }
 
 /* An edge costs its length, and less where the charge is low: cuts run along creases. */
-static void weigh_edges(work *w) {
+static void weigh_edges(region_work *w) {
     const cscd_mesh *mesh = w->mesh;
     for (uint32_t e = 0; e < mesh->edge_count; e++) {
         double charge = 0.0;
@@ -80,7 +67,7 @@ static void weigh_edges(work *w) {
     }
 }
 
-static cscd_status find_regions(work *w, const double *density, const region_options *o) {
+static cscd_status find_regions(region_work *w, const double *density, const region_options *o) {
     const cscd_mesh *mesh = w->mesh;
     cut_limits limits = {o->growing_share, o->part_share};
     cscd_status status = equalize(mesh, density, o->published, w->equalized);
@@ -100,11 +87,11 @@ cscd_status regions_from_charge(const cscd_mesh *mesh, const double *positions, 
                                 const region_options *options, uint32_t *region_of_triangle,
                                 uint32_t *region_count) {
     region_options chosen = options != NULL ? *options : region_options_defaults();
-    work w = {.mesh = mesh, .positions = positions};
+    region_work w = {.mesh = mesh, .positions = positions};
     cscd_status status = check_options(mesh->context, &chosen);
     if (status != CSCD_OK) return status;
-    status = allocate_work(&w);
-    if (status == CSCD_OK) status = find_regions(&w, density, &chosen);
+    if (!context_allocate_all(mesh->context, list_arrays(&w))) return context_out_of_memory(mesh->context);
+    status = find_regions(&w, density, &chosen);
     if (status == CSCD_OK) {
         for (uint32_t t = 0; t < mesh->triangle_count; t++) w.list[t] = t;
         *region_count = dual_graph_pieces(&w.graph, w.list, mesh->triangle_count, w.regions,

@@ -1,4 +1,4 @@
-/* Detector points, and how much of its region each of them sees from inside. */
+/* Places detector points, and finds how much of its region each of them sees from inside. */
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 
@@ -61,16 +61,4 @@ cscd_status visible_shares(const cscd_mesh *mesh, const double *positions, const
     for (uint32_t r = 0; r < region_count; r++) shares[r] = areas[r] > 0.0 ? shares[r] / areas[r] : 0.0;
     context_free(mesh->context, areas);
     return CSCD_OK;
-}
-
-double visible_share(const cscd_mesh *mesh, const double *positions, const uint32_t *region_of_triangle,
-                     const double *points) {
-    double visible = 0.0, whole = 0.0;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        double area = surface_area(mesh, positions, t);
-        whole += area;
-        if (orientation_value(mesh, positions, t, points + (size_t)region_of_triangle[t] * 3) > 0.0)
-            visible += area;
-    }
-    return whole > 0.0 ? visible / whole : 0.0;
 }

@@ -1,4 +1,4 @@
-/* Detector points, and how much of its region each of them sees from inside. */
+/* Places detector points, and finds how much of its region each of them sees from inside. */
 #pragma once
 
 #include "src/mesh/mesh.h"
@@ -9,14 +9,10 @@ cscd_status detector_points_from_regions(const cscd_mesh *mesh, const double *po
                                          const uint32_t *region_of_triangle, uint32_t region_count,
                                          double *points);
 
-/* Of each region's area, the share whose triangles face the region's point: S+, (p0 - d) . n > 0. 0 in a
- * region without area. */
+/* Writes for each region the share of its area whose triangles face the region's point: S+, (p0 - d) . n > 0.
+ * It is 0 in a region without area. */
 cscd_status visible_shares(const cscd_mesh *mesh, const double *positions, const uint32_t *region_of_triangle,
                            uint32_t region_count, const double *points, double *shares);
-
-/* The visible share of the whole mesh: the regions', weighted by area. */
-double visible_share(const cscd_mesh *mesh, const double *positions, const uint32_t *region_of_triangle,
-                     const double *points);
 
 /* (p0 - d) . n of one triangle and the point d: positive where the point sees its inner side. */
 double orientation_value(const cscd_mesh *mesh, const double *positions, uint32_t triangle,

@@ -5,6 +5,7 @@
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 #include "tests/support/preprocess/region_check.h"
+#include "tests/support/preprocess/visible_share.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
