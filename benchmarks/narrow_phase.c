@@ -131,21 +131,6 @@ static void close_recording(recording *r) {
     }
 }
 
-/* ---- one by one -------------------------------------------------------------------------------------- */
-
-static void decide_one_by_one(recording *r, cscd_contact_kind kind) {
-    const recorded_pairs *pairs = &r->of_kind[kind];
-    for (size_t i = 0; i < pairs->count; i++) {
-        elementary_query query;
-        elementary_hit hit;
-        swept_interval_load(&r->interval, kind, pairs->a[i], pairs->b[i], &query);
-        elementary_verdict verdict = (kind == CSCD_CONTACT_VF ? elementary_vf : elementary_ee)(&query, &hit);
-        r->lane->decided[verdict.level]++;
-        if (verdict.touching)
-            contact_lane_add(r->context, r->lane, kind, pairs->a[i], pairs->b[i], &hit, false);
-    }
-}
-
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
 /* Representatives, feature_filter, queue; what is in the queue then is dropped. */
@@ -170,12 +155,12 @@ static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list
     r->left += pairs.count;
 }
 
-static void decide_in_batches(recording *r, cscd_contact_kind kind, bool signs_only) {
+static void decide_in_batches(recording *r, cscd_contact_kind kind, size_t size, bool signs_only) {
     const recorded_pairs *pairs = &r->of_kind[kind];
     feature_list *list = &r->lane->queue[kind];
     r->left = 0;
-    for (size_t i = 0; i < pairs->count; i += CHUNK) {
-        size_t count = pairs->count - i < CHUNK ? pairs->count - i : CHUNK;
+    for (size_t i = 0; i < pairs->count; i += size) {
+        size_t count = pairs->count - i < size ? pairs->count - i : size;
         memcpy(list->a, pairs->a + i, count * sizeof *list->a);
         memcpy(list->b, pairs->b + i, count * sizeof *list->b);
         list->count = (uint32_t)count;
@@ -184,11 +169,15 @@ static void decide_in_batches(recording *r, cscd_contact_kind kind, bool signs_o
 }
 
 static void by_signs(recording *r, cscd_contact_kind kind) {
-    decide_in_batches(r, kind, true);
+    decide_in_batches(r, kind, CHUNK, true);
 }
 
 static void by_all(recording *r, cscd_contact_kind kind) {
-    decide_in_batches(r, kind, false);
+    decide_in_batches(r, kind, CHUNK, false);
+}
+
+static void one_by_one(recording *r, cscd_contact_kind kind) {
+    decide_in_batches(r, kind, 1, false);
 }
 
 /* ---- the table --------------------------------------------------------------------------------------- */
@@ -213,7 +202,7 @@ static double time_pairs(recording *r, cscd_contact_kind kind, size_t count,
     return least;
 }
 
-static double percent(uint64_t part, size_t whole) {
+static double percent_of(uint64_t part, size_t whole) {
     return whole > 0 ? 100.0 * (double)part / (double)whole : 0.0;
 }
 
@@ -238,7 +227,7 @@ static void print_kind(recording *r, cscd_contact_kind kind) {
     const char *name = cscd_contact_kind_name(kind);
     cscd_simd best = r->context->simd;
     printf("%-3s %-10s %20zu %8s %8.1f\n", name, "one by one", pairs, "",
-           time_pairs(r, kind, pairs, decide_one_by_one));
+           time_pairs(r, kind, pairs, one_by_one));
     for (int level = CSCD_SIMD_SCALAR; level <= (int)best; level++) {
         use_level(r, (cscd_simd)level);
         double signs = time_pairs(r, kind, pairs, by_signs);
@@ -247,8 +236,9 @@ static void print_kind(recording *r, cscd_contact_kind kind) {
                time_pairs(r, kind, pairs, by_all));
     }
     const uint64_t *decided = r->lane->decided;
-    printf("    signs leave %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n", percent(open, pairs),
-           percent(r->lane->count, pairs), percent(decided[ELEMENTARY_EXACT], pairs));
+    printf("    signs leave %.2f %%; in contact %.2f %%, by exact arithmetic %.4f %%\n",
+           percent_of(open, pairs), percent_of(r->lane->count, pairs),
+           percent_of(decided[ELEMENTARY_EXACT], pairs));
 }
 
 int main(int argument_count, char **arguments) {

@@ -1,4 +1,5 @@
 /* Elementary tests on query sets: false positives and negatives, which level decided, time per query. */
+#include "benchmarks/lib/pair_batches.h"
 #include "benchmarks/lib/query_file.h"
 #include "src/core/timer.h"
 #include "src/io/json.h"
@@ -7,36 +8,106 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char help[] = "usage: queries [--kind vf|ee] [--json] FILES...\n"
-                           "\n"
-                           "Runs the elementary tests on query sets with exact truth (CSV, 8 rows a query: "
-                           "x, y, z as numerator and\n"
-                           "denominator, then the truth). The kind follows from 'vertex-face' or 'edge-edge' "
-                           "in the path, or from --kind.\n";
+static const char help[] =
+    "usage: queries [--kind vf|ee] [--json] FILES...\n"
+    "\n"
+    "Runs the elementary tests on query sets with exact truth (CSV, 8 rows a query: x, y, z as numerator "
+    "and\n"
+    "denominator, then the truth). The kind follows from 'vertex-face' or 'edge-edge' in the path, or from "
+    "--kind.\n"
+    "All queries of a kind go through the feature queue together, in random order and in batches of random "
+    "sizes,\n"
+    "on every instruction set of this processor, and then each one alone: all answers must be the same bits. "
+    "Times\n"
+    "are those of the highest instruction set, of a query alone ('us batch': in batches of 496).\n";
 
-enum { REPEATS = 3, CALLS_PER_REPEAT = 16 };
+enum { REPEATS = 3, CALLS_PER_REPEAT = 16, TIMED_BATCH = 496 };
 
-typedef struct result {
+static pair_batches batches; /* large */
+
+/* ---- sets ---------------------------------------------------------------------------------------------- */
+
+/* All queries of one kind, file after file. */
+typedef struct query_pool {
+    elementary_query *queries;
+    query_answer *answers;
+    bool *truths;
+    size_t count;
+} query_pool;
+
+/* The queries begin to begin + count - 1 of a pool. */
+typedef struct pool_part {
+    const char *path;
+    cscd_contact_kind kind;
+    size_t begin, count;
+} pool_part;
+
+typedef struct all_queries {
+    query_pool pools[2]; /* by kind */
+    pool_part *parts;
+    size_t part_count;
+} all_queries;
+
+static bool add_set(query_pool *pool, const query_set *set) {
+    size_t count = pool->count + set->count;
+    elementary_query *queries = realloc(pool->queries, (count + 1) * sizeof *queries);
+    if (queries != NULL) pool->queries = queries;
+    query_answer *answers = realloc(pool->answers, (count + 1) * sizeof *answers);
+    if (answers != NULL) pool->answers = answers;
+    bool *truths = realloc(pool->truths, (count + 1) * sizeof *truths);
+    if (truths != NULL) pool->truths = truths;
+    if (queries == NULL || answers == NULL || truths == NULL) return false;
+    if (set->count > 0) {
+        memcpy(pool->queries + pool->count, set->queries, set->count * sizeof *queries);
+        memcpy(pool->truths + pool->count, set->truths, set->count * sizeof *truths);
+    }
+    pool->count = count;
+    return true;
+}
+
+static bool read_part(const char *path, cscd_contact_kind kind, all_queries *all, io_error *error) {
+    query_set set;
+    query_pool *pool = &all->pools[kind];
+    if (!query_file_read(path, &set, error)) return false;
+    pool_part *parts = realloc(all->parts, (all->part_count + 1) * sizeof *parts);
+    if (parts != NULL) all->parts = parts;
+    bool added = parts != NULL;
+    if (added) {
+        parts[all->part_count++] = (pool_part){path, kind, pool->count, set.count};
+        added = add_set(pool, &set);
+    }
+    query_set_free(&set);
+    return added || io_fail(error, "%s: out of memory", path);
+}
+
+static void free_queries(all_queries *all) {
+    for (int kind = 0; kind < 2; kind++) {
+        free(all->pools[kind].queries);
+        free(all->pools[kind].answers);
+        free(all->pools[kind].truths);
+    }
+    free(all->parts);
+}
+
+/* ---- answers and times --------------------------------------------------------------------------------- */
+
+typedef struct query_result {
     size_t queries, false_positives, false_negatives;
     size_t levels[ELEMENTARY_LEVEL_COUNT]; /* how many queries each level decided */
-    double *microseconds;                  /* per query, sorted */
+    double *microseconds;                  /* per query alone, sorted */
     double mean;
     double sum[2]; /* of the times, of queries that miss and of those that hit */
     size_t hits;
-} result;
-
-static elementary_verdict decide(const elementary_query *query, cscd_contact_kind kind) {
-    elementary_hit hit;
-    return kind == CSCD_CONTACT_VF ? elementary_vf(query, &hit) : elementary_ee(query, &hit);
-}
+    double batch; /* microseconds of all queries in batches */
+} query_result;
 
 /* The least of a few repeats; short queries are called several times in each, for the clock's sake. */
-static double time_query(const elementary_query *query, cscd_contact_kind kind) {
+static double time_query(int level, cscd_contact_kind kind, size_t i) {
     double least = 1e300;
     int calls = CALLS_PER_REPEAT;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
         double start = timer_now_ms();
-        for (int i = 0; i < calls; i++) decide(query, kind);
+        for (int call = 0; call < calls; call++) pair_batches_run(&batches, level, kind, i, i + 1);
         double microseconds = (timer_now_ms() - start) * 1e3 / calls;
         least = microseconds < least ? microseconds : least;
         if (microseconds > 20.0) calls = 1;
@@ -44,37 +115,94 @@ static double time_query(const elementary_query *query, cscd_contact_kind kind) 
     return least;
 }
 
+static double time_batches(int level, const pool_part *part) {
+    double least = 1e300;
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        double start = timer_now_ms();
+        for (size_t i = 0; i < part->count; i += TIMED_BATCH) {
+            size_t end = i + TIMED_BATCH < part->count ? i + TIMED_BATCH : part->count;
+            pair_batches_run(&batches, level, part->kind, i, end);
+        }
+        double microseconds = (timer_now_ms() - start) * 1e3;
+        least = microseconds < least ? microseconds : least;
+    }
+    return least;
+}
+
+/* Decides query i of those loaded alone; false when the answer is not the one in the batches. */
+static bool same_alone(int level, cscd_contact_kind kind, size_t i, const query_answer *answer,
+                       query_result *out) {
+    pair_batches_run(&batches, level, kind, i, i + 1);
+    const contact_lane *lane = batches.lanes[level];
+    for (int k = 0; k < ELEMENTARY_LEVEL_COUNT; k++) out->levels[k] += lane->decided[k];
+    if (lane->count != (answer->touching ? 1 : 0)) return false;
+    return !answer->touching ||
+           (lane->contacts[0].toi == answer->hit.toi &&
+            memcmp(lane->contacts[0].point, answer->hit.point, sizeof answer->hit.point) == 0 &&
+            memcmp(lane->contacts[0].normal, answer->hit.normal, sizeof answer->hit.normal) == 0);
+}
+
+/* out->microseconds has room for all queries of the part. */
+static bool run_part(const query_pool *pool, const pool_part *part, query_result *out, io_error *error) {
+    int level = pair_batches_best_level(&batches);
+    if (!pair_batches_load(&batches, part->kind, pool->queries + part->begin, part->count))
+        return io_fail(error, "%s: out of memory", part->path);
+    for (size_t i = 0; i < part->count; i++) {
+        const query_answer *answer = &pool->answers[part->begin + i];
+        bool truth = pool->truths[part->begin + i];
+        if (!same_alone(level, part->kind, i, answer, out))
+            return io_fail(error, "%s: query %zu has one answer alone and another one in a batch", part->path,
+                           i + 1);
+        out->false_positives += answer->touching && !truth;
+        out->false_negatives += !answer->touching && truth;
+        double microseconds = time_query(level, part->kind, i);
+        out->microseconds[out->queries++] = microseconds;
+        out->sum[answer->touching] += microseconds;
+        out->hits += answer->touching;
+    }
+    out->batch = time_batches(level, part);
+    return true;
+}
+
 static int compare_times(const void *left, const void *right) {
     double l = *(const double *)left, r = *(const double *)right;
     return l < r ? -1 : l > r;
 }
 
-static void finish(result *r) {
+static void finish_times(query_result *r) {
     for (size_t i = 0; i < r->queries; i++) r->mean += r->microseconds[i] / (double)r->queries;
     if (r->queries > 0) qsort(r->microseconds, r->queries, sizeof *r->microseconds, compare_times);
 }
 
-static double quantile(const result *r, double fraction) {
+static double time_quantile(const query_result *r, double fraction) {
     if (r->queries == 0) return 0.0;
     size_t i = (size_t)(fraction * (double)r->queries);
     return r->microseconds[i < r->queries ? i : r->queries - 1];
 }
 
-/* microseconds has room for all queries of the set. */
-static void run_set(const query_set *set, cscd_contact_kind kind, result *out) {
-    for (size_t i = 0; i < set->count; i++) {
-        elementary_verdict verdict = decide(&set->queries[i], kind);
-        out->false_positives += verdict.touching && !set->truths[i];
-        out->false_negatives += !verdict.touching && set->truths[i];
-        out->levels[verdict.level]++;
-        double microseconds = time_query(&set->queries[i], kind);
-        out->microseconds[out->queries++] = microseconds;
-        out->sum[verdict.touching] += microseconds;
-        out->hits += verdict.touching;
-    }
+static double batch_mean(const query_result *r) {
+    return r->queries > 0 ? r->batch / (double)r->queries : 0.0;
 }
 
-static void write_json(json *out, const result *r) {
+/* Adds counts and times of part to total. */
+static bool add_result(query_result *total, const query_result *part) {
+    double *times = realloc(total->microseconds, (total->queries + part->queries + 1) * sizeof *times);
+    if (times == NULL) return false;
+    if (part->queries > 0) memcpy(times + total->queries, part->microseconds, part->queries * sizeof *times);
+    total->microseconds = times;
+    total->queries += part->queries;
+    total->false_positives += part->false_positives;
+    total->false_negatives += part->false_negatives;
+    total->hits += part->hits;
+    total->batch += part->batch;
+    for (int i = 0; i < 2; i++) total->sum[i] += part->sum[i];
+    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) total->levels[i] += part->levels[i];
+    return true;
+}
+
+/* ---- the table ----------------------------------------------------------------------------------------- */
+
+static void write_json(json *out, const query_result *r) {
     json_integer(out, "queries", r->queries);
     json_integer(out, "fp", r->false_positives);
     json_integer(out, "fn", r->false_negatives);
@@ -82,8 +210,9 @@ static void write_json(json *out, const result *r) {
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) json_integer(out, NULL, r->levels[i]);
     json_end_array(out);
     json_number(out, "us_mean", r->mean);
-    json_number(out, "us_p99", quantile(r, 0.99));
-    json_number(out, "us_max", quantile(r, 1.0));
+    json_number(out, "us_p99", time_quantile(r, 0.99));
+    json_number(out, "us_max", time_quantile(r, 1.0));
+    json_number(out, "us_batch", batch_mean(r));
     json_end_object(out);
 }
 
@@ -94,62 +223,53 @@ static void print_mean(double sum, size_t count) {
         printf(" %8s", "-");
 }
 
-static void print_row(const char *name, const result *r) {
+static void print_row(const char *name, const query_result *r) {
     printf("%-44s %8zu %4zu %4zu %7zu %7zu %7zu %8.3f %8.3f %8.3f", name, r->queries, r->false_positives,
-           r->false_negatives, r->levels[0], r->levels[1], r->levels[2], r->mean, quantile(r, 0.99),
-           quantile(r, 1.0));
+           r->false_negatives, r->levels[0], r->levels[1], r->levels[2], r->mean, time_quantile(r, 0.99),
+           time_quantile(r, 1.0));
     print_mean(r->sum[1], r->hits);
     print_mean(r->sum[0], r->queries - r->hits);
+    print_mean(r->batch, r->queries);
     putchar('\n');
 }
 
-/* Adds counts and times of part to total. */
-static bool add_result(result *total, const result *part) {
-    double *times = realloc(total->microseconds, (total->queries + part->queries + 1) * sizeof *times);
-    if (times == NULL) return false;
-    if (part->queries > 0) memcpy(times + total->queries, part->microseconds, part->queries * sizeof *times);
-    total->microseconds = times;
-    total->queries += part->queries;
-    total->false_positives += part->false_positives;
-    total->false_negatives += part->false_negatives;
-    total->hits += part->hits;
-    for (int i = 0; i < 2; i++) total->sum[i] += part->sum[i];
-    for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) total->levels[i] += part->levels[i];
+static void report_part(const pool_part *part, const query_result *r, json *out) {
+    if (out->file == NULL) {
+        const char *slash = strrchr(part->path, '/');
+        print_row(slash != NULL ? slash + 1 : part->path, r);
+        return;
+    }
+    json_break_line(out);
+    json_begin_object(out, NULL);
+    json_string(out, "file", part->path);
+    json_string(out, "kind", part->kind == CSCD_CONTACT_VF ? "vf" : "ee");
+    write_json(out, r);
+}
+
+static bool report_parts(const all_queries *all, json *out, query_result *total, io_error *error) {
+    for (size_t i = 0; i < all->part_count; i++) {
+        const pool_part *part = &all->parts[i];
+        query_result r = {.microseconds = malloc((part->count + 1) * sizeof(double))};
+        if (r.microseconds == NULL) return io_fail(error, "out of memory");
+        bool ran = run_part(&all->pools[part->kind], part, &r, error);
+        finish_times(&r);
+        if (ran) report_part(part, &r, out);
+        if (ran && !add_result(total, &r)) ran = io_fail(error, "out of memory");
+        free(r.microseconds);
+        if (!ran) return false;
+    }
     return true;
 }
 
-static bool run_file(const char *path, cscd_contact_kind kind, json *out, result *total, io_error *error) {
-    query_set set;
-    if (!query_file_read(path, &set, error)) return false;
-    result r = {.microseconds = malloc((set.count + 1) * sizeof(double))};
-    bool ran = r.microseconds != NULL;
-    if (ran) {
-        run_set(&set, kind, &r);
-        finish(&r);
-        ran = add_result(total, &r);
-        const char *slash = strrchr(path, '/');
-        if (out->file != NULL) {
-            json_break_line(out);
-            json_begin_object(out, NULL);
-            json_string(out, "file", path);
-            json_string(out, "kind", kind == CSCD_CONTACT_VF ? "vf" : "ee");
-            write_json(out, &r);
-        } else {
-            print_row(slash != NULL ? slash + 1 : path, &r);
-        }
-    }
-    free(r.microseconds);
-    query_set_free(&set);
-    return ran || io_fail(error, "%s: out of memory", path);
-}
+/* ---- the program --------------------------------------------------------------------------------------- */
 
-typedef struct options {
+typedef struct query_options {
     bool as_json, kind_given;
     cscd_contact_kind kind;
     int first_file;
-} options;
+} query_options;
 
-static bool parse(int argument_count, char **arguments, options *o) {
+static bool parse_options(int argument_count, char **arguments, query_options *o) {
     int i = 1;
     for (; i < argument_count && strncmp(arguments[i], "--", 2) == 0; i++) {
         if (strcmp(arguments[i], "--json") == 0) {
@@ -167,46 +287,70 @@ static bool parse(int argument_count, char **arguments, options *o) {
     return i < argument_count;
 }
 
-static bool run_files(const options *o, int argument_count, char **arguments, json *out, result *total,
-                      io_error *error) {
+static bool read_files(const query_options *o, int argument_count, char **arguments, all_queries *all,
+                       io_error *error) {
     for (int i = o->first_file; i < argument_count; i++) {
         cscd_contact_kind kind = o->kind;
         if (!o->kind_given && !query_kind_from_path(arguments[i], &kind))
             return io_fail(error, "%s: neither vertex-face nor edge-edge in the name; give --kind",
                            arguments[i]);
-        if (!run_file(arguments[i], kind, out, total, error)) return false;
+        if (!read_part(arguments[i], kind, all, error)) return false;
     }
     return true;
 }
 
+static bool decide_in_batches(all_queries *all, io_error *error) {
+    for (int kind = 0; kind < 2; kind++) {
+        query_pool *pool = &all->pools[kind];
+        const char *problem;
+        if (!pair_batches_decide_queries(&batches, (cscd_contact_kind)kind, pool->queries, pool->count,
+                                         pool->answers, &problem))
+            return io_fail(error, "%s: %s", kind == CSCD_CONTACT_VF ? "vertex-face" : "edge-edge", problem);
+    }
+    return true;
+}
+
+static void begin_output(json *out) {
+    if (out->file != NULL) {
+        json_begin_object(out, NULL);
+        json_begin_array(out, "files");
+        return;
+    }
+    printf("%-44s %8s %4s %4s %7s %7s %7s %8s %8s %8s %8s %8s %8s\n", "set", "queries", "fp", "fn", "signs",
+           "roots", "exact", "us mean", "us p99", "us max", "us hit", "us miss", "us batch");
+}
+
+static void end_output(json *out, const query_result *total) {
+    if (out->file == NULL) {
+        print_row("total", total);
+        return;
+    }
+    json_end_array(out);
+    json_begin_object(out, "total");
+    write_json(out, total);
+    json_end_object(out);
+    putchar('\n');
+}
+
 int main(int argument_count, char **arguments) {
-    options o = {.kind = CSCD_CONTACT_VF};
+    query_options o = {.kind = CSCD_CONTACT_VF};
     io_error error = {""};
-    result total = {0};
-    if (!parse(argument_count, arguments, &o)) {
+    query_result total = {0};
+    all_queries all = {.part_count = 0};
+    if (!parse_options(argument_count, arguments, &o)) {
         fputs(help, stderr);
         return 2;
     }
     json out = {.file = o.as_json ? stdout : NULL};
-    if (o.as_json) {
-        json_begin_object(&out, NULL);
-        json_begin_array(&out, "files");
-    } else {
-        printf("%-44s %8s %4s %4s %7s %7s %7s %8s %8s %8s %8s %8s\n", "set", "queries", "fp", "fn", "signs",
-               "roots", "exact", "us mean", "us p99", "us max", "us hit", "us miss");
-    }
-    bool ran = run_files(&o, argument_count, arguments, &out, &total, &error);
-    finish(&total);
-    if (o.as_json) {
-        json_end_array(&out);
-        json_begin_object(&out, "total");
-        write_json(&out, &total);
-        json_end_object(&out);
-        putchar('\n');
-    } else {
-        print_row("total", &total);
-    }
+    bool ran = pair_batches_open(&batches) || io_fail(&error, "out of memory");
+    ran = ran && read_files(&o, argument_count, arguments, &all, &error) && decide_in_batches(&all, &error);
+    begin_output(&out);
+    ran = ran && report_parts(&all, &out, &total, &error);
+    finish_times(&total);
+    end_output(&out, &total);
     free(total.microseconds);
+    free_queries(&all);
+    pair_batches_close(&batches);
     if (!ran) fprintf(stderr, "queries: %s\n", error.text);
     return ran ? 0 : 1;
 }

@@ -39,7 +39,7 @@ static bool read_row(char *line, mpq_t value, mpq_t back, double point[3], bool 
     return (*text == '0' || *text == '1') && text[1 + strspn(text + 1, "\r\n")] == '\0';
 }
 
-static bool grow(query_set *set, size_t *capacity) {
+static bool make_query_room(query_set *set, size_t *capacity) {
     if (set->count < *capacity) return true;
     size_t wider = *capacity * 2 + 256;
     elementary_query *queries = realloc(set->queries, wider * sizeof *queries);
@@ -59,7 +59,7 @@ static bool read_rows(FILE *file, const char *path, query_set *set, io_error *er
     for (; read && getline(&line, &size, file) >= 0; row++) {
         size_t i = row % ROWS_PER_QUERY;
         bool truth = false;
-        if (i == 0 && !grow(set, &capacity)) {
+        if (i == 0 && !make_query_room(set, &capacity)) {
             read = io_fail(error, "%s: out of memory", path);
             break;
         }

@@ -40,23 +40,6 @@ static elementary_verdict decide_at_roots(const elementary_query *query, const p
     return (elementary_verdict){false, ELEMENTARY_ROOTS};
 }
 
-static elementary_verdict decide(const elementary_query *query, cscd_contact_kind kind, elementary_hit *hit) {
-    if (separated_by_axes(query, kind)) return apart_by_signs;
-    point_vectors vectors;
-    point_vectors_from(query, kind, &vectors);
-    coplanarity f = coplanarity_cubic(&vectors);
-    if (coplanarity_excluded(&f)) return apart_by_signs;
-    return decide_at_roots(query, &vectors, kind, &f, hit);
-}
-
-elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit) {
-    return decide(query, CSCD_CONTACT_VF, hit);
-}
-
-elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit) {
-    return decide(query, CSCD_CONTACT_EE, hit);
-}
-
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_hit *hit) {
     point_vectors vectors;

@@ -36,14 +36,11 @@ typedef struct elementary_verdict {
     elementary_level level;
 } elementary_verdict;
 
-/* Pure functions of the query; *hit is written when they touch only. Features are closed, and so is the
- * interval. */
-elementary_verdict elementary_vf(const elementary_query *query, elementary_hit *hit);
-elementary_verdict elementary_ee(const elementary_query *query, elementary_hit *hit);
-
-/* The rest, for callers that have done the first part: the levels after signs, which leave it open; and the
- * contact, where a root's interval that begins at toi decides for it. */
+/* The test after level one, for pairs that its kernel leaves undecided (see ccd_kernels.h). A pure function of
+ * the query; *hit is written when they touch only. Features are closed, and so is the interval. */
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_hit *hit);
+
+/* The contact of a pair for which a kernel found a root's interval that begins at toi, and a contact there. */
 void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
                          elementary_hit *hit);

@@ -1,6 +1,6 @@
 /* What is told of a touch, where features are far smaller than their motion, or needles. */
-#include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
+#include "tests/support/ccd/queue_test.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static void tiny_face_at_rest(void **state) {
         const elementary_query query = {{{s / 4, s / 4, 1}, {0, 0, 0}, {s, 0, 0}, {0, s, 0}},
                                         {{s / 4, s / 4, -1}, {0, 0, 0}, {s, 0, 0}, {0, s, 0}}};
         elementary_hit hit;
-        assert_true(elementary_vf(&query, &hit).touching);
+        assert_true(pair_test(CSCD_CONTACT_VF, &query, &hit).touching);
         assert_true(fabs(hit.u - 0.25) < 1e-12 && fabs(hit.v - 0.25) < 1e-12);
         check_normal(&hit, 0, 0, 1);
     }
@@ -37,7 +37,7 @@ static void tiny_face_hit_aslant(void **state) {
         const elementary_query query = {{{1, 1, 1}, {0, 0, 0}, {s, 0, -s}, {0, s, s}},
                                         {{s / 2 - 1, s / 2 - 1, -1}, {0, 0, 0}, {s, 0, -s}, {0, s, s}}};
         elementary_hit hit;
-        if (elementary_vf(&query, &hit).touching) check_normal(&hit, 1, -1, 1);
+        if (pair_test(CSCD_CONTACT_VF, &query, &hit).touching) check_normal(&hit, 1, -1, 1);
     }
 }
 
@@ -49,7 +49,7 @@ static void tiny_edge_on_a_long_one(void **state) {
         const elementary_query query = {{{-1, 0, 0}, {1, 0, 0}, {0, -s, 1}, {0, s, 1}},
                                         {{-1, 0, 0}, {1, 0, 0}, {0, -s, -1}, {0, s, -1}}};
         elementary_hit hit;
-        assert_true(elementary_ee(&query, &hit).touching);
+        assert_true(pair_test(CSCD_CONTACT_EE, &query, &hit).touching);
         assert_true(fabs(hit.u - 0.5) < 1e-12 && fabs(hit.v - 0.5) < 1e-12);
         check_normal(&hit, 0, 0, 1);
     }
@@ -68,7 +68,7 @@ static void needle(void **state) {
          {-0x1.f93b0d09fbdcp-4, 0x1.57b0c982c252cp-5, -0x1.8e6fe32e498d6p-6}}};
     elementary_hit hit;
     (void)state;
-    assert_true(elementary_vf(&query, &hit).touching);
+    assert_true(pair_test(CSCD_CONTACT_VF, &query, &hit).touching);
     long double squared = 0, t = hit.toi;
     for (int k = 0; k < 3; k++) {
         long double p[4];

@@ -1,6 +1,6 @@
 /* GSL's error handler belongs to the process: the library leaves it as it finds it, and never causes a call.
  */
-#include "runtime/ccd/elementary.h"
+#include "tests/support/ccd/queue_test.h"
 #include "tests/support/random.h"
 #include "tests/support/test.h"
 
@@ -30,8 +30,8 @@ static void handler_left_alone(void **state) {
             query.x0[j / 3][j % 3] = random_integer(-range, range);
             query.x1[j / 3][j % 3] = random_integer(-range, range);
         }
-        elementary_vf(&query, &hit);
-        elementary_ee(&query, &hit);
+        pair_test(CSCD_CONTACT_VF, &query, &hit);
+        pair_test(CSCD_CONTACT_EE, &query, &hit);
     }
     assert_true(gsl_set_error_handler(before) == count_call);
     assert_int_equal(calls, 0);

@@ -1,5 +1,5 @@
 /* Contacts that exist exactly, by integer construction, where floating point has the least to hold on to. */
-#include "runtime/ccd/elementary.h"
+#include "tests/support/ccd/queue_test.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -47,7 +47,7 @@ static void edges_cross(double ratio) {
             ends[3][k] = centre[k] + along[k] + other[k];
         }
         for (int i = 0; i < 4; i++) pass_through(&query, i, ends[i], i < 2 ? rest : motion);
-        assert_touches(elementary_ee(&query, &hit), &hit);
+        assert_touches(pair_test(CSCD_CONTACT_EE, &query, &hit), &hit);
     }
 }
 
@@ -74,7 +74,7 @@ static void vertex_meets(double ratio) {
         }
         pass_through(&query, 0, centre, motion);
         for (int i = 0; i < 3; i++) pass_through(&query, i + 1, corners[i], rest);
-        assert_touches(elementary_vf(&query, &hit), &hit);
+        assert_touches(pair_test(CSCD_CONTACT_VF, &query, &hit), &hit);
     }
 }
 
@@ -96,8 +96,8 @@ static void everything_through_one_point(void **state) {
             integer_vector(&random, 1e4, motion);
             pass_through(&query, i, place, motion);
         }
-        assert_touches(elementary_vf(&query, &hit), &hit);
-        assert_touches(elementary_ee(&query, &hit), &hit);
+        assert_touches(pair_test(CSCD_CONTACT_VF, &query, &hit), &hit);
+        assert_touches(pair_test(CSCD_CONTACT_EE, &query, &hit), &hit);
     }
 }
 
@@ -123,7 +123,7 @@ static void in_one_plane(void **state) {
             for (int k = 0; k < 3; k++) motion[k] = s * p[k] + t * q[k];
             pass_through(&query, i, corners[i], motion);
         }
-        assert_touches(elementary_vf(&query, &hit), &hit);
+        assert_touches(pair_test(CSCD_CONTACT_VF, &query, &hit), &hit);
     }
 }
 

@@ -153,7 +153,7 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
     assert_int_equal(hit, touching != NULL);
     if (hit) assert_true(touching->begin == begin && touching->end - begin <= 0x1p-31 && touching->certain);
     elementary_hit unused;
-    assert_int_equal(pair_test(work.kind, &work.queries[i], &unused).touching, hit);
+    assert_int_equal(elementary_after_signs(&work.queries[i], work.kind, &unused).touching, hit);
 }
 
 static void check_eight(const ccd_kernels *table, const feature_source *source, const feature_pairs *pairs,

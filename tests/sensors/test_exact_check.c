@@ -1,5 +1,6 @@
 /* The exact check of particle sensors: against brute force over the same areas, and against the detector. */
 #include "runtime/sensors/exact_check.h"
+#include "tests/support/ccd/queue_test.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
@@ -62,7 +63,7 @@ static void test_pair(const swept_interval *moving, cscd_contact_kind kind, uint
     elementary_hit hit;
     swept_interval_load(moving, kind, a, b, &query);
     out->tests += swept_boxes_within(&box_a, &box_b, 0.0);
-    if (!(vf ? elementary_vf : elementary_ee)(&query, &hit).touching) return;
+    if (!pair_test(kind, &query, &hit).touching) return;
     if (!out->contact || hit.toi < out->toi) out->toi = hit.toi;
     out->contact = true;
 }

@@ -1,7 +1,7 @@
 /* Brute force over features: what every method must equal. */
 #include "tests/support/oracle.h"
 
-#include "runtime/ccd/elementary.h"
+#include "tests/support/ccd/queue_test.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -47,39 +47,85 @@ static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
     return query;
 }
 
-static void test_pair(const elementary_query *query, const separation *limit, cscd_contact_kind kind,
-                      uint32_t a, uint32_t b, oracle_list *out) {
-    elementary_hit hit;
-    bool vf = kind == CSCD_CONTACT_VF, bounded;
-    bool found = limit == NULL ? (vf ? elementary_vf : elementary_ee)(query, &hit).touching
-                               : (vf ? separation_vf : separation_ee)(query, limit, &hit, &bounded);
-    if (found) add_contact(out, kind, a, b, hit.toi);
+/* Pairs of features of one kind that wait for their test. */
+typedef struct waiting_pairs {
+    const scene *scene;
+    const separation *limit; /* NULL: contacts */
+    cscd_contact_kind kind;
+    edge *edges;
+    uint32_t (*pairs)[2];
+    size_t count, capacity;
+} waiting_pairs;
+
+static void add_pair(waiting_pairs *w, uint32_t a, uint32_t b) {
+    if (w->count == w->capacity) {
+        w->capacity = w->capacity * 2 + 1024;
+        w->pairs = realloc(w->pairs, w->capacity * sizeof *w->pairs);
+        if (w->pairs == NULL) abort();
+    }
+    w->pairs[w->count][0] = a;
+    w->pairs[w->count++][1] = b;
+}
+
+/* Contacts: as a step tests them, through the feature queue. */
+static void find_contacts(const waiting_pairs *w, oracle_list *out) {
+    size_t count;
+    const feature_source source = {w->scene->x0, w->scene->x1, (const uint32_t(*)[3])w->scene->triangles,
+                                   (const uint32_t(*)[2])w->edges};
+    const cscd_contact *contacts =
+        pair_test_source(&source, w->kind, (const uint32_t(*)[2])w->pairs, w->count, &count);
+    for (size_t i = 0; i < count; i++)
+        add_contact(out, w->kind, contacts[i].a, contacts[i].b, contacts[i].toi);
+}
+
+static void find_within(const waiting_pairs *w, oracle_list *out) {
+    for (size_t i = 0; i < w->count; i++) {
+        uint32_t a = w->pairs[i][0], b = w->pairs[i][1];
+        const uint32_t *corners = w->scene->triangles + (size_t)b * 3;
+        bool vf = w->kind == CSCD_CONTACT_VF, bounded;
+        elementary_hit hit;
+        elementary_query query =
+            vf ? load_query(w->scene, (uint32_t[4]){a, corners[0], corners[1], corners[2]})
+               : load_query(w->scene, (uint32_t[4]){w->edges[a].ends[0], w->edges[a].ends[1],
+                                                    w->edges[b].ends[0], w->edges[b].ends[1]});
+        bool found = vf ? separation_vf(&query, w->limit, &hit, &bounded)
+                        : separation_ee(&query, w->limit, &hit, &bounded);
+        if (found) add_contact(out, w->kind, a, b, hit.toi);
+    }
+}
+
+static void test_pairs(waiting_pairs *w, oracle_list *out) {
+    if (w->limit == NULL)
+        find_contacts(w, out);
+    else
+        find_within(w, out);
+    free(w->pairs);
 }
 
 static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
     bool used[SCENE_VERTICES_MAX] = {false};
+    waiting_pairs pairs = {.scene = s, .limit = limit, .kind = CSCD_CONTACT_VF};
     for (uint32_t i = 0; i < s->triangle_count * 3; i++) used[s->triangles[i]] = true;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         for (uint32_t t = 0; used[v] && t < s->triangle_count; t++) {
             const uint32_t *c = s->triangles + (size_t)t * 3;
-            if (c[0] == v || c[1] == v || c[2] == v) continue;
-            elementary_query query = load_query(s, (uint32_t[4]){v, c[0], c[1], c[2]});
-            test_pair(&query, limit, CSCD_CONTACT_VF, v, t, out);
+            if (c[0] != v && c[1] != v && c[2] != v) add_pair(&pairs, v, t);
         }
     }
+    test_pairs(&pairs, out);
 }
 
 static void find_ee(const scene *s, const separation *limit, oracle_list *out) {
     static edge edges[SCENE_TRIANGLES_MAX * 3];
     uint32_t count = find_edges(s, edges);
+    waiting_pairs pairs = {.scene = s, .limit = limit, .kind = CSCD_CONTACT_EE, .edges = edges};
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t j = i + 1; j < count; j++) {
             const uint32_t *a = edges[i].ends, *b = edges[j].ends;
-            if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) continue;
-            elementary_query query = load_query(s, (uint32_t[4]){a[0], a[1], b[0], b[1]});
-            test_pair(&query, limit, CSCD_CONTACT_EE, i, j, out);
+            if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1]) add_pair(&pairs, i, j);
         }
     }
+    test_pairs(&pairs, out);
 }
 
 static int compare_contacts(const void *left, const void *right) {

@@ -17,10 +17,6 @@ typedef struct exact_positions {
     long double x[4][3];
 } exact_positions;
 
-elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit) {
-    return kind == CSCD_CONTACT_VF ? elementary_vf(query, hit) : elementary_ee(query, hit);
-}
-
 elementary_query query_permuted(const elementary_query *query, const int order[4]) {
     elementary_query out;
     for (int i = 0; i < 4; i++) {

@@ -1,7 +1,7 @@
 /* Queries for the elementary tests, built backwards from a contact, and checks of what was found. */
 #pragma once
 
-#include "runtime/ccd/elementary.h"
+#include "tests/support/ccd/queue_test.h"
 
 #include <stdbool.h>
 
@@ -12,8 +12,6 @@ typedef struct contact_case {
     double size; /* of the features and of their paths, to a factor of 10 */
     double toi, u, v;
 } contact_case;
-
-elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit);
 
 /* Features of any size and place that pass through each other at toi in (0.02, 0.98), both parameters inside,
  * in general position: they are not slivers, and meet at a speed and an angle that fix toi to 1e-10. */

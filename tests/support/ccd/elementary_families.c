@@ -26,7 +26,7 @@ static int some_range(random_stream *random) {
     return ranges[stream_below(random, 9)];
 }
 
-static elementary_query grid(random_stream *random, int range) {
+static elementary_query grid_query(random_stream *random, int range) {
     elementary_query query;
     for (int i = 0; i < 4; i++) {
         grid_vector(random, range, query.x0[i]);
@@ -100,14 +100,14 @@ static moving_points contact_points(random_stream *random, cscd_contact_kind kin
 }
 
 /* The moment is before / (before + after). */
-static elementary_query through(const moving_points *points, int before, int after) {
+static elementary_query query_through_contact(const moving_points *points, int before, int after) {
     return query_through((const double(*)[3])points->at, (const double(*)[3])points->velocity, before, after);
 }
 
 static elementary_query at_some_time(random_stream *random, const moving_points *points) {
     int largest = one_in(random, 4) ? 1000 : 5;
     int before = stream_integer(random, 0, largest);
-    return through(points, before, stream_integer(random, before == 0, largest));
+    return query_through_contact(points, before, stream_integer(random, before == 0, largest));
 }
 
 /* Half of them touch; the others would if their features were larger. */
@@ -117,8 +117,8 @@ static moving_points contact_or_not(random_stream *random, cscd_contact_kind kin
 
 static elementary_query contact_at_end(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_points(random, kind, (place)stream_below(random, 3));
-    if (one_in(random, 2)) return through(&points, 0, 1);
-    return through(&points, 1, 0);
+    if (one_in(random, 2)) return query_through_contact(&points, 0, 1);
+    return query_through_contact(&points, 1, 0);
 }
 
 /* ---- flat ---- */
@@ -126,7 +126,7 @@ static elementary_query contact_at_end(random_stream *random, cscd_contact_kind 
 static elementary_query axis_plane(random_stream *random, cscd_contact_kind kind) {
     elementary_query query;
     if (one_in(random, 2)) {
-        query = grid(random, some_range(random));
+        query = grid_query(random, some_range(random));
     } else {
         moving_points points = contact_or_not(random, kind);
         query = at_some_time(random, &points);
@@ -175,8 +175,8 @@ static elementary_query turning_plane(random_stream *random, cscd_contact_kind k
     return query;
 }
 
-static elementary_query collinear(random_stream *random) {
-    elementary_query along = grid(random, some_range(random)), query;
+static elementary_query collinear_query(random_stream *random) {
+    elementary_query along = grid_query(random, some_range(random)), query;
     double e[2][3], origin[2][3];
     bool turning = one_in(random, 3);
     for (int n = 0; n < 2; n++) {
@@ -194,13 +194,13 @@ static elementary_query collinear(random_stream *random) {
 
 /* EE: the second edge is a multiple of the first, which may turn. VF: the vertex keeps a multiple of one side
  * as its distance from a corner. */
-static elementary_query parallel(random_stream *random, cscd_contact_kind kind) {
+static elementary_query parallel_query(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_or_not(random, kind);
     elementary_query query = at_some_time(random, &points);
     int multiple = stream_integer(random, -3, 3), pivot = kind == CSCD_CONTACT_VF ? 1 : 2;
     int moved = kind == CSCD_CONTACT_VF ? 0 : 3, from = kind == CSCD_CONTACT_VF ? 2 : 0,
         to = kind == CSCD_CONTACT_VF ? 3 : 1;
-    if (one_in(random, 4)) query = grid(random, some_range(random));
+    if (one_in(random, 4)) query = grid_query(random, some_range(random));
     for (int k = 0; k < 3; k++) {
         query.x0[moved][k] = query.x0[pivot][k] + multiple * (query.x0[to][k] - query.x0[from][k]);
         query.x1[moved][k] = query.x1[pivot][k] + multiple * (query.x1[to][k] - query.x1[from][k]);
@@ -208,10 +208,10 @@ static elementary_query parallel(random_stream *random, cscd_contact_kind kind) 
     return query;
 }
 
-static elementary_query coincident(random_stream *random, cscd_contact_kind kind) {
+static elementary_query coincident_query(random_stream *random, cscd_contact_kind kind) {
     moving_points points = contact_or_not(random, kind);
     elementary_query query = at_some_time(random, &points);
-    if (one_in(random, 2)) query = grid(random, some_range(random));
+    if (one_in(random, 2)) query = grid_query(random, some_range(random));
     for (int n = stream_integer(random, 1, 2); n > 0; n--) {
         uint32_t from = stream_below(random, 4), to = (from + 1 + stream_below(random, 3)) % 4;
         uint32_t when = stream_below(random, 4);
@@ -252,7 +252,7 @@ static grazing triple_root(random_stream *random) {
     return (grazing){{{4, 0, 0}, {0, p, 0}}, {{0, 4, 0}, {0, 0, q}}, {{0, 0, 0}, {r, 0, 0}}};
 }
 
-static void shear(random_stream *random, moving_points *points) {
+static void shear_points(random_stream *random, moving_points *points) {
     uint32_t to = stream_below(random, 3), from = (to + 1 + stream_below(random, 2)) % 3;
     double factor = stream_integer(random, -2, 2);
     for (int i = 0; i < 4; i++) {
@@ -262,7 +262,7 @@ static void shear(random_stream *random, moving_points *points) {
 }
 
 /* All four points in one place at one moment: a triple root, too. */
-static moving_points implosion(random_stream *random) {
+static moving_points imploding_query(random_stream *random) {
     moving_points points;
     double meeting[3];
     grid_vector(random, some_range(random), meeting);
@@ -284,21 +284,21 @@ static elementary_query grazing_query(random_stream *random, cscd_contact_kind k
     m.c[0][stream_below(random, 3) == 0 ? stream_below(random, 3) : 2] += lift;
     place_features(kind, uv, m.a[0], m.b[0], m.c[0], points.at);
     place_features(kind, uv, m.a[1], m.b[1], m.c[1], points.velocity);
-    if (triple && one_in(random, 3)) points = implosion(random);
+    if (triple && one_in(random, 3)) points = imploding_query(random);
     grid_vector(random, 3, motion);
     for (int i = 0; i < 12; i++) points.velocity[i / 3][i % 3] += motion[i % 3];
-    for (int i = stream_integer(random, 0, 3); i > 0; i--) shear(random, &points);
+    for (int i = stream_integer(random, 0, 3); i > 0; i--) shear_points(random, &points);
     int before = stream_integer(random, 1, 4);
-    return through(&points, before, stream_integer(random, 1, 4));
+    return query_through_contact(&points, before, stream_integer(random, 1, 4));
 }
 
 elementary_query exact_query(random_stream *random, cscd_contact_kind kind, query_family family) {
     moving_points points;
     switch (family) {
     case FAMILY_SMALL_GRID:
-        return grid(random, stream_integer(random, 2, 5));
+        return grid_query(random, stream_integer(random, 2, 5));
     case FAMILY_LARGE_GRID:
-        return grid(random, one_in(random, 2) ? 10 : 1 << stream_integer(random, 4, 26));
+        return grid_query(random, one_in(random, 2) ? 10 : 1 << stream_integer(random, 4, 26));
     case FAMILY_EXACT_CONTACT:
         points = contact_or_not(random, kind);
         break;
@@ -314,11 +314,11 @@ elementary_query exact_query(random_stream *random, cscd_contact_kind kind, quer
     case FAMILY_TURNING_PLANE:
         return turning_plane(random, kind);
     case FAMILY_COLLINEAR:
-        return collinear(random);
+        return collinear_query(random);
     case FAMILY_PARALLEL:
-        return parallel(random, kind);
+        return parallel_query(random, kind);
     case FAMILY_COINCIDENT:
-        return coincident(random, kind);
+        return coincident_query(random, kind);
     case FAMILY_STATIC:
         return at_rest(random, kind);
     case FAMILY_DOUBLE_ROOT:
@@ -326,7 +326,7 @@ elementary_query exact_query(random_stream *random, cscd_contact_kind kind, quer
     case FAMILY_TRIPLE_ROOT:
         return grazing_query(random, kind, true);
     default:
-        return grid(random, 1);
+        return grid_query(random, 1);
     }
     return at_some_time(random, &points);
 }

@@ -15,11 +15,15 @@ typedef enum comparison {
 typedef struct compared {
     comparison result;
     oracle_verdict oracle;
-    elementary_verdict verdict;
+    bool touching;
     elementary_hit hit; /* toi 2 where the test reports none */
 } compared;
 
 compared compare_with_oracle(cscd_contact_kind kind, const elementary_query *query);
+
+/* All queries go through the feature queue together, in batches. */
+void compare_all_with_oracle(cscd_contact_kind kind, const elementary_query *queries, size_t count,
+                             compared *out);
 
 /* In hexadecimal, as an initialiser, with both answers in a comment. */
 void print_compared(cscd_contact_kind kind, const elementary_query *query, const compared *result);
