@@ -14,7 +14,7 @@ typedef struct rule_set {
 
 static const rule_set rule_sets[] = {
     {"none of them: mode earliest", 0},
-    {"adjacent triangles never collide", PUBLISHED_ADJACENT},
+    {"adjacent triangles have no contact", PUBLISHED_ADJACENT},
     {"fixed representatives", PUBLISHED_REPRESENTATIVES},
     {"the detector point stays", PUBLISHED_STILL},
     {"the start is not proven", PUBLISHED_UNPROVEN},

@@ -52,7 +52,7 @@ static double noise_at(uint32_t index) {
 }
 
 /* Rings are slightly uneven along s and around, and each is turned against the one before by an odd part of
- * its step: no two features of the mesh are exactly parallel, also where the ends meet. */
+ * its step: no two features of the mesh are exactly parallel, also where the ends touch. */
 static void place_rings(capsule *model) {
     uint32_t vertex = 0;
     for (uint32_t ring = 0; ring < ring_count; ring++) {
@@ -164,7 +164,7 @@ int main(int argument_count, char **arguments) {
         return 1;
     }
     double contact = contact_frame();
-    printf("%d vertices, %d triangles, %d frames; the ends meet at frame %.2f\n", vertex_count,
+    printf("%d vertices, %d triangles, %d frames; the ends touch at frame %.2f\n", vertex_count,
            triangle_count, frame_count, contact);
     printf("first contact expected in interval %d\n", (int)contact);
     return 0;

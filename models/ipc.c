@@ -1,4 +1,4 @@
-/* Records bodies that are pressed together and never pass through each other, by incremental potential
+/* Records bodies that touch and never pass through each other, by incremental potential
  * contact: a model and its frames. */
 #include "models/common/motion.h"
 #include "models/common/recording_files.h"
@@ -35,8 +35,8 @@ static void print_summary(const ipc_solver *p, const recording_motion *m) {
         mean_of(s->trials, s->newton), mean_of(s->near, s->trials));
     printf("  lines limited by contact: %u of %u; least distance %.2g, reach %g, never below %g\n", s->cut,
            s->newton, s->least_distance, scene->barrier.reach, scene->min_separation);
-    printf("  from frame to frame: contacts in %u of %u intervals, crossing in %u of %u frames\n",
-           m->contact_intervals, m->frame_count - 1, m->crossing_frames, m->frame_count);
+    printf("  from frame to frame: contacts in %u of %u intervals, intersections in %u of %u frames\n",
+           m->contact_intervals, m->frame_count - 1, m->intersecting_frames, m->frame_count);
     printf(
         "  motion: at most %.1f edge lengths a frame; softness: at most %.1f %% of the diagonal from rigid\n",
         m->largest_motion, 100.0 * m->largest_residual);
@@ -115,7 +115,7 @@ int main(int argument_count, char **arguments) {
         .name = "ipc",
         .help = "usage: ipc SCENE... FOLDER\n"
                 "\n"
-                "Simulates bodies that meet and never pass through each other, and writes, for each scene,\n"
+                "Simulates bodies that touch and never pass through each other, and writes, for each scene,\n"
                 "FOLDER/SCENE.obj and SCENE.pc2. The folder must exist. `all` stands for all scenes:\n"
                 "\n",
         .scene_count = ipc_scene_count,

@@ -84,8 +84,8 @@ static void print_summary(const object_recording *r, const census *c, double mil
            r->shape->triangle_count, 1e-3 * milliseconds);
     printf("  contacts between objects in %u of %u intervals, of %u pairs of objects; within objects in %u\n",
            c->between_intervals, c->frame_count - 1, census_pair_count(c), c->within_intervals);
-    printf("  %llu contacts, crossing in %u of %u frames\n", (unsigned long long)c->contacts,
-           c->crossing_frames, c->frame_count);
+    printf("  %llu contacts, intersections in %u of %u frames\n", (unsigned long long)c->contacts,
+           c->intersecting_frames, c->frame_count);
     printf("  mean edge %.3g; motion: at most %.1f of it from frame to frame\n", c->edge_length,
            c->largest_motion);
 }
@@ -148,7 +148,7 @@ int main(int argument_count, char **arguments) {
         .help =
             "usage: objects SCENE... FOLDER\n"
             "\n"
-            "Moves several closed objects so that they meet and part, and writes, for each scene,\n"
+            "Moves several closed objects so that they touch and part, and writes, for each scene,\n"
             "FOLDER/SCENE.obj and SCENE.pc2, and where bodies fall into a tray, that as SCENE-scenery.obj.\n"
             "The folder must exist. `all` stands for all scenes:\n"
             "\n",

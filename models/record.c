@@ -54,8 +54,8 @@ static void print_summary(const recorder *r, const recording_motion *m, double s
     printf("%s: %s\n", r->scene->name, r->scene->text);
     printf("  %u frames of %u triangles, %g s each; lattice of %u cells\n", m->frame_count,
            r->shape.triangle_count, r->scene->frame_seconds, r->soft.frame.cell_count);
-    printf("  contacts in %u of %u intervals, crossing in %u of %u frames\n", m->contact_intervals,
-           m->frame_count - 1, m->crossing_frames, m->frame_count);
+    printf("  contacts in %u of %u intervals, intersections in %u of %u frames\n", m->contact_intervals,
+           m->frame_count - 1, m->intersecting_frames, m->frame_count);
     printf("  softness: %u frames more than 3 %% of the diagonal from rigid, at most %.1f %%\n",
            m->soft_frames, 100.0 * m->largest_residual);
     printf("  motion: at most %.1f edge lengths from frame to frame; energy at most %.3f of the start's\n",

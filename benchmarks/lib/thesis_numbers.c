@@ -58,7 +58,7 @@ void thesis_numbers_print(const char *scene) {
         if (strcmp(e->scene, scene) != 0) continue;
         printf(
             "  the thesis: %s; Core 2 Quad Q9400, 2.66 GHz; another mesh and recording, adjacent triangles\n"
-            "  never collide, contacts may be lost, TTCD counts more than these stages\n",
+            "  have no contact, contacts may be lost, TTCD counts more than these stages\n",
             e->title);
         for (const thesis_row *row = e->rows; row < e->rows + 8 && row->method != NULL; row++) {
             printf("  %-16s", row->method);

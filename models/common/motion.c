@@ -88,14 +88,14 @@ cscd_status recording_motion_begin(const cscd_mesh *mesh, const double *first, r
 
 static cscd_status add_contacts(recording_motion *m, const double *frame) {
     cscd_contacts contacts = {NULL, 0};
-    cscd_intersections crossing;
+    cscd_intersections intersections;
     if (m->frame_count > 0) {
         cscd_status status = cscd_detector_step(m->detector, m->last, frame, &contacts);
         if (status != CSCD_OK) return status;
         m->contact_intervals += contacts.count > 0;
     }
-    cscd_status status = cscd_detector_check(m->detector, frame, &crossing);
-    if (status == CSCD_OK) m->crossing_frames += crossing.count > 0;
+    cscd_status status = cscd_detector_check(m->detector, frame, &intersections);
+    if (status == CSCD_OK) m->intersecting_frames += intersections.count > 0;
     return status;
 }
 

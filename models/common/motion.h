@@ -11,9 +11,9 @@ typedef struct recording_motion {
     double *first, *last;
     double diagonal, edge_length; /* diagonal and mean edge length of the first frame */
     uint32_t frame_count;
-    uint32_t soft_frames;       /* with a residual above 3 % */
-    uint32_t crossing_frames;   /* with intersections */
-    uint32_t contact_intervals; /* with contacts */
+    uint32_t soft_frames;         /* with a residual above 3 % */
+    uint32_t intersecting_frames; /* with intersections */
+    uint32_t contact_intervals;   /* with contacts */
     double largest_residual;
     double largest_motion; /* of a vertex from frame to frame, in edge lengths */
 } recording_motion;

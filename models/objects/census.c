@@ -77,15 +77,15 @@ static cscd_status count_interval(census *c, const double *frame) {
 }
 
 cscd_status census_add(census *c, const double *frame) {
-    cscd_intersections crossing;
+    cscd_intersections intersections;
     cscd_status status = CSCD_OK;
     if (c->frame_count == 0)
         c->edge_length = mean_edge(c->mesh, frame);
     else
         status = count_interval(c, frame);
-    if (status == CSCD_OK) status = cscd_detector_check(c->detector, frame, &crossing);
+    if (status == CSCD_OK) status = cscd_detector_check(c->detector, frame, &intersections);
     if (status != CSCD_OK) return status;
-    c->crossing_frames += crossing.count > 0;
+    c->intersecting_frames += intersections.count > 0;
     memcpy(c->last, frame, (size_t)cscd_mesh_vertex_count(c->mesh) * 3 * sizeof *frame);
     c->frame_count++;
     return CSCD_OK;

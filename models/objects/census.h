@@ -10,13 +10,13 @@ typedef struct census {
     double *last;       /* the last frame */
     double edge_length; /* the mean in the first frame */
     uint32_t frame_count, object_count;
-    uint32_t between_intervals; /* with contacts between objects */
-    uint32_t within_intervals;  /* with contacts within an object */
-    uint32_t crossing_frames;   /* with intersections */
-    uint64_t contacts;          /* between and within objects */
-    double largest_motion;      /* of a vertex from frame to frame, in edge lengths */
-    bool *pairs;                /* object_count^2: those that have touched; on the diagonal, themselves */
-    bool touching;              /* whether objects touched each other in the last interval */
+    uint32_t between_intervals;   /* with contacts between objects */
+    uint32_t within_intervals;    /* with contacts within an object */
+    uint32_t intersecting_frames; /* with intersections */
+    uint64_t contacts;            /* between and within objects */
+    double largest_motion;        /* of a vertex from frame to frame, in edge lengths */
+    bool *pairs;                  /* object_count^2: those that have touched; on the diagonal, themselves */
+    bool touching;                /* whether objects touched each other in the last interval */
 } census;
 
 /* Begins without a frame. When the status is not CSCD_OK, there is nothing to free. */

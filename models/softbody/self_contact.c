@@ -92,8 +92,8 @@ static void place_point(const surface_point *p, const double *positions, double 
 }
 
 /* Whether a comes from another part of the body, and from the outside of b. */
-static bool is_collision(const self_contacts *s, const cscd_contact *c, const double *start,
-                         const double *end) {
+static bool runs_into_surface(const self_contacts *s, const cscd_contact *c, const double *start,
+                              const double *end) {
     bool vf = c->kind == CSCD_CONTACT_VF;
     const held_pair pair = {c->kind, c->a, c->b};
     surface_point a = vf ? (surface_point){1, {c->a}, {1.0}} : point_on_edge(s->mesh, c->a, c->u);
@@ -128,7 +128,7 @@ void self_contacts_add(self_contacts *s, const cscd_contacts *found, const doubl
     }
     for (size_t i = 0; i < found->count; i++) {
         const cscd_contact *c = &found->items[i];
-        if (is_collision(s, c, start, end)) s->pairs[s->count++] = (held_pair){c->kind, c->a, c->b};
+        if (runs_into_surface(s, c, start, end)) s->pairs[s->count++] = (held_pair){c->kind, c->a, c->b};
     }
     if (s->count == 0) return;
     qsort(s->pairs, s->count, sizeof *s->pairs, compare_pairs);
@@ -173,8 +173,8 @@ static bool find_below(const self_contacts *s, const double *positions, held_pai
 }
 
 /* Finds the nearest points of the lines of two edges; false when they lie outside of the edges. */
-static bool find_crossing(const self_contacts *s, const double *positions, const held_pair *pair,
-                          surface_point *a, surface_point *b) {
+static bool find_nearest_points(const self_contacts *s, const double *positions, const held_pair *pair,
+                                surface_point *a, surface_point *b) {
     double along_a[3], along_b[3], between[3];
     *a = point_on_edge(s->mesh, pair->a, 0.0);
     *b = point_on_edge(s->mesh, pair->b, 0.0);
@@ -249,7 +249,7 @@ static bool solve_pair(self_contacts *s, soft_body *soft, held_pair *pair) {
     refresh_vertices(s, soft, pair);
     if (!outward_normal(s, positions, pair, normal)) return false;
     if (pair->kind == CSCD_CONTACT_VF ? !find_below(s, positions, pair, &b)
-                                      : !find_crossing(s, positions, pair, &a, &b))
+                                      : !find_nearest_points(s, positions, pair, &a, &b))
         return false;
     place_point(&a, positions, place_a);
     place_point(&b, positions, place_b);

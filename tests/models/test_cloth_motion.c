@@ -70,13 +70,13 @@ static void free_press(press *p) {
 static double go_on(press *p) {
     double length;
     cscd_contacts found;
-    cscd_intersections crossing;
+    cscd_intersections intersections;
     assert_int_equal(safe_motion_find(&p->safe, p->x0, p->x1, &length), CSCD_OK);
     assert_true(length >= 0.0 && length <= 1.0);
     assert_int_equal(cscd_detector_step(p->judge, p->x0, p->x1, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
-    assert_int_equal(cscd_detector_check(p->judge, p->x1, &crossing), CSCD_OK);
-    assert_int_equal(crossing.count, 0);
+    assert_int_equal(cscd_detector_check(p->judge, p->x1, &intersections), CSCD_OK);
+    assert_int_equal(intersections.count, 0);
     memcpy(p->x0, p->x1, p->vertex_count * 3 * sizeof *p->x0);
     return length;
 }
@@ -118,7 +118,7 @@ static void what_falls_stops_at_the_floor(void **state) {
 }
 
 /* Vertices jump by more than an edge, again and again: the sheet ends in a tangle without intersections. */
-static void shaken_sheets_never_cross(void **state) {
+static void shaken_sheets_never_intersect(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 2; seed++) {
         press p = make_press(0.3, 0.3);
@@ -181,7 +181,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(free_motions_are_left_alone),
         cmocka_unit_test(what_falls_stops_at_the_floor),
-        cmocka_unit_test(shaken_sheets_never_cross),
+        cmocka_unit_test(shaken_sheets_never_intersect),
         cmocka_unit_test(obstacles_wait_for_what_they_press),
         cmocka_unit_test(what_meets_itself_keeps_its_momentum),
     };

@@ -88,10 +88,10 @@ static void expect_nothing(cscd_detector *detector, const double *from, const do
 }
 
 static void expect_embedded(cscd_detector *detector, const double *positions) {
-    cscd_intersections crossing;
-    assert_int_equal(cscd_detector_check(detector, positions, &crossing), CSCD_OK);
-    assert_int_equal(crossing.count, 0);
-    assert_int_equal(crossing.zero_area_triangles, 0);
+    cscd_intersections intersections;
+    assert_int_equal(cscd_detector_check(detector, positions, &intersections), CSCD_OK);
+    assert_int_equal(intersections.count, 0);
+    assert_int_equal(intersections.zero_area_triangles, 0);
 }
 
 /* Numbers of pairs nearer than 1.2 thicknesses: folds, whose sides were more than six spacings apart at

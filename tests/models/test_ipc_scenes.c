@@ -76,12 +76,12 @@ static void expect_none(cscd_detector *detector, const double *from, const doubl
 
 /* Checks that there is no contact on the way, no pair nearer than allowed, and no intersection at the end. */
 static void judge_interval(judges *j, const double *from, const double *to) {
-    cscd_intersections crossing;
+    cscd_intersections intersections;
     expect_none(j->touching, from, to);
     expect_none(j->apart, from, to);
     if (j->judged++ % 40 == 0) expect_none(j->brute, from, to);
-    assert_int_equal(cscd_detector_check(j->touching, to, &crossing), CSCD_OK);
-    assert_int_equal(crossing.count, 0);
+    assert_int_equal(cscd_detector_check(j->touching, to, &intersections), CSCD_OK);
+    assert_int_equal(intersections.count, 0);
 }
 
 /* Checks that the solver's energy is that of its positions and of the pairs that are near there. */

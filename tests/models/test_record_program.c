@@ -57,7 +57,7 @@ static void records_a_scene(void **state) {
     assert_string_equal(run.error, "");
     assert_int_equal(strncmp(run.out, scene_name, sizeof scene_name - 1), 0);
     assert_non_null(strstr(run.out, "150 frames of 1710 triangles"));
-    assert_non_null(strstr(run.out, "contacts in 0 of 149 intervals, crossing in 0 of 150 frames"));
+    assert_non_null(strstr(run.out, "contacts in 0 of 149 intervals, intersections in 0 of 150 frames"));
     tool_run_free(&run);
     assert_true(file_exists(model.text) && file_exists(frames.text) && file_exists(scenery.text));
     assert_false(file_exists(temp_file_path(&folder, "dumbbell-stairs-free-scenery.pc2").text));

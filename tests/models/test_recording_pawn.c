@@ -17,16 +17,16 @@ enum { FRAMES = 150 };
 /* The measurements, and the frames with intersections. */
 typedef struct measured {
     recording_motion totals;
-    bool crosses[FRAMES];
+    bool intersects[FRAMES];
     double first_energy, most_energy, last_energy, lowest;
 } measured;
 
 static measured m;
 
 static void measure_frame(const recorder *r, uint32_t frame) {
-    uint32_t crossing_before = m.totals.crossing_frames;
+    uint32_t intersecting_before = m.totals.intersecting_frames;
     if (frame > 0) assert_int_equal(recording_motion_add(&m.totals, r->frame), CSCD_OK);
-    m.crosses[frame] = m.totals.crossing_frames > crossing_before;
+    m.intersects[frame] = m.totals.intersecting_frames > intersecting_before;
     m.last_energy = recorder_energy(r);
     m.most_energy = fmax(m.most_energy, m.last_energy);
     for (uint32_t v = 0; v < r->shape.vertex_count; v++) m.lowest = fmin(m.lowest, r->frame[v * 3 + 2]);
@@ -67,8 +67,8 @@ static void moves_a_few_edge_lengths_at_most(void **state) {
 static void runs_into_itself_at_times(void **state) {
     (void)state;
     uint32_t intervals = FRAMES - 1, contacts = m.totals.contact_intervals;
-    print_message("contacts in %u of %u intervals, crossing in %u frames\n", contacts, intervals,
-                  m.totals.crossing_frames);
+    print_message("contacts in %u of %u intervals, intersections in %u frames\n", contacts, intervals,
+                  m.totals.intersecting_frames);
 #ifdef __SANITIZE_ADDRESS__
     assert_true(contacts > 0);
 #else
@@ -77,13 +77,13 @@ static void runs_into_itself_at_times(void **state) {
 }
 
 /* Intersections begin and end. */
-static void penetrations_heal(void **state) {
+static void intersections_heal(void **state) {
     (void)state;
     uint32_t begun = 0, healed = 0;
-    assert_false(m.crosses[0]);
+    assert_false(m.intersects[0]);
     for (uint32_t frame = 1; frame < FRAMES; frame++) {
-        begun += m.crosses[frame] && !m.crosses[frame - 1];
-        healed += !m.crosses[frame] && m.crosses[frame - 1];
+        begun += m.intersects[frame] && !m.intersects[frame - 1];
+        healed += !m.intersects[frame] && m.intersects[frame - 1];
     }
     assert_true(begun > 0);
 #ifndef __SANITIZE_ADDRESS__
@@ -104,7 +104,7 @@ static void comes_down_on_the_ground(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(is_visibly_soft),           cmocka_unit_test(moves_a_few_edge_lengths_at_most),
-        cmocka_unit_test(runs_into_itself_at_times), cmocka_unit_test(penetrations_heal),
+        cmocka_unit_test(runs_into_itself_at_times), cmocka_unit_test(intersections_heal),
         cmocka_unit_test(comes_down_on_the_ground),
     };
     return cmocka_run_group_tests_name("recording: pawn-drop", tests, record_pawn, NULL);

@@ -62,13 +62,13 @@ static void scenes_begin_embedded(void **state) {
     assert_int_equal(soft_scene_count, SCENE_COUNT);
     for (int i = 0; i < SCENE_COUNT; i++) {
         recorder r = open_scene(extents[i].name);
-        cscd_intersections crossing;
+        cscd_intersections intersections;
         assert_true(r.scene->frame_count >= 120);
         assert_int_equal(cscd_mesh_component(r.mesh, 0).closed_manifold, true);
         assert_memory_equal(r.frame, r.shape.positions, (size_t)r.shape.vertex_count * 3 * sizeof *r.frame);
-        assert_int_equal(cscd_detector_check(r.detector, r.frame, &crossing), CSCD_OK);
-        assert_int_equal(crossing.count, 0);
-        assert_int_equal(crossing.zero_area_triangles, 0);
+        assert_int_equal(cscd_detector_check(r.detector, r.frame, &intersections), CSCD_OK);
+        assert_int_equal(intersections.count, 0);
+        assert_int_equal(intersections.zero_area_triangles, 0);
         for (uint32_t v = 0; v < r.shape.vertex_count; v++) {
             const double *p = r.frame + v * 3;
             obstacle_hit hit;

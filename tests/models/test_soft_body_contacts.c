@@ -276,9 +276,9 @@ static void throw_block(two_parts *p, const double velocity[3]) {
 }
 
 static uint32_t count_intersections(two_parts *p) {
-    cscd_intersections crossing;
-    assert_int_equal(cscd_detector_check(p->detector, p->soft.vertices, &crossing), CSCD_OK);
-    return (uint32_t)crossing.count;
+    cscd_intersections intersections;
+    assert_int_equal(cscd_detector_check(p->detector, p->soft.vertices, &intersections), CSCD_OK);
+    return (uint32_t)intersections.count;
 }
 
 /* Runs an interval as the recorder does, with or without a response. */
@@ -326,7 +326,7 @@ static void parts_bounce_off_each_other(void **state) {
 }
 
 /* Without the response the block goes into the slab. */
-static void without_a_response_parts_cross(void **state) {
+static void without_a_response_parts_intersect(void **state) {
     (void)state;
     two_parts p = make_flat();
     place_block(&p, 0.05, 0.0, 0.0);
@@ -349,7 +349,7 @@ int main(void) {
         cmocka_unit_test(pairs_apart_are_left_alone),
         cmocka_unit_test(pairs_follow_a_sliding_vertex),
         cmocka_unit_test(parts_bounce_off_each_other),
-        cmocka_unit_test(without_a_response_parts_cross),
+        cmocka_unit_test(without_a_response_parts_intersect),
     };
     return cmocka_run_group_tests_name("soft body: contacts", tests, NULL, NULL);
 }

@@ -103,7 +103,7 @@ static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t
 
 /* The tip of a tetrahedron flies through another: contacts in intervals 3 and 5, intersections from frame
  * 4 on. */
-static void counts_contacts_and_crossings(void **state) {
+static void counts_contacts_and_intersections(void **state) {
     (void)state;
     enum { FRAMES = 8 };
     recorded flight = recorded_tetrahedra(FRAMES);
@@ -115,7 +115,7 @@ static void counts_contacts_and_crossings(void **state) {
     for (uint32_t k = 1; k < FRAMES; k++) {
         assert_int_equal(recording_motion_add(&m, recorded_position(&flight, k, 0)), CSCD_OK);
         assert_int_equal(m.contact_intervals, k < 4 ? 0 : k < 6 ? 1 : 2);
-        assert_int_equal(m.crossing_frames, k < 4 ? 0 : k - 3);
+        assert_int_equal(m.intersecting_frames, k < 4 ? 0 : k - 3);
     }
     assert_int_equal(m.frame_count, FRAMES);
     recording_motion_free(&m);
@@ -146,7 +146,7 @@ static void measures_softness_and_speed(void **state) {
         assert_near(m.largest_residual, (fmin(i, 2) < i ? 0.2 : factors[i] - 1.0) / diagonal, 1e-7);
     }
     assert_near(m.largest_motion, 0.2 / edge_length, 1e-14);
-    assert_int_equal(m.crossing_frames, 0);
+    assert_int_equal(m.intersecting_frames, 0);
     recording_motion_free(&m);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
@@ -175,7 +175,7 @@ static void bad_positions_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rigid_motions_leave_nothing),  cmocka_unit_test(deformations_leave_what_they_must),
-        cmocka_unit_test(mirror_images_are_no_motions), cmocka_unit_test(counts_contacts_and_crossings),
+        cmocka_unit_test(mirror_images_are_no_motions), cmocka_unit_test(counts_contacts_and_intersections),
         cmocka_unit_test(measures_softness_and_speed),  cmocka_unit_test(bad_positions_are_refused),
     };
     return cmocka_run_group_tests_name("soft body: motion", tests, make_figure, free_figure);
