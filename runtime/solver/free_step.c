@@ -1,5 +1,4 @@
-/* How far vertices may go on straight lines without contact: shorter and shorter steps, until one is proven.
- */
+/* How far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
 #include "runtime/solver/free_step.h"
 
 #include "src/core/vec3.h"
@@ -10,12 +9,12 @@
  * least 2^-300. */
 static const double shortest = 0x1p-1000;
 
-/* What stands for a time of 0: times are early by less than 1e-9 (docs/theory/elementary.md). */
+/* Stands in for a time of 0: times are early by less than 1e-9 (docs/theory/elementary.md). */
 static const double about_0 = 0x1p-33;
 
 static const double least_coordinate = 0x1p-300;
 
-void motion_at(const motion *m, double length, double *out) {
+void motion_at(const straight_motion *m, double length, double *out) {
     size_t count = (size_t)m->vertex_count * 3;
     if (length == 0.0 || length == 1.0) {
         memmove(out, length == 0.0 ? m->x0 : m->x1, count * sizeof *out);
@@ -37,13 +36,13 @@ static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
         vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b, how);
 }
 
-/* A motion and its test. */
+/* A motion, its test, and the outcome of the last test. */
 typedef struct trial {
-    const motion *of;
+    const straight_motion *of;
     motion_test *test;
     void *data;
     bool touches;
-    cscd_contact first; /* if it does */
+    cscd_contact first; /* if it touches */
 } trial;
 
 static cscd_status try_between(trial *t, const double *from, const double *to) {
@@ -55,8 +54,8 @@ static cscd_status try_between(trial *t, const double *from, const double *to) {
     return CSCD_OK;
 }
 
-/* With min_separation, pairs that are just farther apart than that at the end of a motion, but within the
- * tolerance, are not found in it, and would be at the start of the next: so they count at the end. */
+/* With min_separation, a pair that ends just farther apart than that, but within the tolerance, is not found in this
+ * motion, and would be found at the start of the next one. So the end is tested by itself, too. */
 static cscd_status try_step(const cscd_detector *d, trial *t, const double *end) {
     cscd_status status = try_between(t, t->of->x0, end);
     if (status != CSCD_OK || t->touches || d->limit.distance == 0.0) return status;
@@ -65,21 +64,21 @@ static cscd_status try_step(const cscd_detector *d, trial *t, const double *end)
     return status;
 }
 
-/* Contacts of an interval that nothing moves in. */
+/* Tests an interval in which nothing moves. IN_CONTACT: something touches. */
 static cscd_status check_start(cscd_detector *d, trial *t) {
     cscd_status status = try_between(t, t->of->x0, t->of->x0);
     if (status != CSCD_OK || !t->touches) return status;
     return fail_in_contact(d, &t->first);
 }
 
-/* Shorter than the step at hand, for a contact was found at this share of it. */
+/* The share of a step that is tried next when a contact was found at this time of it. */
 static double cut_for(const cscd_detector *d, double time) {
     return d->options.step_factor * (time > 0.0 ? time : about_0);
 }
 
-/* A step of step_factor times the first contact's time mostly is free. Where its rounded end, or a time of 0,
- * brings contacts of its own, steps shrink ever faster. */
-static cscd_status shorten(cscd_detector *d, trial *t, double *reached, double *length) {
+/* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own, or
+ * the time is 0, steps shrink ever faster. */
+static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *length) {
     cscd_status status = CSCD_OK;
     double shrink = 0.25;
     bool start_checked = false, at_once = t->first.toi == 0.0;
@@ -96,8 +95,8 @@ static cscd_status shorten(cscd_detector *d, trial *t, double *reached, double *
     }
 }
 
-cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, motion_test *test, void *of,
-                           double *reached, cscd_free_step *out) {
+cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
+                           void *of, double *reached, cscd_free_step *out) {
     cscd_free_step step = {.length = longest};
     trial t = {.of = m, .test = test, .data = of};
     motion_at(m, longest, reached);
@@ -107,9 +106,9 @@ cscd_status free_step_find(cscd_detector *d, const motion *m, double longest, mo
         step.limit = t.first;
         step.limit.toi *= longest;
         double cut = longest * cut_for(d, 0.0);
-        if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* no more, by any rounding */
+        if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* not more by rounding */
         step.length = max_of(cut, shortest);
-        status = shorten(d, &t, reached, &step.length);
+        status = shorten_step(d, &t, reached, &step.length);
     }
     if (status == CSCD_OK) *out = step;
     return status;

@@ -10,27 +10,25 @@
 struct cscd_line {
     cscd_detector *detector;
     double *x0, *x1, *reached; /* positions */
-    double reach, covered;     /* covered: candidates are all pairs that come so near each other */
+    double reach, covered;     /* covered: all pairs that come within this distance are candidates */
     bool begun;
-    double done; /* of the step at hand, by estimate: each try takes half of what is left */
+    double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
-    uint8_t *states;            /* of the triangles at x0 */
+    uint8_t *states;            /* start states of the triangles at x0 */
     bool states_known, vouched; /* as in start_states */
 };
 
-static motion motion_of(const cscd_line *line) {
-    return (motion){line->detector->mesh->vertex_count, line->x0, line->x1};
+static straight_motion motion_of(const cscd_line *line) {
+    return (straight_motion){line->detector->mesh->vertex_count, line->x0, line->x1};
 }
 
 /* ---- life ---------------------------------------------------------------------------------------------- */
 
-static bool allocate(cscd_line *line) {
+static array_list list_arrays(cscd_line *line) {
     const cscd_mesh *mesh = line->detector->mesh;
-    line->x0 = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
-    line->x1 = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
-    line->reached = context_allocate(mesh->context, mesh->vertex_count, sizeof(double[3]));
-    line->states = context_allocate(mesh->context, mesh->triangle_count, sizeof *line->states);
-    return line->x0 != NULL && line->x1 != NULL && line->reached != NULL && line->states != NULL;
+    size_t coordinates = (size_t)mesh->vertex_count * 3;
+    return (array_list){{ARRAY(line->x0, coordinates), ARRAY(line->x1, coordinates),
+                         ARRAY(line->reached, coordinates), ARRAY(line->states, mesh->triangle_count)}};
 }
 
 cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
@@ -40,8 +38,8 @@ cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
     cscd_line *line = context_allocate(context, 1, sizeof *line);
     if (line == NULL) return context_out_of_memory(context);
     line->detector = detector;
-    if (!allocate(line)) {
-        cscd_line_destroy(line);
+    if (!context_allocate_all(context, list_arrays(line))) {
+        context_free(context, line);
         return context_out_of_memory(context);
     }
     *out = line;
@@ -52,8 +50,8 @@ void cscd_line_destroy(cscd_line *line) {
     if (line == NULL) return;
     cscd_context *context = line->detector->context;
     candidates_free(context, &line->candidates);
-    void *blocks[] = {line->x0, line->x1, line->reached, line->states, line};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
+    context_free_all(context, list_arrays(line));
+    context_free(context, line);
 }
 
 /* ---- begin --------------------------------------------------------------------------------------------- */
@@ -69,7 +67,7 @@ static double rounding_on(const cscd_line *line) {
     return largest * 0x1p-48 + 0x1p-297;
 }
 
-/* What the detector knows of x0 it will know of where a step of the line ends. */
+/* What the detector knows of triangles at x0 it will know of them where a step of the line ends. */
 static void remember_states(cscd_line *line) {
     start_states *s = &line->detector->starts;
     line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
@@ -130,7 +128,7 @@ cscd_status cscd_line_positions(const cscd_line *line, double length, double *po
     if (positions == NULL)
         return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
                             "cscd_line_positions: positions is NULL");
-    motion m = motion_of(line);
+    straight_motion m = motion_of(line);
     motion_at(&m, length, positions);
     return CSCD_OK;
 }
@@ -147,7 +145,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
                             "cscd_line_near: distance is %g, but the line was begun with a reach of %g",
                             distance, line->reach);
     detector_begin_call(d);
-    motion m = motion_of(line);
+    straight_motion m = motion_of(line);
     motion_at(&m, length, line->reached);
     interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
@@ -160,7 +158,8 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
 
-static cscd_status test_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
+static cscd_status test_candidates_on_motion(void *of, const double *from, const double *to,
+                                             cscd_contacts *out) {
     cscd_line *line = of;
     cscd_detector *d = line->detector;
     cscd_counters counters = {.vf = 0};
@@ -179,9 +178,9 @@ static bool lanes_are_empty(const search_space *s) {
     return true;
 }
 
-/* Without any contact, pairs that are left out among them, triangles are what they were. With a separation
- * that the detector got since the line began, the lanes are those of the end only. */
-static void take_step(cscd_line *line) {
+/* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. If the
+ * detector got a minimum separation since the line began, the lanes hold the contacts of the step's end only. */
+static void carry_states_over(cscd_line *line) {
     cscd_detector *d = line->detector;
     if (!line->states_known || !detector_culls(d) || !lanes_are_empty(&d->space)) return;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->incomplete[c] = false;
@@ -192,7 +191,7 @@ static void take_step(cscd_line *line) {
     start_states_end(&d->starts, line->reached, d->incomplete);
 }
 
-/* cscd_detector_set_separation may have been called since. */
+/* cscd_detector_set_separation may have been called since the line began. */
 static cscd_status check_covered(const cscd_line *line) {
     double distance = line->detector->limit.distance;
     if (distance <= line->covered) return CSCD_OK;
@@ -215,11 +214,11 @@ cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, csc
                             "cscd_line_max_step: longest is %g, expected a number in (0,1]", longest);
     detector_begin_call(d);
     line->done = 0.0;
-    motion m = motion_of(line);
+    straight_motion m = motion_of(line);
     cscd_free_step step;
-    status = free_step_find(d, &m, longest, test_motion, line, line->reached, &step);
+    status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
     if (status != CSCD_OK) return detector_fail_call(d, status);
-    take_step(line);
+    carry_states_over(line);
     if (end != NULL) memcpy(end, line->reached, m.vertex_count * sizeof(double[3]));
     *out = step;
     return CSCD_OK;

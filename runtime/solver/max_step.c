@@ -5,13 +5,13 @@
 
 #include <string.h>
 
-/* What is needed from one try to the next. */
+/* The sums over all tries of a call. */
 typedef struct tries {
     cscd_detector *detector;
     cscd_timings timings;
     cscd_counters counters;
     bool any;
-    double done; /* by estimate, of all tries */
+    double done; /* estimated share of the call: each try takes half of what is left */
 } tries;
 
 static void add_timings(cscd_timings *sum, const cscd_timings *more) {
@@ -47,7 +47,7 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
 
 _Static_assert(sizeof(cscd_counters) == 19 * sizeof(uint64_t), "add_counters adds every counter");
 
-/* The vertices do not go to the end of the try before. */
+/* The vertices did not go to the end of the try before, which is withdrawn first. */
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     tries *t = of;
     step_outcome found;
@@ -86,7 +86,7 @@ cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, co
     double since = timer_now_ms();
     cscd_status status = check_arguments(detector, x0, x1, out);
     if (status != CSCD_OK) return status;
-    motion m = {detector->mesh->vertex_count, x0, x1};
+    straight_motion m = {detector->mesh->vertex_count, x0, x1};
     tries t = {.detector = detector, .timings = {.check_ms = detector->timings.check_ms}};
     cscd_free_step step;
     detector_begin_call(detector);

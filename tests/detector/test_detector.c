@@ -80,7 +80,8 @@ static bool touches_triangle(const scene *s, const rig *r, const cscd_contact *c
 
 static void ignored_pairs_are_left_out(void **state) {
     (void)state;
-    scene_make(SCENE_FOLDED_SHEET, 0, &interval);
+    uint32_t tested = 0;
+    size_t left_out = 0;
     for (uint64_t seed = 1; seed < 40; seed++) {
         scene_make(SCENE_FOLDED_SHEET, seed, &interval);
         rig plain = rig_create(&interval, 1, NULL);
@@ -89,6 +90,7 @@ static void ignored_pairs_are_left_out(void **state) {
             rig_destroy(&plain);
             continue;
         }
+        tested++;
         uint32_t triangle = all.items[0].kind == CSCD_CONTACT_VF ? all.items[0].b : (uint32_t)seed % 7;
         cscd_detector_options options = cscd_detector_defaults();
         options.ignore = ignore_all_of_one;
@@ -102,9 +104,12 @@ static void ignored_pairs_are_left_out(void **state) {
             assert_memory_equal(&some.items[j++], &all.items[i], sizeof *all.items);
         }
         assert_int_equal(j, some.count);
+        left_out += all.count - some.count;
         rig_destroy(&picky);
         rig_destroy(&plain);
     }
+    print_message("  %u of 39 scenes, %zu contacts left out\n", tested, left_out);
+    assert_true(tested >= 10 && left_out > 50);
 }
 
 /* ---- statuses -------------------------------------------------------------------------------------- */

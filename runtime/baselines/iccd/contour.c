@@ -10,7 +10,7 @@
 enum { DEPTH_MAX = 8 };
 
 /* The plane across the axis, and how far computed coordinates may be from those of the exact projection. Its
- * origin moves with a vertex: what all of a body does together takes no part in whether it meets itself. */
+ * origin moves with a vertex, because a motion that all vertices share does not bring them together. */
 typedef struct plane {
     double origin[2][3], right[3], up[3];
     double error;
@@ -44,8 +44,8 @@ static plane make_plane(const float axis[3], const double *start, const double *
     return p;
 }
 
-/* A projected coordinate is a sum of three products of differences: off by less than 8 u times their sum. */
-static void project(plane *p, const double *x, int time, double out[2]) {
+/* A projected coordinate is a sum of three products of differences, so it is off by less than 8 u times their sum. */
+static void project_vertex(plane *p, const double *x, int time, double out[2]) {
     double size = 0.0, from[3];
     for (int k = 0; k < 3; k++) {
         from[k] = x[k] - p->origin[time][k];
@@ -65,7 +65,7 @@ static void set_boxes(contour_edge *e, double error) {
     }
 }
 
-/* Shell's sort by the left ends of the boxes. */
+/* Shell sort by the left ends of the boxes. */
 static void sort_edges(contour_edge *edges, uint32_t count) {
     uint32_t gap = 1;
     while (gap < count / 3) gap = 3 * gap + 1;
@@ -79,24 +79,24 @@ static void sort_edges(contour_edge *edges, uint32_t count) {
     }
 }
 
-static double cross2(const double a[2], const double b[2]) {
+static double cross_planar(const double a[2], const double b[2]) {
     return a[0] * b[1] - a[1] * b[0];
 }
 
-static double dot2(const double a[2], const double b[2]) {
+static double dot_planar(const double a[2], const double b[2]) {
     return a[0] * b[0] + a[1] * b[1];
 }
 
 /* Linear motions, [time][axis], of the difference of two points. */
-static void subtract(double a[2][2], double b[2][2], double out[2][2]) {
+static void subtract_motions(double a[2][2], double b[2][2], double out[2][2]) {
     for (int i = 0; i < 4; i++) out[i / 2][i % 2] = a[i / 2][i % 2] - b[i / 2][i % 2];
 }
 
-static quadratic product(double a[2][2], double b[2][2], double (*of)(const double *, const double *)) {
+static quadratic product_of(double a[2][2], double b[2][2], double (*of)(const double *, const double *)) {
     return (quadratic){{of(a[0], b[0]), 0.5 * (of(a[0], b[1]) + of(a[1], b[0])), of(a[1], b[1])}};
 }
 
-static double largest(double a[2][2]) {
+static double largest_coordinate(double a[2][2]) {
     return fmax(fmax(fabs(a[0][0]), fabs(a[0][1])), fmax(fabs(a[1][0]), fabs(a[1][1])));
 }
 
@@ -115,14 +115,14 @@ static bool all_below(const quadratic *q, double bound) {
     return q->b[0] < -bound && q->b[1] < -bound && q->b[2] < -bound;
 }
 
-static void halve(const quadratic *q, quadratic *first, quadratic *second) {
+static void halve_quadratic(const quadratic *q, quadratic *first, quadratic *second) {
     double left = 0.5 * (q->b[0] + q->b[1]), right = 0.5 * (q->b[1] + q->b[2]);
     *first = (quadratic){{q->b[0], left, 0.5 * (left + right)}};
     *second = (quadratic){{0.5 * (left + right), right, q->b[2]}};
 }
 
-/* Is at every moment `area` not zero or `outside` positive? Halves the interval where signs do not tell. */
-static bool excluded(quadratic area, quadratic outside, double error) {
+/* True if at every moment `area` is not zero or `outside` is positive. Halves the interval where signs do not tell. */
+static bool is_excluded(quadratic area, quadratic outside, double error) {
     quadratic areas[DEPTH_MAX + 1], outsides[DEPTH_MAX + 1];
     int depths[DEPTH_MAX + 1], count = 1;
     areas[0] = area;
@@ -134,24 +134,25 @@ static bool excluded(quadratic area, quadratic outside, double error) {
         int depth = depths[count];
         if (all_above(&a, error) || all_below(&a, error) || all_above(&o, error)) continue;
         if (depth == DEPTH_MAX) return false;
-        halve(&a, &areas[count], &areas[count + 1]);
-        halve(&o, &outsides[count], &outsides[count + 1]);
+        halve_quadratic(&a, &areas[count], &areas[count + 1]);
+        halve_quadratic(&o, &outsides[count], &outsides[count + 1]);
         depths[count] = depths[count + 1] = depth + 1;
         count += 2;
     }
     return true;
 }
 
-/* The vertex never lies on the edge. *start: on which side of it at the start, 0: not certain. */
+/* True if the vertex never lies on the edge. *start is the side on which it starts, 0 where that is not certain. */
 static bool vertex_stays_off(const plane *p, double vertex[2][2], contour_edge *edge, int *start) {
     double along[2][2], from_a[2][2], from_b[2][2];
-    subtract(edge->b, edge->a, along);
-    subtract(vertex, edge->a, from_a);
-    subtract(vertex, edge->b, from_b);
-    double error = product_error(p, fmax(largest(along), fmax(largest(from_a), largest(from_b))));
-    quadratic area = product(along, from_a, cross2);
+    subtract_motions(edge->b, edge->a, along);
+    subtract_motions(vertex, edge->a, from_a);
+    subtract_motions(vertex, edge->b, from_b);
+    double error = product_error(
+        p, fmax(largest_coordinate(along), fmax(largest_coordinate(from_a), largest_coordinate(from_b))));
+    quadratic area = product_of(along, from_a, cross_planar);
     *start = area.b[0] > error ? 1 : area.b[0] < -error ? -1 : 0;
-    return excluded(area, product(from_a, from_b, dot2), error);
+    return is_excluded(area, product_of(from_a, from_b, dot_planar), error);
 }
 
 static bool boxes_overlap(const double low_a[2], const double high_a[2], const double low_b[2],
@@ -182,10 +183,10 @@ bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t *v = mesh->edges[query->edges[i]];
         contour_edge *e = &scratch[i];
-        project(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
-        project(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
-        project(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
-        project(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
+        project_vertex(&p, query->x0 + (size_t)v[0] * 3, 0, e->a[0]);
+        project_vertex(&p, query->x1 + (size_t)v[0] * 3, 1, e->a[1]);
+        project_vertex(&p, query->x0 + (size_t)v[1] * 3, 0, e->b[0]);
+        project_vertex(&p, query->x1 + (size_t)v[1] * 3, 1, e->b[1]);
         e->vertices[0] = v[0];
         e->vertices[1] = v[1];
         e->index = i;

@@ -12,7 +12,7 @@ typedef struct contour_edge {
     uint32_t index; /* in the list of edges */
 } contour_edge;
 
-/* What a test looks at. */
+/* A contour and its motion. */
 typedef struct contour_query {
     const cscd_mesh *mesh;
     const uint32_t *edges; /* of the mesh */

@@ -7,7 +7,7 @@
 
 static const normal_cone none = {{0.0f, 0.0f, 0.0f}, INFINITY};
 
-/* What rounding in single precision may add to an angle, per operation on cones. */
+/* An upper bound on what rounding in single precision adds to an angle, per operation on cones. */
 static const float slack = 4e-6f;
 
 /* At least the angle between two unit vectors up to a right angle, INFINITY beyond. With the chord c it is
@@ -19,7 +19,7 @@ static float angle_between(const float a[3], const float b[3]) {
     return squared <= 2.0f ? chord * (1.0f + 0.05537f * squared) : INFINITY;
 }
 
-static bool normalize(const float sum[3], float out[3]) {
+static bool normalize_sum(const float sum[3], float out[3]) {
     float squared = sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2];
     if (!(squared > 1e-6f)) return false;
     float inverse = 1.0f / sqrtf(squared);
@@ -50,7 +50,7 @@ static double add_cross(const double a[3], const double b[3], double sum[3]) {
 
 /* The direction of a vector that is off by 2^-48 size at most; false where that turns it by 4e-7 or more, or
  * its squares leave the range of doubles. */
-static bool direction(const double normal[3], double size, float out[3]) {
+static bool direction_of(const double normal[3], double size, float out[3]) {
     double length = sqrt(vec3_dot(normal, normal));
     if (!(length > 1e-8 * size && length > 1e-150 && length < 1e150)) return false;
     for (int k = 0; k < 3; k++) out[k] = (float)(normal[k] / length);
@@ -63,7 +63,7 @@ static normal_cone cone_around(float (*directions)[3], int count) {
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) sum[k] += directions[i][k];
     }
-    if (!normalize(sum, cone.axis)) return none;
+    if (!normalize_sum(sum, cone.axis)) return none;
     for (int i = 0; i < count; i++) {
         float angle = angle_between(cone.axis, directions[i]) + slack;
         if (angle > cone.angle) cone.angle = angle;
@@ -76,12 +76,12 @@ normal_cone normal_cone_of(const uint32_t corners[3], const double *x0, const do
     double normals[3][3] = {{0.0}};
     float directions[3][3];
     double size = add_cross(start.first, start.second, normals[0]);
-    if (!direction(normals[0], size, directions[0])) return none;
+    if (!direction_of(normals[0], size, directions[0])) return none;
     size = add_cross(end.first, end.second, normals[1]);
-    if (!direction(normals[1], size, directions[1])) return none;
+    if (!direction_of(normals[1], size, directions[1])) return none;
     size = add_cross(start.first, end.second, normals[2]);
     size += add_cross(end.first, start.second, normals[2]);
-    if (!direction(normals[2], size, directions[2])) return none;
+    if (!direction_of(normals[2], size, directions[2])) return none;
     normal_cone cone = cone_around(directions, 3);
     return normal_cone_exists(&cone) ? cone : none;
 }
@@ -91,9 +91,9 @@ normal_cone normal_cone_of_ends(const uint32_t corners[3], const double *x0, con
     double normals[2][3] = {{0.0}};
     float directions[2][3];
     double size = add_cross(start.first, start.second, normals[0]);
-    if (!direction(normals[0], size, directions[0])) return none;
+    if (!direction_of(normals[0], size, directions[0])) return none;
     size = add_cross(end.first, end.second, normals[1]);
-    if (!direction(normals[1], size, directions[1])) return none;
+    if (!direction_of(normals[1], size, directions[1])) return none;
     return cone_around(directions, 2);
 }
 
@@ -102,7 +102,7 @@ normal_cone normal_cone_union(const normal_cone *a, const normal_cone *b, float 
     float sum[3];
     if (!(a->angle < limit && b->angle < limit)) return none;
     for (int k = 0; k < 3; k++) sum[k] = a->axis[k] + b->axis[k];
-    if (!normalize(sum, cone.axis)) return none;
+    if (!normalize_sum(sum, cone.axis)) return none;
     float to_a = angle_between(cone.axis, a->axis) + a->angle;
     float to_b = angle_between(cone.axis, b->axis) + b->angle;
     cone.angle = (to_a > to_b ? to_a : to_b) + slack;

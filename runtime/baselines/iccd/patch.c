@@ -17,7 +17,7 @@ typedef struct contour_lists {
     uint32_t *sizes;
 } contour_lists;
 
-static bool reserve(contour_lists *l, size_t more) {
+static bool reserve_edges(contour_lists *l, size_t more) {
     if (l->count + more <= l->capacity) return true;
     size_t capacity = 2 * (l->count + more);
     uint32_t *grown = context_grow(l->context, l->edges, l->count, capacity, sizeof *grown);
@@ -36,7 +36,8 @@ static void sort_three(uint32_t e[3]) {
     }
 }
 
-/* What is in one of two ascending lists only: the contour of two patches together. */
+/* Merges two ascending lists and leaves out what is in both. So the contours of two patches become the contour of the
+ * patches together. */
 static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_t *b, uint32_t b_count,
                               uint32_t *out) {
     uint32_t i = 0, j = 0, count = 0;
@@ -56,13 +57,13 @@ static uint32_t difference_of(const uint32_t *a, uint32_t a_count, const uint32_
 static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const patch_tree *tree, uint32_t node) {
     const patch_node *n = &tree->nodes[node];
     if (patch_is_leaf(n)) {
-        if (!reserve(l, 3)) return false;
+        if (!reserve_edges(l, 3)) return false;
         memcpy(l->edges + l->count, mesh->triangle_edges[n->triangle], 3 * sizeof(uint32_t));
         sort_three(l->edges + l->count);
         l->sizes[node] = 3;
     } else {
         uint32_t left = node + 1, right = n->right;
-        if (!reserve(l, (size_t)l->sizes[left] + l->sizes[right])) return false;
+        if (!reserve_edges(l, (size_t)l->sizes[left] + l->sizes[right])) return false;
         l->sizes[node] = difference_of(l->edges + l->begins[left], l->sizes[left],
                                        l->edges + l->begins[right], l->sizes[right], l->edges + l->count);
     }
@@ -71,14 +72,13 @@ static bool list_contour(contour_lists *l, const cscd_mesh *mesh, const patch_tr
     return true;
 }
 
-/* What a look at one patch leaves behind: per vertex, when it was last seen, and its neighbours on the
- * contour. */
+/* Per vertex: the patch that it was last seen in, and its neighbours on that patch's contour. */
 typedef struct vertex_visit {
     uint32_t seen, degree, neighbours[2];
 } vertex_visit;
 
-/* Of triangles of one oriented manifold component: one loop through all edges, and the Euler characteristic
- * of a disk; leaves are the patch's triangles. */
+/* For triangles of one oriented manifold component: a disk has one loop through all edges of its contour, and the Euler
+ * characteristic of a disk. Leaves are the patch's triangles. */
 static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const patch_node *first,
                     const patch_node *end, vertex_visit *visits, uint32_t stamp) {
     uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
@@ -114,7 +114,7 @@ static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t siz
     return length == size;
 }
 
-/* Oriented manifolds only. In one component a patch of one loop has no closed part beside it. */
+/* Only patches of oriented manifolds are disks. Within one component a patch of one loop has no closed part beside it. */
 static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
                        vertex_visit *visits) {
     uint32_t *ends = p->stack; /* one past the last node of each subtree */
@@ -131,7 +131,7 @@ static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree
     }
 }
 
-/* Ascending lists into their places, with what the parent's has too in front. */
+/* Writes a contour to its place: first the edges that it shares with the parent's contour, then the others. */
 static void place_contour(patches *p, const contour_lists *l, uint32_t node, uint32_t parent) {
     const uint32_t *own = l->edges + l->begins[node];
     const uint32_t *above = parent == UINT32_MAX ? own : l->edges + l->begins[parent];
@@ -147,7 +147,7 @@ static void place_contour(patches *p, const contour_lists *l, uint32_t node, uin
     }
 }
 
-/* Subtrees that one thread works on at a time. */
+/* Lists the largest subtrees that one thread works on at a time. */
 static void find_small(patches *p, const uint32_t *ends) {
     for (uint32_t i = 0; i < p->tree.node_count;) {
         if (p->tree.nodes[i].height > SMALL_HEIGHT) {
@@ -160,8 +160,8 @@ static void find_small(patches *p, const uint32_t *ends) {
     }
 }
 
-static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
-                 vertex_visit *visits) {
+static bool fill_patches(patches *p, const cscd_mesh *mesh, const patch_tree *tree, contour_lists *l,
+                         vertex_visit *visits) {
     uint32_t longest = 0;
     size_t total = 0;
     for (uint32_t i = p->tree.node_count; i-- > 0;) {
@@ -189,26 +189,17 @@ static bool fill(patches *p, const cscd_mesh *mesh, const patch_tree *tree, cont
     return true;
 }
 
-static bool allocate(patches *p, contour_lists *lists) {
-    cscd_context *context = lists->context;
+static array_list list_arrays(patches *p) {
     size_t count = p->tree.node_count;
-    lists->begins = context_allocate(context, count, sizeof *lists->begins);
-    lists->sizes = context_allocate(context, count, sizeof *lists->sizes);
-    p->contour_offsets = context_allocate(context, count + 1, sizeof *p->contour_offsets);
-    p->inherited = context_allocate(context, count, sizeof *p->inherited);
-    p->disks = context_allocate(context, count, sizeof *p->disks);
-    p->cones = context_allocate(context, count, sizeof *p->cones);
-    p->stack = context_allocate(context, count, sizeof *p->stack);
-    p->parent_tested = context_allocate(context, count, sizeof *p->parent_tested);
-    p->passed = context_allocate(context, count, sizeof *p->passed);
-    p->tested = context_allocate(context, count, sizeof *p->tested);
-    p->reached = context_allocate(context, count, sizeof *p->reached);
-    p->small_roots = context_allocate(context, count, sizeof *p->small_roots);
-    p->small_ends = context_allocate(context, count, sizeof *p->small_ends);
-    return lists->begins != NULL && lists->sizes != NULL && p->contour_offsets != NULL &&
-           p->inherited != NULL && p->disks != NULL && p->cones != NULL && p->stack != NULL &&
-           p->parent_tested != NULL && p->passed != NULL && p->tested != NULL && p->reached != NULL &&
-           p->small_roots != NULL && p->small_ends != NULL;
+    return (array_list){{ARRAY(p->contour_offsets, count + 1), ARRAY(p->inherited, count),
+                         ARRAY(p->disks, count), ARRAY(p->cones, count), ARRAY(p->stack, count),
+                         ARRAY(p->parent_tested, count), ARRAY(p->passed, count), ARRAY(p->tested, count),
+                         ARRAY(p->reached, count), ARRAY(p->small_roots, count),
+                         ARRAY(p->small_ends, count)}};
+}
+
+static array_list list_scratch(contour_lists *l, size_t node_count) {
+    return (array_list){{ARRAY(l->begins, node_count), ARRAY(l->sizes, node_count)}};
 }
 
 cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
@@ -217,10 +208,11 @@ cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
     contour_lists lists = {.context = context};
     vertex_visit *visits = context_allocate(context, mesh->vertex_count, sizeof *visits);
     bool made = visits != NULL && bvh_allow_hiding(f) && patch_tree_build(f, &p.tree) == CSCD_OK &&
-                allocate(&p, &lists) && fill(&p, mesh, &p.tree, &lists, visits);
+                context_allocate_all(context, list_arrays(&p)) &&
+                context_allocate_all(context, list_scratch(&lists, p.tree.node_count)) &&
+                fill_patches(&p, mesh, &p.tree, &lists, visits);
     context_free(context, visits);
-    context_free(context, lists.begins);
-    context_free(context, lists.sizes);
+    context_free_all(context, list_scratch(&lists, 0));
     context_free(context, lists.edges);
     if (!made) {
         patches_free(context, &p);
@@ -231,11 +223,10 @@ cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out) {
 }
 
 void patches_free(cscd_context *context, patches *p) {
-    void *blocks[] = {p->contour_offsets, p->contour_edges, p->inherited,     p->disks,  p->cones,
-                      p->scratch,         p->stack,         p->parent_tested, p->passed, p->tested,
-                      p->reached,         p->small_roots,   p->small_ends};
+    context_free_all(context, list_arrays(p));
+    context_free(context, p->contour_edges);
+    context_free(context, p->scratch);
     patch_tree_free(context, &p->tree);
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     *p = (patches){0};
 }
 
@@ -277,7 +268,7 @@ static void merge_cones(sealing *s) {
     }
 }
 
-static bool passes(const sealing *s, uint32_t node, contour_edge *scratch) {
+static bool passes_test(const sealing *s, uint32_t node, contour_edge *scratch) {
     const patches *p = s->p;
     size_t first = p->contour_offsets[node];
     const contour_query query = {.mesh = s->mesh,
@@ -291,14 +282,14 @@ static bool passes(const sealing *s, uint32_t node, contour_edge *scratch) {
     return contour_stays_simple(&query, scratch);
 }
 
-/* Returns whether the children are to be decided, too. */
-static bool decide(const sealing *s, uint32_t node, contour_edge *scratch) {
+/* Returns true if the children are to be decided, too. */
+static bool decide_node(const sealing *s, uint32_t node, contour_edge *scratch) {
     patches *p = s->p;
     const patch_node *n = &p->tree.nodes[node];
     if (patch_is_leaf(n)) return false;
     bool tested = p->cones[node].angle < INFINITY && (s->published || p->disks[node]);
     p->tested[node] = tested;
-    p->passed[node] = tested && passes(s, node, scratch);
+    p->passed[node] = tested && passes_test(s, node, scratch);
     if (p->passed[node]) return false;
     p->parent_tested[node + 1] = p->parent_tested[n->right] = tested;
     p->reached[node + 1] = p->reached[n->right] = true;
@@ -311,7 +302,7 @@ static void decide_wave(void *data, uint32_t lane) {
     for (;;) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= s->wave_end) return;
-        decide(s, p->stack[at], p->scratch + lane * p->longest);
+        decide_node(s, p->stack[at], p->scratch + lane * p->longest);
     }
 }
 
@@ -322,7 +313,7 @@ static void decide_small(void *data, uint32_t lane) {
         uint32_t at = atomic_fetch_add(&s->next, 1);
         if (at >= p->small_count) return;
         for (uint32_t i = p->small_roots[at]; i < p->small_ends[at]; i++) {
-            if (p->reached[i]) decide(s, i, p->scratch + lane * p->longest);
+            if (p->reached[i]) decide_node(s, i, p->scratch + lane * p->longest);
         }
     }
 }

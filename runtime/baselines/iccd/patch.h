@@ -5,7 +5,7 @@
 #include "runtime/baselines/iccd/normal_cone.h"
 #include "runtime/baselines/iccd/patch_tree.h"
 
-/* A patch: the triangles below a node. Contours are fixed, the rest is of the interval at hand. */
+/* A patch is the set of triangles below a node. Contours are fixed, the rest belongs to the current interval. */
 typedef struct patches {
     patch_tree tree;
     size_t *contour_offsets; /* the contour of node i: contour_edges[offsets[i] .. offsets[i + 1]) */
@@ -19,13 +19,13 @@ typedef struct patches {
     uint32_t *small_roots;        /* the largest small subtrees, in the order of nodes, */
     uint32_t small_count;         /* so many, */
     uint32_t *small_ends;         /* and one past the last node of each */
-    bool *parent_tested, *passed; /* per node, in the interval at hand; none below one that passed */
+    bool *parent_tested, *passed; /* per node, in the current interval; no node below one that passed */
     bool *tested, *reached;       /* its contour was; no node above it has passed */
     uint64_t contours, sealed;    /* tests made, patches that passed */
 } patches;
 
-/* For a BVH that is built, that can hide pairs; bounds do not matter. On failure there is
- * nothing to free. */
+/* The patches of a BVH that is built; makes room in it for hidden pairs. Bounds do not matter. On failure *out is
+ * untouched. */
 cscd_status patches_create(const cscd_mesh *mesh, bvh *f, patches *out);
 void patches_free(cscd_context *context, patches *p);
 

@@ -58,27 +58,27 @@ void patch_tree_free(cscd_context *context, patch_tree *tree) {
 }
 
 /* Rows and columns first to first + count - 1 of an 8 x 8 square of bits. */
-static uint64_t square(uint32_t first, uint32_t count) {
+static uint64_t bits_of_square(uint32_t first, uint32_t count) {
     uint64_t row = (uint64_t)(((1u << count) - 1) << first), bits = 0;
     for (uint32_t i = first; i < first + count; i++) bits |= row << (8 * i);
     return bits;
 }
 
-static void hide(const patch_node *node, bvh *f) {
+static void hide_patch(const patch_node *node, bvh *f) {
     if (node->height <= LEAF_HEIGHT) {
         uint32_t index = f->trees[node->tree].first_leaf + node->first_slot / LANES;
-        f->leaf_self_pairs[index] &= ~square(node->first_slot % LANES, 1u << node->height);
+        f->leaf_self_pairs[index] &= ~bits_of_square(node->first_slot % LANES, 1u << node->height);
         return;
     }
     int level = (int)(node->height - LEAF_HEIGHT - 1) / HEIGHT_PER_LEVEL;
     uint32_t unit_height = LEAF_HEIGHT + HEIGHT_PER_LEVEL * (uint32_t)level;
     uint32_t child = node->first_slot >> unit_height, count = 1u << (node->height - unit_height);
     uint32_t block = f->trees[node->tree].first_blocks[level] + child / LANES;
-    f->levels[level].self_pairs[block] &= ~square(child % LANES, count);
+    f->levels[level].self_pairs[block] &= ~bits_of_square(child % LANES, count);
 }
 
 void patch_tree_hide(const patch_tree *tree, const bool *sealed, bvh *f) {
     for (uint32_t i = 0; i < tree->node_count; i++) {
-        if (sealed[i]) hide(&tree->nodes[i], f);
+        if (sealed[i]) hide_patch(&tree->nodes[i], f);
     }
 }

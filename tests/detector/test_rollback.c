@@ -1,0 +1,62 @@
+/* What a call that fails must restore is restored, and only where a call can be cancelled. */
+#include "runtime/detector/rollback.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+static scene shape; /* large; one test at a time */
+
+static bool go_on(void *user, const char *stage, double fraction) {
+    (void)user;
+    (void)stage;
+    (void)fraction;
+    return true;
+}
+
+/* Saves, changes everything that a call may change, and restores. Returns whether all is as it was. */
+static bool comes_back(bool cancellable) {
+    cscd_context_options options = cscd_context_defaults();
+    if (cancellable) options.progress.report = go_on;
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    scene_make(SCENE_TWO_SPHERES, 1, &shape);
+    cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    start_states s;
+    rollback r = {.triangles = NULL};
+    bvh_rebuild trees = {.intervals_unmeasured = 7};
+    assert_int_equal(start_states_create(mesh, &s), CSCD_OK);
+    assert_int_equal(rollback_create(mesh, &r), CSCD_OK);
+    memset(s.triangles, TRIANGLE_CLEAN, shape.triangle_count);
+    s.of[1].waiting = 4;
+    s.vouched = true;
+    start_states_count(&s);
+    rollback_save(&r, &s, &trees);
+
+    start_states_taint(&s, 3);
+    s.of[1].waiting = 3;
+    s.vouched = false;
+    trees.intervals_unmeasured = 8;
+    rollback_restore(&r, &s, &trees);
+    start_states_count(&s);
+    bool same = s.triangles[3] == TRIANGLE_CLEAN && s.of[1].waiting == 4 && s.vouched &&
+                trees.intervals_unmeasured == 7 && s.of[0].unknown == 0;
+    rollback_free(context, &r);
+    start_states_destroy(&s);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    return same;
+}
+
+static void a_call_that_can_be_cancelled_is_undone(void **state) {
+    (void)state;
+    assert_true(comes_back(true));
+    assert_false(comes_back(false)); /* no memory is taken, and nothing changes */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_call_that_can_be_cancelled_is_undone)};
+    return cmocka_run_group_tests_name("rollback", tests, NULL, NULL);
+}

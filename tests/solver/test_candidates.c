@@ -1,0 +1,62 @@
+/* Candidates of a motion hold every contact of it and of every shorter motion. */
+#include "runtime/detector/contact_list.h"
+#include "runtime/solver/candidates.h"
+#include "runtime/solver/free_step.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+static scene interval; /* large; one test at a time */
+static double end[SCENE_VERTICES_MAX * 3];
+
+static size_t count_of(const candidates *c) {
+    return c->lists[CSCD_CONTACT_VF].count + c->lists[CSCD_CONTACT_EE].count;
+}
+
+/* Tests the candidates up to a share of the motion; their contacts are those of a step there. */
+static size_t compare_share(const rig *r, const rig *reference, const candidates *c, double share,
+                            result_buffer *buffer) {
+    cscd_detector *d = r->detector;
+    cscd_contacts expected, found;
+    cscd_counters counters = {.vf = 0};
+    straight_motion m = {interval.vertex_count, interval.x0, interval.x1};
+    motion_at(&m, share, end);
+    interval_search search = interval_search_begin(&d->space, interval.x0, end, d->limit);
+    assert_int_equal(candidates_test(c, &search), CSCD_OK);
+    assert_int_equal(contact_list_collect(&d->space, &d->exclusions, buffer, &counters, &found), CSCD_OK);
+    assert_int_equal(cscd_detector_step(reference->detector, interval.x0, end, &expected), CSCD_OK);
+    assert_int_equal(found.count, expected.count);
+    if (found.count > 0) assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
+    return found.count;
+}
+
+static void candidates_hold_every_contact(void **state) {
+    size_t contacts = 0, collected = 0, farther = 0;
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        candidates c = {.lists = {{.count = 0}}};
+        result_buffer buffer = {.capacity = 0};
+        scene_make((scene_family)family, 1, &interval);
+        rig r = rig_create(&interval, 1 + (uint32_t)family % 3, NULL),
+            reference = rig_create(&interval, 1, NULL);
+        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 1e-6, &c), CSCD_OK);
+        collected += count_of(&c);
+        contacts += compare_share(&r, &reference, &c, 1.0, &buffer);
+        contacts += compare_share(&r, &reference, &c, 0.4, &buffer);
+        size_t near = count_of(&c);
+        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 0.1, &c), CSCD_OK);
+        assert_true(count_of(&c) >= near);
+        farther += count_of(&c);
+        candidates_free(r.context, &c);
+        assert_int_equal(count_of(&c), 0);
+        result_buffer_free(r.context, &buffer);
+        rig_destroy(&reference);
+        rig_destroy(&r);
+    }
+    print_message("  %zu contacts of %zu candidates; %zu within 0.1\n", contacts, collected, farther);
+    assert_true(contacts > 100 && farther > collected);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(candidates_hold_every_contact)};
+    return cmocka_run_group_tests_name("candidates", tests, NULL, NULL);
+}

@@ -1,0 +1,82 @@
+/* Steps that shrink until one is free, for tests of motions that the test program makes up. */
+#include "runtime/solver/free_step.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+
+static scene shape; /* large; one test at a time */
+static double ends[SCENE_VERTICES_MAX * 3], reached[SCENE_VERTICES_MAX * 3];
+
+/* A wall that every motion of vertex 0 along x meets at this coordinate; INFINITY: nowhere. */
+typedef struct wall {
+    double at;
+    uint32_t tests;
+    cscd_contact contact;
+} wall;
+
+static cscd_status test_wall(void *of, const double *from, const double *to, cscd_contacts *out) {
+    wall *w = of;
+    double way = to[0] - from[0];
+    bool touches = from[0] >= w->at || to[0] >= w->at;
+    w->tests++;
+    w->contact = (cscd_contact){.kind = CSCD_CONTACT_VF, .a = 4, .b = 9};
+    w->contact.toi = from[0] >= w->at || way <= 0.0 ? 0.0 : (w->at - from[0]) / way;
+    *out = (cscd_contacts){&w->contact, touches};
+    return CSCD_OK;
+}
+
+/* All vertices fly by 1 along x. */
+static rig make_flight(straight_motion *m) {
+    scene_make(SCENE_TWO_SPHERES, 1, &shape);
+    for (uint32_t i = 0; i < shape.vertex_count * 3; i++) ends[i] = shape.x0[i] + (i % 3 == 0);
+    *m = (straight_motion){shape.vertex_count, shape.x0, ends};
+    return rig_create(&shape, 1, NULL);
+}
+
+static void free_motions_are_whole_steps(void **state) {
+    straight_motion m;
+    cscd_free_step out;
+    (void)state;
+    rig r = make_flight(&m);
+    wall nowhere = {.at = INFINITY};
+    assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
+    assert_true(out.length == 1.0 && !out.limited && nowhere.tests == 1);
+    assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
+    assert_int_equal(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out), CSCD_OK);
+    assert_true(out.length == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
+    rig_destroy(&r);
+}
+
+static void limited_steps_end_before_the_wall(void **state) {
+    straight_motion m;
+    cscd_free_step out;
+    (void)state;
+    rig r = make_flight(&m);
+    for (double share = 0.9; share > 1e-6; share *= 0.1) {
+        wall w = {.at = shape.x0[0] + share};
+        assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_OK);
+        assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
+        assert_true(fabs(out.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+    }
+    rig_destroy(&r);
+}
+
+static void no_step_is_free_from_within(void **state) {
+    straight_motion m;
+    cscd_free_step out = {.length = -1.0};
+    (void)state;
+    rig r = make_flight(&m);
+    wall w = {.at = shape.x0[0]};
+    assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_IN_CONTACT);
+    assert_true(out.length == -1.0 && w.tests < 10);
+    rig_destroy(&r);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(free_motions_are_whole_steps),
+                                       cmocka_unit_test(limited_steps_end_before_the_wall),
+                                       cmocka_unit_test(no_step_is_free_from_within)};
+    return cmocka_run_group_tests_name("free_step", tests, NULL, NULL);
+}
