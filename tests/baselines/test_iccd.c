@@ -16,14 +16,14 @@ enum { BRUTE_EVERY = 25, OPTIONS_EVERY = 5 };
 static scene interval; /* large; one test at a time */
 
 /* What a detector gave. */
-typedef struct outcome {
+typedef struct iccd_outcome {
     rig objects;
     cscd_contacts contacts;
     cscd_counters counters;
-} outcome;
+} iccd_outcome;
 
-static outcome run(cscd_detector_options options, cscd_method method, uint32_t threads) {
-    outcome out;
+static iccd_outcome run(cscd_detector_options options, cscd_method method, uint32_t threads) {
+    iccd_outcome out;
     options.method = method;
     out.objects = rig_create(&interval, threads, &options);
     out.contacts = rig_step(&out.objects, &interval);
@@ -38,18 +38,18 @@ static void check_same(const cscd_contacts *found, const cscd_contacts *truth) {
 }
 
 /* The list of the method is that of none. */
-static outcome expect_same(cscd_detector_options options, cscd_method method, uint32_t threads,
-                           const cscd_contacts *truth) {
-    outcome out = run(options, method, threads);
+static iccd_outcome expect_same(cscd_detector_options options, cscd_method method, uint32_t threads,
+                                const cscd_contacts *truth) {
+    iccd_outcome out = run(options, method, threads);
     check_same(&out.contacts, truth);
     return out;
 }
 
-typedef struct tally {
+typedef struct iccd_tally {
     uint64_t contacts, contours, sealed, pairs, pairs_without, intervals_published_loses, lost;
-} tally;
+} iccd_tally;
 
-static void add_tally(tally *sum, const tally *t) {
+static void add_tally(iccd_tally *sum, const iccd_tally *t) {
     sum->contacts += t->contacts;
     sum->contours += t->contours;
     sum->sealed += t->sealed;
@@ -59,7 +59,7 @@ static void add_tally(tally *sum, const tally *t) {
     sum->lost += t->lost;
 }
 
-static void print_tally(const char *name, const tally *t) {
+static void print_tally(const char *name, const iccd_tally *t) {
     print_message("  %-14s %7llu contacts; %7llu contours tested, %6llu patches sealed; pairs %5.1f %%; as "
                   "published %6llu lost, in %3llu intervals\n",
                   name, (unsigned long long)t->contacts, (unsigned long long)t->contours,
@@ -76,24 +76,24 @@ static uint64_t count_lost(const cscd_contacts *found, const cscd_contacts *trut
     return truth->count - found->count;
 }
 
-static void run_interval(uint32_t seed, tally *sum) {
+static void run_interval(uint32_t seed, iccd_tally *sum) {
     cscd_detector_options options = cscd_detector_defaults();
-    outcome none = run(options, CSCD_METHOD_NONE, 1);
-    outcome iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
-    outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+    iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+    iccd_outcome iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+    iccd_outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
     if (seed % BRUTE_EVERY == 0) {
-        outcome brute = expect_same(options, CSCD_METHOD_BRUTE, 1, &iccd.contacts);
+        iccd_outcome brute = expect_same(options, CSCD_METHOD_BRUTE, 1, &iccd.contacts);
         rig_destroy(&brute.objects);
     }
     assert_true(iccd.counters.pcp <= none.counters.pcp);
     uint64_t lost = count_lost(&published.contacts, &none.contacts);
-    const tally own = {.contacts = none.contacts.count,
-                       .contours = iccd.counters.contours,
-                       .sealed = iccd.counters.sealed,
-                       .pairs = iccd.counters.pcp,
-                       .pairs_without = none.counters.pcp,
-                       .intervals_published_loses = lost > 0,
-                       .lost = lost};
+    const iccd_tally own = {.contacts = none.contacts.count,
+                            .contours = iccd.counters.contours,
+                            .sealed = iccd.counters.sealed,
+                            .pairs = iccd.counters.pcp,
+                            .pairs_without = none.counters.pcp,
+                            .intervals_published_loses = lost > 0,
+                            .lost = lost};
     add_tally(sum, &own);
     rig_destroy(&none.objects);
     rig_destroy(&iccd.objects);
@@ -101,10 +101,10 @@ static void run_interval(uint32_t seed, tally *sum) {
 }
 
 static void contacts_equal_those_of_none(void **state) {
-    tally sum = {0};
+    iccd_tally sum = {0};
     (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        tally own = {0};
+        iccd_tally own = {0};
         for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
             scene_make((scene_family)family, seed + 30000, &interval);
             run_interval(seed, &own);
@@ -131,23 +131,23 @@ static void options_change_nothing(void **state) {
     for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY * SCENE_FAMILY_COUNT; seed += OPTIONS_EVERY) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 40000, &interval);
-        outcome none = run(options, CSCD_METHOD_NONE, 1);
-        outcome threaded = expect_same(options, CSCD_METHOD_ICCD, 4, &none.contacts);
+        iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+        iccd_outcome threaded = expect_same(options, CSCD_METHOD_ICCD, 4, &none.contacts);
         options.mode = CSCD_MODE_EARLIEST;
-        outcome earliest = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+        iccd_outcome earliest = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
         assert_int_equal(threaded.counters.pcp, earliest.counters.pcp);
         assert_int_equal(threaded.counters.boxes_tested, earliest.counters.boxes_tested);
         options.ignore = ignore_some;
-        outcome some = run(options, CSCD_METHOD_NONE, 1);
-        outcome some_iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &some.contacts);
+        iccd_outcome some = run(options, CSCD_METHOD_NONE, 1);
+        iccd_outcome some_iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &some.contacts);
         kept += some.contacts.count;
-        outcome *done[] = {&none, &threaded, &earliest, &some, &some_iccd};
+        iccd_outcome *done[] = {&none, &threaded, &earliest, &some, &some_iccd};
         for (int i = 0; i < 5; i++) rig_destroy(&done[i]->objects);
         if (seed % (8 * OPTIONS_EVERY) != 0) continue;
         options = cscd_detector_defaults();
         options.min_separation = 0.01;
         none = run(options, CSCD_METHOD_NONE, 1);
-        outcome apart = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+        iccd_outcome apart = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
         assert_int_equal(apart.counters.pcp, none.counters.pcp);
         assert_int_equal(apart.counters.contours, 0);
         assert_int_equal(cscd_detector_guarantee(apart.objects.detector, 0).reason, CSCD_REASON_METHOD);
@@ -164,7 +164,7 @@ static void steps_do_not_remember(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)family, 50000, &interval);
-        outcome none = run(options, CSCD_METHOD_NONE, 1), iccd = run(options, CSCD_METHOD_ICCD, 1);
+        iccd_outcome none = run(options, CSCD_METHOD_NONE, 1), iccd = run(options, CSCD_METHOD_ICCD, 1);
         const double *ends[4] = {interval.x1, interval.x0, interval.x0, interval.x1};
         const double *x = interval.x0;
         for (int i = 0; i < 4; i++) {
@@ -193,14 +193,14 @@ static void scales_change_nothing(void **state) {
             if (interval.x1[i] < 1e-3 && interval.x1[i] > -1e-3) interval.x1[i] = 0.0;
         }
         scene original = interval;
-        outcome plain = run(options, CSCD_METHOD_ICCD, 1);
+        iccd_outcome plain = run(options, CSCD_METHOD_ICCD, 1);
         for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
             for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
                 interval.x0[i] = original.x0[i] * scales[k];
                 interval.x1[i] = original.x1[i] * scales[k];
             }
-            outcome none = run(options, CSCD_METHOD_NONE, 1);
-            outcome scaled = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
+            iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+            iccd_outcome scaled = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
             assert_int_equal(scaled.counters.sealed, k < 4 ? plain.counters.sealed : 0);
             rig_destroy(&none.objects);
             rig_destroy(&scaled.objects);
@@ -218,8 +218,8 @@ static void guarantees_say_how(void **state) {
         for (int mode = 0; mode < 2; mode++) {
             cscd_detector_options options = cscd_detector_defaults();
             options.mode = (cscd_mode)mode;
-            outcome iccd = run(options, CSCD_METHOD_ICCD, 1);
-            outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+            iccd_outcome iccd = run(options, CSCD_METHOD_ICCD, 1);
+            iccd_outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
             for (uint32_t c = 0; c < cscd_mesh_component_count(iccd.objects.mesh); c++) {
                 cscd_guarantee g = cscd_detector_guarantee(iccd.objects.detector, c);
                 assert_true(g.complete);

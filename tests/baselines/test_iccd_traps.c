@@ -33,14 +33,14 @@ static void add_quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
 }
 
 /* Contacts and counters of a method; s stays. */
-typedef struct outcome {
+typedef struct trap_outcome {
     rig objects;
     cscd_contacts contacts;
     cscd_counters counters;
-} outcome;
+} trap_outcome;
 
-static outcome run(cscd_method method) {
-    outcome out;
+static trap_outcome run(cscd_method method) {
+    trap_outcome out;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
     out.objects = rig_create(&s, 1, &options);
@@ -53,8 +53,8 @@ static outcome run(cscd_method method) {
 typedef enum loss { LOSES_SOME, LOSES_ALL } loss;
 
 static cscd_counters expect_complete(loss lost) {
-    outcome none = run(CSCD_METHOD_NONE), brute = run(CSCD_METHOD_BRUTE), iccd = run(CSCD_METHOD_ICCD);
-    outcome published = run(CSCD_METHOD_ICCD_PUBLISHED);
+    trap_outcome none = run(CSCD_METHOD_NONE), brute = run(CSCD_METHOD_BRUTE), iccd = run(CSCD_METHOD_ICCD);
+    trap_outcome published = run(CSCD_METHOD_ICCD_PUBLISHED);
     size_t count = none.contacts.count;
     assert_true(count > 0);
     assert_int_equal(brute.contacts.count, count);
@@ -67,7 +67,7 @@ static cscd_counters expect_complete(loss lost) {
     if (lost == LOSES_ALL) assert_int_equal(published.contacts.count, 0);
     if (lost == LOSES_SOME) assert_true(published.contacts.count < count);
     cscd_counters counters = iccd.counters;
-    outcome *all[4] = {&none, &brute, &iccd, &published};
+    trap_outcome *all[4] = {&none, &brute, &iccd, &published};
     for (int i = 0; i < 4; i++) rig_destroy(&all[i]->objects);
     return counters;
 }

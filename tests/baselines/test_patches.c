@@ -18,17 +18,17 @@ enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };
 static scene s; /* large; one test at a time */
 
 /* A mesh, its tree of one region, and the patches of this. */
-typedef struct subject {
+typedef struct patch_subject {
     cscd_context *context;
     cscd_mesh *mesh;
     uint32_t *regions;
     double *weights;
     bvh bvh;
     patches patches;
-} subject;
+} patch_subject;
 
-static subject subject_create(cscd_mesh_desc desc, const double *positions) {
-    subject f = {0};
+static patch_subject subject_create(cscd_mesh_desc desc, const double *positions) {
+    patch_subject f = {0};
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
     f.regions = calloc(desc.triangle_count, sizeof *f.regions);
@@ -40,7 +40,7 @@ static subject subject_create(cscd_mesh_desc desc, const double *positions) {
     return f;
 }
 
-static void subject_destroy(subject *f) {
+static void subject_destroy(patch_subject *f) {
     patches_free(f->context, &f->patches);
     bvh_free(&f->bvh);
     free(f->weights);
@@ -52,18 +52,18 @@ static void subject_destroy(subject *f) {
 /* ---- the reference --------------------------------------------------------------------------------- */
 
 /* A patch by itself: its triangles, how many of these hold each edge, a union-find over its vertices. */
-typedef struct reference {
+typedef struct reference_patches {
     const cscd_mesh *mesh;
     uint32_t *triangles, triangle_count;
     uint32_t *edge_counts, *roots, *vertex_seen;
-} reference;
+} reference_patches;
 
 static uint32_t root_of(uint32_t *roots, uint32_t v) {
     while (roots[v] != v) v = roots[v] = roots[roots[v]];
     return v;
 }
 
-static void collect(const patch_tree *tree, uint32_t node, reference *r) {
+static void collect(const patch_tree *tree, uint32_t node, reference_patches *r) {
     const patch_node *n = &tree->nodes[node];
     if (patch_is_leaf(n)) {
         r->triangles[r->triangle_count++] = n->triangle;
@@ -74,7 +74,7 @@ static void collect(const patch_tree *tree, uint32_t node, reference *r) {
 }
 
 /* Vertices, edges and faces, V - E + F. */
-static int64_t characteristic(reference *r) {
+static int64_t characteristic(reference_patches *r) {
     int64_t sum = r->triangle_count;
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         for (int k = 0; k < 3; k++) {
@@ -86,7 +86,7 @@ static int64_t characteristic(reference *r) {
     return sum;
 }
 
-static bool is_connected(reference *r) {
+static bool is_connected(reference_patches *r) {
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         const uint32_t *t = r->mesh->triangles[r->triangles[i]];
         for (int k = 0; k < 3; k++) r->roots[t[k]] = t[k];
@@ -141,7 +141,7 @@ static bool contains(const uint32_t *list, size_t count, uint32_t value) {
 }
 
 /* The edges of an odd number of triangles, what the parent has too in front. */
-static void check_contour(const patches *p, const reference *r, uint32_t node, uint32_t parent) {
+static void check_contour(const patches *p, const reference_patches *r, uint32_t node, uint32_t parent) {
     const uint32_t *own = p->contour_edges + p->contour_offsets[node], *above = NULL;
     size_t size = p->contour_offsets[node + 1] - p->contour_offsets[node], above_size = 0;
     if (parent != UINT32_MAX) {
@@ -160,11 +160,12 @@ static void check_contour(const patches *p, const reference *r, uint32_t node, u
     }
 }
 
-typedef struct tally {
+typedef struct patch_tally {
     uint32_t nodes, disks;
-} tally;
+} patch_tally;
 
-static void check_node(const subject *f, reference *r, uint32_t node, uint32_t parent, tally *sum) {
+static void check_node(const patch_subject *f, reference_patches *r, uint32_t node, uint32_t parent,
+                       patch_tally *sum) {
     const patches *p = &f->patches;
     size_t begin = p->contour_offsets[node], size = p->contour_offsets[node + 1] - begin;
     r->triangle_count = 0;
@@ -184,10 +185,10 @@ static void check_node(const subject *f, reference *r, uint32_t node, uint32_t p
     sum->disks += disk;
 }
 
-static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
-    tally sum = {0};
-    subject f = subject_create(desc, positions);
-    reference r = {.mesh = f.mesh};
+static patch_tally check_mesh(cscd_mesh_desc desc, const double *positions) {
+    patch_tally sum = {0};
+    patch_subject f = subject_create(desc, positions);
+    reference_patches r = {.mesh = f.mesh};
     uint32_t *parents = calloc(f.patches.tree.node_count, sizeof *parents);
     r.triangles = calloc(desc.triangle_count, sizeof *r.triangles);
     r.edge_counts = calloc(f.mesh->edge_count, sizeof *r.edge_counts);
@@ -213,10 +214,11 @@ static tally check_mesh(cscd_mesh_desc desc, const double *positions) {
 static void disks_of_scenes(void **state) {
     (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
-        tally sum = {0};
+        patch_tally sum = {0};
         for (uint32_t seed = 0; seed < SCENES_PER_FAMILY; seed++) {
             scene_make((scene_family)family, seed + 800, &s);
-            tally own = check_mesh((cscd_mesh_desc){s.vertex_count, s.triangle_count, s.triangles}, s.x0);
+            patch_tally own =
+                check_mesh((cscd_mesh_desc){s.vertex_count, s.triangle_count, s.triangles}, s.x0);
             sum.nodes += own.nodes;
             sum.disks += own.disks;
         }
@@ -231,7 +233,8 @@ static void disks_of_bodies(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         body b = body_of(kinds[i], body_nearest_count(kinds[i], BODY_TRIANGLES));
-        tally sum = check_mesh((cscd_mesh_desc){b.vertex_count, b.triangle_count, b.triangles}, b.positions);
+        patch_tally sum =
+            check_mesh((cscd_mesh_desc){b.vertex_count, b.triangle_count, b.triangles}, b.positions);
         print_message("  %-14s %6u nodes, %6u disks\n", body_kind_name(kinds[i]), sum.nodes, sum.disks);
         assert_true(sum.disks > sum.nodes / 2 && sum.disks < sum.nodes);
         body_free(&b);
@@ -273,7 +276,7 @@ static void patches_of_any_shape(void **state) {
 
 static bool root_is_disk(const shape *given) {
     double positions[3 * 400] = {0};
-    subject f = subject_create(
+    patch_subject f = subject_create(
         (cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
     bool disk = f.patches.disks[0];
     subject_destroy(&f);

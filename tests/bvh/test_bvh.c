@@ -116,7 +116,7 @@ static int bounded_levels(const bvh *f) {
 }
 
 /* All bounds above a triangle hold one of its corners, and what lies within half the distance of it. */
-static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, double distance) {
+static void check_held(const bvh *f, uint32_t leaf, gap_motion m, uint32_t vertex, double distance) {
     const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int moment = 0; moment < 3; moment++) {
         long double own[3], common[3];
@@ -138,7 +138,7 @@ static void check_held(const bvh *f, uint32_t leaf, motion m, uint32_t vertex, d
 }
 
 /* Bounds of a leaf are no wider than documented. */
-static void check_leaf_tight(const bvh *f, uint32_t leaf, motion m) {
+static void check_leaf_tight(const bvh *f, uint32_t leaf, gap_motion m) {
     const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int axis = 0; axis < f->axis_count; axis++) {
         long double least = INFINITY, greatest = -INFINITY;
@@ -174,7 +174,7 @@ static void check_union(const bvh *f, int level, uint32_t child) {
     }
 }
 
-static void check_bounds(const bvh *f, motion m, double distance) {
+static void check_bounds(const bvh *f, gap_motion m, double distance) {
     for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
         for (int i = 0; i < 3 * LANES; i++) {
             uint32_t record = f->leaves[leaf].corners[i % 3][i / 3];
@@ -200,9 +200,9 @@ static void check_scene(const scene *s, int axis_count, uint32_t region_count, d
     assert_true(bvh_rig_create(s, (bvh_setup){CSCD_SIMD_AUTO, 1, axis_count, region_count}, &r));
     find_places(&r.bvh);
     bvh_refit(&r.bvh, s->x0, s->x1, distance);
-    check_bounds(&r.bvh, (motion){s->x0, s->x1}, distance);
+    check_bounds(&r.bvh, (gap_motion){s->x0, s->x1}, distance);
     bvh_refit(&r.bvh, s->x1, s->x1, 0.0);
-    check_bounds(&r.bvh, (motion){s->x1, s->x1}, 0.0);
+    check_bounds(&r.bvh, (gap_motion){s->x1, s->x1}, 0.0);
     bvh_rig_destroy(&r);
 }
 
@@ -247,7 +247,7 @@ static void bounds_at_changing_scales(void **state) {
         scale_scene(&shape, from[i], &start);
         scale_scene(&shape, to[i], &end);
         bvh_refit(&r.bvh, start.x0, end.x1, 0.0);
-        check_bounds(&r.bvh, (motion){start.x0, end.x1}, 0.0);
+        check_bounds(&r.bvh, (gap_motion){start.x0, end.x1}, 0.0);
     }
     bvh_rig_destroy(&r);
 }

@@ -40,13 +40,13 @@ static void pose(double opened, double out[VERTICES][3]) {
     }
 }
 
-typedef struct run {
+typedef struct rebuild_run {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
-} run;
+} rebuild_run;
 
-static void open_run_on(run *r, uint32_t threads, cscd_mesh_desc desc) {
+static void open_run_on(rebuild_run *r, uint32_t threads, cscd_mesh_desc desc) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = threads;
     assert_int_equal(cscd_context_create(&options, &r->context), CSCD_OK);
@@ -54,24 +54,24 @@ static void open_run_on(run *r, uint32_t threads, cscd_mesh_desc desc) {
     assert_int_equal(cscd_detector_create(r->mesh, NULL, NULL, &r->detector), CSCD_OK);
 }
 
-static void open_run(run *r, uint32_t threads) {
+static void open_run(rebuild_run *r, uint32_t threads) {
     open_run_on(r, threads, (cscd_mesh_desc){VERTICES, TRIANGLES, &triangles[0][0]});
 }
 
-static void close_run(run *r) {
+static void close_run(rebuild_run *r) {
     cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
 }
 
-static cscd_counters step(run *r) {
+static cscd_counters step(rebuild_run *r) {
     cscd_contacts found;
     assert_int_equal(cscd_detector_step(r->detector, &before[0][0], &after[0][0], &found), CSCD_OK);
     return cscd_detector_counters(r->detector);
 }
 
 static void pulled_flat(void **state) {
-    run one, three, rebuilt;
+    rebuild_run one, three, rebuilt;
     cscd_counters last = {0};
     uint64_t rebuilds = 0;
     (void)state;
@@ -101,7 +101,7 @@ static void pulled_flat(void **state) {
 
 /* Lines alone keep the trees as steps do. */
 static void lines_build_anew(void **state) {
-    run r, rebuilt;
+    rebuild_run r, rebuilt;
     cscd_line *line = NULL;
     (void)state;
     make_strip();
@@ -126,7 +126,7 @@ static void lines_build_anew(void **state) {
 
 /* What only moves and bends keeps its trees. */
 static void flat_stays(void **state) {
-    run r;
+    rebuild_run r;
     (void)state;
     make_strip();
     open_run(&r, 1);
@@ -168,7 +168,7 @@ static void place_bodies(double flown, double out[BODIES][4][3]) {
     }
 }
 
-static cscd_counters step_bodies(run *r) {
+static cscd_counters step_bodies(rebuild_run *r) {
     cscd_contacts found;
     assert_int_equal(cscd_detector_step(r->detector, &rest[0][0][0], &moved[0][0][0], &found), CSCD_OK);
     return cscd_detector_counters(r->detector);
@@ -177,7 +177,7 @@ static cscd_counters step_bodies(run *r) {
 /* Bodies that change places leave the blocks of trees in disorder, though each of them stays as it is. */
 static void bodies_change_places(void **state) {
     const cscd_mesh_desc desc = {BODIES * 4, BODIES * 4, &faces[0][0]};
-    run r, rebuilt;
+    rebuild_run r, rebuilt;
     (void)state;
     make_bodies();
     place_bodies(0.0, rest);

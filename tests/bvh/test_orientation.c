@@ -238,7 +238,7 @@ static void expected_point(const bvh_rig *r, uint32_t region, const double *x, l
 
 static void check_points(const bvh_rig *r, const double (*offsets)[3], bool still) {
     const bvh *f = &r->bvh;
-    double extent = motion_extent((motion){shape.x0, shape.x1}, shape.vertex_count);
+    double extent = motion_extent((gap_motion){shape.x0, shape.x1}, shape.vertex_count);
     for (uint32_t i = 0; i < f->tree_count; i++) {
         const bvh_tree *p = &f->trees[i];
         for (int end = 0; end < 2; end++) {

@@ -58,7 +58,7 @@ static void traverse(const bvh_rig *r, traversal_pass pass, pair_table *out) {
 
 /* Pairs that no direction separates are found, and none that one separates by more than rounding. */
 static void check_against_gaps(const pair_table *table, double distance) {
-    motion m = {shape.x0, shape.x1};
+    gap_motion m = {shape.x0, shape.x1};
     long double rounding = 0x1p-16L * motion_extent(m, shape.vertex_count);
     for (uint32_t a = 0; a < shape.triangle_count; a++) {
         for (uint32_t b = a + 1; b < shape.triangle_count; b++) {

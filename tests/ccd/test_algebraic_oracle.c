@@ -9,12 +9,12 @@
 #include <math.h>
 #include <stdio.h>
 
-typedef struct known_case {
+typedef struct algebraic_case {
     const char *name;
     elementary_query query;
     double scale[3];
     long double toi; /* exact to long double; 2: never */
-} known_case;
+} algebraic_case;
 
 #define UNIT                                                                                                 \
     { 1, 1, 1 }
@@ -28,7 +28,7 @@ typedef struct known_case {
 #define SQRT_HALF                    0.70710678118654752440084436210484903928L
 #define CBRT_HALF                    0.79370052598409973737585281963615413020L
 
-static const known_case vf_cases[] = {
+static const algebraic_case vf_cases[] = {
     {"through the inside", FALL(1, 1, 1, 1, 1, -1), 1 / 2.0L},
     {"at a third", FALL(1, 1, 2, 1, 1, -1), 2 / 3.0L},
     {"beside the face", FALL(3, 2, 1, 3, 2, -1), NEVER},
@@ -138,7 +138,7 @@ static const known_case vf_cases[] = {
         1, 0, 0                                                                                              \
     }
 
-static const known_case ee_cases[] = {
+static const algebraic_case ee_cases[] = {
     {"cross", {{LYING, {0, -1, 1}, {0, 1, 1}}, {LYING, {0, -1, -1}, {0, 1, -1}}}, UNIT, 0.5L},
     {"at a third", {{LYING, {0, -1, 2}, {0, 1, 2}}, {LYING, {0, -1, -1}, {0, 1, -1}}}, UNIT, 2 / 3.0L},
     {"beside the end", {{LYING, {2, -1, 1}, {2, 1, 1}}, {LYING, {2, -1, -1}, {2, 1, -1}}}, UNIT, NEVER},
@@ -247,7 +247,7 @@ static elementary_query scaled_axes(const elementary_query *query, const double 
     return out;
 }
 
-static void check_known(cscd_contact_kind kind, const known_case *known, size_t count) {
+static void check_known(cscd_contact_kind kind, const algebraic_case *known, size_t count) {
     for (size_t i = 0; i < count; i++) {
         elementary_query query = scaled_axes(&known[i].query, known[i].scale);
         oracle_verdict found = algebraic_oracle(kind, &query);

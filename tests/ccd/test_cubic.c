@@ -22,15 +22,15 @@ static int seed(void **state) {
 
 /* leading (t - root) ((t - centre)^2 + shift): a pair of real roots, a double one, or a pair of complex
  * ones. */
-typedef struct polynomial {
+typedef struct test_polynomial {
     long double leading, root, centre, shift;
-} polynomial;
+} test_polynomial;
 
-static long double value_at(const polynomial *f, long double t) {
+static long double value_at(const test_polynomial *f, long double t) {
     return f->leading * (t - f->root) * ((t - f->centre) * (t - f->centre) + f->shift);
 }
 
-static void to_bernstein(const polynomial *f, double b[4]) {
+static void to_bernstein(const test_polynomial *f, double b[4]) {
     long double l0 = -f->leading * f->root, l1 = f->leading * (1 - f->root);
     long double c = f->centre, q0 = c * c + f->shift, q1 = q0 - c, q2 = (1 - c) * (1 - c) + f->shift;
     b[0] = (double)(l0 * q0);
@@ -50,7 +50,7 @@ typedef struct root_list {
 } root_list;
 
 /* Outside of the intervals no cubic within error of this one has a root. */
-static void check_where_small(const root_list *list, const polynomial *f, long double t) {
+static void check_where_small(const root_list *list, const test_polynomial *f, long double t) {
     if (t < 0 || t > 1 || fabsl(value_at(f, t)) > list->error - list->slack) return;
     bool found = false;
     for (int i = 0; i < list->count; i++) found |= t >= list->items[i].begin && t <= list->items[i].end;
@@ -58,7 +58,7 @@ static void check_where_small(const root_list *list, const polynomial *f, long d
 }
 
 /* Ascending, disjoint, narrow; where certain, every cubic within error changes its sign between the ends. */
-static void check_intervals(const root_list *list, const polynomial *f) {
+static void check_intervals(const root_list *list, const test_polynomial *f) {
     for (int i = 0; i < list->count; i++) {
         double begin = list->items[i].begin, end = list->items[i].end;
         assert_true(begin >= 0.0 && begin <= end && end <= 1.0 && end - begin < 1.0 / 64.0);
@@ -69,7 +69,7 @@ static void check_intervals(const root_list *list, const polynomial *f) {
     }
 }
 
-static root_list find(const polynomial *f, double relative_error) {
+static root_list find(const test_polynomial *f, double relative_error) {
     coplanarity cubic;
     to_bernstein(f, cubic.b);
     cubic.error = relative_error * largest_coefficient(cubic.b);
@@ -80,7 +80,7 @@ static root_list find(const polynomial *f, double relative_error) {
 }
 
 /* Returns whether the roots could be isolated. */
-static bool check_polynomial(const polynomial *f) {
+static bool check_polynomial(const test_polynomial *f) {
     root_list list = find(f, random_integer(0, 1) ? 0x1p-44 : ldexp(1.0, -random_integer(20, 43)));
     if (list.count == ROOTS_UNCERTAIN) return false;
     check_intervals(&list, f);
@@ -121,7 +121,7 @@ static void known_roots(void **state) {
     int isolated = 0;
     (void)state;
     for (int round = 0; round < 5 * ROUND_COUNT; round++) {
-        polynomial f = {.root = random_root(), .centre = random_root()};
+        test_polynomial f = {.root = random_root(), .centre = random_root()};
         if (random_integer(0, 2) == 0) f.root = f.centre + random_integer(-1, 1) * tiny();
         f.shift = random_integer(-1, 1) * tiny();
         if (random_integer(0, 3) == 0) f.shift = random_unit();
@@ -136,7 +136,7 @@ static void known_roots(void **state) {
 static void tiny_leading_coefficient(void **state) {
     (void)state;
     for (int exponent = 1; exponent < 1000; exponent++) {
-        polynomial f = {.root = ldexp(random_unit(), exponent), .centre = random_between(0.0, 1.0)};
+        test_polynomial f = {.root = ldexp(random_unit(), exponent), .centre = random_between(0.0, 1.0)};
         f.leading = ldexp(1.0, -exponent);
         f.shift = random_integer(-1, 1) * tiny();
         if (fabsl(f.root) > 1) check_polynomial(&f);
@@ -148,8 +148,8 @@ static void separate_roots(void **state) {
     (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         double spread = random_between(0.05, 0.25), between = random_between(0.3, 0.7);
-        polynomial f = {1, between + (random_integer(0, 1) ? spread / 2 : -spread / 2), between,
-                        -(long double)spread * spread};
+        test_polynomial f = {1, between + (random_integer(0, 1) ? spread / 2 : -spread / 2), between,
+                             -(long double)spread * spread};
         root_list list = find(&f, 0x1p-44);
         assert_int_equal(list.count, 3);
         check_intervals(&list, &f);

@@ -13,14 +13,14 @@
 enum { BATCHES = 4000, POINTS = 4 * LANES };
 
 /* Eight pairs of features of their own. */
-typedef struct batch {
+typedef struct proximity_batch {
     double x0[POINTS][3], x1[POINTS][3];
     uint32_t triangles[LANES][3], edges[2 * LANES][2];
     uint32_t vf_a[LANES], faces[LANES], ee_a[LANES], ee_b[LANES];
-} batch;
+} proximity_batch;
 
 /* Small integers, at times the same ones again; or any numbers, at times far away, or moved far. */
-static void make_batch(batch *b, bool integers) {
+static void make_batch(proximity_batch *b, bool integers) {
     double far = random_integer(0, 3) == 0 ? 1e6 : 0.0, speed = pow(10.0, random_integer(-9, 2));
     for (uint32_t i = 0; i < POINTS; i++) {
         for (int k = 0; k < 3; k++) {
@@ -40,19 +40,19 @@ static void make_batch(batch *b, bool integers) {
 }
 
 /* With points 0 to 3 of the lane in order, either kind of pair is a query. */
-static elementary_query query_of(const batch *b, uint32_t lane) {
+static elementary_query query_of(const proximity_batch *b, uint32_t lane) {
     elementary_query query;
     memcpy(query.x0, b->x0[4 * lane], sizeof query.x0);
     memcpy(query.x1, b->x1[4 * lane], sizeof query.x1);
     return query;
 }
 
-typedef struct tally {
+typedef struct proximity_tally {
     size_t hits, misses, open;
-} tally;
+} proximity_tally;
 
-static void compare(const batch *b, const separation *limit, bool vf, const proximity_outcomes *found,
-                    tally *sum) {
+static void compare(const proximity_batch *b, const separation *limit, bool vf,
+                    const proximity_outcomes *found, proximity_tally *sum) {
     for (uint32_t i = 0; i < LANES; i++) {
         elementary_query query = query_of(b, i);
         elementary_hit hit;
@@ -74,8 +74,8 @@ static void compare(const batch *b, const separation *limit, bool vf, const prox
 /* Limits about the pairs' own distances, from which verdicts change. */
 static void never_against_the_test_of_one_pair(void **state) {
     (void)state;
-    static batch b;
-    tally sum = {0};
+    static proximity_batch b;
+    proximity_tally sum = {0};
     random_seed(7);
     for (int n = 0; n < BATCHES; n++) {
         bool vf = n % 2 == 0;

@@ -78,11 +78,11 @@ static size_t check_earliest(const reference *r, const scene *s, const cscd_dete
 
 /* ---- methods --------------------------------------------------------------------------------------- */
 
-typedef struct tally {
+typedef struct culling_tally {
     uint32_t intervals, embedded, first_contacts, lost;
     size_t contacts, missing;
     uint64_t pairs, pairs_without;
-} tally;
+} culling_tally;
 
 typedef struct variant {
     cscd_method method;
@@ -108,7 +108,7 @@ static bool all_embedded(const reference *r, const cscd_detector *detector) {
 }
 
 static void run_variant(const reference *r, const scene *s, variant v, cscd_mode mode, uint32_t seed,
-                        tally *sum) {
+                        culling_tally *sum) {
     cscd_plan *plan = make_plan(r, s, v, seed);
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
@@ -131,7 +131,7 @@ static void run_variant(const reference *r, const scene *s, variant v, cscd_mode
     cscd_plan_destroy(plan);
 }
 
-static void print_tally(const char *name, const tally *t) {
+static void print_tally(const char *name, const culling_tally *t) {
     print_message(
         "  %-15s %5u intervals, %4u embedded, %4u of these with contact; %7zu contacts, %6zu not in "
         "earliest; pairs %5.1f %%\n",
@@ -140,10 +140,10 @@ static void print_tally(const char *name, const tally *t) {
 }
 
 /* Modes alternate; each interval sees two of the variants in both. */
-static void run_family(scene_family family, tally *sum) {
+static void run_family(scene_family family, culling_tally *sum) {
     static const variant variants[3] = {
         {CSCD_METHOD_SINGLE, 0}, {CSCD_METHOD_KMEANS, 2}, {CSCD_METHOD_KMEANS, 5}};
-    tally own = {0};
+    culling_tally own = {0};
     for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
         scene_make(family, seed + 1000, &interval);
         reference r = reference_create(&interval);
@@ -164,7 +164,7 @@ static void run_family(scene_family family, tally *sum) {
 }
 
 static void culling_loses_no_first_contact(void **state) {
-    tally sum = {0};
+    culling_tally sum = {0};
     (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
     print_tally("all", &sum);

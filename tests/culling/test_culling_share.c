@@ -9,12 +9,12 @@
 
 enum { FRAME_COUNT = 16, TRIANGLE_COUNT = 2000 };
 
-typedef struct recording {
+typedef struct share_recording {
     body shape;
     cscd_context *context;
     cscd_mesh *mesh;
     double *frames[FRAME_COUNT];
-} recording;
+} share_recording;
 
 /* The body sways, turns at the hips, and walks on: a few edge lengths a frame. */
 static void pose(const body *shape, double t, double *out) {
@@ -28,7 +28,7 @@ static void pose(const body *shape, double t, double *out) {
 }
 
 static int record(void **state) {
-    static recording r;
+    static share_recording r;
     r.shape = body_of(BODY_FIGURE, TRIANGLE_COUNT);
     cscd_mesh_desc desc = {r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles};
     if (cscd_context_create(NULL, &r.context) != CSCD_OK) return -1;
@@ -43,7 +43,7 @@ static int record(void **state) {
 }
 
 static int release(void **state) {
-    recording *r = *state;
+    share_recording *r = *state;
     for (int i = 0; i < FRAME_COUNT; i++) free(r->frames[i]);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
@@ -57,7 +57,7 @@ typedef struct totals {
     bool all_clean;
 } totals;
 
-static totals replay(const recording *r, cscd_method method, cscd_mode mode) {
+static totals replay(const share_recording *r, cscd_method method, cscd_mode mode) {
     totals sum = {.all_clean = true};
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
@@ -82,7 +82,7 @@ static totals replay(const recording *r, cscd_method method, cscd_mode mode) {
 }
 
 static void a_quarter_of_the_pairs(void **state) {
-    const recording *r = *state;
+    const share_recording *r = *state;
     totals none = replay(r, CSCD_METHOD_NONE, CSCD_MODE_ALL);
     assert_int_equal(none.contacts, 0);
     static const cscd_method methods[2] = {CSCD_METHOD_SINGLE, CSCD_METHOD_CHARGE};

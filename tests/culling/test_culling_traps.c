@@ -39,15 +39,15 @@ static void move_to(uint32_t vertex, double x, double y, double z) {
     p[2] = z;
 }
 
-typedef struct result {
+typedef struct trap_result {
     size_t count;
     double earliest;
     cscd_guarantee guarantee; /* of component 0 */
     cscd_counters counters;
-} result;
+} trap_result;
 
-static result run(cscd_detector_options options, uint32_t k) {
-    result out = {.earliest = INFINITY};
+static trap_result run(cscd_detector_options options, uint32_t k) {
+    trap_result out = {.earliest = INFINITY};
     rig r = rig_create(&s, 1, NULL);
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
@@ -77,10 +77,10 @@ static cscd_detector_options with_mode(cscd_method method, cscd_mode mode) {
 
 /* Mode all equals no culling; mode earliest has the same first contact; one region and several. */
 static void check_first_contact(cscd_reason expected) {
-    result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    trap_result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     for (uint32_t k = 0; k <= 4; k++) {
-        result all = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_ALL), k);
-        result earliest = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k);
+        trap_result all = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_ALL), k);
+        trap_result earliest = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k);
         assert_int_equal(all.count, truth.count);
         assert_true(isinf(truth.earliest) == isinf(earliest.earliest));
         if (truth.count > 0) assert_true(fabs(earliest.earliest - truth.earliest) <= 1e-9);
@@ -105,7 +105,7 @@ static void pentagrammic_bipyramid(void **state) {
     for (uint32_t i = 0; i < s.vertex_count * 3; i++) s.x1[i] *= 1.1;
     cscd_detector_options vouched = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
     vouched.start = CSCD_START_VOUCHED;
-    result trusting = run(vouched, 0);
+    trap_result trusting = run(vouched, 0);
     assert_int_equal(trusting.counters.plus, s.triangle_count); /* or this test tests nothing */
     check_first_contact(CSCD_REASON_CROSSING);
     assert_true(run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > trusting.count);
@@ -226,7 +226,7 @@ static void inner_grows_through_outer(void **state) {
     scene_add_sphere(&s, origin, 0.5, 6, 8);
     keep_still();
     for (uint32_t i = outer * 3; i < s.vertex_count * 3; i++) s.x1[i] = 3.0 * s.x0[i];
-    result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    trap_result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     assert_true(truth.count > 0);
     for (uint32_t k = 0; k <= 4; k++)
         assert_int_equal(run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k).count, truth.count);
@@ -243,9 +243,9 @@ static void groove_with_minimum_separation(void **state) {
     move_to(2 * 3 + 1, 3.5, 8, 4);
     cscd_detector_options options = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
     options.min_separation = 1.0;
-    result found = run(options, 0);
+    trap_result found = run(options, 0);
     options.method = CSCD_METHOD_BRUTE;
-    result truth = run(options, 0);
+    trap_result truth = run(options, 0);
     assert_true(found.count > 0 && found.count == truth.count && found.earliest == truth.earliest);
     assert_int_equal(found.guarantee.reason, CSCD_REASON_METHOD);
     assert_true(found.guarantee.complete && found.counters.plus == 0);

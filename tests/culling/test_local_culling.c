@@ -25,10 +25,10 @@ static sequence q; /* large; one test at a time */
 
 /* ---- one mesh, several ways -------------------------------------------------------------------------- */
 
-typedef struct tally {
+typedef struct local_tally {
     uint64_t intervals, with_contact, partly_clean, all_clean, closing_passes, contacts, tests, tests_without;
     uint64_t small, exactly; /* intervals in which tests were counted, and in which there was no choice */
-} tally;
+} local_tally;
 
 enum { ALL_SINGLE, ALL_SCATTERED, ALL_PLANNED, UNKNOWN_SINGLE, EARLIEST_SCATTERED, CULLING_COUNT };
 
@@ -179,7 +179,7 @@ static bool all_adjacent(const cscd_mesh *m, star a, star b) {
     return true;
 }
 
-static void count_pair(const cscd_detector *d, motion m, long double rounding, point_set a, star of_a,
+static void count_pair(const cscd_detector *d, gap_motion m, long double rounding, point_set a, star of_a,
                        point_set b, star of_b, test_range *range) {
     if (!any_kept(&d->culling, of_a.triangles, of_a.count, of_b.triangles, of_b.count)) return;
     long double gap = direction_gap(m, a, b, rounding);
@@ -193,7 +193,7 @@ static star star_of_edge(const cscd_mesh *m, uint32_t edge) {
     return (star){m->edge_stars + m->edge_star_offsets[edge], edge_star_size(m, edge)};
 }
 
-static test_range expected_tests(const cscd_detector *d, motion moved) {
+static test_range expected_tests(const cscd_detector *d, gap_motion moved) {
     const cscd_mesh *m = d->mesh;
     test_range range = {0, 0};
     long double rounding = 0x1p-14L * motion_extent(moved, m->vertex_count);
@@ -276,7 +276,7 @@ static void check_clean(const cscd_detector *d, const double *x) {
 
 /* ---- sequences --------------------------------------------------------------------------------------- */
 
-static void check_interval(ways *w, const double *start, const double *end, tally *sum) {
+static void check_interval(ways *w, const double *start, const double *end, local_tally *sum) {
     cscd_contacts truth, found;
     assert_int_equal(cscd_detector_step(w->none, start, end, &truth), CSCD_OK);
     for (int i = 0; i < CULLING_COUNT; i++) {
@@ -287,7 +287,7 @@ static void check_interval(ways *w, const double *start, const double *end, tall
         cscd_counters n = cscd_detector_counters(d);
         if (q.shape.triangle_count <= SMALL) {
             sum->small++;
-            test_range range = expected_tests(d, (motion){start, end});
+            test_range range = expected_tests(d, (gap_motion){start, end});
             assert_in_range(n.tests, range.least, range.most);
             sum->exactly += range.least == range.most;
             check_clean(d, end);
@@ -303,7 +303,7 @@ static void check_interval(ways *w, const double *start, const double *end, tall
     }
 }
 
-static void check_sequence(uint64_t seed, tally *sum) {
+static void check_sequence(uint64_t seed, local_tally *sum) {
     random_stream random = stream_start(seed);
     ways w = ways_create(seed);
     for (uint32_t f = 0; f + 1 < q.frame_count; f++) {
@@ -317,7 +317,7 @@ static void check_sequence(uint64_t seed, tally *sum) {
     ways_destroy(&w);
 }
 
-static void print_tally(const char *name, const tally *t) {
+static void print_tally(const char *name, const local_tally *t) {
     print_message(
         "  %-6s %6llu intervals, %5.1f %% with contact, clean at the start: all in %4.1f %%, some in %4.1f "
         "%%; %llu closing passes, %llu contacts; tests %5.1f %%\n",
@@ -328,7 +328,7 @@ static void print_tally(const char *name, const tally *t) {
 }
 
 /* LOCAL_SEQUENCES and LOCAL_FIRST, when they are set, choose other sequences, for longer runs by hand. */
-static void run_kind(sequence_kind kind, const char *name, tally *sum) {
+static void run_kind(sequence_kind kind, const char *name, local_tally *sum) {
     const char *count = getenv("LOCAL_SEQUENCES"), *first = getenv("LOCAL_FIRST");
     uint64_t sequences = count != NULL ? strtoull(count, NULL, 10) : SEQUENCES;
     uint64_t begin = first != NULL ? strtoull(first, NULL, 10) : 0;
@@ -343,14 +343,14 @@ static void run_kind(sequence_kind kind, const char *name, tally *sum) {
 }
 
 static void scenes_equal_no_culling(void **state) {
-    tally sum = {0};
+    local_tally sum = {0};
     (void)state;
     run_kind(SEQUENCE_SCENE, "scenes", &sum);
     assert_true(sum.partly_clean * 5 > sum.intervals && sum.closing_passes > 0 && sum.all_clean > 0);
 }
 
 static void grids_equal_no_culling(void **state) {
-    tally sum = {0};
+    local_tally sum = {0};
     (void)state;
     run_kind(SEQUENCE_GRID, "grids", &sum);
     assert_true(sum.partly_clean * 5 > sum.intervals && sum.closing_passes > 0 && sum.all_clean > 0);

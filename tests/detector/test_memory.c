@@ -11,12 +11,12 @@
 static scene s; /* large; one test at a time */
 
 /* What a run of the whole library gave. */
-typedef struct outcome {
+typedef struct memory_outcome {
     cscd_status status;
     size_t contacts, intersections;
-} outcome;
+} memory_outcome;
 
-static cscd_status use_detector(cscd_detector *detector, outcome *out) {
+static cscd_status use_detector(cscd_detector *detector, memory_outcome *out) {
     cscd_contacts contacts = {NULL, 4711};
     cscd_intersections crossing = {NULL, 4711, 0, 0};
     cscd_status status = cscd_detector_step(detector, s.x0, s.x1, &contacts);
@@ -31,8 +31,8 @@ static cscd_status use_detector(cscd_detector *detector, outcome *out) {
 
 /* Everything from the context to a step and a check; when that fails for want of memory, once more with the
  * same objects, which must then succeed. */
-static outcome run_library(counting_allocator *counter, uint32_t thread_count, cscd_method method) {
-    outcome out = {CSCD_OK, 0, 0};
+static memory_outcome run_library(counting_allocator *counter, uint32_t thread_count, cscd_method method) {
+    memory_outcome out = {CSCD_OK, 0, 0};
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
@@ -72,14 +72,14 @@ static outcome run_library(counting_allocator *counter, uint32_t thread_count, c
 static void fail_each(scene_family family, uint64_t seed, uint32_t thread_count, cscd_method method) {
     scene_make(family, seed, &s);
     counting_allocator counter = counting_allocator_start();
-    outcome good = run_library(&counter, thread_count, method);
+    memory_outcome good = run_library(&counter, thread_count, method);
     assert_int_equal(good.status, CSCD_OK);
     size_t calls = counter.calls;
     assert_true(calls > 20);
     for (size_t n = 0; n < calls; n++) {
         counter = counting_allocator_start();
         counter.fail_at = n;
-        outcome failed = run_library(&counter, thread_count, method);
+        memory_outcome failed = run_library(&counter, thread_count, method);
         assert_int_equal(failed.status, CSCD_OUT_OF_MEMORY);
         if (failed.contacts == 0) continue; /* failed before there was a detector */
         assert_int_equal(failed.contacts, good.contacts);
@@ -110,7 +110,7 @@ static void expect_steady_state(cscd_method method) {
     detector_options.method = method;
     scene_make(SCENE_NESTED_SPHERES, 2, &s);
     cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
-    outcome out;
+    memory_outcome out;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
     assert_int_equal(cscd_detector_create(mesh, NULL, &detector_options, &detector), CSCD_OK);

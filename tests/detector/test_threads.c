@@ -99,13 +99,13 @@ static void separation_gives_the_same(void **state) {
 
 /* ---- the crew itself ----------------------------------------------------------------------------------- */
 
-typedef struct tally {
+typedef struct threads_tally {
     uint32_t runs[TASKS_MAX]; /* written by whoever has the task */
     atomic_uint total;
-} tally;
+} threads_tally;
 
 static void count_task(void *data, uint32_t task) {
-    tally *t = data;
+    threads_tally *t = data;
     t->runs[task]++;
     atomic_fetch_add(&t->total, 1);
 }
@@ -119,7 +119,7 @@ static void each_task_runs_once(void **state) {
         options.thread_count = thread_counts[k];
         assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
         for (uint32_t count = 0; count < TASKS_MAX; count += 1 + count / 64) {
-            static tally t;
+            static threads_tally t;
             memset(&t, 0, sizeof t);
             parallel_run(context->threads, count, count_task, &t);
             assert_int_equal(atomic_load(&t.total), count);

@@ -14,7 +14,7 @@
 
 typedef struct {
     int64_t x, y, z;
-} vector;
+} integer_vector;
 
 static int seed(void **state) {
     (void)state;
@@ -22,41 +22,41 @@ static int seed(void **state) {
     return 0;
 }
 
-static vector cross(vector a, vector b) {
-    return (vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+static integer_vector cross(integer_vector a, integer_vector b) {
+    return (integer_vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-static int64_t dot(vector a, vector b) {
+static int64_t dot(integer_vector a, integer_vector b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static int64_t determinant(vector a, vector b, vector c) {
+static int64_t determinant(integer_vector a, integer_vector b, integer_vector c) {
     return dot(a, cross(b, c));
 }
 
 /* 0 = wa a + wb b + wc c with positive weights, a, b, c affinely independent: the weights are as the areas of
  * 0bc, 0ca, 0ab, which all turn the same way. */
-static bool inside_triangle(vector a, vector b, vector c) {
-    vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+static bool inside_triangle(integer_vector a, integer_vector b, integer_vector c) {
+    integer_vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
 
     return dot(a, bc) == 0 && dot(bc, ca) > 0 && dot(ca, ab) > 0 && dot(ab, bc) > 0;
 }
 
 /* Cramer's rule. */
-static bool inside_tetrahedron(vector a, vector b, vector c, vector d) {
+static bool inside_tetrahedron(integer_vector a, integer_vector b, integer_vector c, integer_vector d) {
     int64_t wa = determinant(b, c, d), wb = -determinant(a, c, d);
     int64_t wc = determinant(a, b, d), wd = -determinant(a, b, c);
 
     return (wa > 0 && wb > 0 && wc > 0 && wd > 0) || (wa < 0 && wb < 0 && wc < 0 && wd < 0);
 }
 
-static bool inside_segment(vector a, vector b) {
-    vector n = cross(a, b);
+static bool inside_segment(integer_vector a, integer_vector b) {
+    integer_vector n = cross(a, b);
 
     return dot(n, n) == 0 && dot(a, b) < 0;
 }
 
-static bool hull_contains_origin(const vector *d, int count) {
+static bool hull_contains_origin(const integer_vector *d, int count) {
     for (int i = 0; i < count; i++) {
         if (dot(d[i], d[i]) == 0) return true;
         for (int j = 0; j < i; j++) {
@@ -87,16 +87,16 @@ static bool features_share(const struct feature *a, const struct feature *b) {
     return false;
 }
 
-static bool features_meet(const struct feature *a, const struct feature *b, const vector *points) {
-    vector differences[9];
+static bool features_meet(const struct feature *a, const struct feature *b, const integer_vector *points) {
+    integer_vector differences[9];
     int count = 0;
 
     if (features_share(a, b)) return false;
     for (int i = 0; i < a->count; i++) {
         for (int j = 0; j < b->count; j++) {
-            vector p = points[a->index[i]], q = points[b->index[j]];
+            integer_vector p = points[a->index[i]], q = points[b->index[j]];
 
-            differences[count++] = (vector){p.x - q.x, p.y - q.y, p.z - q.z};
+            differences[count++] = (integer_vector){p.x - q.x, p.y - q.y, p.z - q.z};
         }
     }
     return hull_contains_origin(differences, count);
@@ -116,7 +116,7 @@ static bool pair_counts(int a_count, int b_count) {
     return (a_count == 3) != (b_count == 3) || (a_count == 2 && b_count == 2);
 }
 
-static bool oracle(const uint32_t a[3], const uint32_t b[3], const vector *points) {
+static bool oracle(const uint32_t a[3], const uint32_t b[3], const integer_vector *points) {
     struct feature a_features[7], b_features[7];
 
     list_features(a, a_features);
@@ -139,7 +139,7 @@ static void share_vertices(int shared_count, uint32_t a[3], uint32_t b[3]) {
 }
 
 /* Small ranges make coincident points, zero areas and common planes frequent. */
-static void random_points(vector points[6]) {
+static void random_points(integer_vector points[6]) {
     int range[3];
 
     for (int k = 0; k < 3; k++) range[k] = random_integer(0, 3);
@@ -150,7 +150,7 @@ static void random_points(vector points[6]) {
     }
 }
 
-static void store(const vector points[6], double scale, double positions[18]) {
+static void store(const integer_vector points[6], double scale, double positions[18]) {
     for (int i = 0; i < 6; i++) {
         positions[3 * i] = scale * (double)points[i].x;
         positions[3 * i + 1] = scale * (double)points[i].y;
@@ -174,14 +174,14 @@ static void check_all_orders(const uint32_t a[3], const uint32_t b[3], const dou
 
 /* Shears along x, y and z, one after the other, so never singular: the image keeps what meets, and no plane
  * stays along the axes. */
-static vector shear(vector p, const int factor[6]) {
+static integer_vector shear(integer_vector p, const int factor[6]) {
     p.x += factor[0] * p.y + factor[1] * p.z;
     p.y += factor[2] * p.x + factor[3] * p.z;
     p.z += factor[4] * p.x + factor[5] * p.y;
     return p;
 }
 
-static void random_shear(const vector points[6], vector sheared[6]) {
+static void random_shear(const integer_vector points[6], integer_vector sheared[6]) {
     int offset[3];
     int factor[6];
 
@@ -196,9 +196,10 @@ static void random_shear(const vector points[6], vector sheared[6]) {
 }
 
 /* Compares one pair, its images under a shear and a scaling included. */
-static bool check_pair(const uint32_t a[3], const uint32_t b[3], const vector points[6], bool every_order) {
+static bool check_pair(const uint32_t a[3], const uint32_t b[3], const integer_vector points[6],
+                       bool every_order) {
     bool expected = oracle(a, b, points);
-    vector sheared[6];
+    integer_vector sheared[6];
     double positions[18];
 
     store(points, 1.0, positions);
@@ -219,7 +220,7 @@ static void check_class(int shared_count) {
 
     for (int round = 0; round < ROUND_COUNT; round++) {
         uint32_t a[3], b[3];
-        vector points[6];
+        integer_vector points[6];
 
         share_vertices(shared_count, a, b);
         random_points(points);

@@ -14,10 +14,10 @@ static scene whole, split; /* large; one test at a time */
 /* ---- lists --------------------------------------------------------------------------------------------- */
 
 /* Some pairs of triangles, each way round, some of them twice. */
-typedef struct pair_list {
+typedef struct ignored_pairs {
     uint32_t pairs[2 * LIST_MAX];
     size_t count;
-} pair_list;
+} ignored_pairs;
 
 static bool ignored_by_rule(void *user, uint32_t a, uint32_t b) {
     assert_true(a < b);
@@ -25,7 +25,7 @@ static bool ignored_by_rule(void *user, uint32_t a, uint32_t b) {
 }
 
 static void list_by_rule(uint32_t rule, const cscd_contacts *contacts, const cscd_mesh *mesh,
-                         pair_list *out) {
+                         ignored_pairs *out) {
     out->count = 0;
     for (size_t i = 0; i < contacts->count && out->count < LIST_MAX; i++) {
         const cscd_contact *c = &contacts->items[i];
@@ -48,7 +48,7 @@ static void list_by_rule(uint32_t rule, const cscd_contacts *contacts, const csc
 }
 
 static bool is_in_list(void *user, uint32_t a, uint32_t b) {
-    const pair_list *list = user;
+    const ignored_pairs *list = user;
     for (size_t i = 0; i < list->count; i++) {
         uint32_t x = list->pairs[2 * i], y = list->pairs[2 * i + 1];
         if ((x == a && y == b) || (x == b && y == a)) return true;
@@ -56,7 +56,7 @@ static bool is_in_list(void *user, uint32_t a, uint32_t b) {
     return false;
 }
 
-static size_t compare_with_callback(const pair_list *list, cscd_method method, cscd_mode mode) {
+static size_t compare_with_callback(const ignored_pairs *list, cscd_method method, cscd_mode mode) {
     cscd_detector_options by_list = cscd_detector_defaults(), by_callback;
     by_list.method = method;
     by_list.mode = mode;
@@ -84,7 +84,7 @@ static size_t compare_with_callback(const pair_list *list, cscd_method method, c
 
 static void a_list_does_what_the_callback_does(void **state) {
     (void)state;
-    static pair_list list;
+    static ignored_pairs list;
     size_t all = 0, kept = 0;
     static const scene_family closed[] = {SCENE_BENT_CAPSULE, SCENE_SPIKE, SCENE_TWO_SPHERES};
     for (uint32_t i = 0; i < sizeof closed / sizeof *closed; i++) {
@@ -107,7 +107,7 @@ static void a_list_does_what_the_callback_does(void **state) {
 static uint32_t of_whole[SCENE_VERTICES_MAX]; /* a vertex of the split surface: the one it came from */
 
 /* Every triangle of a part of the surface gets vertices of its own; false: there are too many. */
-static bool split_some(random_stream *random, pair_list *seams) {
+static bool split_some(random_stream *random, ignored_pairs *seams) {
     static uint32_t last_copy[SCENE_VERTICES_MAX];
     split = whole;
     seams->count = 0;
@@ -177,7 +177,7 @@ static named_contact *named_contacts(const rig *r, const scene *s, const uint32_
 
 /* What a split surface with seams reports, by the names of the whole one, is what that reports; so is what
  * its static check lists. */
-static size_t compare_split(cscd_method method, const pair_list *seams) {
+static size_t compare_split(cscd_method method, const ignored_pairs *seams) {
     static uint32_t same[SCENE_VERTICES_MAX];
     for (uint32_t v = 0; v < SCENE_VERTICES_MAX; v++) same[v] = v;
     cscd_detector_options options = cscd_detector_defaults();
@@ -205,7 +205,7 @@ static size_t compare_split(cscd_method method, const pair_list *seams) {
 
 static void seams_make_a_split_surface_whole(void **state) {
     (void)state;
-    static pair_list seams;
+    static ignored_pairs seams;
     size_t contacts = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < SEEDS; seed++) {

@@ -81,7 +81,7 @@ static void check_features(uint32_t i, double distance) {
             assert_false(kept);
             continue;
         }
-        long double gap = direction_gap((motion){shape.x0, shape.x1}, (point_set){p.a, p.count_a},
+        long double gap = direction_gap((gap_motion){shape.x0, shape.x1}, (point_set){p.a, p.count_a},
                                         (point_set){p.b, p.count_b}, distance + slack);
         if (gap <= distance) assert_true(kept);
         if (gap > distance + slack) assert_false(kept);

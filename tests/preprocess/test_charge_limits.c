@@ -35,21 +35,21 @@ enum { FINE = 3 };
 enum { FINE = 2 };
 #endif
 
-typedef struct ranked {
+typedef struct ranked_charge {
     float density;
     uint32_t triangle;
-} ranked;
+} ranked_charge;
 
 static int by_density(const void *left, const void *right) {
-    const ranked *a = left, *b = right;
+    const ranked_charge *a = left, *b = right;
     return a->density < b->density ? -1 : a->density > b->density;
 }
 
 /* The triangles by density rounded to 24 bits, ties in order. */
-static ranked *ranks_of(const charge_rig *r, uint32_t count) {
-    ranked *ranks = malloc(2 * count * sizeof *ranks);
+static ranked_charge *ranks_of(const charge_rig *r, uint32_t count) {
+    ranked_charge *ranks = malloc(2 * count * sizeof *ranks);
     assert_non_null(ranks);
-    for (uint32_t t = 0; t < count; t++) ranks[t] = (ranked){(float)r->density[t], t};
+    for (uint32_t t = 0; t < count; t++) ranks[t] = (ranked_charge){(float)r->density[t], t};
     sort_items(ranks, ranks + count, count, sizeof *ranks, by_density);
     return ranks;
 }
@@ -71,10 +71,10 @@ static void thread_count_changes_no_rank(void **state) {
     (void)state;
     conductor s = odd_ellipsoid(FINE);
     charge_rig one = charge_rig_solve(&s, 1);
-    ranked *expected = ranks_of(&one, s.triangle_count);
+    ranked_charge *expected = ranks_of(&one, s.triangle_count);
     for (uint32_t threads = 2; threads <= 4; threads++) {
         charge_rig r = charge_rig_solve(&s, threads);
-        ranked *ranks = ranks_of(&r, s.triangle_count);
+        ranked_charge *ranks = ranks_of(&r, s.triangle_count);
         for (uint32_t t = 0; t < s.triangle_count; t++) assert_near(r.density[t], one.density[t], 1e-12);
         assert_memory_equal(ranks, expected, s.triangle_count * sizeof *ranks);
         free(ranks);

@@ -11,14 +11,14 @@
 
 enum { TRIANGLES_MAX = 4000, REGIONS_MAX = 4000 };
 
-typedef struct division {
+typedef struct kmeans_division {
     uint32_t count, regions[TRIANGLES_MAX];
     double points[REGIONS_MAX * 3];
-} division;
+} kmeans_division;
 
-static division found, other;
+static kmeans_division found, other;
 
-static void divide(const body *b, uint32_t k, uint32_t seed, division *out) {
+static void divide(const body *b, uint32_t k, uint32_t seed, kmeans_division *out) {
     cscd_mesh *mesh = body_mesh(b, 1);
     size_t bytes = cscd_context_bytes(mesh->context);
     memset(out, 0xff, sizeof *out);
@@ -32,7 +32,7 @@ static void divide(const body *b, uint32_t k, uint32_t seed, division *out) {
     body_mesh_destroy(mesh);
 }
 
-static void assert_same(const division *a, const division *b) {
+static void assert_same(const kmeans_division *a, const kmeans_division *b) {
     assert_int_equal(a->count, b->count);
     assert_memory_equal(a->regions, b->regions, sizeof a->regions);
     assert_memory_equal(a->points, b->points, a->count * 3 * sizeof(double));

@@ -181,7 +181,7 @@ static void distortion_falls(void **state) {
 static void renewing_one_part(void **state) {
     (void)state;
     const body_kind kinds[3] = {BODY_SPHERE, BODY_DUMBBELL, BODY_SPHERE};
-    row r = row_of(3, kinds, (double[]){1.0, 1.0, 0.7}, NULL);
+    partition_row r = row_of(3, kinds, (double[]){1.0, 1.0, 0.7}, NULL);
     cscd_part before[3];
     uint32_t *cells = body_allocate(r.b.vertex_count, sizeof *cells);
     for (uint32_t p = 0; p < 3; p++) before[p] = cscd_partition_part(r.partition, p);

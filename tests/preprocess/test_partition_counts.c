@@ -25,7 +25,7 @@ static void kissing_numbers(void **state) {
     assert_int_equal(kissing_number(0x1p300, 0x1p-300, 64), 64);
 }
 
-static uint32_t cells_in(const row *r, uint32_t part) {
+static uint32_t cells_in(const partition_row *r, uint32_t part) {
     return cscd_partition_part(r->partition, part).cell_count;
 }
 
@@ -33,7 +33,7 @@ static void how_many_cells(void **state) {
     (void)state;
     const body_kind spheres[3] = {BODY_SPHERE, BODY_SPHERE, BODY_SPHERE};
     const body_kind mixed[3] = {BODY_SPHERE, BODY_TORUS, BODY_SPHERE};
-    row r = row_of(2, spheres, (double[]){1.0, 0.5}, NULL);
+    partition_row r = row_of(2, spheres, (double[]){1.0, 0.5}, NULL);
     for (uint32_t p = 0; p < 2; p++) {
         assert_true(cscd_partition_part(r.partition, p).convex);
         assert_int_equal(cells_in(&r, p), 1);

@@ -21,29 +21,29 @@ static uint32_t centres[SCENE_VERTICES_MAX];
 static const double origin[3] = {0.0, 0.0, 0.0};
 
 /* A scene's mesh with its workspaces. */
-typedef struct bench {
+typedef struct bounds_bench {
     rig rig;
     cscd_partition *partition;
     exact_check exact;
     sensor_bounds bounds;
-} bench;
+} bounds_bench;
 
-static bench bench_create(const uint32_t *triangle_parts, uint32_t part_count, uint32_t cells_max) {
-    bench b = {.rig = rig_create(&interval, 1, NULL)};
+static bounds_bench bench_create(const uint32_t *triangle_parts, uint32_t part_count, uint32_t cells_max) {
+    bounds_bench b = {.rig = rig_create(&interval, 1, NULL)};
     b.partition = hand_partition_create(b.rig.mesh, interval.x0, triangle_parts, part_count, cells_max);
     assert_int_equal(exact_check_create(b.rig.mesh, &b.exact), CSCD_OK);
     assert_int_equal(sensor_bounds_create(b.partition, &b.bounds), CSCD_OK);
     return b;
 }
 
-static void bench_destroy(bench *b) {
+static void bench_destroy(bounds_bench *b) {
     exact_check_destroy(&b->exact);
     sensor_bounds_destroy(&b->bounds);
     hand_partition_destroy(b->partition);
     rig_destroy(&b->rig);
 }
 
-static bool apart(bench *b, bool *boxes) {
+static bool apart(bounds_bench *b, bool *boxes) {
     sensor_bounds_update(&b->bounds, b->partition, interval.x0, interval.x1, centres);
     sensor_bounds_update_boxes(&b->bounds, b->partition, interval.x0, interval.x1);
     bool there = sensor_bounds_apart(&b->bounds, b->partition, 0, 1);
@@ -52,7 +52,7 @@ static bool apart(bench *b, bool *boxes) {
     return there;
 }
 
-static bool touching(bench *b) {
+static bool touching(bounds_bench *b) {
     uint32_t cells[128];
     for (uint32_t c = 0; c < b->partition->cell_count; c++) cells[c] = c;
     uint32_t count = b->partition->parts[0].cell_count;
@@ -98,7 +98,7 @@ static void never_apart_in_contact(void **state) {
         uint32_t first_of_second = rest.vertex_count;
         scene_add_torus(&rest, origin, random_between(0.4, 1.0), 0.2, 6, 3, i % 2 == 0);
         interval = rest;
-        bench b = bench_create(NULL, 2, 8);
+        bounds_bench b = bench_create(NULL, 2, 8);
         for (int k = 0; k < INTERVALS_PER_MESH; k++) {
             bool boxes;
             move_bodies(&rest, first_of_second);
@@ -152,7 +152,7 @@ static void exact_touches_are_not_apart(void **state) {
     interval.triangle_count = 2;
     memcpy(interval.triangles, triangles, sizeof triangles);
     random_seed(2);
-    bench b = bench_create(NULL, 2, 1);
+    bounds_bench b = bench_create(NULL, 2, 1);
     centres[0] = 0;
     centres[1] = 3;
     for (int i = 0; i < TOUCHES; i++) {
@@ -177,7 +177,7 @@ static void far_bodies_are_apart(void **state) {
     scene_add_sphere(&interval, origin, 1.0, 5, 8);
     scene_add_sphere(&interval, (double[3]){9.0, 0.0, 0.0}, 1.0, 5, 8);
     memcpy(interval.x1, interval.x0, sizeof interval.x1);
-    bench b = bench_create(NULL, 2, 12);
+    bounds_bench b = bench_create(NULL, 2, 12);
     bool boxes;
     hand_partition_particles(b.partition, centres);
     assert_true(apart(&b, &boxes));
@@ -195,7 +195,7 @@ static void extreme_lengths_are_safe(void **state) {
     static scene rest;
     scene_make(SCENE_LINKED_TORI, 1, &rest);
     interval = rest;
-    bench b = bench_create(NULL, 2, 6);
+    bounds_bench b = bench_create(NULL, 2, 6);
     random_seed(3);
     for (int i = 0; i < 6; i++) {
         bool boxes;
@@ -219,7 +219,7 @@ static void every_triangle_is_held(void **state) {
         scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &interval);
         for (uint32_t t = 0; t < interval.triangle_count; t++)
             triangle_parts[t] = (uint32_t)random_integer(0, 4);
-        bench b = bench_create(triangle_parts, 6, 5);
+        bounds_bench b = bench_create(triangle_parts, 6, 5);
         hand_partition_particles(b.partition, centres);
         sensor_bounds_update(&b.bounds, b.partition, interval.x0, interval.x1, centres);
         for (uint32_t t = 0; t < interval.triangle_count; t++) {
@@ -249,7 +249,7 @@ static void parts_without_cells_are_never_apart(void **state) {
     interval.triangle_count = 4;
     memcpy(interval.triangles, triangles, sizeof triangles);
     for (uint32_t v = 0; v < 7; v++) interval.x0[v * 3] = interval.x1[v * 3] = v >= 4 ? 100.0 : v;
-    bench b = bench_create(parts, 4, 4);
+    bounds_bench b = bench_create(parts, 4, 4);
     assert_int_equal(b.partition->parts[2].cell_count, 0);
     for (uint32_t c = 0; c < b.partition->cell_count; c++)
         centres[c] = b.partition->cell_vertices[b.partition->cell_offsets[c]];

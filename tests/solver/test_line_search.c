@@ -20,14 +20,14 @@ static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 
 /* A detector with a line. */
-typedef struct search {
+typedef struct step_search {
     rig r;
     cscd_line *line;
     cscd_detector_options options;
-} search;
+} step_search;
 
-static search search_create(cscd_method method, double min_separation, uint32_t threads) {
-    search s = {.options = cscd_detector_defaults()};
+static step_search search_create(cscd_method method, double min_separation, uint32_t threads) {
+    step_search s = {.options = cscd_detector_defaults()};
     s.options.method = method_or_none(method);
     s.options.min_separation = min_separation;
     s.r = rig_create(&interval, threads, &s.options);
@@ -35,12 +35,12 @@ static search search_create(cscd_method method, double min_separation, uint32_t 
     return s;
 }
 
-static void search_destroy(search *s) {
+static void search_destroy(step_search *s) {
     cscd_line_destroy(s->line);
     rig_destroy(&s->r);
 }
 
-static void begin(const search *s, const double *x0, const double *x1, double reach) {
+static void begin(const step_search *s, const double *x0, const double *x1, double reach) {
     assert_int_equal(cscd_line_begin(s->line, x0, x1, reach), CSCD_OK);
 }
 
@@ -59,11 +59,11 @@ static void far_from_the_origin(void) {
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
 
-typedef struct tally {
+typedef struct line_tally {
     size_t calls, in_contact, limited, whole;
-} tally;
+} line_tally;
 
-static void check_steps(const search *s, const rig *reference, tally *sum) {
+static void check_steps(const step_search *s, const rig *reference, line_tally *sum) {
     static const double longest[] = {1.0, 0.37, 0x1p-20, 1e-300};
     for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
         step_on(s->line, interval.x0, interval.x1, longest[i]);
@@ -80,13 +80,13 @@ static void check_steps(const search *s, const rig *reference, tally *sum) {
 static void steps_are_certified(void **state) {
     (void)state;
     static const double distances[] = {0.0, 0.0, 1e-3, 0.02};
-    tally sum = {0};
+    line_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 1; seed < 4; seed++) {
             uint64_t turn = seed + (uint64_t)family;
             scene_make((scene_family)family, 40 + seed, &interval);
             if (seed == 3) far_from_the_origin();
-            search s =
+            step_search s =
                 search_create(methods[turn % METHOD_COUNT], distances[turn % 4], 1 + (uint32_t)seed % 3);
             rig reference = free_step_reference(&interval, &s.options);
             begin(&s, interval.x0, interval.x1, seed % 2 == 0 ? 0.0 : 0.01);
@@ -103,7 +103,7 @@ static void steps_are_certified(void **state) {
 /* ---- proximity ------------------------------------------------------------------------------------------ */
 
 /* What the line finds at a length, the detector finds at its positions, bit for bit; and brute force. */
-static size_t check_near(const search *s, const rig *other, const rig *brute, double length,
+static size_t check_near(const step_search *s, const rig *other, const rig *brute, double length,
                          double distance) {
     cscd_proximities on_line, by_trees, truth;
     assert_int_equal(cscd_line_positions(s->line, length, moment), CSCD_OK);
@@ -122,7 +122,7 @@ static size_t check_near(const search *s, const rig *other, const rig *brute, do
     return truth.count;
 }
 
-static size_t check_moments(const search *s, double reach, uint64_t seed) {
+static size_t check_moments(const step_search *s, double reach, uint64_t seed) {
     cscd_detector_options options = s->options;
     rig other = rig_create(&interval, 1, &options);
     options.method = CSCD_METHOD_BRUTE;
@@ -148,8 +148,8 @@ static void near_equals_the_detectors(void **state) {
             uint64_t turn = seed + (uint64_t)family;
             scene_make((scene_family)family, 70 + seed, &interval);
             if (seed == 2) far_from_the_origin();
-            search s = search_create(methods[turn % METHOD_COUNT], turn % 4 == 0 ? 1e-3 : 0.0,
-                                     1 + (uint32_t)seed % 3);
+            step_search s = search_create(methods[turn % METHOD_COUNT], turn % 4 == 0 ? 1e-3 : 0.0,
+                                          1 + (uint32_t)seed % 3);
             begin(&s, interval.x0, interval.x1, reaches[turn % 3]);
             pairs += check_moments(&s, reaches[turn % 3], seed);
             search_destroy(&s);
@@ -169,9 +169,9 @@ static void scales_do_not_matter(void **state) {
             interval.x0[i] = ldexp(interval.x0[i], exponent);
             interval.x1[i] = ldexp(interval.x1[i], exponent);
         }
-        search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
+        step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
         rig reference = free_step_reference(&interval, &s.options);
-        tally sum = {0};
+        line_tally sum = {0};
         begin(&s, interval.x0, interval.x1, ldexp(0.05, exponent));
         check_steps(&s, &reference, &sum);
         if (family % 3 == 0) check_moments(&s, ldexp(0.05, exponent), 1);
@@ -193,7 +193,7 @@ static void make_limited(scene_family family, uint64_t seed) {
     }
 }
 
-static void expect_known(const search *s, const rig *reference, const double *x0, const double *x1) {
+static void expect_known(const step_search *s, const rig *reference, const double *x0, const double *x1) {
     cscd_contacts found, truth;
     assert_int_equal(cscd_detector_step(s->r.detector, x0, x1, &found), CSCD_OK);
     assert_int_equal(cscd_detector_counters(s->r.detector).static_checks, 0);
@@ -211,7 +211,7 @@ static void the_detector_knows_the_end(void **state) {
     static const double longest[] = {1.0, 0.5, 0.01, 1.0};
     for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
         make_limited(families[f], 1);
-        search s = search_create(CSCD_METHOD_SINGLE, 0.0, 2);
+        step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 2);
         rig reference = free_step_reference(&interval, &s.options);
         cscd_contacts found;
         assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, interval.x0, &found), CSCD_OK);
@@ -230,7 +230,7 @@ static void the_detector_knows_the_end(void **state) {
 static void what_is_not_known_stays_so(void **state) {
     (void)state;
     make_limited(SCENE_SPIKE, 1);
-    search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
+    step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
     cscd_contacts found;
     begin(&s, interval.x0, interval.x1, 0.0);
     step_on(s.line, interval.x0, interval.x1, 1.0);
@@ -295,7 +295,7 @@ static void lines_and_steps_take_turns(void **state) {
         scene_make((scene_family)family, 21, &interval);
         for (uint32_t i = 0; i < interval.vertex_count * 3; i++)
             x2[i] = 0.5 * (interval.x0[i] + interval.x1[i]);
-        search s = search_create(methods[family % 3], 0.0, 1);
+        step_search s = search_create(methods[family % 3], 0.0, 1);
         rig reference = free_step_reference(&interval, &s.options);
         cscd_line *second = NULL;
         cscd_contacts found, truth;
@@ -327,7 +327,7 @@ static void lines_and_steps_take_turns(void **state) {
 
 /* ---- arguments ----------------------------------------------------------------------------------------- */
 
-static void expect_words(const search *s, cscd_status status, const char *words) {
+static void expect_words(const step_search *s, cscd_status status, const char *words) {
     assert_int_equal(status, CSCD_INVALID_ARGUMENT);
     if (strstr(cscd_context_detail(s->r.context), words) == NULL)
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(s->r.context));
@@ -337,7 +337,7 @@ static void misuse_is_named(void **state) {
     (void)state;
     static const double bad[] = {-0x1p-1000, 1.0 + 0x1p-52, NAN, INFINITY, -1.0};
     scene_make(SCENE_SPIKE, 1, &interval);
-    search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
+    step_search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
     cscd_proximities near = {NULL, 4711};
     cscd_free_step step = {.length = -1.0};
     assert_int_equal(cscd_line_create(NULL, NULL), CSCD_INVALID_ARGUMENT);

@@ -98,11 +98,11 @@ static void check_next(const rig *r, const rig *reference, const setting *s, boo
     assert_int_equal(found.count > 0, truth.count > 0);
 }
 
-typedef struct tally {
+typedef struct step_tally {
     size_t calls, in_contact, limited, whole, embedded;
-} tally;
+} step_tally;
 
-static void check_step(const setting *s, tally *sum) {
+static void check_step(const setting *s, step_tally *sum) {
     tested t = tested_create(&interval, s);
     cscd_detector_options options = options_of(s);
     rig reference = free_step_reference(&interval, &options);
@@ -127,7 +127,7 @@ static void is_certified(void **state) {
     (void)state;
     static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE,  CSCD_METHOD_KMEANS,
                                           CSCD_METHOD_ICCD,   CSCD_METHOD_BRUTE, CSCD_METHOD_CHARGE};
-    tally sum = {0};
+    step_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < 5; seed++) {
             scene_make((scene_family)family, seed, &interval);
@@ -149,7 +149,7 @@ static void is_certified(void **state) {
 /* ---- marches ------------------------------------------------------------------------------------------- */
 
 /* Towards one end that cannot be reached, again and again, until things are a rounding apart. */
-static void march_to(const rig *r, const rig *reference, const setting *s, uint32_t steps, tally *sum) {
+static void march_to(const rig *r, const rig *reference, const setting *s, uint32_t steps, step_tally *sum) {
     static double x[SCENE_VERTICES_MAX * 3];
     size_t bytes = interval.vertex_count * sizeof(double[3]);
     memcpy(x, interval.x0, bytes);
@@ -179,7 +179,7 @@ static bool starts_well(const rig *reference) {
 static void never_crosses_when_pressed(void **state) {
     (void)state;
     static const double distances[] = {0.0, 0.0, 1e-3, 1e-7};
-    tally sum = {0};
+    step_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         uint32_t marches = 0;
         for (uint64_t seed = 100 + (uint64_t)family % 4; seed < 114 && marches < 1; seed++) {
@@ -206,7 +206,7 @@ static void never_crosses_when_pressed(void **state) {
 
 /* To one pose after another, each no farther than is free: hundreds of steps without a crossing, and without
  * a check after the first. */
-static void march_through(uint64_t seed, const setting *s, tally *sum) {
+static void march_through(uint64_t seed, const setting *s, step_tally *sum) {
     static double x[SCENE_VERTICES_MAX * 3];
     sequence_make(seed % 4 == 0 ? SEQUENCE_SCENE : SEQUENCE_GRID, seed, 24, &frames);
     size_t bytes = frames.shape.vertex_count * sizeof(double[3]);
@@ -238,7 +238,7 @@ static void march_through(uint64_t seed, const setting *s, tally *sum) {
 
 static void never_crosses_on_the_way(void **state) {
     (void)state;
-    tally sum = {0};
+    step_tally sum = {0};
     for (uint64_t seed = 0; seed < 7; seed++) {
         setting s = plain;
         s.threads = 1 + (uint32_t)(seed % 2);

@@ -64,15 +64,15 @@ static void make_limited(void) {
 }
 
 /* What was asked, and what came of it; untouched where the call fails. */
-typedef struct answer {
+typedef struct solver_answer {
     cscd_free_step step;
     double end[SCENE_VERTICES_MAX * 3];
     size_t near, candidates;
-} answer;
+} solver_answer;
 
-typedef cscd_status question(counted *c, answer *out);
+typedef cscd_status question(counted *c, solver_answer *out);
 
-static cscd_status ask_near(counted *c, answer *out) {
+static cscd_status ask_near(counted *c, solver_answer *out) {
     cscd_proximities found = {NULL, 4711};
     cscd_status status = cscd_detector_near(c->detector, interval.x0, distance, &found);
     assert_true(status == CSCD_OK || found.count == 4711);
@@ -80,12 +80,12 @@ static cscd_status ask_near(counted *c, answer *out) {
     return status;
 }
 
-static cscd_status ask_max_step(counted *c, answer *out) {
+static cscd_status ask_max_step(counted *c, solver_answer *out) {
     return cscd_detector_max_step(c->detector, interval.x0, interval.x1, out->end, &out->step);
 }
 
 /* The whole life of a line; a call that fails is made again at once, and must then succeed. */
-static cscd_status ask_line(counted *c, answer *out) {
+static cscd_status ask_line(counted *c, solver_answer *out) {
     cscd_line *line = NULL;
     cscd_proximities found = {NULL, 4711};
     cscd_status status = cscd_line_create(c->detector, &line), first = status;
@@ -112,7 +112,7 @@ static cscd_status ask_line(counted *c, answer *out) {
 
 /* Each allocation fails once; the same question then has the same answer as ever. */
 static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
-    static answer good, other;
+    static solver_answer good, other;
     size_t failures = 0;
     counted c;
     memset(&good, 0, sizeof good);

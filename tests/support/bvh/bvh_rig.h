@@ -30,4 +30,4 @@ void translate(double *x, uint32_t vertex_count, const double by[3]);
 /* Moves as points in the frame of a tree, or of the first one for NULL, at t in {0, 1/2, 1} = moment / 2;
  * scaled.
  */
-void in_frame(const bvh *f, const bvh_tree *p, motion m, uint32_t vertex, int moment, long double out[3]);
+void in_frame(const bvh *f, const bvh_tree *p, gap_motion m, uint32_t vertex, int moment, long double out[3]);

@@ -12,9 +12,9 @@ long double along_direction(const long double p[3], int direction) {
     return d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
 }
 
-typedef struct extent {
+typedef struct gap_extent {
     long double low, high;
-} extent;
+} gap_extent;
 
 static long double lesser(long double a, long double b) {
     return a < b ? a : b;
@@ -24,8 +24,8 @@ static long double greater(long double a, long double b) {
     return a > b ? a : b;
 }
 
-static extent extent_of(const double *x, point_set points, int direction) {
-    extent out = {INFINITY, -INFINITY};
+static gap_extent extent_of(const double *x, point_set points, int direction) {
+    gap_extent out = {INFINITY, -INFINITY};
     for (int i = 0; i < points.count; i++) {
         const double *p = x + (size_t)points.vertices[i] * 3;
         long double value =
@@ -36,11 +36,11 @@ static extent extent_of(const double *x, point_set points, int direction) {
     return out;
 }
 
-static long double gap_along_some(motion m, point_set a, point_set b, int count, long double enough) {
+static long double gap_along_some(gap_motion m, point_set a, point_set b, int count, long double enough) {
     long double largest = -INFINITY;
     for (int k = 0; k < count && largest <= enough; k++) {
-        extent a0 = extent_of(m.x0, a, k), a1 = extent_of(m.x1, a, k);
-        extent b0 = extent_of(m.x0, b, k), b1 = extent_of(m.x1, b, k);
+        gap_extent a0 = extent_of(m.x0, a, k), a1 = extent_of(m.x1, a, k);
+        gap_extent b0 = extent_of(m.x0, b, k), b1 = extent_of(m.x1, b, k);
         long double above = lesser(a0.low - b0.high, a1.low - b1.high);
         long double below = lesser(b0.low - a0.high, b1.low - a1.high);
         long double gap = greater(above, below);
@@ -49,15 +49,15 @@ static long double gap_along_some(motion m, point_set a, point_set b, int count,
     return largest;
 }
 
-long double direction_gap(motion m, point_set a, point_set b, long double enough) {
+long double direction_gap(gap_motion m, point_set a, point_set b, long double enough) {
     return gap_along_some(m, a, b, DIRECTION_COUNT, enough);
 }
 
-long double axis_gap(motion m, point_set a, point_set b, long double enough) {
+long double axis_gap(gap_motion m, point_set a, point_set b, long double enough) {
     return gap_along_some(m, a, b, 3, enough);
 }
 
-double motion_extent(motion m, uint32_t vertex_count) {
+double motion_extent(gap_motion m, uint32_t vertex_count) {
     double largest = 0.0;
     for (uint32_t i = 0; i < vertex_count * 3; i++) {
         largest = fmax(largest, fabs(m.x0[i] - m.x0[i % 3]));

@@ -16,7 +16,7 @@ void moments_init(moment_list *list) {
 
 void moments_clear(moment_list *list) {
     for (slong i = 0; i < list->count; i++) {
-        moment *m = &list->items[i];
+        algebraic_moment *m = &list->items[i];
         fmpz_poly_clear(m->factor);
         fmpz_poly_clear(m->local);
         fmpz_clear(m->num);
@@ -26,9 +26,9 @@ void moments_clear(moment_list *list) {
     list->count = 0;
 }
 
-static moment *append(moment_list *list) {
+static algebraic_moment *append(moment_list *list) {
     if (list->count == MOMENT_MAX) abort();
-    moment *m = &list->items[list->count++];
+    algebraic_moment *m = &list->items[list->count++];
     fmpz_poly_init(m->factor);
     fmpz_poly_init(m->local);
     fmpz_init(m->num);
@@ -39,12 +39,12 @@ static moment *append(moment_list *list) {
 }
 
 void moments_add_rational(moment_list *list, slong num, slong den) {
-    moment *m = append(list);
+    algebraic_moment *m = append(list);
     fmpz_set_si(m->num, num);
     fmpz_set_si(m->den, den);
 }
 
-bool moment_is_rational(const moment *m) {
+bool moment_is_rational(const algebraic_moment *m) {
     return fmpz_poly_is_zero(m->factor);
 }
 
@@ -89,7 +89,7 @@ static void isolate(moment_list *list, const fmpz_poly_struct *factor, const fmp
                     const fmpz_t num, slong depth) {
     slong bound = descartes_bound(local);
     if (bound == 1) {
-        moment *m = append(list);
+        algebraic_moment *m = append(list);
         fmpz_poly_set(m->factor, factor);
         fmpz_poly_set(m->local, local);
         fmpz_set(m->num, num);
@@ -115,7 +115,7 @@ static void isolate(moment_list *list, const fmpz_poly_struct *factor, const fmp
 static void add_linear(moment_list *list, const fmpz_poly_struct *p) {
     const fmpz *a = p->coeffs, *b = p->coeffs + 1;
     if (fmpz_sgn(a) * fmpz_sgn(b) > 0 || fmpz_cmpabs(a, b) > 0) return;
-    moment *m = append(list);
+    algebraic_moment *m = append(list);
     fmpz_abs(m->num, a);
     fmpz_abs(m->den, b);
 }
@@ -152,7 +152,7 @@ void moments_add_roots(moment_list *list, const fmpz_poly_struct *p) {
 
 /* ---- refinement ---- */
 
-static void bisect(moment *m) {
+static void bisect(algebraic_moment *m) {
     fmpz_t middle;
     fmpz_init(middle);
     int start = fmpz_sgn(m->local->coeffs);
@@ -167,7 +167,7 @@ static void bisect(moment *m) {
     fmpz_clear(middle);
 }
 
-static void enclose(moment *m) {
+static void enclose(algebraic_moment *m) {
     arb_set_fmpz(m->root, m->num);
     arb_mul_2exp_si(m->root, m->root, 1);
     arb_add_ui(m->root, m->root, 1, ARF_PREC_EXACT);
@@ -177,7 +177,7 @@ static void enclose(moment *m) {
 
 /* Newton steps from the enclosure, as long as they help. The derivative has no root in the enclosure, so the
  * enclosure has no other root. */
-static void newton(moment *m, const fmpz_poly_struct *derivative, slong precision) {
+static void newton(algebraic_moment *m, const fmpz_poly_struct *derivative, slong precision) {
     arb_t slope, value, middle;
     arb_init(slope);
     arb_init(value);
@@ -196,7 +196,7 @@ static void newton(moment *m, const fmpz_poly_struct *derivative, slong precisio
     arb_clear(middle);
 }
 
-static void refine(moment *m, slong precision) {
+static void refine(algebraic_moment *m, slong precision) {
     if (arb_is_positive(m->root) && arb_rel_accuracy_bits(m->root) >= precision) return;
     fmpz_poly_t derivative;
     fmpz_poly_init(derivative);
@@ -212,7 +212,7 @@ static void refine(moment *m, slong precision) {
 /* ---- questions ---- */
 
 /* The sign of den^n p(num / den). */
-static int sign_at_rational(const moment *m, const fmpz_poly_struct *p) {
+static int sign_at_rational(const algebraic_moment *m, const fmpz_poly_struct *p) {
     slong degree = fmpz_poly_degree(p);
     fmpz_t value, power;
     fmpz_init(value);
@@ -229,7 +229,7 @@ static int sign_at_rational(const moment *m, const fmpz_poly_struct *p) {
 }
 
 /* In the field Q[t] / factor. */
-static bool is_zero_at(const moment *m, const fmpz_poly_struct *p) {
+static bool is_zero_at(const algebraic_moment *m, const fmpz_poly_struct *p) {
     fmpz_poly_t remainder;
     ulong power;
     fmpz_poly_init(remainder);
@@ -239,7 +239,7 @@ static bool is_zero_at(const moment *m, const fmpz_poly_struct *p) {
     return zero;
 }
 
-int moment_sign(moment *m, const fmpz_poly_struct *p) {
+int moment_sign(algebraic_moment *m, const fmpz_poly_struct *p) {
     if (fmpz_poly_is_zero(p)) return 0;
     if (moment_is_rational(m)) return sign_at_rational(m, p);
     arb_t value;
@@ -255,7 +255,7 @@ int moment_sign(moment *m, const fmpz_poly_struct *p) {
     return sign;
 }
 
-static void rational_bounds(const moment *m, double *low, double *high) {
+static void rational_bounds(const algebraic_moment *m, double *low, double *high) {
     arf_t quotient;
     arf_init(quotient);
     arf_fmpz_div_fmpz(quotient, m->num, m->den, 53, ARF_RND_FLOOR);
@@ -265,7 +265,7 @@ static void rational_bounds(const moment *m, double *low, double *high) {
     arf_clear(quotient);
 }
 
-void moment_bounds(moment *m, double *low, double *high) {
+void moment_bounds(algebraic_moment *m, double *low, double *high) {
     if (moment_is_rational(m)) {
         rational_bounds(m, low, high);
         return;

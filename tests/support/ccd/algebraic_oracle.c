@@ -186,18 +186,18 @@ static void find_det(gram *g) {
 
 /* ---- a moment ---- */
 
-static bool pair_combines(gram *g, moment *m, int i, int j) {
+static bool pair_combines(gram *g, algebraic_moment *m, int i, int j) {
     return moment_sign(m, at(g, i, j)) < 0 && moment_sign(m, minor(g, i, j, i, j)) == 0;
 }
 
 /* Where det = 0. */
-static bool triple_combines(gram *g, moment *m, int i, int j, int k) {
+static bool triple_combines(gram *g, algebraic_moment *m, int i, int j, int k) {
     for (int n = 2; n >= 0; n--)
         if (moment_sign(m, adjugate(g, i, j, k, n)) <= 0) return false;
     return true;
 }
 
-static bool touching_at(gram *g, moment *m) {
+static bool touching_at(gram *g, algebraic_moment *m) {
     if (moment_sign(m, g->det) != 0) return false;
     for (int i = 0; i < g->count; i++)
         if (moment_sign(m, at(g, i, i)) == 0) return true;
@@ -250,7 +250,7 @@ static const oracle_verdict never = {.touching = false, .toi_low = 2.0, .toi_hig
 static oracle_verdict first_touch(gram *g, moment_list *list) {
     oracle_verdict verdict = never;
     for (slong i = 0; i < list->count; i++) {
-        moment *m = &list->items[i];
+        algebraic_moment *m = &list->items[i];
         double low, high;
         moment_bounds(m, &low, &high);
         if (low >= verdict.toi_high || !touching_at(g, m)) continue;

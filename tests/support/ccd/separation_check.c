@@ -111,15 +111,15 @@ static long double largest_speed(cscd_contact_kind kind, const elementary_query 
     return largest;
 }
 
-typedef struct search {
+typedef struct distance_search {
     cscd_contact_kind kind;
     const elementary_query *query;
     long double distance, speed;
     int samples_left;
-} search;
+} distance_search;
 
 /* Between a sample that is not within the distance and a later one that is: an early one that is. */
-static double first_within(const search *s, long double before, long double within) {
+static double first_within(const distance_search *s, long double before, long double within) {
     for (int step = 0; step < BISECTIONS; step++) {
         long double middle = 0.5L * (before + within);
         if (sampled_distance(s->kind, s->query, middle) <= s->distance)
@@ -131,7 +131,7 @@ static double first_within(const search *s, long double before, long double with
 }
 
 /* At both ends the features are farther apart than the distance, by d0 and d1. */
-static sampled_answer search_between(search *s, long double t0, long double d0, long double t1,
+static sampled_answer search_between(distance_search *s, long double t0, long double d0, long double t1,
                                      long double d1, int depth, double *time) {
     if (d0 + d1 - s->speed * (t1 - t0) > 2.0L * s->distance) return SAMPLED_APART;
     if (depth == DEPTH_MAX || s->samples_left-- <= 0) return SAMPLED_UNDECIDED;
@@ -148,7 +148,7 @@ static sampled_answer search_between(search *s, long double t0, long double d0, 
 
 sampled_answer sampled_within(cscd_contact_kind kind, const elementary_query *query, long double distance,
                               double *time) {
-    search s = {kind, query, distance, largest_speed(kind, query), SAMPLES_MAX};
+    distance_search s = {kind, query, distance, largest_speed(kind, query), SAMPLES_MAX};
     long double before = 0.0L, d0 = sampled_distance(kind, query, before);
     sampled_answer answer = SAMPLED_APART;
     *time = 0.0;

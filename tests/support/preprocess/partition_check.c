@@ -109,9 +109,9 @@ cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const
     return partition;
 }
 
-row row_of(uint32_t count, const body_kind *kinds, const double *scales,
-           const cscd_partition_options *options) {
-    row r = {0};
+partition_row row_of(uint32_t count, const body_kind *kinds, const double *scales,
+                     const cscd_partition_options *options) {
+    partition_row r = {0};
     for (uint32_t i = 0; i < count; i++) {
         body one = body_of(kinds[i], body_nearest_count(kinds[i], 600));
         for (uint32_t j = 0; j < one.vertex_count * 3; j++) one.positions[j] *= scales[i];
@@ -123,7 +123,7 @@ row row_of(uint32_t count, const body_kind *kinds, const double *scales,
     return r;
 }
 
-void row_free(row *r) {
+void row_free(partition_row *r) {
     cscd_partition_destroy(r->partition);
     body_mesh_destroy(r->mesh);
     body_free(&r->b);

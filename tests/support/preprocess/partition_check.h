@@ -14,12 +14,12 @@ cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const
 
 /* Bodies of about 600 triangles beside each other as the components of one mesh, scaled; and its partition.
  */
-typedef struct row {
+typedef struct partition_row {
     body b;
     cscd_mesh *mesh;
     cscd_partition *partition;
-} row;
+} partition_row;
 
-row row_of(uint32_t count, const body_kind *kinds, const double *scales,
-           const cscd_partition_options *options);
-void row_free(row *r);
+partition_row row_of(uint32_t count, const body_kind *kinds, const double *scales,
+                     const cscd_partition_options *options);
+void row_free(partition_row *r);
