@@ -61,7 +61,7 @@ function initialState(report) {
   };
 }
 
-/** Slices of a long recording, after its first picture. */
+/** The slices of a long recording are read after its first picture. */
 async function readFrames(scene, viewer) {
   const { positions } = scene;
   const told = (store) => {

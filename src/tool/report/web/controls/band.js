@@ -5,7 +5,7 @@ import { element } from '../page/dom.js';
 import { finder } from '../page/intervals.js';
 import { drawStates } from '../page/states.js';
 
-/** Contacts are ticks above the strip, higher for more of them; the most of those that share a column. */
+/** Contacts are ticks above the strip, higher for more contacts. Intervals that share a column show the highest. */
 function drawTicks(canvas, counts, strip, ink) {
   const context = canvas.getContext('2d');
   const most = counts.reduce((largest, count) => Math.max(largest, count), 1); // more than a call takes arguments

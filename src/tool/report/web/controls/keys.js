@@ -55,7 +55,7 @@ export function createHelp() {
   return { toggle: () => (dialog.open ? dialog.close() : dialog.showModal()), isOpen: () => dialog.open };
 }
 
-/** Keys of what has the focus go first: a list scrolls, a group of radios moves by arrows. */
+/** The element with the focus has its keys first: a list scrolls, a radio group moves by arrows. */
 function takenByFocus(event) {
   const { target, key } = event;
   if (!(target instanceof Element)) return false;

@@ -1,11 +1,11 @@
-/** Moves the time: playing, steps, jumps. All of them through the store. */
+/** Moves the time by playing, stepping and jumping, always through the store. */
 
 const SPEEDS = [1, 2, 5, 10, 15, 24, 30, 60];
 
-/** A contact at the very end of its interval is shown in that one, not in the next. */
+/** A contact at the very end of an interval is shown in this interval, not in the next one. */
 const WITHIN = 1 - 1e-9;
 
-/** Contacts an interval, as the summary counts them, and where there are any. */
+/** How many contacts each interval has by the summary, and which intervals have any. */
 function contactCounts(report) {
   const { first, last } = report.scene;
   const counts = new Uint32Array(Math.max(0, last - first));
@@ -92,7 +92,7 @@ export function createPlayer(report, store) {
     toMost() {
       if (most !== null) show(most);
     },
-    /** To the moment of one contact; null selects none. */
+    /** Goes to the moment of a contact and selects it; null selects none. */
     select(contact) {
       if (contact === null) {
         store.set({ selected: null });

@@ -28,7 +28,7 @@ export function createStore(initial) {
   return {
     get: () => state,
 
-    /** Sets what differs, then tells those who asked for one of these keys, each once. */
+    /** Sets the values that differ, then calls each listener of one of these keys once. */
     set(changes) {
       const changed = Object.keys(changes).filter((key) => !Object.is(state[key], changes[key]));
       if (changed.length === 0) return;
@@ -38,7 +38,7 @@ export function createStore(initial) {
       }
     },
 
-    /** listener(state, changedKeys); returns a function that ends it. */
+    /** Adds listener(state, changedKeys); returns a function that removes it. */
     on(keys, listener) {
       const entry = { keys: new Set(keys), listener };
       listeners.push(entry);

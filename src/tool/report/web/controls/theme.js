@@ -1,4 +1,4 @@
-/** Light or dark: as the reader's system has it until the button says otherwise. */
+/** Light or dark, as the reader's system is, until the button changes it. */
 
 const system = () => window.matchMedia?.('(prefers-color-scheme: dark)');
 

@@ -39,7 +39,7 @@ async function inflate(bytes, size) {
   return out;
 }
 
-/** Numbers are stored with the low byte first, which is not every machine's own order. */
+/** Numbers are stored with the low byte first, which is not the order of every machine. */
 function inOwnOrder(bytes, width) {
   if (width === 1 || new Uint8Array(new Uint16Array([1]).buffer)[0] === 1) return bytes;
   for (let i = 0; i < bytes.length; i += width) bytes.subarray(i, i + width).reverse();

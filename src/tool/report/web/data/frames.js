@@ -66,7 +66,7 @@ class RecordReader {
     return { ...this.positions() };
   }
 
-  /** The middle of the frame's box in double, and where the vertices are from there. */
+  /** The middle of the frame's box in double, and the vertices relative to it. */
   positions() {
     const { q, vertexCount, origin, step } = this;
     const center = [0, 0, 0];

@@ -1,4 +1,4 @@
-/** The report as the page works with it: what the data blocks say, checked and in typed arrays. */
+/** The report as the page uses it: the content of the data blocks, checked and in typed arrays. */
 
 import { BlockError, readArray, readDocument } from './decode.js';
 import { FrameStore } from './frames.js';
@@ -127,7 +127,7 @@ function sceneryOf(array, scene) {
   return { triangles, positions };
 }
 
-/** Numbers that each triangle has one of. */
+/** Arrays with a number for each triangle. */
 function perTriangle(array, scene) {
   const values = {};
   for (const name of ['component', 'charge', 'equalized', 'region', 'heat']) {

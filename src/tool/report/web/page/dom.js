@@ -1,4 +1,4 @@
-/** Elements of the page. What the data says enters it as text only. */
+/** Makes elements of the page. Data enters them as text only, never as markup. */
 
 /**
  * @param {string} tag
@@ -22,7 +22,7 @@ export function element(tag, properties = {}, ...children) {
 
 const SVG = 'http://www.w3.org/2000/svg';
 
-/** One shape in a picture of its own, which readers pass over. */
+/** An inline picture of one shape, which screen readers skip. */
 export function picture(width, height, name, attributes) {
   const make = (tag, given) => {
     const made = document.createElementNS(SVG, tag);
@@ -44,24 +44,24 @@ export function button(name, { glyph = null, key = null, kind = 'icon' }, action
   return element('button', { type: 'button', class: kind, 'aria-label': name, title, onclick: action }, content);
 }
 
-/** A square of the colour that stands for what is named beside it. */
+/** A square in a colour, which a key names beside it. */
 export function swatch(colour) {
   const made = element('span', { class: 'swatch', 'aria-hidden': 'true' });
   made.style.background = colour;
   return made;
 }
 
-/** Sets the text where it differs: while a recording plays most of it stays. */
+/** Sets the text only if it differs, because most of it stays while a recording plays. */
 export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** The heading of a section, with what stands beside it. */
+/** The heading of a section, with elements beside it. */
 export function heading(text, ...beside) {
   return element('div', { class: 'section-head' }, element('h2', { text }), ...beside);
 }
 
-/** A table that scrolls by itself, with the keyboard too where nothing in it takes the focus. */
+/** A table that scrolls by itself, also with the keyboard if nothing in it takes the focus. */
 export function scrollable(table) {
   const label = `${table.getAttribute('aria-label')}, scrolls`;
   return element('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': label }, table);
@@ -78,7 +78,7 @@ export function segments(label, name, options, chosen, choose) {
   return group;
 }
 
-/** A cell with a number: what is shown, its exact value to point at and to read by machine. */
+/** A cell with a rounded number, and the exact value for the pointer and for programs. */
 export function numberCell(text, exact, tag = 'td') {
   return element(tag, { class: 'number', text, 'data-value': exact, title: exact });
 }

@@ -9,7 +9,7 @@ export function integer(value) {
   return group(String(value));
 }
 
-/** With this many decimals; a value that these would hide keeps two significant digits. */
+/** A number with this many decimals; a value that they would round to 0 keeps two significant digits. */
 export function decimal(value, decimals) {
   if (value !== 0 && Math.abs(value) < 10 ** -decimals) return significant(value, 2);
   const [whole, rest] = value.toFixed(decimals).split('.');

@@ -21,7 +21,7 @@ export function intervalAt(time, { first, last }) {
   return Math.max(first, Math.min(Math.floor(time), last - 1));
 }
 
-/** frame -> the interval's record, or undefined where the replay did not come that far. */
+/** Returns a function from a frame to the interval's record; undefined if the replay ended before it. */
 export function finder(summary) {
   const intervals = summary?.intervals ?? [];
   const first = intervals[0]?.frame ?? 0;

@@ -2,7 +2,7 @@
 
 const SHORT = 60; // characters of a title
 
-/** The name of a replay; its number too where names repeat. */
+/** The name of a replay, with its number if another replay has the same name. */
 export function nameOf(report, index) {
   const { name } = report.summaries[index];
   const same = report.summaries.filter((other) => other.name === name).length;
@@ -11,7 +11,7 @@ export function nameOf(report, index) {
 
 const withoutFolders = (path) => path.slice(path.lastIndexOf('/') + 1);
 
-/** A comparison is called by the files of its replays, where that is short. */
+/** The title of a comparison: the files of its replays, if that is short. */
 export function titleOf(report) {
   if (report.kind !== 'compare') return report.title;
   const files = report.summaries.map(({ name }) => withoutFolders(name));

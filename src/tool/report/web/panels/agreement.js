@@ -54,7 +54,7 @@ export function agreement(report) {
 /* Options that change contacts, then options that change times only. */
 const GRAVE = ['model', 'recording', 'frames', 'mode', 'least separation'];
 
-/** what -> its value in one replay. */
+/** The circumstances of a replay and their values. */
 function circumstances({ provenance, summary, intervals }) {
   const { machine } = provenance;
   const input = (i) =>
@@ -79,7 +79,7 @@ function circumstances({ provenance, summary, intervals }) {
   };
 }
 
-/** Whether not all have the same. A recording is known by the frames that were read of it, and no others. */
+/** Do values differ? Recordings are compared by the frames that were read, not by others. */
 function differs(all, what) {
   const comparable = (a, b) => what !== 'recording' || a.frames[0] === b.frames[0];
   return all.some((a) => all.some((b) => comparable(a, b) && a[what][0] !== b[what][0]));

@@ -25,7 +25,7 @@ const PANELS = {
   licences,
 };
 
-/** A panel that the report has not all for must not take the others with it. */
+/** A panel whose data is missing in the report must not take the other panels with it. */
 function createPanel(panel, container, report, store, player) {
   try {
     panel.create(container, report, store, player);

@@ -1,4 +1,4 @@
-/** The charts under the view: every interval, the moment that plays, and a click on them goes there. */
+/** The charts under the view. They show every interval and the current moment; a click goes to an interval. */
 import { onCalmly } from '../controls/calm.js';
 import { element, heading, setText } from '../page/dom.js';
 import { createFigure } from './figure.js';
@@ -22,7 +22,7 @@ function createRange(count, changed) {
   return {
     get: () => [begin, end],
     all: () => clamp(0, count),
-    /** About a moment, which keeps its place. */
+    /** Zooms about a moment, which keeps its place. */
     scale(factor, at) {
       const share = at >= begin && at <= end ? (at - begin) / (end - begin) : 0.5;
       const length = (end - begin) * factor;

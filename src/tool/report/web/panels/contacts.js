@@ -79,7 +79,7 @@ function fillRow(row, { contacts, unit, decimals }, contact, number) {
   position.title = position.dataset.value = point.join(' ');
 }
 
-/** The contacts from begin to end that are wanted, in the order wanted. */
+/** The contacts from begin to end that the reader has chosen, in the chosen order. */
 function choose(contacts, [begin, end], { kind, descending }) {
   const chosen = [];
   for (let contact = begin; contact < end; contact++) {
@@ -191,7 +191,7 @@ export function create(container, report, store, player) {
     rows.show(shown.length);
   }
 
-  /** Counts only while the recording plays fast. */
+  /** Shows only the counts while the recording plays fast. */
   function rest() {
     listed = -1;
     capped.hidden = scroll.hidden = true;

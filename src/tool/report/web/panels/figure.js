@@ -4,7 +4,7 @@ import { createPlot } from './plot.js';
 
 /**
  * @param {{title: string, summary: string, read: (value: number) => string, total?: ArrayLike<number>,
- *          series: object[], mark?: (index: number) => Node}} figure and what createPlot wants
+ *          series: object[], mark?: (index: number) => Node}} figure and the options of createPlot
  */
 export function createFigure(figure) {
   const { title, series, read, total } = figure;
@@ -44,9 +44,9 @@ export function createFigure(figure) {
   return {
     box,
     host,
-    /** Only when the page has a width can it be drawn. */
+    /** It can be drawn only when the page has a width. */
     draw: (attach) => createPlot(host, figure, attach),
-    /** Values of this interval, counted from the first. */
+    /** Shows the values of this interval, counted from the first. */
     show(interval) {
       const columns = total
         ? [...series.map(({ values }) => values), total]

@@ -1,4 +1,4 @@
-/** All intervals in one table; a row goes there. */
+/** All intervals in one table; a click on a row goes to its interval. */
 import { onCalmly } from '../controls/calm.js';
 import { element, heading, segments, setText } from '../page/dom.js';
 import { counted, decimal, integer, milliseconds } from '../page/format.js';

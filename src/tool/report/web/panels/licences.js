@@ -1,4 +1,4 @@
-/** The licences of what this page is made of, in full. */
+/** The full licences of the libraries in this page. */
 import { element, heading } from '../page/dom.js';
 
 export function create(container) {

@@ -49,7 +49,7 @@ function notesOfRun(summary, intervals) {
   return notes;
 }
 
-/** Intervals of which fewer contacts are in the page than were found. */
+/** Intervals with fewer contacts in the page than were found. */
 function cappedIntervals(scene, intervals) {
   return intervals
     .filter(({ frame, vf, ee }) => {

@@ -1,4 +1,4 @@
-/** One chart over the intervals: stacked areas or lines, drawn once; the moment shown is a line on top. */
+/** A chart over the intervals, of stacked areas or lines. It is drawn once; a line on top is the current moment. */
 import uPlot from 'uplot';
 import { columnsOf, heaviest } from '../page/columns.js';
 import { element } from '../page/dom.js';
@@ -10,7 +10,7 @@ const AXIS_FONT = '11px system-ui, sans-serif';
 
 const token = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** A colour or the name of one of the page's own. */
+/** A colour, or the name of one of the page's colours. */
 const colourOf = (colour) => (colour.startsWith('--') ? token(colour) : colour);
 
 /** The value that 98 % of the intervals stay below, so that a few peaks do not flatten the rest. */
@@ -56,7 +56,7 @@ function seriesOptions({ series, stacked }) {
   return [{}, ...(stacked ? options.reverse() : options)];
 }
 
-/** A number at the right end would be cut. */
+/** Leaves out a number at the right end, which would be cut off. */
 function frameLabels({ scales: { x } }, splits) {
   const room = (x.max - x.min) * 0.015;
   return splits.map((frame) =>

@@ -1,4 +1,4 @@
-/** The pointer on a chart: hovering reads an interval, a click or drag goes there. */
+/** The pointer on a chart: hovering shows the values of an interval, a click or drag goes to it. */
 
 /**
  * @param {HTMLElement} surface over which the intervals extend from its left to its right

@@ -12,7 +12,7 @@ function machineWords({ system, release, architecture, processor, processors }) 
   );
 }
 
-/** Arguments as a shell would read them. */
+/** The arguments, quoted for a shell. */
 function commandLine(args) {
   return [
     'cscd',
@@ -29,7 +29,7 @@ function planWords(plan) {
   return `${counted(plan.regions, 'region')} by ${plan.method}, ${from}`;
 }
 
-/** [name, nodes] of one run. */
+/** The rows [name, nodes] of one run. */
 function factsOfRun(provenance) {
   const facts = [
     ['Version', lines([`cscd ${provenance.version}, commit ${provenance.commit}`])],

@@ -1,4 +1,4 @@
-/** The plan's regions and what preprocessing measured. */
+/** The regions of the plan, and the times of preprocessing. */
 import { element, heading, numberCell, scrollable, swatch } from '../page/dom.js';
 import { coordinates, counted, decimal, integer, percent, positionDecimals, significant } from '../page/format.js';
 import { css, regionColour } from '../view/colours.js';

@@ -1,4 +1,4 @@
-/** Rows of a long table of which only those near the visible ones are in the document. */
+/** A long table of which only the rows near the visible ones are in the document. */
 import { element } from '../page/dom.js';
 
 const ALL_BELOW = 60;

@@ -31,7 +31,7 @@ export function otherMilliseconds(ms) {
   );
 }
 
-/** In words: what an interval's guarantee promises, components with the same put together. */
+/** The guarantee of an interval in words; components with the same guarantee are put together. */
 export function guaranteeInWords(guarantee) {
   const counts = new Map();
   for (const { mode, reason } of guarantee) {

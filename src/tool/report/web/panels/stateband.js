@@ -46,7 +46,7 @@ export function createStateBand(intervals) {
       range = [begin, end];
       draw();
     },
-    /** In intervals from the first. */
+    /** The moment, in intervals from the first. */
     setTime(at) {
       time = at;
       moveLine();

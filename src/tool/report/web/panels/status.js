@@ -25,7 +25,10 @@ export function create(container, report, store) {
     container.setAttribute('aria-live', playing ? 'off' : 'polite');
     const parts = [`Frame ${moment(time)} of ${first} to ${last}`];
     const interval = find(intervalAt(time, extent));
-    if (interval) parts.push(STATE_NAME[interval.state] ?? interval.state, `${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
+    if (interval) {
+      parts.push(STATE_NAME[interval.state] ?? interval.state);
+      parts.push(`${integer(interval.vf)} VF, ${integer(interval.ee)} EE`);
+    }
     setText(container, parts.join(' · '));
   }
 

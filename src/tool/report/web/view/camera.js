@@ -7,7 +7,7 @@ const AZIMUTH = (30 * Math.PI) / 180;
 const ELEVATION = (20 * Math.PI) / 180;
 const TURN = Math.PI / 24;
 
-/** A point of view like the tool's pictures have: from the right and above. */
+/** The point of view of the tool's pictures: from the right and above. */
 const DIRECTION = new Vector3(
   Math.sin(AZIMUTH) * Math.cos(ELEVATION),
   -Math.cos(AZIMUTH) * Math.cos(ELEVATION),
@@ -66,7 +66,7 @@ export class View {
     this.controls.target.add(by);
   }
 
-  /** Near and far planes from what is there: depth has few bits. */
+  /** Fits the near and far planes to the scene, because depth has few bits. */
   clip(sphere) {
     const { camera } = this;
     const distance = camera.position.distanceTo(sphere.center);

@@ -7,7 +7,7 @@ export const EE = [220, 50, 32];
 export const TOUCHING = [255, 176, 66];
 export const PLAIN = [184, 196, 214];
 
-/** S0, S+, S-: as the array "orientation" numbers them. */
+/** S0, S+ and S-, numbered as in the array "orientation". */
 export const ORIENTATIONS = [
   [240, 228, 66],
   [86, 180, 233],
@@ -52,7 +52,7 @@ function table(map) {
 
 /** Colours of 0..1 in 256 steps, RGB. */
 export const VIRIDIS = table(interpolateViridis);
-/** Without the darkest and lightest ends, which shading and ground would swallow. */
+/** The map without its darkest and lightest ends, which could not be seen beside shading and background. */
 export const HEAT = table((t) => interpolateInferno(0.22 + 0.72 * t));
 
 export const step = (t) => 3 * Math.round(255 * Math.min(1, Math.max(0, t)));

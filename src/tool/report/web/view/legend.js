@@ -85,7 +85,7 @@ function heatLegend(most, info) {
   ];
 }
 
-/** VF and EE of the interval, and what else is marked. */
+/** Rows for the VF and EE contacts of the interval, and for the other marks. */
 function marksLegend(scene, state, find) {
   const rows = [];
   if (state.contacts && scene.contacts !== null) {

@@ -93,7 +93,7 @@ function geometryFor(capacity) {
   return geometry;
 }
 
-/** Some marks, those in sight and, faintly, those that the surface hides. */
+/** Draws marks, and faintly those that the surface hides. */
 class Marks {
   constructor() {
     this.capacity = 64;
@@ -150,7 +150,7 @@ export function markedContacts(scene, state) {
   return marked;
 }
 
-/** CSS pixels across: smaller where many crowd. */
+/** The diameter of marks in CSS pixels; it is smaller if there are many. */
 const sizeAmong = (count) => Math.min(10, Math.max(6.5, 10 - 0.9 * Math.log2(count / 24)));
 
 export class ContactMarks extends Marks {
@@ -174,10 +174,10 @@ export class ContactMarks extends Marks {
   }
 }
 
-/** Rings, too. */
+/** The diameter of a ring in CSS pixels; it is smaller if there are many. */
 const ringAmong = (count) => Math.min(19, Math.max(11, 19 - 2 * Math.log2(count / 24)));
 
-/** Detector points lie inside the body: always drawn over it. */
+/** Detector points lie inside the body, so they are always drawn over it. */
 export class DetectorMarks extends Marks {
   constructor() {
     super();

@@ -56,7 +56,7 @@ function triangleAt(viewer, x, y) {
   return pickTriangle(body.local, data.triangles, from, space.direction(caster.ray.direction));
 }
 
-/** Selects what is at a point of the canvas; a mark goes before the surface. */
+/** Selects the mark at a point of the canvas, or else the triangle. */
 export function pick(viewer, x, y) {
   const near = markersOnScreen(viewer)
     .map(({ contact, screen }) => ({ contact, distance: Math.hypot(screen[0] - x, screen[1] - y) }))

@@ -4,10 +4,10 @@ const LEAST = 0.7; // pixels of the buffer for one of the page
 const SLOW_MS = 30;
 const QUICK_MS = 12;
 const REST_MS = 160;
-/** Opaque: the page need not blend it. Kept: it can be printed. */
+/** Opaque, so that the page need not blend it; preserved, so that it can be printed. */
 const OPTIONS = { alpha: false, stencil: false, preserveDrawingBuffer: true };
 
-/** Without a graphics processor each pixel counts, several samples for each all the more. */
+/** Without a graphics processor each pixel costs time, and several samples per pixel cost even more. */
 function inSoftware(context) {
   const details = context.getExtension('WEBGL_debug_renderer_info');
   const name = context.getParameter(details?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER);
@@ -41,7 +41,7 @@ export class Resolution {
     this.ratio = 1;
   }
 
-  /** At rest; software draws four pixels for one then, to smooth edges, and has time for it. */
+  /** The resolution at rest. Software then draws four pixels for one to smooth edges, and has the time. */
   get full() {
     const density = window.devicePixelRatio || 1;
     return this.software ? Math.max(2, Math.min(density, 3)) : Math.min(density, 3);
@@ -72,7 +72,7 @@ export class Resolution {
     }
   }
 
-  /** After each picture: the time from one to the next tells what the machine can do. */
+  /** Called after each picture: the time from one to the next shows what the machine can do. */
   drawn() {
     if (!this.inMotion) return;
     const now = performance.now();

@@ -64,7 +64,7 @@ uniform vec3 cutColour;
 uniform vec3 touchColour;
 uniform vec3 pickColour;
 uniform vec3 edgeColour;
-/** Pixels from here to the corner where the barycentric coordinates are those. */
+/** The distance in pixels to the corner with these barycentric coordinates. */
 float reach(vec2 there) {
   vec2 right = dFdx(corner.xy), up = dFdy(corner.xy), way = there - corner.xy;
   float area = right.x * up.y - right.y * up.x;
@@ -98,7 +98,7 @@ void main() {
 
 const unit = (colour) => new Vector3(...colour.map((value) => value / 255));
 
-/** Either with lines along edges, or shadowed, or neither. */
+/** The material with lines along edges, with shadow, or with neither. */
 export function surfaceMaterial({ lines = false, shadowed = false }) {
   return new ShaderMaterial({
     glslVersion: GLSL3,

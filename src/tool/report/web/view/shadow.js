@@ -1,4 +1,4 @@
-/** The body's shadow on its surroundings, from a light straight above: where it is over the ground, at a glance. */
+/** The body's shadow on its surroundings, from a light straight above. It shows where the body is over the ground. */
 
 import {
   Color, DepthTexture, DoubleSide, LessEqualCompare, LinearFilter, Matrix4, Mesh, MeshBasicMaterial, OrthographicCamera,
@@ -30,7 +30,7 @@ export class Shadow {
     uniforms.shadowMatrix.value = this.matrix;
   }
 
-  /** Looks down on a box around the body's middle, and on all below it. */
+  /** Looks down on a box around the body's middle and on everything below it. */
   aim(reach, surroundings) {
     const { camera } = this;
     const middle = this.body.mesh.position;
@@ -50,7 +50,7 @@ export class Shadow {
     this.matrix.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   }
 
-  /** Draws what the light sees, where the body has changed. */
+  /** Draws the shadow map again if the body has changed. */
   update(renderer, reach, surroundings) {
     const { position, quaternion } = this.body.mesh;
     const key = [position.x, position.y, position.z, quaternion.x];

@@ -1,4 +1,4 @@
-/** A moving mesh: corners of its own for every triangle, so that each has one colour and one normal. */
+/** A moving mesh. Every triangle has its own corners, so that it has one colour and one normal. */
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, Sphere } from 'three';
 import { surfaceMaterial } from './shading.js';
@@ -95,7 +95,7 @@ export class Surface {
     this.mesh.geometry.attributes.tint.needsUpdate = true;
   }
 
-  /** Lines along edges cost something on each pixel: only where some are wanted. */
+  /** Switches the lines along edges, which cost time on each pixel. */
   setLines(wanted) {
     this.mesh.material = wanted ? this.lined : this.quick;
   }

@@ -1,4 +1,4 @@
-/** The view with its buttons, legend and readout; a message in its place where it cannot be drawn. */
+/** The view with its buttons, legend and readout, or a message if it cannot be drawn. */
 
 import { button, element } from '../page/dom.js';
 import { intervalAt } from '../page/intervals.js';

@@ -20,7 +20,7 @@ function withVertices(incidence, triangles, vertices) {
   });
 }
 
-/** VF: around the vertex, and the face; EE: at both edges. */
+/** The triangles of a contact. VF: those around the vertex, and the face; EE: those at both edges. */
 export function contactTriangles({ triangles, contacts }, incidence, contact) {
   const [a, b, c, d] = contacts.vertices.subarray(4 * contact, 4 * contact + 4);
   const of = (...vertices) => withVertices(incidence, triangles, vertices);

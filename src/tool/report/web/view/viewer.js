@@ -1,4 +1,4 @@
-/** The 3D view: builds the scene and draws it when something has changed, never otherwise. */
+/** The 3D view: builds the scene, and draws it only when something has changed. */
 
 import { Box3, Color, LinearSRGBColorSpace, Scene, Vector3, WebGLRenderer } from 'three';
 import { intervalAt } from '../page/intervals.js';
@@ -107,7 +107,7 @@ export class Viewer {
     this.surroundings = data.scenery === null ? new Box3() : space.box(data.scenery.positions);
   }
 
-  /** To be called when more frames have been read. */
+  /** Call it when more frames have been read. */
   framesRead() {
     this.measure();
     if (!this.touched) this.home();
@@ -229,14 +229,14 @@ export class Viewer {
     for (const marks of [this.contacts, this.detectors]) marks.setScale(this.resolution.ratio, pixel);
   }
 
-  /** Those of the plan where the recording has none. */
+  /** The detector points of the recording or, if it has none, those of the plan. */
   detectorPoints(interval, fraction) {
     const { data } = this;
     if (data.detectorPoints !== null) return data.detectorPoints(interval, fraction);
     return Float64Array.from(data.plan?.regions.flatMap((region) => region.detector_point) ?? []);
   }
 
-  /** Looks at a box, which then is the reader's own view. */
+  /** Looks at a box; from then on this is the view that the reader has chosen. */
   frame(box) {
     this.view.frame(box);
     this.touched = true;
