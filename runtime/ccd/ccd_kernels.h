@@ -5,7 +5,7 @@
 #include "src/core/context.h"
 #include "src/core/kernels.h"
 
-/* Where pairs of features and their points are found. */
+/* The points, triangles and edges that pairs of features name. */
 typedef struct feature_source {
     const double *x0, *x1; /* three per vertex */
     const uint32_t (*triangles)[3], (*edges)[2];
@@ -18,7 +18,7 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* For eight pairs: what the roots say, and for hits the begin of the interval of the first that touches. */
+/* The verdicts on eight pairs, and for each hit the begin of the first root interval in which it touches. */
 typedef struct root_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double begin[LANES];
@@ -27,9 +27,9 @@ typedef struct root_outcomes {
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
-/* For eight pairs: those that certainly stay farther apart than a limit's distance and tolerance, those
- * certainly within its distance at the start, and, for these, the nearest points there, as parameters and as
- * the way from b's to a's, and its length. */
+/* Eight pairs. Misses certainly stay farther apart than a limit's distance and tolerance; hits are certainly
+ * within its distance at the start. For hits: the nearest points at the start, as parameters, as the offset from
+ * b's point to a's, and its length. */
 typedef struct proximity_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double u[LANES], v[LANES], offset[3][LANES], distance[LANES];
@@ -39,18 +39,18 @@ typedef void proximity_kernel(const feature_source *source, const uint32_t *a, c
                               const separation *limit, proximity_outcomes *out);
 
 typedef struct ccd_kernels {
-    /* Keeps the pairs that signs leave open, in their order. The same operations as separated_by_axes and
+    /* Keep the pairs that signs leave undecided, in their order. The same operations as separated_by_axes and
      * coplanarity_excluded, so the same verdicts. */
     void (*reject_by_signs_vf)(const feature_source *source, feature_pairs *pairs);
     void (*reject_by_signs_ee)(const feature_source *source, feature_pairs *pairs);
 
-    /* Level two for pairs from a[0], b[0] to a[7], b[7]: where the cubic has one root for certain, */
+    /* Level two for pairs a[0], b[0] to a[7], b[7]. These decide pairs whose cubic certainly has one root, */
     root_kernel *roots_vf, *roots_ee;
 
-    /* and where it has two, or none. */
+    /* and these pairs whose cubic certainly has two roots, or none. */
     root_kernel *two_roots_vf, *two_roots_ee;
 
-    /* Pairs from a[0], b[0] to a[7], b[7]. */
+    /* Distances of pairs a[0], b[0] to a[7], b[7]. */
     proximity_kernel *proximity_vf, *proximity_ee;
 } ccd_kernels;
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-static double clamp01(double x) {
+static double clamp_to_unit(double x) {
     return x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
 }
 
@@ -15,7 +15,7 @@ static double nearest_on_segment(const double p[3], const double a[3], const dou
     vec3_subtract(b, a, direction);
     vec3_subtract(p, a, offset);
     double length = vec3_dot(direction, direction);
-    return length > 0.0 ? clamp01(vec3_dot(offset, direction) / length) : 0.0;
+    return length > 0.0 ? clamp_to_unit(vec3_dot(offset, direction) / length) : 0.0;
 }
 
 static double squared_distance_at(const double p[3], const double a[3], const double b[3], const double c[3],
@@ -50,8 +50,8 @@ enum { PROJECTIONS_MAX = 16 };
 
 /* Adds to u and v what the residual of p at them projects to, and says whether that changed them. Repeated,
  * the point becomes good to rounding even in a thin triangle, where the first answer is not. */
-static bool project(const double p[3], const double a[3], const double ab[3], const double ac[3],
-                    const double normal[3], double area, double *u, double *v) {
+static bool add_projection(const double p[3], const double a[3], const double ab[3], const double ac[3],
+                           const double normal[3], double area, double *u, double *v) {
     double residual[3], side[3];
     for (int k = 0; k < 3; k++) residual[k] = (p[k] - a[k]) - *u * ab[k] - *v * ac[k];
     vec3_cross(residual, ac, side);
@@ -77,7 +77,7 @@ static double closest_in_plane(const double p[3], const double a[3], const doubl
     *size = vec3_dot(ab, ab) + vec3_dot(ac, ac);
     if (!(area > 0.0)) return INFINITY;
     for (int i = 0; i < PROJECTIONS_MAX; i++) {
-        if (!project(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
+        if (!add_projection(p, a, ab, ac, normal, area, &inside_u, &inside_v)) break;
     }
     if (!(inside_u >= 0.0 && inside_v >= 0.0 && inside_u + inside_v <= 1.0)) return INFINITY;
     *u = inside_u;
@@ -109,8 +109,8 @@ static double segment_distance_at(const double a0[3], const double a1[3], const 
 
 /* The crossing of the lines; between nearly parallel ones it is inexact, which projecting back and forth
  * mends. INFINITY: they are parallel. */
-static double crossing(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
-                       double *u, double *v, double *size) {
+static double closest_on_lines(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
+                               double *u, double *v, double *size) {
     double along_a[3], along_b[3], offset[3], normal[3], side[3], point[3];
     vec3_subtract(a1, a0, along_a);
     vec3_subtract(b1, b0, along_b);
@@ -120,7 +120,7 @@ static double crossing(const double a0[3], const double a1[3], const double b0[3
     *size = vec3_dot(along_a, along_a) + vec3_dot(along_b, along_b);
     if (!(area > 0.0)) return INFINITY;
     vec3_cross(offset, along_b, side);
-    *u = clamp01(vec3_dot(side, normal) / area);
+    *u = clamp_to_unit(vec3_dot(side, normal) / area);
     vec3_add_scaled(a0, *u, along_a, point);
     *v = nearest_on_segment(point, b0, b1);
     vec3_add_scaled(b0, *v, along_b, point);
@@ -150,7 +150,8 @@ static double closest_ends(const double a0[3], const double a1[3], const double 
 /* The nearest points are two inner ones or include an end. */
 double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                         double *u, double *v) {
-    double size, cross_u = 0.0, cross_v = 0.0, distance = crossing(a0, a1, b0, b1, &cross_u, &cross_v, &size);
+    double size, cross_u = 0.0, cross_v = 0.0,
+                 distance = closest_on_lines(a0, a1, b0, b1, &cross_u, &cross_v, &size);
     double best = distance <= touching * size ? INFINITY : closest_ends(a0, a1, b0, b1, u, v);
     if (distance > best || !(distance < INFINITY)) return best;
     *u = cross_u;

@@ -1,4 +1,4 @@
-/* What is told of a touch: a time that is safe to step to, the points, the normal. */
+/* Describes a contact: a time that is safe to step to, the points, the normal. */
 #include "runtime/ccd/contact_frame.h"
 
 #include "runtime/ccd/closest.h"
@@ -12,8 +12,8 @@
 static const double gap_left = 0x1p-48;
 static const double earlier_at_most = 0x1p-32;
 
-/* Vectors between the points at one moment, as in point_vectors: blended differences keep the shape of
- * features that are small beside their motion, blended positions would not. */
+/* Vectors between the points at one moment, as in point_vectors. Blended differences keep the shape of
+ * features that are small beside their motion; blended positions would not. */
 typedef struct moment_vectors {
     double a[3], b[3], c[3];
 } moment_vectors;
@@ -25,16 +25,16 @@ static double largest_coordinate(const elementary_query *query) {
     return largest;
 }
 
-static double blend(double start, double end, double t) {
+static double blend_ends(double start, double end, double t) {
     return (1.0 - t) * start + t * end;
 }
 
 static moment_vectors vectors_at(const point_vectors *v, double t) {
     moment_vectors m;
     for (int k = 0; k < 3; k++) {
-        m.a[k] = blend(v->a[0][k], v->a[1][k], t);
-        m.b[k] = blend(v->b[0][k], v->b[1][k], t);
-        m.c[k] = blend(v->c[0][k], v->c[1][k], t);
+        m.a[k] = blend_ends(v->a[0][k], v->a[1][k], t);
+        m.b[k] = blend_ends(v->b[0][k], v->b[1][k], t);
+        m.c[k] = blend_ends(v->c[0][k], v->c[1][k], t);
     }
     return m;
 }
@@ -91,9 +91,9 @@ static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, ele
     }
 }
 
-/* From the point named on b to the one on a. */
-static void connection(const double a[3], const double b[3], const double c[3], cscd_contact_kind kind,
-                       const elementary_hit *hit, double out[3]) {
+/* The vector from the point that u and v name on b to the one on a. */
+static void connect_points(const double a[3], const double b[3], const double c[3], cscd_contact_kind kind,
+                           const elementary_hit *hit, double out[3]) {
     double sign = kind == CSCD_CONTACT_VF ? 1.0 : -1.0;
     for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - hit->u * a[k]) - hit->v * b[k];
 }
@@ -106,8 +106,8 @@ static void contact_normal(const point_vectors *v, const moment_vectors *m, cscd
     scaled_cross(m, cross, &exponent);
     scale_to_one(cross, normal);
     double length = sqrt(vec3_dot(normal, normal));
-    connection(v->a[0], v->b[0], v->c[0], kind, hit, start);
-    connection(v->a[1], v->b[1], v->c[1], kind, hit, end);
+    connect_points(v->a[0], v->b[0], v->c[0], kind, hit, start);
+    connect_points(v->a[1], v->b[1], v->c[1], kind, hit, end);
     vec3_subtract(end, start, motion);
     double sign = vec3_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
@@ -121,9 +121,9 @@ void contact_frame_describe(const elementary_query *query, cscd_contact_kind kin
     hit->toi = leave_gap(&vectors, largest_coordinate(query), f, toi);
     moment_vectors m = vectors_at(&vectors, hit->toi);
     find_parameters(&m, kind, hit);
-    connection(m.a, m.b, m.c, kind, hit, apart);
+    connect_points(m.a, m.b, m.c, kind, hit, apart);
     for (int k = 0; k < 3; k++) {
-        double on_a = blend(query->x0[0][k], query->x1[0][k], hit->toi);
+        double on_a = blend_ends(query->x0[0][k], query->x1[0][k], hit->toi);
         if (kind == CSCD_CONTACT_EE) on_a += hit->u * m.a[k];
         hit->point[k] = on_a - 0.5 * apart[k];
     }

@@ -1,4 +1,4 @@
-/* What is told of a touch: a time that is safe to step to, the points, the normal. */
+/* Describes a contact: a time that is safe to step to, the points, the normal. */
 #pragma once
 
 #include "runtime/ccd/coplanarity.h"

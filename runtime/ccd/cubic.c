@@ -14,23 +14,24 @@ static const double root_rounding = 0x1p-50, converged = 0x1p-26;
 
 static const double widest_radius = 0x1p-7;
 
-static double blend(double a, double b, double t) {
+static double blend_linearly(double a, double b, double t) {
     return (1.0 - t) * a + t * b;
 }
 
-/* The cubic's polar form, by de Casteljau's scheme, at (t, t) and then at the third arguments: values of the
+/* The cubic's polar_form form, by de Casteljau's scheme, at (t, t) and then at the third arguments: values of the
  * cubic and Bernstein coefficients of its parts. */
-typedef struct polar {
+typedef struct polar_form {
     double low, high;
-} polar;
+} polar_form;
 
-static polar polar_at(const double b[4], double t) {
-    double p0 = blend(b[0], b[1], t), p1 = blend(b[1], b[2], t), p2 = blend(b[2], b[3], t);
-    return (polar){blend(p0, p1, t), blend(p1, p2, t)};
+static polar_form polar_at(const double b[4], double t) {
+    double p0 = blend_linearly(b[0], b[1], t), p1 = blend_linearly(b[1], b[2], t),
+           p2 = blend_linearly(b[2], b[3], t);
+    return (polar_form){blend_linearly(p0, p1, t), blend_linearly(p1, p2, t)};
 }
 
 double cubic_slope(const coplanarity *f, double t) {
-    polar p = polar_at(f->b, t);
+    polar_form p = polar_at(f->b, t);
     return 3.0 * (p.high - p.low);
 }
 
@@ -51,10 +52,10 @@ static void to_monomials(const double coefficients[4], double c[4]) {
 
 /* The certified sign of the exact cubic on all of [from, to]; 0: none was found. */
 static int sign_between(const coplanarity *f, double from, double to, int subdivisions) {
-    polar start = polar_at(f->b, from), stop = polar_at(f->b, to);
+    polar_form start = polar_at(f->b, from), stop = polar_at(f->b, to);
     double error = f->error;
-    double c0 = blend(start.low, start.high, from), c1 = blend(start.low, start.high, to);
-    double c2 = blend(stop.low, stop.high, from), c3 = blend(stop.low, stop.high, to);
+    double c0 = blend_linearly(start.low, start.high, from), c1 = blend_linearly(start.low, start.high, to);
+    double c2 = blend_linearly(stop.low, stop.high, from), c3 = blend_linearly(stop.low, stop.high, to);
     if (c0 > error && c1 > error && c2 > error && c3 > error) return 1;
     if (c0 < -error && c1 < -error && c2 < -error && c3 < -error) return -1;
     if (subdivisions == 0 || !((c0 > error && c3 > error) || (c0 < -error && c3 < -error))) return 0;
@@ -65,10 +66,10 @@ static int sign_between(const coplanarity *f, double from, double to, int subdiv
 
 /* Newton's method, kept within [low, high], where the cubic has the sign `change` before the root and -change
  * after it; 0: unknown. False when it does not converge. */
-static bool polish(const double b[4], double low, double high, double change, double *t) {
+static bool polish_root(const double b[4], double low, double high, double change, double *t) {
     for (int i = 0; i < POLISH_STEPS; i++) {
-        polar p = polar_at(b, *t);
-        double value = blend(p.low, p.high, *t), next = *t - value / (3.0 * (p.high - p.low));
+        polar_form p = polar_at(b, *t);
+        double value = blend_linearly(p.low, p.high, *t), next = *t - value / (3.0 * (p.high - p.low));
         if (change * value > 0.0) low = *t;
         if (change * value < 0.0) high = *t;
         if (!(next >= low && next <= high)) next = 0.5 * (low + high); /* or not a number */
@@ -94,7 +95,7 @@ static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
     int guess_count = cubic_guess_roots(c, guesses);
     for (int i = 0; i < guess_count; i++) {
         if (!(guesses[i] > -0x1p-20 && guesses[i] < 1.0 + 0x1p-20)) continue;
-        if (!polish(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
+        if (!polish_root(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
             return ROOTS_UNCERTAIN;
         if (!(out[count].begin < out[count].end)) continue; /* polished out of [0,1] */
         if (count > 0 && !(out[count - 1].end < out[count].begin)) return ROOTS_UNCERTAIN;
@@ -132,12 +133,12 @@ static int single_change(const coplanarity *f) {
  * between which it has exactly one root. */
 static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
                             root_interval *out) {
-    if (!polish(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
+    if (!polish_root(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
     out->begin = max_of(out->begin, low);
     out->end = min_of(out->end, high);
-    polar begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
-    return change * blend(begin.low, begin.high, out->begin) > f->error &&
-           change * blend(end.low, end.high, out->end) < -f->error;
+    polar_form begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
+    return change * blend_linearly(begin.low, begin.high, out->begin) > f->error &&
+           change * blend_linearly(end.low, end.high, out->end) < -f->error;
 }
 
 /* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
@@ -158,8 +159,9 @@ static int isolate_two(const coplanarity *f, root_interval out[ROOTS_MAX]) {
     const double *b = g.b;
     double t = lowest_at(b);
     if (!(b[0] > error && b[3] > error && t > 0.0 && t < 1.0)) return ROOTS_UNCERTAIN;
-    polar p = polar_at(b, t);
-    double first = blend(b[0], b[1], t), last = blend(b[2], b[3], t), value = blend(p.low, p.high, t);
+    polar_form p = polar_at(b, t);
+    double first = blend_linearly(b[0], b[1], t), last = blend_linearly(b[2], b[3], t),
+           value = blend_linearly(p.low, p.high, t);
     if (first > error && p.low > error && value > error && p.high > error && last > error) return 0;
     if (!(value < -error && (first > error || p.low < -error) && (last > error || p.high < -error)))
         return ROOTS_UNCERTAIN;

@@ -15,5 +15,5 @@ enum { ROOTS_MAX = 3, ROOTS_UNCERTAIN = -1 };
  */
 int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]);
 
-/* Of the computed cubic, at t in [0,1]. */
+/* The slope of the computed cubic at t in [0,1]. */
 double cubic_slope(const coplanarity *f, double t);

@@ -1,7 +1,6 @@
-/* Where a cubic's roots may be: guesses that others prove. One of two files behind it: with GSL or without.
- */
+/* Guesses where a cubic's roots are; callers prove them. One of two files implements it, with GSL or without. */
 #pragma once
 
-/* Approximate real roots of c[0] + c[1] t + c[2] t^2 + c[3] t^3, any leading coefficients 0 or tiny. Nothing
- * is certain of them, nor that none is missing. Returns how many were written, ascending. */
+/* Writes approximate real roots of c[0] + c[1] t + c[2] t^2 + c[3] t^3 in ascending order, and returns how many.
+ * Leading coefficients may be 0 or tiny. Roots may be wrong, and some may be missing. */
 int cubic_guess_roots(const double c[4], double roots[3]);

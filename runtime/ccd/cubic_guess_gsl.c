@@ -1,4 +1,4 @@
-/* Where a cubic's roots may be, by GSL, whose solvers used here call no error handler and cannot fail. */
+/* Guesses a cubic's roots with GSL. The solvers used here call no error handler and cannot fail. */
 #include "runtime/ccd/cubic_guess.h"
 
 #include <gsl/gsl_poly.h>

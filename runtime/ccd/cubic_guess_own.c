@@ -1,4 +1,4 @@
-/* Where a cubic's roots may be, without GSL: safeguarded Newton steps between the extrema. */
+/* Guesses a cubic's roots without GSL, by safeguarded Newton steps between the extrema. */
 #include "runtime/ccd/cubic_guess.h"
 
 #include <math.h>

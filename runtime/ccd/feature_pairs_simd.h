@@ -1,6 +1,4 @@
-/* As many pairs of features as the processor takes at once, as vectors: their points, what lies between
- * these, the coplanarity cubic. The same operations in the same order as coplanarity.c, whose error bounds
- * therefore hold. */
+/* As many pairs of features as the processor takes at once, as vectors of their points. */
 #pragma once
 
 #include "runtime/ccd/ccd_kernels.h"
@@ -9,15 +7,6 @@
 typedef struct points_x8 {
     f64w x0[4][3], x1[4][3]; /* points as in elementary_query, then coordinates */
 } points_x8;
-
-typedef struct vectors_x8 {
-    f64w a[2][3], b[2][3], c[2][3]; /* as in point_vectors */
-    f64w size_a[3], size_b[3], size_c[3];
-} vectors_x8;
-
-typedef struct cubics_x8 {
-    f64w b[4], error;
-} cubics_x8;
 
 static inline void load_both_ends(const feature_source *source, uint32_t vertices[4][WIDTH], points_x8 *out) {
     for (int i = 0; i < 4; i++) {
@@ -58,45 +47,15 @@ static inline void load_features(const feature_source *source, cscd_contact_kind
         load_ee(source, a, b, out);
 }
 
-static inline void subtract_at_ends(const points_x8 *points, int to, int from, f64w out[2][3], f64w size[3]) {
-    for (int k = 0; k < 3; k++) {
-        out[0][k] = points->x0[to][k] - points->x0[from][k];
-        out[1][k] = points->x1[to][k] - points->x1[from][k];
-        size[k] = f64w_max(f64w_abs(out[0][k]), f64w_abs(out[1][k]));
+/* What becomes of the pairs i to i + WIDTH - 1 of the eight. */
+typedef void decide_some(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out);
+
+static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
+                                cscd_contact_kind kind, decide_some *decide, root_outcomes *out) {
+    out->misses = out->hits = 0;
+    for (int i = 0; i < LANES; i += WIDTH) {
+        points_x8 points;
+        load_features(source, kind, a + i, b + i, &points);
+        decide(&points, kind, i, out);
     }
-}
-
-static inline void vectors_between(const points_x8 *points, cscd_contact_kind kind, vectors_x8 *out) {
-    int vf = kind == CSCD_CONTACT_VF;
-    subtract_at_ends(points, vf ? 2 : 1, vf ? 1 : 0, out->a, out->size_a);
-    subtract_at_ends(points, 3, vf ? 1 : 2, out->b, out->size_b);
-    subtract_at_ends(points, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);
-}
-
-static inline void cross(const f64w a[3], const f64w b[3], f64w out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static inline f64w dot(const f64w a[3], const f64w b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline void cubics_of(const vectors_x8 *v, cubics_x8 *f) {
-    f64w start[3], end[3], one[3], other[3], mixed[3], permanent = f64w_all(0.0);
-    cross(v->a[0], v->b[0], start);
-    cross(v->a[1], v->b[1], end);
-    cross(v->a[1], v->b[0], one);
-    cross(v->a[0], v->b[1], other);
-    for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
-    f->b[0] = dot(start, v->c[0]);
-    f->b[1] = (dot(mixed, v->c[0]) + dot(start, v->c[1])) / 3.0;
-    f->b[2] = (dot(mixed, v->c[1]) + dot(end, v->c[0])) / 3.0;
-    f->b[3] = dot(end, v->c[1]);
-    for (int k = 0; k < 3; k++) {
-        int y = (k + 1) % 3, z = (k + 2) % 3;
-        permanent += v->size_c[k] * (v->size_a[y] * v->size_b[z] + v->size_a[z] * v->size_b[y]);
-    }
-    f->error = 24.0 * 0x1p-53 * permanent + 0x1p-1060;
 }

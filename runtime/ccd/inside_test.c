@@ -29,7 +29,7 @@ typedef struct blended {
     const double *size;
 } blended;
 
-static blended blend(const double ends[2][3], const double size[3], double t) {
+static blended blend_ends(const double ends[2][3], const double size[3], double t) {
     blended out = {.size = size};
     for (int k = 0; k < 3; k++) out.at[k] = (1.0 - t) * ends[0][k] + t * ends[1][k];
     return out;
@@ -42,7 +42,7 @@ static bounded_value cross_component(const blended *a, const blended *b, int k, 
     return (bounded_value){a->at[y] * b->at[z] - a->at[z] * b->at[y], relative_error * size};
 }
 
-static bounded_value difference(bounded_value a, bounded_value b) {
+static bounded_value subtract_bounded(bounded_value a, bounded_value b) {
     return (bounded_value){a.value - b.value, a.error + b.error};
 }
 
@@ -63,8 +63,8 @@ inside_verdict inside_test(const point_vectors *vectors, cscd_contact_kind kind,
                            const root_interval *interval) {
     double t = 0.5 * (interval->begin + interval->end), h = max_of(interval->end - t, t - interval->begin);
     double relative_error = 16.0 * 0x1p-53 + 5.0 * h;
-    blended a = blend(vectors->a, vectors->size_a, t), b = blend(vectors->b, vectors->size_b, t),
-            c = blend(vectors->c, vectors->size_c, t);
+    blended a = blend_ends(vectors->a, vectors->size_a, t), b = blend_ends(vectors->b, vectors->size_b, t),
+            c = blend_ends(vectors->c, vectors->size_c, t);
     int k = largest_axis(a.at, b.at);
     bounded_value w = cross_component(&a, &b, k, relative_error);
     if (certain_sign(w, 1.0) == 0) return INSIDE_UNSURE;
@@ -73,10 +73,10 @@ inside_verdict inside_test(const point_vectors *vectors, cscd_contact_kind kind,
     bounded_value u = cross_component(&c, &b, k, relative_error);
     bounded_value v = kind == CSCD_CONTACT_VF ? cross_component(&a, &c, k, relative_error)
                                               : cross_component(&c, &a, k, relative_error);
-    bounded_value beyond_u = difference(w, u);
+    bounded_value beyond_u = subtract_bounded(w, u);
     const int signs[4] = {certain_sign(u, sign), certain_sign(v, sign),
                           kind == CSCD_CONTACT_VF ? 1 : certain_sign(beyond_u, sign),
-                          certain_sign(difference(kind == CSCD_CONTACT_VF ? beyond_u : w, v), sign)};
+                          certain_sign(subtract_bounded(kind == CSCD_CONTACT_VF ? beyond_u : w, v), sign)};
     bool unsure = false;
     for (int i = 0; i < 4; i++) {
         if (signs[i] < 0) return INSIDE_NO;

@@ -1,10 +1,10 @@
-/* Features that a direction parts throughout an interval. */
+/* Finds features that one direction keeps apart throughout an interval. */
 #include "runtime/ccd/kdop_directions.h"
 
 #include "src/core/kdop.h"
 #include "src/core/vec3.h"
 
-/* Of points, along one direction. */
+/* The extent of points along one direction. */
 typedef struct span {
     double low, high;
 } span;
@@ -18,7 +18,7 @@ static span span_along_axis(const double (*points)[3], int count, int axis) {
     return s;
 }
 
-/* Relative to an origin, for what the points have in common may be far larger than what they are apart. With
+/* Relative to an origin, because coordinates may be far larger than distances between the points. With
  * u = 2^-53 differences are off by u of themselves, their sum by 2 u more, and widening it by u: 4 u of the
  * sum of magnitudes, of 8 u taken. */
 static span span_along_diagonal(const double (*points)[3], int count, int diagonal, const double origin[3]) {

@@ -1,12 +1,12 @@
-/* Features that a direction parts throughout an interval. */
+/* Finds features that one direction keeps apart throughout an interval. */
 #pragma once
 
 #include "runtime/ccd/elementary.h"
 
 #include <stdbool.h>
 
-/* Are the first points of a pair of features farther than the distance from the others along one of the seven
- * directions of 14-DOPs, at both ends on the same side, and so throughout? The filters of the detector's
- * methods, in floats, leave out only what certainly is so; asking on the features' own points gives each
- * method the same pairs, whatever its trees. */
+/* Are the two features farther apart than the distance along one of the seven directions of 14-DOPs, at both
+ * ends and on the same side? Then they are throughout. The filters of the detector's methods work in floats and
+ * leave out only pairs of which this is true. Asking for the features' own points gives each method the same
+ * pairs, whatever its trees. */
 bool directions_part(const elementary_query *query, cscd_contact_kind kind, double distance);

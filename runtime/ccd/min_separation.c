@@ -8,7 +8,7 @@
 
 /* The features are no farther apart than the computed distance and this. The distance is that of two of their
  * points; in units of 2^-53, of offset's coordinates: those of the points are off by 3 each, and by 1 each
- * from the subtraction in localise; differences below 2 round by 2, twice that for two of them, weighed by u
+ * from the subtraction in localise_query; differences below 2 round by 2, twice that for two of them, weighed by u
  * and v up to 1, and so do the products, then two sums by 2: together below 8 + 2 + 4 + 4 + 4 = 22. A sum u +
  * v above 1 by rounding is worth 2 more. So the vector is off by 24 sqrt 3 < 42, and its length rounds by
  * less than 12. */
@@ -26,12 +26,12 @@ typedef struct local_query {
 } local_query;
 
 /* The features at one moment. */
-typedef struct moment {
+typedef struct feature_moment {
     double t, u, v, distance;
     moving_features features;
     shortest_connection shortest;
     double middle[3]; /* of the shortest connection */
-} moment;
+} feature_moment;
 
 /* ---- the query ------------------------------------------------------------------------------------- */
 
@@ -48,7 +48,7 @@ static double query_extent(const elementary_query *query) {
 
 /* To an extent in [1/2, 1), so that no later product over- or underflows. The subtraction rounds: coordinates
  * are off by at most 2^-53. Scaling is exact, that of the distance too: its exponent stays within 1000. */
-static local_query localise(const elementary_query *query, cscd_contact_kind kind, double distance) {
+static local_query localise_query(const elementary_query *query, cscd_contact_kind kind, double distance) {
     local_query local = {.kind = kind, .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
     int exponent = 0;
     frexp(query_extent(query), &exponent);
@@ -65,7 +65,7 @@ static local_query localise(const elementary_query *query, cscd_contact_kind kin
 
 /* ---- the features at a moment ---------------------------------------------------------------------- */
 
-static void connect_vf(moment *m) {
+static void connect_vf(feature_moment *m) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     const double(*velocity)[3] = (const double(*)[3])m->features.velocity;
     closest_point_triangle(x[0], x[1], x[2], x[3], &m->u, &m->v);
@@ -82,7 +82,7 @@ static void connect_vf(moment *m) {
     m->shortest.inside[2] = u > 0.0 && v > 0.0 && on_last;
 }
 
-static void connect_ee(moment *m) {
+static void connect_ee(feature_moment *m) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     const double(*velocity)[3] = (const double(*)[3])m->features.velocity;
     closest_segments(x[0], x[1], x[2], x[3], &m->u, &m->v);
@@ -98,7 +98,7 @@ static void connect_ee(moment *m) {
 }
 
 /* Each coordinate is off by at most 3 * 2^-53: two roundings of (1 - t) x0, one of t x1, one of the sum. */
-static void move_to(const local_query *local, double t, moment *m) {
+static void move_to(const local_query *local, double t, feature_moment *m) {
     m->t = t;
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++)
@@ -111,8 +111,8 @@ static void move_to(const local_query *local, double t, moment *m) {
     m->distance = sqrt(vec3_dot(m->shortest.offset, m->shortest.offset));
 }
 
-static moment start(const local_query *local) {
-    moment m = {.features.kind = local->kind};
+static feature_moment start_moment(const local_query *local) {
+    feature_moment m = {.features.kind = local->kind};
     for (int i = 0; i < 4; i++) vec3_subtract(local->at.x1[i], local->at.x0[i], m.features.velocity[i]);
     move_to(local, 0.0, &m);
     return m;
@@ -122,7 +122,7 @@ static moment start(const local_query *local) {
 
 /* For how long from the moment on the features are certainly apart: any plane proves it, and fewer axes may
  * prove more. */
-static double time_apart(const local_query *local, const moment *m) {
+static double time_apart(const local_query *local, const feature_moment *m) {
     double longest = 0.0;
     for (int axes_max = 2; axes_max >= 0 && longest < 1.0 - m->t; axes_max--) {
         separating_plane plane = separating_plane_find(&m->features, &m->shortest, axes_max);
@@ -134,7 +134,7 @@ static double time_apart(const local_query *local, const moment *m) {
 }
 
 /* Where nothing moves the plane across the shortest connection mostly proves all there is to prove. */
-static bool stays_apart(const local_query *local, const moment *m) {
+static bool stays_apart(const local_query *local, const feature_moment *m) {
     separating_plane across = {.axis_count = 0};
     if (!local->still) return false;
     for (int k = 0; k < 3; k++) across.normal[k] = m->shortest.offset[k] / m->distance;
@@ -143,7 +143,7 @@ static bool stays_apart(const local_query *local, const moment *m) {
 
 /* From moment to moment, each as late as a plane keeps the features apart, until they are no farther apart
  * than reach. A time t + s is rounded down: times 1 - 2^-53 is the next smaller double. */
-static bool advance(const local_query *local, double reach, moment *m, bool *bounded) {
+static bool advance_moment(const local_query *local, double reach, feature_moment *m, bool *bounded) {
     *bounded = false;
     if (m->distance > reach && stays_apart(local, m)) return false;
     for (int step = 0; m->distance > reach; step++) {
@@ -157,7 +157,7 @@ static bool advance(const local_query *local, double reach, moment *m, bool *bou
 }
 
 /* The features' own normal, against the motion of a relative to b: where they touch there is no other. */
-static void touching_normal(const moment *m, double normal[3]) {
+static void touching_normal(const feature_moment *m, double normal[3]) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     double a[3], b[3];
     bool vf = m->features.kind == CSCD_CONTACT_VF;
@@ -169,8 +169,8 @@ static void touching_normal(const moment *m, double normal[3]) {
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 
-static void describe(const elementary_query *query, const local_query *local, const moment *m,
-                     elementary_hit *hit) {
+static void describe_hit(const elementary_query *query, const local_query *local, const feature_moment *m,
+                         elementary_hit *hit) {
     *hit = (elementary_hit){.toi = m->t, .u = m->u, .v = m->v};
     for (int k = 0; k < 3; k++) {
         hit->point[k] = query->x0[0][k] + m->middle[k] / local->scale;
@@ -183,14 +183,14 @@ static void describe(const elementary_query *query, const local_query *local, co
  * times DISTANCE_ERROR and 8 times what a plane proves nothing about: steps end at reach, not before it. */
 static bool comes_within(const elementary_query *query, cscd_contact_kind kind, const separation *limit,
                          elementary_hit *hit, bool *bounded) {
-    local_query local = localise(query, kind, limit->distance);
+    local_query local = localise_query(query, kind, limit->distance);
     double tolerance = fmax(limit->tolerance * local.scale, 0.5 * SEPARATION_FINEST);
     double reach = local.distance + (tolerance - DISTANCE_ERROR);
-    moment m = start(&local);
+    feature_moment m = start_moment(&local);
     bool ran_out;
-    if (!advance(&local, reach, &m, &ran_out)) return false;
+    if (!advance_moment(&local, reach, &m, &ran_out)) return false;
     if (directions_part(query, kind, limit->distance)) return false;
-    describe(query, &local, &m, hit);
+    describe_hit(query, &local, &m, hit);
     *bounded = ran_out;
     return true;
 }

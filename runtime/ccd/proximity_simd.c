@@ -1,34 +1,34 @@
 /* Distances of features at rest, many pairs at a time, each with a proof: a plane across the nearest points.
  */
 #include "runtime/ccd/ccd_kernels_simd.h"
-#include "runtime/ccd/feature_pairs_simd.h"
+#include "runtime/ccd/coplanarity_simd.h"
 #include "runtime/ccd/min_separation.h"
 #include "src/core/vec3.h"
 
-/* Nearest points of lanes: parameters as in cscd_contact, and the way from b's to a's. */
+/* Nearest points of lanes: parameters as in cscd_contact, and the offset from b's to a's. */
 typedef struct nearest {
     f64w u, v, offset[3], squared;
 } nearest;
 
-static inline f64w clamp01(f64w x) {
+static inline f64w clamp_to_unit(f64w x) {
     return f64w_max(f64w_min(x, f64w_all(1.0)), f64w_all(0.0));
 }
 
-/* Of the origin's way `to` along `side`: 0 where that has no length. */
+/* The share of `side` up to the point nearest to `to`, both from the origin; 0 where side has no length. */
 static inline f64w share_along(const f64w to[3], const f64w side[3]) {
-    f64w squared = dot(side, side), zero = f64w_all(0.0);
-    return f64w_select(f64w_below(zero, squared), clamp01(dot(to, side) / squared), zero);
+    f64w squared = dot_x8(side, side), zero = f64w_all(0.0);
+    return f64w_select(f64w_below(zero, squared), clamp_to_unit(dot_x8(to, side) / squared), zero);
 }
 
-/* The way c - u a - v b. */
-static inline nearest named(const f64w c[3], const f64w a[3], const f64w b[3], f64w u, f64w v) {
+/* The offset c - u a - v b. */
+static inline nearest offset_between(const f64w c[3], const f64w a[3], const f64w b[3], f64w u, f64w v) {
     nearest n = {.u = u, .v = v};
     for (int k = 0; k < 3; k++) n.offset[k] = c[k] - u * a[k] - v * b[k];
-    n.squared = dot(n.offset, n.offset);
+    n.squared = dot_x8(n.offset, n.offset);
     return n;
 }
 
-static inline void take(uint32_t lanes, const nearest *from, nearest *to) {
+static inline void take_lanes(uint32_t lanes, const nearest *from, nearest *to) {
     to->u = f64w_select(lanes, from->u, to->u);
     to->v = f64w_select(lanes, from->v, to->v);
     for (int k = 0; k < 3; k++) to->offset[k] = f64w_select(lanes, from->offset[k], to->offset[k]);
@@ -36,16 +36,17 @@ static inline void take(uint32_t lanes, const nearest *from, nearest *to) {
 }
 
 static inline void take_nearer(const nearest *from, nearest *to) {
-    take(f64w_below(from->squared, to->squared), from, to);
+    take_lanes(f64w_below(from->squared, to->squared), from, to);
 }
 
-/* Adds the parameters of what the way at hand, from the plane of a and b to the point, projects to. */
-static inline nearest project(const f64w c[3], const f64w a[3], const f64w b[3], const f64w normal[3],
-                              f64w area, const nearest *at) {
+/* Projects the offset onto the plane of a and b, and adds the result to the parameters. */
+static inline nearest add_projection(const f64w c[3], const f64w a[3], const f64w b[3], const f64w normal[3],
+                                     f64w area, const nearest *at) {
     f64w side_u[3], side_v[3];
-    cross(at->offset, b, side_u);
-    cross(a, at->offset, side_v);
-    return named(c, a, b, at->u + dot(side_u, normal) / area, at->v + dot(side_v, normal) / area);
+    cross_x8(at->offset, b, side_u);
+    cross_x8(a, at->offset, side_v);
+    return offset_between(c, a, b, at->u + dot_x8(side_u, normal) / area,
+                          at->v + dot_x8(side_v, normal) / area);
 }
 
 /* A point c and the triangle of the origin, a and b. */
@@ -56,23 +57,23 @@ static inline nearest nearest_in_triangle(const f64w c[3], const f64w a[3], cons
         beyond[k] = c[k] - a[k];
     }
     f64w along = share_along(beyond, third);
-    nearest best = named(c, a, b, share_along(c, a), zero);
-    nearest other = named(c, a, b, zero, share_along(c, b));
+    nearest best = offset_between(c, a, b, share_along(c, a), zero);
+    nearest other = offset_between(c, a, b, zero, share_along(c, b));
     take_nearer(&other, &best);
-    other = named(c, a, b, one - along, along);
+    other = offset_between(c, a, b, one - along, along);
     take_nearer(&other, &best);
-    cross(a, b, normal);
-    f64w area = dot(normal, normal);
-    nearest inner = named(c, a, b, zero, zero);
-    inner = project(c, a, b, normal, area, &inner);
-    inner = project(c, a, b, normal, area, &inner); /* twice: thin triangles */
+    cross_x8(a, b, normal);
+    f64w area = dot_x8(normal, normal);
+    nearest inner = offset_between(c, a, b, zero, zero);
+    inner = add_projection(c, a, b, normal, area, &inner);
+    inner = add_projection(c, a, b, normal, area, &inner); /* twice: thin triangles */
     uint32_t inside = f64w_below(zero, area) & f64w_at_most(zero, inner.u) & f64w_at_most(zero, inner.v) &
                       f64w_at_most(inner.u + inner.v, one);
-    take(inside, &inner, &best);
+    take_lanes(inside, &inner, &best);
     return best;
 }
 
-/* Two edges: a from the origin, and b from c on. The way between their points is u a - (c + v b). */
+/* Two edges: a from the origin, and b from c on. The offset between their points is u a - (c + v b). */
 static inline nearest nearest_of_edges(const f64w c[3], const f64w a[3], const f64w b[3]) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0), back[3], from_end[3], to_end[3], normal[3], side[3];
     f64w minus_c[3], at_v[3];
@@ -82,25 +83,25 @@ static inline nearest nearest_of_edges(const f64w c[3], const f64w a[3], const f
         from_end[k] = a[k] - c[k];
         to_end[k] = c[k] + b[k];
     }
-    nearest best = named(minus_c, back, b, zero, share_along(minus_c, b));
-    nearest other = named(minus_c, back, b, one, share_along(from_end, b));
+    nearest best = offset_between(minus_c, back, b, zero, share_along(minus_c, b));
+    nearest other = offset_between(minus_c, back, b, one, share_along(from_end, b));
     take_nearer(&other, &best);
-    other = named(minus_c, back, b, share_along(c, a), zero);
+    other = offset_between(minus_c, back, b, share_along(c, a), zero);
     take_nearer(&other, &best);
-    other = named(minus_c, back, b, share_along(to_end, a), one);
+    other = offset_between(minus_c, back, b, share_along(to_end, a), one);
     take_nearer(&other, &best);
-    cross(a, b, normal);
-    cross(c, b, side);
-    f64w area = dot(normal, normal), u = clamp01(dot(side, normal) / area);
+    cross_x8(a, b, normal);
+    cross_x8(c, b, side);
+    f64w area = dot_x8(normal, normal), u = clamp_to_unit(dot_x8(side, normal) / area);
     for (int k = 0; k < 3; k++) side[k] = u * a[k] - c[k];
     f64w v = share_along(side, b);
     for (int k = 0; k < 3; k++) at_v[k] = c[k] + v * b[k];
-    other = named(minus_c, back, b, share_along(at_v, a), v);
-    take(f64w_below(zero, area) & f64w_at_most(other.squared, best.squared), &other, &best);
+    other = offset_between(minus_c, back, b, share_along(at_v, a), v);
+    take_lanes(f64w_below(zero, area) & f64w_at_most(other.squared, best.squared), &other, &best);
     return best;
 }
 
-/* A unit vector along the way. */
+/* A unit vector along the offset. */
 static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
     for (int k = 0; k < 3; k++) out[k] = n->offset[k] / distance;
 }
@@ -109,7 +110,7 @@ static inline void direction_of(const nearest *n, f64w distance, f64w out[3]) {
 static inline f64w gap_along(const f64w direction[3], cscd_contact_kind kind, const f64w c[3],
                              const f64w a[3], const f64w b[3]) {
     f64w zero = f64w_all(0.0);
-    f64w along_a = dot(direction, a), along_b = dot(direction, b), along_c = dot(direction, c);
+    f64w along_a = dot_x8(direction, a), along_b = dot_x8(direction, b), along_c = dot_x8(direction, c);
     if (kind == CSCD_CONTACT_VF) return along_c - f64w_max(zero, f64w_max(along_a, along_b));
     return f64w_min(zero, along_a) - along_c - f64w_max(zero, along_b);
 }
@@ -131,13 +132,13 @@ static inline f64w to_one(f64w extent) {
     return extent;
 }
 
-/* What lies between the points at one end: a vertex c and the triangle of a and b, or the edge a, and the
- * edge b from c on. */
-typedef struct moment_vectors {
+/* The vectors between the points at one end: a vertex c and the triangle of a and b, or the edge a and the edge b
+ * that begins at c. */
+typedef struct vectors_at_end {
     f64w a[3], b[3], c[3];
-} moment_vectors;
+} vectors_at_end;
 
-static inline void vectors_at(f64w x[4][3], cscd_contact_kind kind, moment_vectors *out) {
+static inline void vectors_at(f64w x[4][3], cscd_contact_kind kind, vectors_at_end *out) {
     int vf = kind == CSCD_CONTACT_VF;
     for (int k = 0; k < 3; k++) {
         out->a[k] = x[vf ? 2 : 1][k] - x[vf ? 1 : 0][k];
@@ -146,7 +147,7 @@ static inline void vectors_at(f64w x[4][3], cscd_contact_kind kind, moment_vecto
     }
 }
 
-static inline void multiply(moment_vectors *v, f64w factor) {
+static inline void scale_vectors(vectors_at_end *v, f64w factor) {
     for (int k = 0; k < 3; k++) {
         v->a[k] *= factor;
         v->b[k] *= factor;
@@ -154,7 +155,8 @@ static inline void multiply(moment_vectors *v, f64w factor) {
     }
 }
 
-static inline void keep(const nearest *n, f64w distance, f64w factor, int i, proximity_outcomes *out) {
+static inline void store_nearest(const nearest *n, f64w distance, f64w factor, int i,
+                                 proximity_outcomes *out) {
     memcpy(out->u + i, &n->u, sizeof n->u);
     memcpy(out->v + i, &n->v, sizeof n->v);
     distance /= factor;
@@ -165,24 +167,24 @@ static inline void keep(const nearest *n, f64w distance, f64w factor, int i, pro
     }
 }
 
-/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the way is off by 1 + 2 + 2 for
+/* Vectors below 1 at both ends. In units of 2^-53: they are off by 1 each; the offset is off by 1 + 2 + 2 for
  * them, by 4 for the products and by 6 for the sums per coordinate, its length by twice that; dots with the
  * direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
  * from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the gap is the
  * least of differences that are linear in time, so it is least at an end. Pairs that come within the
  * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
  * (SEPARATION_FINEST). */
-static inline void decide(points_x8 *p, cscd_contact_kind kind, int i, const separation *limit,
-                          proximity_outcomes *out) {
-    moment_vectors start, end;
+static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separation *limit,
+                                    proximity_outcomes *out) {
+    vectors_at_end start, end;
     f64w error = f64w_all(0x1p-45), direction[3];
     vectors_at(p->x0, kind, &start);
     vectors_at(p->x1, kind, &end);
     f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
     f64w factor = to_one(extent), near = limit->distance * factor;
     f64w far = near + limit->tolerance * factor + 0x1p-40;
-    multiply(&start, factor);
-    multiply(&end, factor);
+    scale_vectors(&start, factor);
+    scale_vectors(&end, factor);
     nearest n = kind == CSCD_CONTACT_VF ? nearest_in_triangle(start.c, start.a, start.b)
                                         : nearest_of_edges(start.c, start.a, start.b);
     f64w distance = f64w_sqrt(n.squared);
@@ -193,25 +195,26 @@ static inline void decide(points_x8 *p, cscd_contact_kind kind, int i, const sep
     uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
     out->misses |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
     out->hits |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
-    keep(&n, distance, factor, i, out);
+    store_nearest(&n, distance, factor, i, out);
 }
 
-static inline void decide_all(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                              cscd_contact_kind kind, const separation *limit, proximity_outcomes *out) {
+static inline void decide_eight_by_proximity(const feature_source *source, const uint32_t *a,
+                                             const uint32_t *b, cscd_contact_kind kind,
+                                             const separation *limit, proximity_outcomes *out) {
     out->misses = out->hits = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         load_features(source, kind, a + i, b + i, &points);
-        decide(&points, kind, i, limit, out);
+        decide_proximity(&points, kind, i, limit, out);
     }
 }
 
 void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separation *limit, proximity_outcomes *out) {
-    decide_all(source, a, b, CSCD_CONTACT_VF, limit, out);
+    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, limit, out);
 }
 
 void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              const separation *limit, proximity_outcomes *out) {
-    decide_all(source, a, b, CSCD_CONTACT_EE, limit, out);
+    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, limit, out);
 }

@@ -25,7 +25,7 @@ static int side_along_axis(const double x[4][3], cscd_contact_kind kind, int k) 
 /* x+y+z, x+y-z, x-y+z, -x+y+z relative to nothing, and how far they may be off: two additions, each with a
  * relative error u = 2^-53 of numbers below s = |x|+|y|+|z|, at most (2u + u^2) s; 2^-51 s = 4u s covers the
  * rounding of s and of the comparison, too. */
-static void diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *error) {
+static void sum_diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *error) {
     sums[0] = p[0] + p[1] + p[2];
     sums[1] = p[0] + p[1] - p[2];
     sums[2] = p[0] - p[1] + p[2];
@@ -35,7 +35,7 @@ static void diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *er
 
 static void sides_along_diagonals(const double x[4][3], cscd_contact_kind kind, int sides[DIAGONAL_COUNT]) {
     double sums[4][DIAGONAL_COUNT], error[4];
-    for (int i = 0; i < 4; i++) diagonals(x[i], sums[i], &error[i]);
+    for (int i = 0; i < 4; i++) sum_diagonals(x[i], sums[i], &error[i]);
     for (int k = 0; k < DIAGONAL_COUNT; k++) {
         double a_low = INFINITY, a_high = -INFINITY, b_low = INFINITY, b_high = -INFINITY;
         for (int i = 0; i < 4; i++) {

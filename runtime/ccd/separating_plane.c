@@ -106,7 +106,7 @@ typedef struct projection {
     double x_normal[4], v_normal[4], x_turn[4], v_turn[4];
 } projection;
 
-static projection project(const moving_features *f, const separating_plane *plane) {
+static projection project_points(const moving_features *f, const separating_plane *plane) {
     projection p;
     for (int i = 0; i < 4; i++) {
         p.x_normal[i] = vec3_dot(f->x[i], plane->normal);
@@ -130,8 +130,8 @@ static projection project(const moving_features *f, const separating_plane *plan
  * s: 20.9 for the positions, 10.4 + 3.5 for x.m, 20.8 + 6.9 for velocity.m, 10.5 for d n.m, 10.5 for sums:
  * below 84; 128 |m| is taken from b. What is relative to c, the 2u of first_loss included, is below 16u
  * (|velocity.m| + d m^2). Underflow loses 2^-1070 at most. */
-static double holds(const moving_features *f, const projection *p, double distance, double lean,
-                    double size) {
+static double time_plane_holds(const moving_features *f, const projection *p, double distance, double lean,
+                               double size) {
     double least = INFINITY, bend = distance * (size * size);
     int first = points_of_first(f->kind);
     for (int i = 0; i < first; i++) {
@@ -149,14 +149,14 @@ static double holds(const moving_features *f, const projection *p, double distan
 }
 
 double separating_plane_holds(const moving_features *f, const separating_plane *plane, double distance) {
-    projection p = project(f, plane), fixed = {0};
+    projection p = project_points(f, plane), fixed = {0};
     for (int i = 0; i < 4; i++) {
         fixed.x_normal[i] = p.x_normal[i];
         fixed.v_normal[i] = p.v_normal[i];
     }
-    double without_turn = holds(f, &fixed, distance, 0.0, 0.0);
+    double without_turn = time_plane_holds(f, &fixed, distance, 0.0, 0.0);
     if (without_turn >= 1.0) return without_turn;
     double lean = fabs(vec3_dot(plane->normal, plane->turn));
     double size = sqrt(vec3_dot(plane->turn, plane->turn));
-    return fmax(without_turn, holds(f, &p, distance, lean, size));
+    return fmax(without_turn, time_plane_holds(f, &p, distance, lean, size));
 }

@@ -1,7 +1,7 @@
 /* Level two of the elementary tests on many pairs at a time, where the cubic has the same sign at both ends:
- * no root, or two. The same intervals and verdicts as cubic.c and inside.c have. */
+ * no root, or two. The same intervals and verdicts as cubic.c and inside_test.c have. */
 #include "runtime/ccd/ccd_kernels_simd.h"
-#include "runtime/ccd/cubic_simd.h"
+#include "runtime/ccd/inside_test_simd.h"
 
 /* A cubic that is above its error at both ends, cut at t: Bernstein coefficients of its two parts are
  * b[0], first, low, value and value, high, last, b[3]. */
@@ -20,22 +20,22 @@ static inline f64w lowest_at(const f64w b[4]) {
 }
 
 /* Returns the lanes that are above their errors at both ends, and cut within. */
-static inline uint32_t cut(const cubics_x8 *f, cut_cubics *out) {
+static inline uint32_t cut_at_lowest(const cubics_x8 *f, cut_cubics *out) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w sign = f64w_select(f64w_below(zero, f->b[0]), one, -one);
     for (int i = 0; i < 4; i++) out->b[i] = sign * f->b[i];
     const f64w *b = out->b;
-    f64w t = out->t = lowest_at(b), middle = blend(b[1], b[2], t);
-    out->first = blend(b[0], b[1], t);
-    out->last = blend(b[2], b[3], t);
-    out->low = blend(out->first, middle, t);
-    out->high = blend(middle, out->last, t);
-    out->value = blend(out->low, out->high, t);
+    f64w t = out->t = lowest_at(b), middle = blend_linearly(b[1], b[2], t);
+    out->first = blend_linearly(b[0], b[1], t);
+    out->last = blend_linearly(b[2], b[3], t);
+    out->low = blend_linearly(out->first, middle, t);
+    out->high = blend_linearly(middle, out->last, t);
+    out->value = blend_linearly(out->low, out->high, t);
     return f64w_below(f->error, b[0]) & f64w_below(f->error, b[3]) & f64w_below(zero, t) & f64w_below(t, one);
 }
 
 /* All coefficients of both parts are above the error. */
-static inline uint32_t rootless(const cut_cubics *c, f64w error) {
+static inline uint32_t without_root(const cut_cubics *c, f64w error) {
     return f64w_below(error, c->first) & f64w_below(error, c->low) & f64w_below(error, c->value) &
            f64w_below(error, c->high) & f64w_below(error, c->last);
 }
@@ -56,23 +56,24 @@ static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t la
     return isolate_between(c->b, error, lanes, c->t, one, -one, right, &roots[1]);
 }
 
-static inline void decide(const points_x8 *points, cscd_contact_kind kind, int i, root_outcomes *out) {
+static inline void decide_by_two_roots(const points_x8 *points, cscd_contact_kind kind, int i,
+                                       root_outcomes *out) {
     vectors_x8 vectors;
     cubics_x8 f;
     cut_cubics parts;
     intervals_x8 roots[2];
     vectors_between(points, kind, &vectors);
     cubics_of(&vectors, &f);
-    uint32_t lanes = cut(&f, &parts);
-    out->misses |= (lanes & rootless(&parts, f.error)) << i;
+    uint32_t lanes = cut_at_lowest(&f, &parts);
+    out->misses |= (lanes & without_root(&parts, f.error)) << i;
     lanes &= with_two_roots(&parts, f.error);
     if (lanes == 0) return;
     lanes = isolate_both(&parts, f.error, lanes, roots);
     if (lanes == 0) return;
-    sign_lanes first = inside(&vectors, kind, &roots[0]);
+    sign_lanes first = inside_test_x8(&vectors, kind, &roots[0]);
     uint32_t hits = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
     if (later != 0) {
-        sign_lanes second = inside(&vectors, kind, &roots[1]);
+        sign_lanes second = inside_test_x8(&vectors, kind, &roots[1]);
         out->misses |= (later & second.wrong) << i;
         later &= second.right & narrow_enough(&roots[1]);
     }
@@ -83,10 +84,10 @@ static inline void decide(const points_x8 *points, cscd_contact_kind kind, int i
 
 void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, CSCD_CONTACT_VF, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_VF, decide_by_two_roots, out);
 }
 
 void SIMD_NAME(two_roots_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
                              root_outcomes *out) {
-    decide_eight(source, a, b, CSCD_CONTACT_EE, decide, out);
+    decide_eight(source, a, b, CSCD_CONTACT_EE, decide_by_two_roots, out);
 }

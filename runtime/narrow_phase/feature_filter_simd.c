@@ -1,7 +1,7 @@
-/* Of two triangles' fifteen pairs of features, those that may touch: before any of them is loaded in double.
+/* Keeps those of two triangles' fifteen pairs of features that may touch, before any of them is loaded in double.
  *
- * Two features of which all points of one lie beyond all points of the other, along one direction and at both
- * ends of the interval, stay apart throughout, since their points move linearly. The directions are those of
+ * When all points of one feature lie beyond all points of the other along one direction at both ends of the
+ * interval, the two stay apart throughout, since their points move linearly. The directions are those of
  * 14-DOPs. A lane is a pair of triangles, so that all fifteen are decided for eight at once.
  *
  * With u = 2^-24, and M the sum of both trees' reaches and of what lies between the trees, a coordinate of a
@@ -16,9 +16,9 @@ enum { FEATURE_COUNT = 15 };
 /* The corners of triangles a, then those of b, along one direction at both ends. */
 typedef f32x8 coordinates[2][6];
 
-/* Of eight pairs of triangles. */
+/* Eight pairs of triangles. */
 typedef struct pairs_x8 {
-    f32x8 points[6][8]; /* of corners of a, then of b: x y z . at the start, x y z . at the end */
+    f32x8 points[6][8]; /* corners of a, then of b: x y z . at the start, x y z . at the end */
     uint32_t vertices[6][LANES];
     float gap[LANES], wide[LANES]; /* beyond rounding and distance, along axes and diagonals */
 } pairs_x8;
@@ -27,12 +27,11 @@ typedef struct range {
     f32x8 low, high;
 } range;
 
-static inline range join(range a, range b) {
+static inline range join_ranges(range a, range b) {
     return (range){f32x8_min(a.low, b.low), f32x8_max(a.high, b.high)};
 }
 
-/* How far a and b, both given at both ends, are apart at both, on the same side; negative where they are not.
- */
+/* How far a and b stay apart on the same side at both ends; negative where they do not. */
 static inline f32x8 gap_between(range a0, range b0, range a1, range b1) {
     f32x8 before = f32x8_min(b0.low - a0.high, b1.low - a1.high);
     f32x8 behind = f32x8_min(a0.low - b0.high, a1.low - b1.high);
@@ -48,13 +47,13 @@ static inline void ranges_of(const f32x8 points[6], ranges *out) {
     for (int t = 0; t < 2; t++) {
         for (int i = 0; i < 3; i++) out->vertices[t][i] = (range){points[3 * t + i], points[3 * t + i]};
         for (int i = 0; i < 3; i++)
-            out->edges[t][i] = join(out->vertices[t][i], out->vertices[t][(i + 1) % 3]);
-        out->faces[t] = join(out->edges[t][0], out->vertices[t][2]);
+            out->edges[t][i] = join_ranges(out->vertices[t][i], out->vertices[t][(i + 1) % 3]);
+        out->faces[t] = join_ranges(out->edges[t][0], out->vertices[t][2]);
     }
 }
 
-/* gaps: the widest along the directions so far. */
-static inline void widen(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
+/* Widens each gap to that along one more direction, where this is larger. */
+static inline void widen_gaps(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
     ranges r[2];
     for (int e = 0; e < 2; e++) ranges_of(at[e], &r[e]);
     for (int t = 0; t < 2; t++) {
@@ -71,7 +70,7 @@ static inline void widen(const coordinates at, f32x8 gaps[FEATURE_COUNT]) {
     }
 }
 
-/* Of features, those whose gaps do not exceed `least`. */
+/* Keeps the features whose gaps do not exceed `least`. */
 static inline i32x8 keep_near(const f32x8 gaps[FEATURE_COUNT], f32x8 least, i32x8 features) {
     for (int i = 0; i < FEATURE_COUNT; i++) features &= ~((gaps[i] > least) & i32x8_all(1 << i));
     return features;
@@ -83,7 +82,7 @@ static inline i32x8 near_along_axes(const pairs_x8 *o, i32x8 features) {
     for (int k = 0; k < 3; k++) {
         coordinates at;
         for (int i = 0; i < 12; i++) at[i / 6][i % 6] = o->points[i % 6][i / 6 * 4 + k];
-        widen((const f32x8(*)[6])at, gaps);
+        widen_gaps((const f32x8(*)[6])at, gaps);
     }
     return keep_near(gaps, f32x8_load(o->gap), features);
 }
@@ -102,13 +101,13 @@ static inline i32x8 near_along_diagonals(const pairs_x8 *o, i32x8 features) {
     for (int k = 0; k < KDOP_AXES - BOX_AXES; k++) {
         coordinates at;
         for (int i = 0; i < 12; i++) at[i / 6][i % 6] = along_diagonal(&o->points[i % 6][i / 6 * 4], k);
-        widen((const f32x8(*)[6])at, gaps);
+        widen_gaps((const f32x8(*)[6])at, gaps);
     }
     return keep_near(gaps, f32x8_load(o->wide), features);
 }
 
-/* Features of a and b of which a vertex is the same one. */
-static inline i32x8 sharing(const pairs_x8 *o) {
+/* Pairs of features that share a vertex. */
+static inline i32x8 sharing_vertex(const pairs_x8 *o) {
     i32x8 corners[6], same[3][3], features = {0};
     for (int i = 0; i < 6; i++) corners[i] = i32x8_load(o->vertices[i]);
     for (int i = 0; i < 9; i++) same[i / 3][i % 3] = corners[i / 3] == corners[3 + i % 3];
@@ -127,11 +126,11 @@ static inline i32x8 sharing(const pairs_x8 *o) {
 /* What is known of two trees, whichever. */
 typedef struct tree_pair {
     uint32_t a, b;
-    f32x8 between;   /* what is to be added to a record of b */
-    float gap, wide; /* as in an pairs_x8 */
+    f32x8 between;   /* is added to a record of b */
+    float gap, wide; /* as in pairs_x8 */
 } tree_pair;
 
-static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, tree_pair *out) {
+static void relate_parts(const bvh *f, uint32_t a, uint32_t b, double distance, tree_pair *out) {
     const bvh_tree *p = &f->trees[a], *q = &f->trees[b];
     float between[LANES] = {0.0f};
     double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
@@ -148,14 +147,14 @@ static void relate(const bvh *f, uint32_t a, uint32_t b, double distance, tree_p
 }
 
 /* The places of the last pair are filled up with itself. */
-static inline void load(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
-                        tree_pair *trees, pairs_x8 *out) {
+static inline void load_pairs(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+                              tree_pair *trees, pairs_x8 *out) {
     f32x8 rows[6][LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         triangle_pair pair = pairs[lane < count ? lane : count - 1];
         const bvh_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
         uint32_t tree_a = f->leaf_trees[pair.a / LANES], tree_b = f->leaf_trees[pair.b / LANES];
-        if (tree_a != trees->a || tree_b != trees->b) relate(f, tree_a, tree_b, distance, trees);
+        if (tree_a != trees->a || tree_b != trees->b) relate_parts(f, tree_a, tree_b, distance, trees);
         for (int i = 0; i < 3; i++) {
             uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
             rows[i][lane] = f32x8_load(f->records[record_a]);
@@ -172,7 +171,7 @@ static inline void load(const bvh *f, const triangle_pair *pairs, uint32_t count
     }
 }
 
-static inline bool any(i32x8 features) {
+static inline bool any_feature(i32x8 features) {
     return i32x8_negative(-features) != 0;
 }
 
@@ -182,9 +181,9 @@ void SIMD_NAME(feature_filter)(const bvh *f, const triangle_pair *pairs, uint32_
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         pairs_x8 o;
-        load(f, pairs + p, lanes, distance, &trees, &o);
-        i32x8 kept = near_along_axes(&o, ~sharing(&o) & FEATURE_ALL);
-        if (any(kept)) kept = near_along_diagonals(&o, kept);
+        load_pairs(f, pairs + p, lanes, distance, &trees, &o);
+        i32x8 kept = near_along_axes(&o, ~sharing_vertex(&o) & FEATURE_ALL);
+        if (any_feature(kept)) kept = near_along_diagonals(&o, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];
     }
 }

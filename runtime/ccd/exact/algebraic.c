@@ -16,7 +16,7 @@
 static const int64_t grid = (int64_t)1 << 60;
 static const int64_t first_width = (int64_t)1 << 14, width_growth = 32, narrow = (int64_t)1 << 26;
 
-static integer product3(integer_pool *pool, integer a, integer b, integer c) {
+static integer multiply_three(integer_pool *pool, integer a, integer b, integer c) {
     return integer_multiply(pool, integer_multiply(pool, a, b), c);
 }
 
@@ -80,8 +80,9 @@ static int cubic_roots(integer_pool *pool, const polynomial *p, algebraic out[3]
     algebraic root = {.p = *p};
     if (r1.size != 0) {
         uint32_t mark = pool->used;
-        integer at_root = integer_add(pool, product3(pool, c[1], r1, r1), product3(pool, c3_3, r0, r0));
-        at_root = integer_subtract(pool, at_root, product3(pool, c2_2, r0, r1));
+        integer at_root =
+            integer_add(pool, multiply_three(pool, c[1], r1, r1), multiply_three(pool, c3_3, r0, r0));
+        at_root = integer_subtract(pool, at_root, multiply_three(pool, c2_2, r0, r1));
         root.last = -integer_sign(at_root);
         pool->used = mark;
         if (root.last == 0) return double_and_simple_root(pool, c, r0, r1, out);
@@ -125,7 +126,7 @@ static int compare_with_line(integer_pool *pool, const algebraic *root, const po
     integer p0 = root->p.c[0], p1 = root->p.c[1], p2 = root->p.c[2], l0 = l->c[0], l1 = l->c[1];
     integer p2_l0 = integer_multiply(pool, p2, l0), p1_l1 = integer_multiply(pool, p1, l1);
     integer at_tau = integer_multiply(pool, integer_subtract(pool, p2_l0, p1_l1), l0);
-    at_tau = integer_add(pool, at_tau, product3(pool, p0, l1, l1));
+    at_tau = integer_add(pool, at_tau, multiply_three(pool, p0, l1, l1));
     int value = integer_sign(at_tau);
     if (value < 0) return root->index == 0 ? -1 : 1;
     integer slope = integer_subtract(pool, p1_l1, integer_scale(pool, p2_l0, 2));
@@ -170,7 +171,7 @@ static int sign_at_cubic_root(integer_pool *pool, const algebraic *root, const p
 }
 
 /* c[0] + ... to a relative error of 2^-52 each, times a power of two that makes the largest one nearly 1. */
-static void approximate(const polynomial *p, double c[4]) {
+static void approximate_coefficients(const polynomial *p, double c[4]) {
     int exponents[4], largest = INT32_MIN;
     for (int i = 0; i <= POLYNOMIAL_DEGREE_MAX; i++) {
         c[i] = integer_to_double(p->c[i], &exponents[i]);
@@ -186,7 +187,7 @@ static void approximate(const polynomial *p, double c[4]) {
  * rounding; coefficients lost to underflow are below 2^-1020 s. */
 static int sign_by_approximation(const algebraic *root, const polynomial *q) {
     double c[4];
-    approximate(q, c);
+    approximate_coefficients(q, c);
     double value = c[0] + root->low * (c[1] + root->low * c[2]);
     double error = (0x1p-49 + 4.0 * (root->high - root->low)) * (fabs(c[0]) + fabs(c[1]) + fabs(c[2]));
     return value > error ? 1 : value < -error ? -1 : 0;
@@ -218,7 +219,7 @@ static int compare_at(integer_pool *pool, const algebraic *root, int64_t at, bra
 /* The approximate root nearest to [0,1] in question, or 1/2. */
 static double guess_root(const algebraic *root) {
     double c[4], guesses[3];
-    approximate(&root->p, c);
+    approximate_coefficients(&root->p, c);
     int count = cubic_guess_roots(c, guesses);
     double guess = root->index < count ? guesses[root->index] : 0.5;
     return guess > 0.0 ? (guess < 1.0 ? guess : 1.0) : 0.0;

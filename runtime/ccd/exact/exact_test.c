@@ -73,8 +73,8 @@ static polynomial volume_of(integer_pool *pool, const configuration *c) {
     return sum;
 }
 
-static void configure(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind,
-                      configuration *c) {
+static void find_configuration(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind,
+                               configuration *c) {
     int exponent = common_exponent(query);
     c->kind = kind;
     for (int i = 0; i < 4; i++) {
@@ -147,19 +147,19 @@ static bool touch_at(integer_pool *pool, const configuration *c, const algebraic
 }
 
 /* The first touch so far; 2: none. */
-typedef struct search {
+typedef struct touch_search {
     integer_pool *pool;
     const configuration *configuration;
     double toi;
-} search;
+} touch_search;
 
 /* One candidate time: the first touch, if the features touch then and none so far is earlier. */
-static void try_root(search *s, algebraic *root) {
+static void try_root(touch_search *s, algebraic *root) {
     if (!algebraic_locate(s->pool, root) || root->low >= s->toi) return;
     if (touch_at(s->pool, s->configuration, root)) s->toi = root->low;
 }
 
-static void try_roots(search *s, const polynomial *p) {
+static void try_roots(touch_search *s, const polynomial *p) {
     algebraic roots[3];
     uint32_t mark = s->pool->used;
     if (polynomial_sign_on_interval(s->pool, p) == 0) {
@@ -170,7 +170,7 @@ static void try_roots(search *s, const polynomial *p) {
 }
 
 /* Points coplanar all the time: every time at which one of the signs may change. */
-static void try_coplanar(search *s) {
+static void try_coplanar(touch_search *s) {
     const configuration *c = s->configuration;
     polynomial start = polynomial_linear((integer){0}, integer_from_int(s->pool, 1));
     try_roots(s, &start);
@@ -196,8 +196,8 @@ static void try_coplanar(search *s) {
 bool exact_touch_in(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind, double *toi) {
     configuration c;
     integer_pool_start(pool);
-    configure(pool, query, kind, &c);
-    search s = {pool, &c, 2.0};
+    find_configuration(pool, query, kind, &c);
+    touch_search s = {pool, &c, 2.0};
     if (c.volume.degree >= 0)
         try_roots(&s, &c.volume);
     else

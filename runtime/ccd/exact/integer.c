@@ -15,7 +15,7 @@ void integer_pool_start(integer_pool *pool) {
     pool->used = pool->peak = 0;
 }
 
-static uint64_t *take(integer_pool *pool, int32_t limbs) {
+static uint64_t *take_limbs(integer_pool *pool, int32_t limbs) {
     uint64_t *taken = pool->limbs + pool->used;
     pool->used += (uint32_t)limbs;
     assert(pool->used <= INTEGER_POOL_LIMBS);
@@ -28,7 +28,7 @@ static int32_t limb_count(integer a) {
 }
 
 /* Drops leading zeros and gives their room back: limbs must be what was taken last. */
-static integer finish(integer_pool *pool, const uint64_t *limbs, int32_t count, bool negative) {
+static integer finish_integer(integer_pool *pool, const uint64_t *limbs, int32_t count, bool negative) {
     while (count > 0 && limbs[count - 1] == 0) count--;
     pool->used = (uint32_t)(limbs - pool->limbs) + (uint32_t)count;
     return (integer){negative ? -count : count, limbs};
@@ -58,7 +58,7 @@ void integer_pool_keep(integer_pool *pool, uint32_t mark, integer *numbers, int 
     for (int i = 0; i < kept; i++) {
         if (order[i]->limbs != moved_from) { /* else the same number again, or its negative */
             int32_t limbs = limb_count(*order[i]);
-            uint64_t *place = take(pool, limbs);
+            uint64_t *place = take_limbs(pool, limbs);
             moved_from = order[i]->limbs;
             moved_to = memmove(place, moved_from, (size_t)limbs * sizeof *place);
         }
@@ -73,13 +73,13 @@ int integer_lowest_bit(double x) {
 }
 
 /* magnitude * 2^shift */
-static integer place(integer_pool *pool, uint64_t magnitude, int shift, bool negative) {
+static integer place_magnitude(integer_pool *pool, uint64_t magnitude, int shift, bool negative) {
     int32_t whole = shift / 64, bits = shift % 64;
-    uint64_t *limbs = take(pool, whole + 2);
+    uint64_t *limbs = take_limbs(pool, whole + 2);
     memset(limbs, 0, (size_t)whole * sizeof *limbs);
     limbs[whole] = magnitude << bits;
     limbs[whole + 1] = bits == 0 ? 0 : magnitude >> (64 - bits);
-    return finish(pool, limbs, whole + 2, negative);
+    return finish_integer(pool, limbs, whole + 2, negative);
 }
 
 integer integer_from_double(integer_pool *pool, double x, int exponent) {
@@ -87,17 +87,17 @@ integer integer_from_double(integer_pool *pool, double x, int exponent) {
     int own;
     uint64_t magnitude = (uint64_t)ldexp(frexp(fabs(x), &own), 53);
     int zeros = __builtin_ctzll(magnitude);
-    return place(pool, magnitude >> zeros, own - 53 + zeros - exponent, x < 0.0);
+    return place_magnitude(pool, magnitude >> zeros, own - 53 + zeros - exponent, x < 0.0);
 }
 
 integer integer_from_int(integer_pool *pool, int64_t x) {
-    return place(pool, x < 0 ? -(uint64_t)x : (uint64_t)x, 0, x < 0);
+    return place_magnitude(pool, x < 0 ? -(uint64_t)x : (uint64_t)x, 0, x < 0);
 }
 
 /* |a| + |b|, |a| no shorter */
 static integer add_magnitudes(integer_pool *pool, integer a, integer b, bool negative) {
     int32_t longer = limb_count(a), shorter = limb_count(b);
-    uint64_t *limbs = take(pool, longer + 1);
+    uint64_t *limbs = take_limbs(pool, longer + 1);
     uint64_t carry = 0;
     for (int32_t i = 0; i < longer; i++) {
         wide sum = (wide)a.limbs[i] + (i < shorter ? b.limbs[i] : 0) + carry;
@@ -105,7 +105,7 @@ static integer add_magnitudes(integer_pool *pool, integer a, integer b, bool neg
         carry = (uint64_t)(sum >> 64);
     }
     limbs[longer] = carry;
-    return finish(pool, limbs, longer + 1, negative);
+    return finish_integer(pool, limbs, longer + 1, negative);
 }
 
 static int compare_magnitudes(integer a, integer b) {
@@ -120,14 +120,14 @@ static int compare_magnitudes(integer a, integer b) {
 /* |a| - |b|, |a| no smaller */
 static integer subtract_magnitudes(integer_pool *pool, integer a, integer b, bool negative) {
     int32_t longer = limb_count(a), shorter = limb_count(b);
-    uint64_t *limbs = take(pool, longer);
+    uint64_t *limbs = take_limbs(pool, longer);
     uint64_t borrow = 0;
     for (int32_t i = 0; i < longer; i++) {
         wide difference = (wide)a.limbs[i] - (i < shorter ? b.limbs[i] : 0) - borrow;
         limbs[i] = (uint64_t)difference;
         borrow = (uint64_t)(difference >> 64) & 1;
     }
-    return finish(pool, limbs, longer, negative);
+    return finish_integer(pool, limbs, longer, negative);
 }
 
 integer integer_add(integer_pool *pool, integer a, integer b) {
@@ -159,10 +159,10 @@ static uint64_t add_product(uint64_t *limbs, const uint64_t *a, int32_t count, u
 integer integer_multiply(integer_pool *pool, integer a, integer b) {
     int32_t n = limb_count(a), m = limb_count(b);
     if (n == 0 || m == 0) return (integer){0, pool->limbs};
-    uint64_t *limbs = take(pool, n + m);
+    uint64_t *limbs = take_limbs(pool, n + m);
     memset(limbs, 0, (size_t)n * sizeof *limbs);
     for (int32_t j = 0; j < m; j++) limbs[n + j] = add_product(limbs + j, a.limbs, n, b.limbs[j]);
-    return finish(pool, limbs, n + m, (a.size < 0) != (b.size < 0));
+    return finish_integer(pool, limbs, n + m, (a.size < 0) != (b.size < 0));
 }
 
 integer integer_scale(integer_pool *pool, integer a, int factor) {
