@@ -11,10 +11,10 @@ enum { INTERVALS_PER_FAMILY = 50 };
 
 static scene interval; /* large; one test at a time */
 
-typedef struct oracle_tally {
+typedef struct method_tally {
     uint32_t intervals, with_contact;
     size_t contacts;
-} oracle_tally;
+} method_tally;
 
 static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_method method,
                                     cscd_mesh **mesh) {
@@ -50,9 +50,9 @@ static void compare(const scene *s, const oracle_list *truth, cscd_method method
     cscd_context_destroy(context);
 }
 
-static void run_family(scene_family family, oracle_tally *sum) {
+static void run_family(scene_family family, method_tally *sum) {
     oracle_list truth = {0};
-    oracle_tally own = {0};
+    method_tally own = {0};
     for (uint64_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
         scene_make(family, seed, &interval);
         oracle_find(&interval, &truth);
@@ -73,7 +73,7 @@ static void run_family(scene_family family, oracle_tally *sum) {
 
 static void mode_all_equals_brute_force(void **state) {
     (void)state;
-    oracle_tally sum = {0};
+    method_tally sum = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) run_family((scene_family)family, &sum);
     print_message("  %-15s %3u intervals, %3u with contact, %6zu contacts\n", "all", sum.intervals,
                   sum.with_contact, sum.contacts);
