@@ -17,7 +17,7 @@ OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
 OPTIMISE_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
 OPTIMISE_tsan     := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
-# The scalar twin: what the vector units compute must not differ from it.
+# The scalar twin: vector units must compute the same, bit for bit.
 OPTIMISE_scalar   := -O2 -g -DCSCD_SCALAR -fno-tree-vectorize
 ifeq ($(OPTIMISE_$(CONFIG)),)
 $(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
@@ -27,7 +27,7 @@ WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-pr
 ifeq ($(WERROR),1)
 WARNINGS += -Werror
 endif
-# The inner loops are compiled once per instruction set; the processor decides at run time which are used.
+# Inner loops are compiled once per instruction set; at run time the processor decides which ones run.
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
 LEVELS := scalar avx2 avx512
 CORE_DEFINITIONS := -DCSCD_WITH_AVX
@@ -38,8 +38,8 @@ LEVEL_scalar := -DSIMD_LEVEL=0
 LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 
-# -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: the same objects make
-# both libraries, and run no slower for it.
+# -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: both libraries are
+# made of the same objects, which run no slower for it.
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
@@ -51,7 +51,7 @@ TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
 CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c,$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
-# What more than one command of the tool stands on, and the commands.
+# What commands of the tool share, and the commands.
 COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
 COMMAND_SOURCES := $(wildcard src/tool/*.c src/tool/replay/*.c src/tool/render/*.c src/tool/sense/*.c)
 SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
@@ -63,7 +63,7 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
 TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c))
-# ONLY="bvh line_search": the tests with one of these words in their names, or of these rooms.
+# ONLY="bvh line_search" chooses the tests of these rooms, or with one of these words in their names.
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
 TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
@@ -82,11 +82,11 @@ V ?= 0
 Q := $(if $(filter 1,$(V)),,@)
 say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 
-# The header says which version this is, and nothing else does.
+# The version stands in the header and nowhere else.
 VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
 MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
-# Objects have a folder of their own: a program may be called as the folder of its parts.
+# Objects have a folder of their own: a program may have the name of the folder of its parts.
 OBJECTS := $(BUILD)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
@@ -97,8 +97,8 @@ LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/libcscd.so.$(VERSION)
 TOOL    := $(BUILD)/cscd
 TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
-# Tests that take more than a second of processor time in the release: `make test` runs them, `make check` does not.
-# tests/run.sh ends with the slowest programs of a run and their seconds; who slows one down adds it here.
+# Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
+# tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
 SLOW_baselines     := contour iccd published
 SLOW_bvh           := traversal
 SLOW_ccd           := algebraic algebraic_oracle cubic elementary_degenerate elementary_oracle min_separation_random
@@ -137,7 +137,7 @@ tool: $(TOOL)
 
 library: $(LIBRARY) $(SHARED)
 
-# Installs what is built, and builds only what is not; needs no network and no package that `make` does not.
+# Installs what is built and builds the rest; it needs no network and no package but those of `make`.
 PREFIX     ?= /usr/local
 BINDIR     ?= $(PREFIX)/bin
 LIBDIR     ?= $(PREFIX)/lib
@@ -152,13 +152,13 @@ install: $(TOOL) $(LIBRARY) $(SHARED)
 uninstall:
 	@$(INSTALLER) uninstall
 
-# The functions of the library as HTML, from the headers' comments; a warning of doxygen is an error.
+# The functions of the library as HTML, from the comments of the headers; a warning of doxygen is an error.
 reference:
 	@GSL=$(GSL) .ci/packages reference
 	@mkdir -p build/reference
 	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
 
-# Everything that the build or the tests need and this machine lacks.
+# Installs what the build or the tests need and this machine lacks.
 packages:
 	@GSL=$(GSL) .ci/packages
 
@@ -166,7 +166,7 @@ demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
 	@BUILD=$(BUILD) models/demo.sh
 
-# The recordings, and every shape at its default size: about a minute, once.
+# The recordings, and every shape at its default size; this takes about a minute, once.
 models: packages
 	@$(MAKE) --no-print-directory build/models/made
 
@@ -181,7 +181,7 @@ gallery: models
 	@$(MAKE) --no-print-directory tool
 	@BUILD=$(BUILD) models/gallery.sh build/models docs/images
 
-# All programs, and all tests, without running them.
+# All programs and all tests, without running them.
 programs: tool library $(MODELS) $(BENCHMARKS)
 test-programs: $(TESTS)
 
@@ -189,7 +189,7 @@ test: packages
 	@$(if $(filter tests/report/test_report_browser.c,$(TEST_SOURCES)),.ci/packages browser)
 	@$(MAKE) --no-print-directory test-run
 
-# The inner loop: what takes less than a second each.
+# The inner loop: the tests that take less than a second each.
 check: packages
 	@$(MAKE) --no-print-directory check-run
 
@@ -224,7 +224,7 @@ fuzz-elementary: packages
 benchmarks: packages
 	@$(MAKE) --no-print-directory $(BENCHMARKS)
 
-# All methods on all recordings, some minutes. BENCH: options of benchmarks/methods, such as --quick.
+# All methods on all recordings; this takes some minutes. BENCH: options of benchmarks/methods, such as --quick.
 BENCH ?= --json build/bench.json
 bench: packages
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/methods $(BUILD)/benchmarks/experiments \
@@ -233,14 +233,14 @@ bench: packages
 	@$(BUILD)/benchmarks/experiments
 	@$(BUILD)/benchmarks/published_rules
 
-# What steps cost by size, scene and machine, some minutes; all but the rows on threads on one thread.
+# The cost of a step by size, scene and machine, on one thread except for the rows on threads; some minutes.
 PERFORMANCE_PROGRAMS := machine scaling threads motion cloth topology callers
 performance: packages
 	@$(MAKE) --no-print-directory $(addprefix $(BUILD)/benchmarks/,$(PERFORMANCE_PROGRAMS))
 	@for program in $(PERFORMANCE_PROGRAMS); do \
 	    echo; echo "== $$program"; $(BUILD)/benchmarks/$$program $(PERFORMANCE) || exit 1; done
 
-# The broad phase beside Embree's (Debian: libembree-dev); nothing else needs it.
+# The broad phase beside that of Embree (Debian: libembree-dev), which nothing else needs.
 bench-embree:
 	@GSL=$(GSL) .ci/packages embree
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
@@ -251,7 +251,7 @@ bench-plot:
 	@.ci/packages plots
 	@benchmarks/plot.sh build/bench.json docs/images
 
-# The page of the reports, bundled from its sources. The outcome is committed: only who changes them needs node.
+# Bundles the page of the reports from its sources. The result is committed, so only those who change it need node.
 template:
 	@command -v node >/dev/null && command -v npm >/dev/null || { \
 	    echo 'make template needs node and npm (Debian: nodejs, npm), to bundle src/tool/report/web' >&2; exit 1; }
@@ -270,17 +270,17 @@ clean:
 	rm -rf build cscd
 
 help:
-	@echo 'make demo      a soft pawn falls and bows: simulate it, find where it hits itself, draw it'
+	@echo 'make demo      a soft pawn falls and bows: simulate it, find its contacts with itself, draw it'
 	@echo 'make models    all shapes and recordings, in build/models'
 	@echo 'make gallery   redraw the pictures of README and docs'
 	@echo 'make check     build and run the tests that take less than a second each, for the inner loop'
-	@echo 'make test      build and run every test (CONFIG=sanitize for address and undefined; ONLY="near line": those of these names)'
+	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
 	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
-	@echo 'make bench     all methods on all recordings, as the thesis has them (BENCH=--quick: 30 s); make bench-plot draws its charts'
+	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'
 	@echo 'make bench-embree   the broad phase beside that of Embree (installs libembree-dev)'
@@ -299,8 +299,8 @@ $(LIBRARY): $(CORE_OBJECTS)
 	@rm -f $@
 	$(Q)ar rcs $@ $(BUILD)/cscd.o
 
-# The shared library names what it needs itself, so that a user links -lcscd alone. The sanitizers' own functions come
-# with the program.
+# The shared library names the libraries that it needs, so that a user links -lcscd alone. The functions of sanitizers
+# come with the program.
 SHARED_FLAGS := -shared -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--as-needed \
                 $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
 $(SHARED): $(CORE_OBJECTS) $(BUILD)/cscd.map
@@ -314,20 +314,20 @@ $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@mkdir -p $(@D)
 	@sed 's/@MAJOR@/$(MAJOR)/g' $< > $@
 
-# The tool lives on the public API alone, so it links the library and not its objects.
+# The tool uses the public API alone, so it links the library and not its objects.
 $(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
-# models/*.c are programs, in models/*/ is what they are made of; they live on the public API too.
+# models/*.c are programs, and models/*/ has their parts; they use the public API alone, too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
 $(MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
 
-# Benchmarks may look inside, as tests do: benchmarks/*.c are programs, in benchmarks/lib is what they share.
+# Benchmarks may use internals, as tests do: benchmarks/*.c are programs, and benchmarks/lib has what they share.
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
 $(MACHINE_LEVELS): CFLAGS_ALL += -fno-tree-vectorize -fno-tree-slp-vectorize
 $(BUILD)/benchmarks/lib.a: $(call objects,$(BENCHMARK_PARTS)) $(MACHINE_LEVELS)
@@ -341,14 +341,14 @@ $(BENCHMARKS) $(BUILD)/benchmarks/embree: $(BUILD)/benchmarks/%: $(OBJECTS)/benc
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TOOL_LIBS) -lgmp $(EMBREE_LIBS)
 
-# Tests see the inside: they link the objects and libraries that they need, and no others (a test of the tool's memory
-# must be smaller than the tool).
+# Tests use internals: they link the objects and libraries that they need and no others, because a test of the tool's
+# memory must be smaller than the tool.
 $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.a
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -Wl,--as-needed -o $@ $^ $(TEST_LIBS)
 
-# What tests compile once per instruction set themselves.
+# Parts of tests that are compiled once per instruction set.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 
@@ -358,7 +358,7 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_
 	@rm -f $@
 	$(Q)ar rcs $@ $^
 
-# q: objects of different folders may have one name.
+# q: objects of different folders may have the same name.
 $(BUILD)/inside.a: $(CORE_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
@@ -377,13 +377,13 @@ $(OBJECTS)/%.o: %.c
 	$(say) '  CC $<'
 	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
-# Square roots without errno and comparisons without traps: or its loops are not vectorised.
+# Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
-# The page of the reports is a part of this object.
+# This object contains the page of the reports.
 $(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html
 
-# Only this file depends on the commit, and only when the commit changes.
+# Only this file is compiled again when the commit changes.
 $(OBJECTS)/src/tool/common/provenance.o: CFLAGS_ALL += -DCSCD_COMMIT='"$(COMMIT)"' -DCSCD_FLAGS='"$(OPTIMISE_$(CONFIG))"'
 $(OBJECTS)/src/tool/common/provenance.o: $(BUILD)/commit
 $(BUILD)/commit: FORCE
