@@ -1,4 +1,4 @@
-/* What a step of particle sensors costs by size and by number of objects. */
+/* Measures a step of particle sensors by size and by number of objects. */
 #include "benchmarks/lib/sensor_cost.h"
 
 #include "benchmarks/lib/sensor_trial.h"

@@ -1,4 +1,4 @@
-/* What a step of particle sensors costs by size and by number of objects. */
+/* Measures a step of particle sensors by size and by number of objects. */
 #pragma once
 
 #include "src/io/io_error.h"

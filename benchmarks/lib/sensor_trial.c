@@ -128,7 +128,7 @@ static bool renew_due(const recording_data *r, cscd_partition *partition, const 
     return true;
 }
 
-/* Of the first frame. */
+/* Measures of the first frame. */
 static double largest_cell(const recording_data *r, const cscd_partition *partition) {
     const double *x = recording_data_frame(r, 0);
     double largest = 0.0;

@@ -23,7 +23,7 @@ static bool read_number(const char *path, const char *key, uint64_t *out) {
     return found;
 }
 
-/* What a control group's limit leaves; its file cache can be dropped. */
+/* The memory that a control group's limit leaves; its file cache counts as free, since it can be dropped. */
 static uint64_t left_in_group(const char *limit_path, const char *usage_path, const char *stat_path) {
     uint64_t limit, usage, cache = 0;
     if (!read_number(limit_path, "", &limit) || !read_number(usage_path, "", &usage)) return UINT64_MAX;

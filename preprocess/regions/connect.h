@@ -3,7 +3,7 @@
 
 #include "src/core/context.h"
 
-/* A graph of all vertices, of which a part's are looked at, and room to do so. */
+/* A graph of all vertices, and workspace to connect the labels of a part. */
 typedef struct connect_work {
     const uint32_t *offsets, *neighbours; /* of vertices, in their part only */
     uint32_t *labels;                     /* of vertices, changed */
@@ -17,7 +17,7 @@ typedef struct connect_work {
 
 /* vertices: all of a part, ascending; labels are below label_count. A label keeps its largest connected piece
  * (ties: the first). Another piece joins the neighbouring label with most edges to it (ties: the smaller),
- * and gets a label of its own where no piece of a label is to be reached. Then labels are numbered anew from
+ * and gets a label of its own if it reaches no piece with a label. Then labels are numbered again from
  * 0, by their first vertices; returns how many there are. */
 uint32_t connect_labels(const connect_work *work, const uint32_t *vertices, uint32_t count,
                         uint32_t label_count);

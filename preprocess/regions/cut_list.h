@@ -12,7 +12,7 @@ typedef struct cut_list {
     size_t triangle_capacity;
 } cut_list;
 
-/* What counts as small; see region_options. */
+/* Limits below which clusters and parts count as small; see region_options. */
 typedef struct cut_limits {
     double growing_share, part_share;
 } cut_limits;

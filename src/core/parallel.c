@@ -3,12 +3,13 @@
 
 #include "src/core/timer.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* Whoever waits looks this often before it lets others have the processor, and for this long before it
+/* A waiting thread looks for work this often before it yields the processor, and for this long before it
  * sleeps: the stages of an interval follow each other more closely, and waking up takes about as long. */
 enum { LOOKS_AT_ONCE = 32 };
 static const double patience_ms = 0.05;
@@ -20,8 +21,8 @@ static const double patience_ms = 0.05;
 #define GATE_OPEN    ((uint64_t)1 << 31)
 enum { GATE_NUMBER_SHIFT = 32 };
 
-/* Tasks next to end - 1 are meant for one thread, so that it finds in its cache what it wrote there in the
- * stage before; the others take them when they have done their own. */
+/* The tasks from next to end - 1 are meant for one thread, which finds in its cache what it wrote in the
+ * stage before; other threads take them when they have done their own. */
 typedef struct task_range {
     _Alignas(CACHE_LINE_SIZE) atomic_uint next;
     uint32_t end;
@@ -46,7 +47,7 @@ struct parallel {
     atomic_uint sleepers; /* helpers that wait for a call; changed under the lock */
     atomic_bool quit;
 
-    /* What is on offer: written while the gate is closed and nobody is inside. */
+    /* The work on offer, which is written while the gate is closed and nobody is inside. */
     parallel_task *task;
     void *data;
     task_range *ranges; /* per thread */
@@ -64,7 +65,7 @@ static void run_tasks(parallel *threads, uint32_t self) {
     }
 }
 
-static void offer(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
+static void offer_tasks(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
     threads->task = task;
     threads->data = data;
     for (uint32_t i = 0; i < threads->thread_count; i++) {
@@ -81,12 +82,12 @@ static void pause_briefly(void) {
 
 /* ---- helpers ----------------------------------------------------------------------------------------- */
 
-/* Is there work on offer that this helper has not seen? */
+/* Does the gate offer work that this helper has not seen? */
 static bool offers_work(uint64_t gate, uint32_t seen) {
     return (gate & GATE_OPEN) != 0 && (uint32_t)(gate >> GATE_NUMBER_SHIFT) != seen;
 }
 
-static bool enter(parallel *threads, uint32_t *seen) {
+static bool enter_gate(parallel *threads, uint32_t *seen) {
     uint64_t gate = atomic_load(&threads->gate);
     while (offers_work(gate, *seen)) {
         if (!atomic_compare_exchange_weak(&threads->gate, &gate, gate + 1)) continue;
@@ -96,8 +97,9 @@ static bool enter(parallel *threads, uint32_t *seen) {
     return false;
 }
 
-static void leave(parallel *threads) {
-    uint64_t gate = atomic_fetch_sub(&threads->gate, 1) - 1;
+static void leave_gate(parallel *threads) {
+    uint64_t before = atomic_fetch_sub(&threads->gate, 1), gate = before - 1;
+    assert((before & GATE_INSIDE) != 0);
     if ((gate & GATE_INSIDE) != 0 || (gate & GATE_AWAITED) == 0) return;
     pthread_mutex_lock(&threads->lock);
     pthread_cond_signal(&threads->work_done);
@@ -108,7 +110,7 @@ static bool enter_soon(parallel *threads, uint32_t *seen) {
     double begin = timer_now_ms();
     do {
         for (int i = 0; i < LOOKS_AT_ONCE; i++) {
-            if (enter(threads, seen)) return true;
+            if (enter_gate(threads, seen)) return true;
             pause_briefly();
         }
         sched_yield();
@@ -145,7 +147,7 @@ static void *helper_main(void *argument) {
     while (!atomic_load(&threads->quit)) {
         if (enter_soon(threads, &seen)) {
             run_tasks(threads, self->index);
-            leave(threads);
+            leave_gate(threads);
         } else {
             sleep_until_called(threads, seen);
         }
@@ -254,7 +256,8 @@ void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, v
         for (uint32_t i = 0; i < task_count; i++) task(data, i);
         return;
     }
-    offer(threads, task_count, task, data);
+    assert(nobody_inside(threads) && (atomic_load(&threads->gate) & GATE_OPEN) == 0);
+    offer_tasks(threads, task_count, task, data);
     uint64_t number = (atomic_load(&threads->gate) >> GATE_NUMBER_SHIFT) + 1;
     atomic_store(&threads->gate, number << GATE_NUMBER_SHIFT | GATE_OPEN);
     if (atomic_load(&threads->sleepers) > 0) call_sleepers(threads);

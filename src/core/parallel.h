@@ -3,8 +3,8 @@
 
 #include "src/core/memory.h"
 
-/* What one thread writes all the time starts on a cache line of its own: two threads on one line halve the
- * speed of both (measured: traversal took twice as long with two threads as with one). */
+/* Data that a thread writes often starts on a cache line of its own: two threads on one line halve the speed
+ * of both (measured: traversal took twice as long with two threads as with one). */
 enum { CACHE_LINE_SIZE = 64 };
 
 typedef struct parallel parallel;
@@ -14,7 +14,7 @@ typedef void parallel_task(void *data, uint32_t task);
 cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out);
 void parallel_destroy(host_memory *m, parallel *threads);
 
-/* Into how many lanes work is cut that keeps something per lane. */
+/* The number of threads, the caller included: work that keeps data per lane has as many lanes. */
 uint32_t parallel_thread_count(const parallel *threads);
 
 /* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. The host may

@@ -1,4 +1,4 @@
-/* What vector instructions the processor has. */
+/* Finds the vector instructions of the processor. */
 #include "src/core/processor.h"
 
 #include <stddef.h>

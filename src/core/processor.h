@@ -1,4 +1,4 @@
-/* What vector instructions the processor has. */
+/* Finds the vector instructions of the processor. */
 #pragma once
 
 #include "cscd/cscd.h"

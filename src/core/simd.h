@@ -2,8 +2,35 @@
  *
  * A source that includes this is compiled once per level (see the Makefile). It does the same IEEE operations
  * in the same order on each, none of them fused, so results do not depend on the level. Vectors are the
- * compiler's own (+ - * and [] work on them); what those lack is below. A set of lanes is the low eight bits
- * of a uint32_t, bit i for lane i; what is not a number is neither below nor above anything. */
+ * compiler's own (+ - * / and [] work on them); the other operations are below. A set of lanes is the low
+ * eight bits of a uint32_t, bit i for lane i. A NaN is neither below nor above anything.
+ *
+ * All types and operations exist on every level, as this:
+ *
+ *     type   elements     scalar                 AVX2            AVX-512
+ *     f32x8  8 floats     compiler's vectors     one register    one register
+ *     i32x8  8 int32_t    compiler's vectors     one register    one register
+ *     f64x4  4 doubles    compiler's vectors     one register    one register
+ *     f64x8  8 doubles    compiler's vectors     two registers   one register
+ *     i64x8  8 int64_t    compiler's vectors     two registers   one register
+ *     f64w   WIDTH        2 doubles              4 doubles       8 doubles
+ *     i64w   WIDTH        2 int64_t              4 int64_t       8 int64_t
+ *
+ *     operation                     f32x8  i32x8  f64x4  f64x8  f64w   on the scalar level
+ *     load                          x      x                           memcpy
+ *     store                         x                                  memcpy
+ *     all (one value in all lanes)  x      x             x      x      the same
+ *     abs                           x                    x      x      masks of bits
+ *     from (conversion)             x                    x             the same
+ *     min, max                      x                    x      x      masks of comparisons
+ *     below (lanes with a < b)      x                    x      x      loop over the lanes
+ *     at_most (lanes with a <= b)                               x      loop over the lanes
+ *     negative (lanes)                     x                           loop over the lanes
+ *     select, sqrt                                              x      masks; sqrt of each lane
+ *     least, greatest, transpose    x                                  the same
+ *     load_point                                  x                    three loads
+ *     load_points                                        x      x      the same; two points
+ */
 #pragma once
 
 #include "src/core/kernels.h"
@@ -250,12 +277,19 @@ static inline void f64x8_load_points(const double *positions, const uint32_t ind
 
 /* ---- as many doubles as the processor takes at once ---------------------------------------------------- */
 
-/* For loops whose lanes do not meet: how many there are makes no difference to any of them. */
+/* For loops whose lanes do not depend on each other, so that their number changes no result. */
 #if SIMD_LEVEL == SIMD_AVX512
-
 enum { WIDTH = 8 };
+#elif SIMD_LEVEL == SIMD_AVX2
+enum { WIDTH = 4 };
+#else
+enum { WIDTH = 2 };
+#endif
 
-typedef f64x8 f64w;
+typedef double f64w __attribute__((vector_size(WIDTH * sizeof(double))));
+typedef int64_t i64w __attribute__((vector_size(WIDTH * sizeof(int64_t))));
+
+#if SIMD_LEVEL == SIMD_AVX512
 
 static inline f64w f64w_min(f64w a, f64w b) {
     return _mm512_min_pd(a, b);
@@ -292,10 +326,6 @@ static inline void f64w_load_points(const double *positions, const uint32_t indi
 }
 
 #elif SIMD_LEVEL == SIMD_AVX2
-
-enum { WIDTH = 4 };
-
-typedef f64x4 f64w;
 
 static inline f64w f64w_min(f64w a, f64w b) {
     return _mm256_min_pd(a, b);
@@ -338,11 +368,6 @@ static inline void f64w_load_points(const double *positions, const uint32_t indi
 }
 
 #else
-
-enum { WIDTH = 2 };
-
-typedef double f64w __attribute__((vector_size(16)));
-typedef int64_t i64w __attribute__((vector_size(16)));
 
 static inline f64w f64w_min(f64w a, f64w b) {
     i64w below = a < b;

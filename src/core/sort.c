@@ -9,7 +9,8 @@ typedef struct run {
 } run;
 
 /* Merges two sorted runs that lie next to each other, first before second, to out. */
-static void merge(run first, run second, char *out, size_t size, int (*compare)(const void *, const void *)) {
+static void merge_runs(run first, run second, char *out, size_t size,
+                       int (*compare)(const void *, const void *)) {
     while (first.next < first.end && second.next < second.end) {
         run *smaller = compare(first.next, second.next) <= 0 ? &first : &second;
         memcpy(out, smaller->next, size);
@@ -28,8 +29,8 @@ void sort_items(void *items, void *scratch, size_t count, size_t size,
         for (size_t begin = 0; begin < count; begin += 2 * width) {
             size_t middle = begin + width < count ? begin + width : count;
             size_t end = middle + width < count ? middle + width : count;
-            merge((run){from + begin * size, from + middle * size},
-                  (run){from + middle * size, from + end * size}, to + begin * size, size, compare);
+            merge_runs((run){from + begin * size, from + middle * size},
+                       (run){from + middle * size, from + end * size}, to + begin * size, size, compare);
         }
         char *swap = from;
         from = to;

@@ -56,7 +56,7 @@ bool file_reader_fail_here(file_reader *reader, const char *format, ...) {
     return io_fail(reader->error, "%s", message);
 }
 
-/* What fstat says about the size is a hint only: pipes have none, and a file may grow while it is read. */
+/* The size that fstat gives is only a hint: pipes have none, and a file may grow while it is read. */
 static bool read_all(file_reader *reader, FILE *file, size_t expected_size, growable *bytes) {
     if (!growable_reserve(bytes, expected_size)) goto out_of_memory;
     for (;;) {

@@ -27,7 +27,7 @@ struct frame_files {
     uint32_t faces_frame;
 };
 
-static frame_files *create(const char *source, uint32_t vertex_count, io_error *error) {
+static frame_files *create_files(const char *source, uint32_t vertex_count, io_error *error) {
     frame_files *files = io_realloc(NULL, sizeof *files);
     if (files == NULL)
         io_fail(error, "%s: out of memory", source);
@@ -37,7 +37,7 @@ static frame_files *create(const char *source, uint32_t vertex_count, io_error *
 }
 
 /* Whatever comes after the names are known; closes files if it fails. */
-static bool finish(frame_files *files, const char *source, frame_files **out, io_error *error) {
+static bool finish_files(frame_files *files, const char *source, frame_files **out, io_error *error) {
     size_t longest = 0;
     for (size_t i = 0; i < frame_names_count(&files->list); i++) {
         const size_t length = strlen(frame_names_at(&files->list, i));
@@ -60,13 +60,13 @@ static bool finish(frame_files *files, const char *source, frame_files **out, io
 
 bool frame_files_open_pattern(const char *pattern, uint32_t vertex_count, frame_files **out,
                               io_error *error) {
-    frame_files *files = create(pattern, vertex_count, error);
+    frame_files *files = create_files(pattern, vertex_count, error);
     if (files == NULL) return false;
     if (!frame_pattern_find(pattern, &files->folder, &files->list, error)) {
         frame_files_close(files);
         return false;
     }
-    return finish(files, pattern, out, error);
+    return finish_files(files, pattern, out, error);
 }
 
 static char *with_slash(const char *folder) {
@@ -78,7 +78,7 @@ static char *with_slash(const char *folder) {
 }
 
 bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_files **out, io_error *error) {
-    frame_files *files = create(folder, vertex_count, error);
+    frame_files *files = create_files(folder, vertex_count, error);
     if (files == NULL) return false;
     files->folder = with_slash(folder);
     if (files->folder == NULL) {
@@ -89,7 +89,7 @@ bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_fi
         frame_files_close(files);
         return false;
     }
-    return finish(files, folder, out, error);
+    return finish_files(files, folder, out, error);
 }
 
 static bool check_listed(const char *path, io_error *error) {
@@ -119,13 +119,13 @@ static bool add_listed(frame_files *files, const char *const *paths, size_t path
 
 bool frame_files_open_list(const char *const *paths, size_t path_count, uint32_t vertex_count,
                            frame_files **out, io_error *error) {
-    frame_files *files = create(paths[0], vertex_count, error);
+    frame_files *files = create_files(paths[0], vertex_count, error);
     if (files == NULL) return false;
     if (!add_listed(files, paths, path_count, error)) {
         frame_files_close(files);
         return false;
     }
-    return finish(files, paths[0], out, error);
+    return finish_files(files, paths[0], out, error);
 }
 
 void frame_files_close(frame_files *files) {

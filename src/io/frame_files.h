@@ -1,4 +1,4 @@
-/* Sequences of mesh files, one a frame, of which only the positions are taken. */
+/* Sequences of mesh files, one per frame; only their positions are read. */
 #pragma once
 
 #include "src/io/io_error.h"

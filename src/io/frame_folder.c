@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Where two names differ: in the text around their numbers, or in the values of so many numbers. */
+/* How two names differ: in the text around their numbers, or in the values of this many numbers. */
 typedef struct name_difference {
     bool in_text;
     size_t number_count;
@@ -28,7 +28,7 @@ static bool skip_equal_numbers(const char **a, const char **b) {
     return equal;
 }
 
-static name_difference compare(const char *a, const char *b) {
+static name_difference compare_names(const char *a, const char *b) {
     name_difference difference = {0};
     for (size_t number = 0; *a != '\0' || *b != '\0';) {
         if (path_is_digit(*a) && path_is_digit(*b)) {
@@ -59,11 +59,11 @@ static bool check_series(const char *folder, const frame_names *list, io_error *
     size_t series_number = 0;
     for (size_t i = 1; i < frame_names_count(list); i++) {
         const char *before = frame_names_at(list, i - 1), *name = frame_names_at(list, i);
-        const name_difference from_first = compare(frame_names_at(list, 0), name);
+        const name_difference from_first = compare_names(frame_names_at(list, 0), name);
         if (from_first.in_text)
             return io_fail(error, "%s: holds both %s and %s, expected names that differ in a number only",
                            folder, frame_names_at(list, 0), name);
-        if (compare(before, name).number_count == 0)
+        if (compare_names(before, name).number_count == 0)
             return io_fail(error, "%s: holds both %s and %s, which are the same frame", folder, before, name);
         if (i == 1) series_number = from_first.last_number;
         if (from_first.number_count != 1 || from_first.last_number != series_number)

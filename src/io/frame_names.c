@@ -47,7 +47,8 @@ void frame_names_free(frame_names *list) {
     growable_free(&list->names);
 }
 
-/* What cannot be looked at is no folder: it stays in the list, and reading it says what is wrong. */
+/* A path that cannot be examined counts as no folder: it stays in the list, and reading it says what is
+ * wrong. */
 static bool is_folder(DIR *stream, const char *name) {
     struct stat status;
     return fstatat(dirfd(stream), name, &status, 0) == 0 && S_ISDIR(status.st_mode);

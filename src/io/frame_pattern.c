@@ -40,7 +40,7 @@ static bool bad_pattern(const char *source, size_t at, const char *found, io_err
 }
 
 /* pattern->text has room for all of source. */
-static bool parse(frame_pattern *pattern, const char *source, io_error *error) {
+static bool parse_pattern(frame_pattern *pattern, const char *source, io_error *error) {
     size_t length = 0, conversion_count = 0, conversion_at = 0;
     for (size_t at = 0; source[at] != '\0';) {
         if (source[at] != '%') {
@@ -66,7 +66,7 @@ static bool parse(frame_pattern *pattern, const char *source, io_error *error) {
 }
 
 /* Whether printf would make name from the pattern with some *number. */
-static bool matches(const frame_pattern *pattern, const char *name, uint32_t *number) {
+static bool matches_name(const frame_pattern *pattern, const char *name, uint32_t *number) {
     const char *prefix = pattern->text + pattern->name_start, *suffix = pattern->text + pattern->number_start;
     const size_t length = strlen(name), suffix_length = strlen(suffix);
     const size_t prefix_length = pattern->number_start - pattern->name_start;
@@ -88,16 +88,16 @@ static bool matches(const frame_pattern *pattern, const char *name, uint32_t *nu
 
 static bool keep_match(const char *name, const void *context) {
     uint32_t number;
-    return matches(context, name, &number);
+    return matches_name(context, name, &number);
 }
 
 /* The names ascend by number: the same text surrounds the number in all of them. */
 static bool check_gaps(const frame_pattern *pattern, const frame_names *list, io_error *error) {
     uint32_t first, number;
-    matches(pattern, frame_names_at(list, 0), &first);
+    matches_name(pattern, frame_names_at(list, 0), &first);
     for (size_t i = 1; i < frame_names_count(list); i++) {
         const uint64_t expected = (uint64_t)first + i;
-        if (matches(pattern, frame_names_at(list, i), &number) && number == expected) continue;
+        if (matches_name(pattern, frame_names_at(list, i), &number) && number == expected) continue;
         return io_fail(error, "%.*s%0*" PRIu64 "%s: missing, expected all frames from %s to %s",
                        (int)pattern->number_start, pattern->text, (int)pattern->width, expected,
                        pattern->text + pattern->number_start, frame_names_at(list, 0),
@@ -108,7 +108,7 @@ static bool check_gaps(const frame_pattern *pattern, const frame_names *list, io
 
 static bool find_files(frame_pattern *pattern, const char *source, char **folder, frame_names *list,
                        io_error *error) {
-    if (!parse(pattern, source, error)) return false;
+    if (!parse_pattern(pattern, source, error)) return false;
     if (!frame_names_is_mesh(pattern->text + pattern->number_start))
         return io_fail(error, "%s: unknown extension, a pattern is expected to end in .obj, .ply or .off",
                        source);

@@ -19,7 +19,7 @@ void growable_free(growable *array) {
     *array = growable_of(array->element_size);
 }
 
-static bool resize(growable *array, size_t capacity) {
+static bool resize_array(growable *array, size_t capacity) {
     void *data = io_realloc(array->data, capacity * array->element_size);
     if (data == NULL) return false;
     array->data = data;
@@ -30,7 +30,7 @@ static bool resize(growable *array, size_t capacity) {
 bool growable_reserve(growable *array, size_t capacity) {
     if (capacity <= array->capacity) return true;
     if (capacity > SIZE_MAX / array->element_size) return false;
-    return resize(array, capacity);
+    return resize_array(array, capacity);
 }
 
 void *growable_push(growable *array) {
@@ -45,7 +45,7 @@ void *growable_push(growable *array) {
 
 void *growable_take(growable *array) {
     /* Failing to trim costs only memory. */
-    if (array->count > 0 && array->count < array->capacity) (void)resize(array, array->count);
+    if (array->count > 0 && array->count < array->capacity) (void)resize_array(array, array->count);
     void *data = array->data;
     *array = growable_of(array->element_size);
     return data;

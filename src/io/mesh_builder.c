@@ -20,7 +20,7 @@ void mesh_builder_free(mesh_builder *builder) {
 }
 
 /* A new element of one of the two arrays, or NULL and an error. */
-static void *push(mesh_builder *builder, growable *array, const char *what) {
+static void *push_item(mesh_builder *builder, growable *array, const char *what) {
     if (array->count >= MESH_COUNT_LIMIT) {
         file_reader_fail_here(builder->reader, "more than %" PRId32 " %s, the most of a mesh",
                               MESH_COUNT_LIMIT, what);
@@ -41,7 +41,7 @@ bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]) {
                 builder -> positions.count + builder->index_base, position[axis]);
         }
     }
-    double *vertex = push(builder, &builder->positions, "vertices");
+    double *vertex = push_item(builder, &builder->positions, "vertices");
     if (vertex == NULL) return false;
     memcpy(vertex, position, 3 * sizeof *vertex);
     return true;
@@ -55,7 +55,7 @@ static bool add_triangle(mesh_builder *builder, uint32_t a, uint32_t b, uint32_t
                                      ", expected three different corners",
                                      a + base, b + base, c + base, twice + base);
     }
-    uint32_t *triangle = push(builder, &builder->triangles, "triangles");
+    uint32_t *triangle = push_item(builder, &builder->triangles, "triangles");
     if (triangle == NULL) return false;
     triangle[0] = a;
     triangle[1] = b;

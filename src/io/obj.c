@@ -23,7 +23,7 @@ static bool read_vertex(obj_parser *obj) {
     for (int axis = 0; axis < 3; axis++) {
         if (!text_number(obj->reader, names[axis], &position[axis])) return false;
     }
-    /* What follows is a weight or a colour. */
+    /* The rest of the line is a weight or a colour. */
     return mesh_builder_add_vertex(&obj->builder, position);
 }
 

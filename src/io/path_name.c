@@ -1,4 +1,4 @@
-/* What the name of a file says. */
+/* Reads the folder and the ending of a path. */
 #include "src/io/path_name.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What the name of a file says. */
+/* Reads the folder and the ending of a path. */
 #pragma once
 
 #include <stdbool.h>
@@ -7,7 +7,7 @@
  */
 bool path_has_extension(const char *path, const char *extension);
 
-/* What comes after the last '/'. */
+/* Returns the part after the last '/'. */
 const char *path_file_name(const char *path);
 
 static inline bool path_is_digit(char c) {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What a plan needs beside the vertices and their faces. */
+/* The data of a plan beside the vertices and their faces. */
 typedef enum column {
     COLUMN_REGION,
     COLUMN_POINT_X,
@@ -169,7 +169,7 @@ static bool check_counts(plan_reader *p) {
 /* ---- rows ------------------------------------------------------------------------------------------ */
 
 /* The counts are those of the mesh, so a header cannot ask for more than fits to the mesh. */
-static bool allocate(plan_reader *p) {
+static bool allocate_lists(plan_reader *p) {
     size_t triangles = cscd_mesh_triangle_count(p->mesh);
     p->positions = io_realloc(NULL, cscd_mesh_vertex_count(p->mesh) * sizeof(double[3]));
     p->points = io_realloc(NULL, p->region_count * sizeof(double[3]));
@@ -232,7 +232,7 @@ static column column_of(const ply_element *element, const ply_property *property
     return (column)c;
 }
 
-static bool visit(void *user, const ply_property *property) {
+static bool visit_property(void *user, const ply_property *property) {
     plan_reader *p = user;
     size_t row = (size_t)p->data.row;
     if (property->role == PLY_CORNERS) return compare_corners(p, property);
@@ -299,9 +299,9 @@ static bool create_plan(const plan_reader *p, const cscd_context *context, cscd_
 
 static bool read_plan(plan_reader *p, file_reader *reader, const cscd_context *context, cscd_plan **out) {
     file_reader start = *reader;
-    const ply_visitor visitor = {visit, end_row, p};
+    const ply_visitor visitor = {visit_property, end_row, p};
     return ply_data_open(&p->data, reader) && read_comments(p, start) && check_columns(p) &&
-           check_counts(p) && allocate(p) && ply_data_read(&p->data, &visitor) && check_mesh(p) &&
+           check_counts(p) && allocate_lists(p) && ply_data_read(&p->data, &visitor) && check_mesh(p) &&
            create_plan(p, context, out);
 }
 

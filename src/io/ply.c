@@ -43,7 +43,7 @@ static bool read_corners(ply_parser *ply, const ply_property *property) {
     return mesh_builder_end_face(&ply->builder);
 }
 
-static bool visit(void *user, const ply_property *property) {
+static bool visit_property(void *user, const ply_property *property) {
     ply_parser *ply = user;
     switch (property->role) {
     case PLY_X:
@@ -65,7 +65,7 @@ static bool end_row(void *user) {
 
 bool ply_read(file_reader *reader, mesh_file *out) {
     ply_parser ply = {.builder = mesh_builder_of(reader, 0)};
-    const ply_visitor visitor = {visit, end_row, &ply};
+    const ply_visitor visitor = {visit_property, end_row, &ply};
     bool done = ply_data_open(&ply.data, reader) && ply_data_read(&ply.data, &visitor) &&
                 mesh_builder_finish(&ply.builder, out);
     mesh_builder_free(&ply.builder);

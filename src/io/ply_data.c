@@ -43,7 +43,7 @@ static uint64_t load_bits(const char *bytes, size_t size, bool big_endian) {
 }
 
 /* All types fit a double exactly. */
-static double decode(uint64_t bits, ply_type type) {
+static double decode_value(uint64_t bits, ply_type type) {
     uint32_t half = (uint32_t)bits;
     float single_value;
     double double_value;
@@ -72,8 +72,8 @@ static bool read_binary_scalar(ply_data *data, ply_type type, double *value) {
     file_reader *reader = data->reader;
     size_t size = ply_type_size(type);
     if (reader->size - reader->at < size) return fail_end(data);
-    *value =
-        decode(load_bits(reader->bytes + reader->at, size, data->header.encoding == PLY_BIG_ENDIAN), type);
+    *value = decode_value(
+        load_bits(reader->bytes + reader->at, size, data->header.encoding == PLY_BIG_ENDIAN), type);
     reader->mark = reader->at;
     reader->at += size;
     return true;

@@ -17,7 +17,7 @@ typedef struct ply_data {
 bool ply_data_open(ply_data *data, file_reader *reader);
 void ply_data_close(ply_data *data);
 
-/* What a reader makes of the values. */
+/* A function that takes the values that are read. */
 typedef struct ply_visitor {
     /* Must read or skip the property. */
     bool (*visit)(void *user, const ply_property *property);

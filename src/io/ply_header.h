@@ -24,7 +24,7 @@ typedef enum ply_type {
 
 typedef enum ply_kind { PLY_OTHER, PLY_VERTEX, PLY_FACE } ply_kind;
 
-/* What a mesh wants of a property; X, Y, Z are 0, 1, 2. */
+/* The role of a property in a mesh; X, Y, Z are 0, 1, 2. */
 typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_IGNORED } ply_role;
 
 typedef struct ply_property {

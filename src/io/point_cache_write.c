@@ -80,7 +80,7 @@ static bool create_file(point_cache_writer *writer, io_error *error) {
     return true;
 }
 
-static bool begin(point_cache_writer *writer, io_error *error) {
+static bool begin_file(point_cache_writer *writer, io_error *error) {
     const char *dot = strrchr(writer->path, '.');
     const bool pc2 = dot != NULL && strcasecmp(dot, ".pc2") == 0;
     writer->big_endian = dot != NULL && strcasecmp(dot, ".mdd") == 0;
@@ -102,7 +102,7 @@ bool point_cache_writer_open(const char *path, uint32_t vertex_count, uint32_t f
     memcpy(writer->path, path, path_size);
     writer->vertex_count = vertex_count;
     writer->frame_count = frame_count;
-    if (!begin(writer, error)) {
+    if (!begin_file(writer, error)) {
         remove_file(writer);
         free(writer);
         return false;
@@ -140,7 +140,7 @@ bool point_cache_writer_write(point_cache_writer *writer, const double *position
     return false;
 }
 
-static bool finish(point_cache_writer *writer, io_error *error) {
+static bool finish_file(point_cache_writer *writer, io_error *error) {
     if (writer->written_count < writer->frame_count)
         return io_fail(error, "%s: only %" PRIu32 " frames were written, expected %" PRIu32, writer->path,
                        writer->written_count, writer->frame_count);
@@ -154,7 +154,7 @@ bool point_cache_writer_close(point_cache_writer *writer, io_error *error) {
     if (writer == NULL) return true;
     bool finished = false;
     if (writer->file != NULL) {
-        finished = finish(writer, error);
+        finished = finish_file(writer, error);
         if (!finished) remove_file(writer);
     }
     free(writer);

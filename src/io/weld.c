@@ -38,7 +38,7 @@ static uint32_t bucket_of(const cell_table *table, cell c) {
     return (uint32_t)hash & table->mask;
 }
 
-static double distance(const double *a, const double *b) {
+static double distance_between(const double *a, const double *b) {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
@@ -47,7 +47,7 @@ static uint32_t nearest_group(const cell_table *table, const double *positions, 
                               const weld *w, uint32_t best) {
     for (uint32_t i = table->first[bucket_of(table, c)]; i != 0; i = table->next[i - 1]) {
         uint32_t group = w->vertex_of_file_vertex[i - 1];
-        if (group < best && distance(p, positions + (size_t)(i - 1) * 3) <= w->epsilon) best = group;
+        if (group < best && distance_between(p, positions + (size_t)(i - 1) * 3) <= w->epsilon) best = group;
     }
     return best;
 }
@@ -135,7 +135,7 @@ bool weld_positions(const weld *w, const double *file_positions, uint32_t frame,
         memcpy(out + (size_t)v * 3, file_positions + (size_t)w->file_vertex[v] * 3, 3 * sizeof *out);
     for (uint32_t v = 0; v < w->file_vertex_count; v++) {
         uint32_t first = w->file_vertex[w->vertex_of_file_vertex[v]];
-        double apart = distance(file_positions + (size_t)v * 3, file_positions + (size_t)first * 3);
+        double apart = distance_between(file_positions + (size_t)v * 3, file_positions + (size_t)first * 3);
         if (apart <= w->epsilon) continue;
         return io_fail(error,
                        "frame %u: vertices %u and %u were welded but lie %g apart, expected at most %g; "

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* From a file's vertices and triangles to welded ones, and back. */
+/* Maps a file's vertices and triangles to welded ones, and back. */
 typedef struct weld {
     double epsilon; /* 0: exactly equal coordinates */
     uint32_t file_vertex_count, vertex_count, triangle_count;

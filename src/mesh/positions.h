@@ -1,4 +1,4 @@
-/* What positions may hold. */
+/* Checks the coordinates of positions. */
 #pragma once
 
 #include "src/core/context.h"

@@ -17,7 +17,7 @@ static sequence q; /* large; one test at a time */
 
 typedef struct watcher {
     pthread_t thread;
-    uint32_t reports, cancel_at; /* of the call at hand, from 1; 0: none */
+    uint32_t reports, cancel_at; /* reports of this call; which of them cancels, from 1, or 0 for none */
     uint32_t every;              /* of the first reports, or so; later ones are skipped by and by */
     bool cancelled;
     double fraction, last_ms, closest_ms;
@@ -177,7 +177,7 @@ static void brute_force_goes_on(void **state) {
               (workload){.options = of_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, CSCD_START_PROVE)});
 }
 
-/* A pleated sheet that is pulled flat, so that its trees are built anew in a call that is cancelled. */
+/* A pleated sheet that is pulled flat, so that its trees are rebuilt in a call that is cancelled. */
 static void rebuilding_goes_on(void **state) {
     enum { COLUMNS = 140, PLEAT = 6 };
     (void)state;

@@ -1,5 +1,5 @@
-/* The operations of src/core/simd.h on every level that this machine has, against plain C: ends of the ranges,
- * signs of zero, what is not a number. */
+/* The operations of src/core/simd.h on every level that this machine has, against plain C: ends of the
+ * ranges, signs of zero, what is not a number. */
 #include "src/core/processor.h"
 #include "tests/core/simd_operations.h"
 #include "tests/support/random_stream.h"
@@ -97,7 +97,7 @@ static void floats_as_in_c(void **state) {
     on_all_levels(check_floats);
 }
 
-/* Of numbers, of which zeros are equal. */
+/* Compares numbers; all zeros are equal. */
 static void check_across(const simd_operations *o, random_stream *random) {
     floats a = to_floats(random_numbers(random));
     float least = INFINITY, greatest = -INFINITY, rows[8][8], columns[8][8];

@@ -189,7 +189,7 @@ static void refuses_bad_vertices(void **state) {
     check_error_at(&writer, 0, "coordinate z of vertex 0 is -inf", "finite");
 }
 
-/* What a file with these bytes for its first face, of the given types, is refused with. */
+/* Asserts the error for a file whose first face has these bytes and the given types. */
 static void check_face_error(const char *corners, size_t offset, const char *found, const char *expected,
                              const char *types, double length, double a, double b, double c) {
     char lines[512];

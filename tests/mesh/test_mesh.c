@@ -79,7 +79,7 @@ static cscd_status create(cscd_context *context, const shape *s, cscd_mesh **out
     return cscd_mesh_create(context, &desc, out);
 }
 
-/* What a shape's component should be; edge and vertex examples are named by their vertices. */
+/* The expected component of a shape; examples of edges and vertices are named by their vertices. */
 typedef struct expected_component {
     uint32_t vertices, edges, triangles;
     uint32_t open, non_manifold, bow_ties, inconsistent;

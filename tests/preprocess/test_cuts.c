@@ -186,7 +186,7 @@ static void more_than_two_parts(void **state) {
     close_field();
 }
 
-/* Two arms, of which the second comes off a little later than the first, come off together. */
+/* Two arms come off together, although the second alone would come off a little later than the first. */
 static void a_little_further_for_more_parts(void **state) {
     (void)state;
     open_can(18, 6);

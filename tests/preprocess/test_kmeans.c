@@ -141,7 +141,8 @@ static uint32_t nearest_vertex(const body *b, const double *point) {
     return nearest;
 }
 
-/* Each triangle belongs to a detector point that is fewest edges away, but for the few that joined. */
+/* Each triangle belongs to a detector point that is fewest edges away, except the few that joined a
+ * neighbour. */
 static void fewest_edges(void **state) {
     (void)state;
     enum { K = 5 };

@@ -8,7 +8,7 @@
 
 enum { D = LBG_DIMENSIONS, VECTORS_MAX = 400, TRACE_MAX = 20000 };
 
-/* What one run is told: codes and distortion after every round. */
+/* The reports of one run: codes and distortion after every round. */
 typedef struct trace {
     uint32_t length, codes[TRACE_MAX];
     double distortions[TRACE_MAX];
@@ -37,7 +37,7 @@ static double squared_distance(const double *a, const double *b) {
     return sum;
 }
 
-/* From the labels alone. */
+/* Computes the distortion from the labels alone. */
 static double distortion_of(uint32_t vector_count, uint32_t code_count) {
     double sum = 0.0;
     for (uint32_t c = 0; c < code_count; c++) {
@@ -61,7 +61,7 @@ static void check_falls(double rounding) {
     }
 }
 
-/* What holds for every result; the number of codes. */
+/* Asserts what holds for every result, and returns the number of codes. */
 static uint32_t check_run(uint32_t vector_count, uint32_t codes_max, double epsilon) {
     lbg l = run_of(vector_count, codes_max, epsilon);
     uint32_t code_count = lbg_run(&l);

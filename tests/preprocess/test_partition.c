@@ -201,10 +201,10 @@ static void renewing_one_part(void **state) {
     }
     assert_true(r.partition->generation == 2 && r.partition->part_generations[1] == 2);
     assert_true(r.partition->part_generations[0] == 1 && r.partition->part_generations[2] == 1);
-    cscd_partition *anew = partition_of(r.mesh, NULL, r.b.positions, NULL);
+    cscd_partition *fresh = partition_of(r.mesh, NULL, r.b.positions, NULL);
     assert_int_equal(cscd_partition_renew(r.partition, r.b.positions, UINT32_MAX), CSCD_OK);
-    assert_memory_equal(anew->vertex_cells, r.partition->vertex_cells, r.b.vertex_count * sizeof *cells);
-    cscd_partition_destroy(anew);
+    assert_memory_equal(fresh->vertex_cells, r.partition->vertex_cells, r.b.vertex_count * sizeof *cells);
+    cscd_partition_destroy(fresh);
     free(cells);
     row_free(&r);
 }

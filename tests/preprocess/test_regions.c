@@ -24,7 +24,7 @@ typedef struct charged {
 
 static charged bodies[BODIES];
 
-/* What regions_from_charge finds, and how much is visible. */
+/* The regions that regions_from_charge finds, and how much of them is visible. */
 typedef struct division {
     uint32_t count, regions[TRIANGLES_MAX];
     double share;

@@ -109,7 +109,7 @@ static particles world(particle_rule rule, double radius, int worlds) {
     return p;
 }
 
-/* Where the sum over all pairs is best for particle i, written down once more. */
+/* An independent version: the vertex where the sum over all pairs is best for particle i. */
 static double plain_worth(const particles *p, const uint32_t *vertices, uint32_t i, uint32_t at) {
     double vector[3] = {0, 0, 0}, scalar = 0.0, strongest = 0.0, potential = 0.0;
     for (uint32_t j = 0; j < p->count; j++) {

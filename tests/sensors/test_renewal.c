@@ -215,7 +215,7 @@ static void bending_is_seen(void **state) {
     }
 }
 
-/* Renewed cells are measured anew; those of another part stay due. */
+/* Renewed cells are measured again; those of another part stay due. */
 static void renewal_settles_one_part(void **state) {
     (void)state;
     random_seed(6);
@@ -258,7 +258,7 @@ static void estimates_are_rectangles(void **state) {
     bench_destroy(&b);
 }
 
-/* Of one cell of a sphere's dozen, and where the whole sphere is one. */
+/* Estimates the area of one of a sphere's dozen cells, and of a whole sphere that is one cell. */
 static void estimates_are_near_areas(void **state) {
     (void)state;
     random_seed(8);

@@ -57,7 +57,7 @@ static void check_counts(const cscd_mesh *mesh, const object_scene *scene) {
     }
 }
 
-/* What the detector finds in every `stride`-th frame. */
+/* Counts the contacts that the detector finds in every `stride`-th frame. */
 static census count(object_stage *s, const cscd_mesh *mesh, uint32_t stride) {
     census c;
     assert_int_equal(census_begin(mesh, &c), CSCD_OK);

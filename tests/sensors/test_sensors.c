@@ -301,7 +301,7 @@ static void repulsion_spreads_them(void **state) {
     assert_int_equal(one_sided, 0);
 }
 
-/* ---- cells made anew ---------------------------------------------------------------------------------- */
+/* ---- renewed cells ------------------------------------------------------------------------------------ */
 
 static void new_cells_are_taken_up(void **state) {
     (void)state;

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Where a test's files live; the two functions are its cmocka set-up and tear-down. */
+/* The folder of a test's files; the two functions are its cmocka set-up and tear-down. */
 extern temp_folder frame_fixture_folder;
 int frame_fixture_make_folder(void **state);
 int frame_fixture_remove_folder(void **state);

@@ -1,4 +1,4 @@
-/* What holds for every partition, and bodies to partition; used inside cmocka tests. */
+/* Asserts what holds for every partition, and makes bodies to divide. */
 #pragma once
 
 #include "src/mesh/partition.h"

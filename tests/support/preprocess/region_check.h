@@ -1,4 +1,4 @@
-/* What holds for every division into regions; used inside cmocka tests. */
+/* Asserts what holds for every division into regions. */
 #pragma once
 
 #include "src/mesh/mesh.h"

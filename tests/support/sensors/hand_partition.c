@@ -57,7 +57,7 @@ static double squared_distance(const double *positions, uint32_t a, uint32_t b) 
     return vec3_dot(offset, offset);
 }
 
-/* Of the part's vertices, the first of the centres that is nearest to each. */
+/* Gives each vertex of the part to the nearest of the centres, of equally near ones to the first. */
 static void make_cells(cscd_partition *p, const double *positions, uint32_t part, uint32_t cells_max) {
     const uint32_t *vertices = p->part_vertices + p->part_vertex_offsets[part];
     uint32_t count = p->part_vertex_offsets[part + 1] - p->part_vertex_offsets[part], made = 0;
