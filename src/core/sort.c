@@ -4,15 +4,15 @@
 #include <stdbool.h>
 #include <string.h>
 
-typedef struct run {
+typedef struct sorted_run {
     const char *next, *end;
-} run;
+} sorted_run;
 
 /* Merges two sorted runs that lie next to each other, first before second, to out. */
-static void merge_runs(run first, run second, char *out, size_t size,
+static void merge_runs(sorted_run first, sorted_run second, char *out, size_t size,
                        int (*compare)(const void *, const void *)) {
     while (first.next < first.end && second.next < second.end) {
-        run *smaller = compare(first.next, second.next) <= 0 ? &first : &second;
+        sorted_run *smaller = compare(first.next, second.next) <= 0 ? &first : &second;
         memcpy(out, smaller->next, size);
         smaller->next += size;
         out += size;
@@ -29,8 +29,9 @@ void sort_items(void *items, void *scratch, size_t count, size_t size,
         for (size_t begin = 0; begin < count; begin += 2 * width) {
             size_t middle = begin + width < count ? begin + width : count;
             size_t end = middle + width < count ? middle + width : count;
-            merge_runs((run){from + begin * size, from + middle * size},
-                       (run){from + middle * size, from + end * size}, to + begin * size, size, compare);
+            merge_runs((sorted_run){from + begin * size, from + middle * size},
+                       (sorted_run){from + middle * size, from + end * size}, to + begin * size, size,
+                       compare);
         }
         char *swap = from;
         from = to;

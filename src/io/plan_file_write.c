@@ -8,22 +8,22 @@
 #include <sys/stat.h>
 
 /* One vertex, face, region or component. */
-typedef struct row {
+typedef struct file_row {
     unsigned char bytes[96];
     size_t size;
-} row;
+} file_row;
 
-static void put_bits(row *r, uint64_t bits, size_t size) {
+static void put_bits(file_row *r, uint64_t bits, size_t size) {
     for (size_t i = 0; i < size; i++) r->bytes[r->size++] = (unsigned char)(bits >> (8 * i) & 0xff);
 }
 
-static void put_double(row *r, double value) {
+static void put_double(file_row *r, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     put_bits(r, bits, sizeof bits);
 }
 
-static void write_row(FILE *file, const row *r) {
+static void write_row(FILE *file, const file_row *r) {
     fwrite(r->bytes, 1, r->size, file);
 }
 
@@ -50,7 +50,7 @@ static void write_header(FILE *file, const cscd_mesh *mesh, const cscd_plan *pla
 
 static void write_vertices(FILE *file, const cscd_mesh *mesh, const double *positions) {
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(mesh); v++) {
-        row r = {.size = 0};
+        file_row r = {.size = 0};
         for (size_t k = 0; k < 3; k++) put_double(&r, positions[(size_t)v * 3 + k]);
         write_row(file, &r);
     }
@@ -58,7 +58,7 @@ static void write_vertices(FILE *file, const cscd_mesh *mesh, const double *posi
 
 static void write_faces(FILE *file, const cscd_mesh *mesh, const cscd_plan *plan, const uint8_t *colours) {
     for (uint32_t t = 0; t < cscd_mesh_triangle_count(mesh); t++) {
-        row r = {.size = 0};
+        file_row r = {.size = 0};
         uint32_t corners[3];
         cscd_mesh_triangle(mesh, t, corners);
         put_bits(&r, 3, 1);
@@ -72,7 +72,7 @@ static void write_faces(FILE *file, const cscd_mesh *mesh, const cscd_plan *plan
 
 static void write_regions(FILE *file, const cscd_plan *plan) {
     for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) {
-        row r = {.size = 0};
+        file_row r = {.size = 0};
         cscd_region region = cscd_plan_region(plan, i);
         for (size_t k = 0; k < 3; k++) put_double(&r, region.detector_point[k]);
         put_double(&r, region.visible_share);
@@ -85,7 +85,7 @@ static void write_regions(FILE *file, const cscd_plan *plan) {
 
 static void write_components(FILE *file, const cscd_mesh *mesh, const cscd_plan *plan) {
     for (uint32_t c = 0; c < cscd_mesh_component_count(mesh); c++) {
-        row r = {.size = 0};
+        file_row r = {.size = 0};
         put_double(&r, cscd_plan_capacitance(plan, c));
         write_row(file, &r);
     }

@@ -23,15 +23,15 @@ static const double origin[3] = {0.0, 0.0, 0.0};
 static const renewal_limits usual = {.area_factor = 2.0, .edge_length = 0.0};
 
 /* The body's mesh with its workspaces. */
-typedef struct bench {
+typedef struct renewal_bench {
     rig rig;
     cscd_partition *partition;
     sensor_renewal renewal;
-} bench;
+} renewal_bench;
 
 /* Parts are the components; cells of body.x0, which the renewal knows. */
-static bench bench_create(uint32_t cells_max) {
-    bench b = {.rig = rig_create(&body, 1, NULL)};
+static renewal_bench bench_create(uint32_t cells_max) {
+    renewal_bench b = {.rig = rig_create(&body, 1, NULL)};
     b.partition = hand_partition_create(b.rig.mesh, body.x0, NULL, b.rig.mesh->component_count, cells_max);
     assert_int_equal(sensor_renewal_create(b.partition, &b.renewal), CSCD_OK);
     sensor_renewal_follow(&b.renewal, b.partition, body.x0);
@@ -39,7 +39,7 @@ static bench bench_create(uint32_t cells_max) {
     return b;
 }
 
-static void bench_destroy(bench *b) {
+static void bench_destroy(renewal_bench *b) {
     sensor_renewal_destroy(&b->renewal);
     sensor_renewal_destroy(&b->renewal);
     hand_partition_destroy(b->partition);
@@ -47,7 +47,7 @@ static void bench_destroy(bench *b) {
 }
 
 /* How many are due at `moved`, by the limits. */
-static uint32_t due(bench *b, const renewal_limits *limits) {
+static uint32_t due(renewal_bench *b, const renewal_limits *limits) {
     return sensor_renewal_check(&b->renewal, b->partition, moved, particles, limits, renewals);
 }
 
@@ -110,7 +110,7 @@ static void rest_and_rigid_motion_need_nothing(void **state) {
     (void)state;
     random_seed(1);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     renewal_limits narrow = {.area_factor = 1.0 + 1e-9, .edge_length = 0.0};
     for (int i = 0; i < ROUNDS; i++) {
         hand_partition_particles(b.partition, particles);
@@ -129,7 +129,7 @@ static void growth_is_seen(void **state) {
     (void)state;
     random_seed(2);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     move(false, grow, 1.3);
     assert_int_equal(due(&b, &usual), 0);
     move(false, grow, 1.5);
@@ -144,7 +144,7 @@ static void growth_is_estimated(void **state) {
     (void)state;
     random_seed(3);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     for (uint32_t p = 0; p < 2; p++) b.renewal.first[p].area = INFINITY;
     move(false, grow, 1.3);
     assert_int_equal(due(&b, &usual), 0);
@@ -159,7 +159,7 @@ static void long_edges_are_seen(void **state) {
     (void)state;
     random_seed(4);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     double longest = sqrt(b.renewal.first[1].edge_squared);
     renewal_limits limits = {.area_factor = 4.0, .edge_length = 1.2 * longest};
     assert_true(sqrt(b.renewal.first[0].edge_squared) < limits.edge_length);
@@ -178,7 +178,7 @@ static void bending_is_told_before_long_edges(void **state) {
     (void)state;
     random_seed(10);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     renewal_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.renewal.first[1].edge_squared)};
     move(false, bend, 0.05);
     due(&b, &limits);
@@ -204,7 +204,7 @@ static void bending_is_seen(void **state) {
         random_seed(5);
         make_two_bodies();
         if (flipped != 0) flip_triangles();
-        bench b = bench_create(12);
+        renewal_bench b = bench_create(12);
         assert_true(b.renewal.first[1].concave < 0.01);
         move(false, bend, 0.05);
         assert_int_equal(due(&b, &usual), 0);
@@ -220,7 +220,7 @@ static void renewal_settles_one_part(void **state) {
     (void)state;
     random_seed(6);
     make_two_bodies();
-    bench b = bench_create(12);
+    renewal_bench b = bench_create(12);
     move(true, grow, 2.0);
     assert_int_equal(due(&b, &usual), 2);
     b.partition->generation++;
@@ -250,7 +250,7 @@ static void estimates_are_rectangles(void **state) {
     (void)state;
     random_seed(7);
     make_cross();
-    bench b = bench_create(1);
+    renewal_bench b = bench_create(1);
     assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
     for (uint32_t v = 1; v < 5; v++) b.partition->vertex_cells[v] = 1; /* the edge out of a cell counts */
     assert_true(fabs(sensor_renewal_estimate(b.partition, body.x0, 0) - 24.0) < 1e-12);
@@ -265,7 +265,7 @@ static void estimates_are_near_areas(void **state) {
     scene_clear(&body);
     scene_add_sphere(&body, origin, 1.0, 24, 32);
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
-        bench b = bench_create(cells);
+        renewal_bench b = bench_create(cells);
         double sum = 0.0, area = 12.566 / b.partition->cell_count;
         for (uint32_t v = 0; v < body.vertex_count; v++)
             sum += sensor_renewal_estimate(b.partition, body.x0, v) / body.vertex_count;
@@ -280,7 +280,7 @@ static void walks_end_on_any_mesh(void **state) {
     random_seed(9);
     for (int i = 0; i < WALKED_SCENES; i++) {
         scene_make((scene_family)(i % SCENE_FAMILY_COUNT), (uint64_t)i, &body);
-        bench b = bench_create((uint32_t)random_integer(1, 6));
+        renewal_bench b = bench_create((uint32_t)random_integer(1, 6));
         for (uint32_t k = 0; k < body.vertex_count * 3; k++) {
             double x = body.x1[k];
             moved[k] = i % 4 == 0 ? 0.0 : i % 4 == 1 ? round(x) : i % 4 == 2 ? x + random_unit() : x * 1e200;
