@@ -1,25 +1,25 @@
-/* Which of many pairs of triangles certainly do not meet, and which triangles certainly have an area: sorted
- * by what they share, as many at a time as the processor takes. */
+/* Rejects pairs of triangles that certainly do not intersect, and triangles that certainly have an area. Pairs are sorted
+ * by the number of vertices that they share, and tested as many at a time as a register of doubles holds. */
 #include "runtime/intersections/intersection_kernels.h"
 #include "runtime/intersections/triangle_intersection_simd.h"
 
-enum { CHUNK = 256, LIST_SIZE = CHUNK + LANES };
+enum { PAIRS_AT_ONCE = 256, LIST_SIZE = PAIRS_AT_ONCE + LANES };
 
-/* Pairs with a like number of shared vertices. shared: the set of corners of a that are b's, and from bit 3
- * on that of b's. */
+/* Pairs that share the same number of vertices. shared: bit i is set if corner i of a is shared, bit 3 + i if corner i of
+ * b is. */
 typedef struct pair_list {
     triangle_pair pairs[LIST_SIZE];
     uint8_t shared[LIST_SIZE];
     uint32_t count;
 } pair_list;
 
-/* By a set of shared corners: how many, and the corners in their turn from the only one that is shared on, or
- * the only one that is not. */
+/* For each set of shared corners their number, and the corners in their cyclic order, starting at the only one that is
+ * shared, or at the only one that is not. */
 static const uint8_t sizes[8] = {0, 1, 1, 2, 1, 2, 2, 3};
 static const uint8_t turned[8][3] = {{0, 1, 2}, {0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                      {2, 0, 1}, {1, 2, 0}, {0, 1, 2}, {0, 1, 2}};
 
-/* Of eight pairs: as in a list. */
+/* The shared corners of eight pairs, as in a pair_list. */
 static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pair *pairs,
                                int32_t shared[LANES]) {
     int32_t vertices[6][LANES];
@@ -32,15 +32,15 @@ static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pa
     }
     memcpy(a, vertices, sizeof a);
     memcpy(b, vertices + 3, sizeof b);
-    /* What is true is -1. */
+    /* A comparison is -1 where it is true. */
     for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i]));
     for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]));
     memcpy(shared, &sets, sizeof sets);
 }
 
-/* pairs: at most CHUNK. */
-static inline void sort_out(const uint32_t (*triangles)[3], const triangle_pair *pairs, uint32_t count,
-                            pair_list lists[4]) {
+/* Sorts at most PAIRS_AT_ONCE pairs into the lists by the number of shared vertices. */
+static inline void sort_by_shared(const uint32_t (*triangles)[3], const triangle_pair *pairs, uint32_t count,
+                                  pair_list lists[4]) {
     for (uint32_t first = 0; first < count; first += LANES) {
         triangle_pair eight[LANES];
         int32_t shared[LANES];
@@ -55,8 +55,8 @@ static inline void sort_out(const uint32_t (*triangles)[3], const triangle_pair 
     }
 }
 
-/* Of the pairs from first on; what fills up the last vector is its first pair. loaded: the corners that are
- * looked at. */
+/* Loads the corners of the pairs from first on. The last vector is filled up with its first pair. loaded: the set of
+ * corners that are needed. */
 static inline void load_corners(const uint32_t (*triangles)[3], const double *positions,
                                 const pair_list *list, uint32_t first, uint32_t loaded,
                                 vector_x8 corners[6]) {
@@ -76,9 +76,9 @@ static inline void load_corners(const uint32_t (*triangles)[3], const double *po
 
 typedef uint32_t test_lanes(const vector_x8 corners[6]);
 
-/* Keeps the pairs that a test leaves open. */
-static inline void keep_open(pair_list *list, const uint32_t (*triangles)[3], const double *positions,
-                             uint32_t loaded, test_lanes *test) {
+/* Keeps the pairs that a test leaves undecided. */
+static inline void keep_undecided(pair_list *list, const uint32_t (*triangles)[3], const double *positions,
+                                  uint32_t loaded, test_lanes *test) {
     uint32_t kept = 0;
     for (uint32_t first = 0; first < list->count; first += WIDTH) {
         vector_x8 corners[6];
@@ -93,24 +93,32 @@ static inline void keep_open(pair_list *list, const uint32_t (*triangles)[3], co
     list->count = kept;
 }
 
-/* Of each list, which corners are looked at. */
-enum { FREE_CORNERS = 63, FAN_CORNERS = 1 + 2 + 4 + 16 + 32, HINGE_CORNERS = 1 + 2 + 4 + 8 };
+/* The sets of corners that the tests of each list need. */
+enum {
+    DISJOINT_CORNERS = 63,
+    SHARING_VERTEX_CORNERS = 1 + 2 + 4 + 16 + 32,
+    SHARING_EDGE_CORNERS = 1 + 2 + 4 + 8
+};
 
 static uint32_t reject_disjoint(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
                                 uint32_t count) {
     pair_list lists[4];
     uint32_t kept = 0;
-    for (uint32_t begin = 0; begin < count; begin += CHUNK) {
+    for (uint32_t begin = 0; begin < count; begin += PAIRS_AT_ONCE) {
         for (int i = 0; i < 4; i++) lists[i].count = 0;
-        sort_out(triangles, pairs + begin, count - begin < CHUNK ? count - begin : CHUNK, lists);
-        keep_open(&lists[0], triangles, positions, FREE_CORNERS, free_is_open);
-        keep_open(&lists[0], triangles, positions, FREE_CORNERS, piercing_is_open);
-        keep_open(&lists[0], triangles, positions, FREE_CORNERS, flat_free_is_open);
-        keep_open(&lists[1], triangles, positions, FAN_CORNERS, fan_is_open);
-        keep_open(&lists[1], triangles, positions, FAN_CORNERS, fan_is_open_x8);
-        keep_open(&lists[1], triangles, positions, FAN_CORNERS, flat_fan_is_open);
-        keep_open(&lists[2], triangles, positions, HINGE_CORNERS, hinge_is_open);
-        for (int i = 0; i < 3; i++) { /* three shared vertices: nothing is left to meet */
+        sort_by_shared(triangles, pairs + begin,
+                       count - begin < PAIRS_AT_ONCE ? count - begin : PAIRS_AT_ONCE, lists);
+        keep_undecided(&lists[0], triangles, positions, DISJOINT_CORNERS, disjoint_undecided_by_planes);
+        keep_undecided(&lists[0], triangles, positions, DISJOINT_CORNERS, disjoint_undecided_by_edges);
+        keep_undecided(&lists[0], triangles, positions, DISJOINT_CORNERS, disjoint_undecided_by_projection);
+        keep_undecided(&lists[1], triangles, positions, SHARING_VERTEX_CORNERS,
+                       sharing_vertex_undecided_by_cones);
+        keep_undecided(&lists[1], triangles, positions, SHARING_VERTEX_CORNERS,
+                       sharing_vertex_undecided_by_plane);
+        keep_undecided(&lists[1], triangles, positions, SHARING_VERTEX_CORNERS,
+                       sharing_vertex_undecided_by_projection);
+        keep_undecided(&lists[2], triangles, positions, SHARING_EDGE_CORNERS, sharing_edge_undecided);
+        for (int i = 0; i < 3; i++) { /* triangles with three shared vertices do not intersect */
             memcpy(pairs + kept, lists[i].pairs, lists[i].count * sizeof *pairs);
             kept += lists[i].count;
         }
