@@ -1,44 +1,56 @@
-/* Trees over the triangles: one per tree of the mesh, each in a frame that moves with its tree.
+/* Bounding volume hierarchy over the triangles: one tree per region, each in a frame that moves with it.
  *
- * Eight triangles are a leaf, eight leaves a block, eight blocks a block of the next level; all trees have
- * the same height, above which blocks of trees join them into one. Bounds are floats in the tree's own frame,
- * scaled by a power of two that is common to all; docs/theory/trees.md derives how far they are rounded. */
+ * Eight triangles are a leaf, eight leaves a block, eight blocks a block of the next level. All trees have the same
+ * height; above it, blocks of trees join them into one:
+ *
+ *     level_count - 1    one block             children: blocks
+ *     ...
+ *     tree_level         blocks of trees       children: trees, that is, their blocks on the level below
+ *     tree_level - 1     one block per tree    children: blocks
+ *     ...
+ *     0                                        children: leaves
+ *
+ * Bounds are floats in the frame of their tree, scaled by a power of two that all trees have in common, and on the tree
+ * level and above in the frame of the first tree. docs/theory/trees.md derives how far they are rounded outward. */
 #pragma once
 
 #include "runtime/bvh/bvh_kernels.h"
 #include "src/core/kdop.h"
 #include "src/mesh/mesh.h"
 
-/* 8^10 leaves hold more triangles than there may be, and 8^11 more trees. */
+/* 8^10 leaves hold more triangles than a mesh may have, and 8^11 is more than the number of trees. */
 enum { TREE_LEVEL_MAX = 10, BVH_LEVEL_MAX = TREE_LEVEL_MAX + 11 };
 
-/* Corners are records; empty lanes, at the end of a tree's last leaf, repeat the first triangle's. */
+/* Triangles fill a prefix of the lanes. Corners are records; the empty lanes of a tree's last leaf repeat those of its
+ * first triangle. */
 typedef struct bvh_leaf {
     uint32_t corners[3][LANES];
     uint32_t triangles[LANES]; /* UINT32_MAX: empty */
 } bvh_leaf;
 
-/* Sets of lanes: of a leaf's triangles, or of a block's children, that hold triangles at all, triangles that
- * are all PLUS, all MINUS; newly_kept: that (may) have lost their flag since the pass before. */
+/* Sets of lanes, of a leaf's triangles or of a block's children. */
 typedef struct lane_flags {
-    uint8_t used, plus, minus, newly_kept;
+    uint8_t used;        /* hold triangles; a prefix */
+    uint8_t plus, minus; /* all their triangles are PLUS, or all MINUS */
+    uint8_t
+        newly_kept; /* hold triangles that have lost their orientation since the last pass, or unproven ones */
 } lane_flags;
 
-/* Children of block i are first_children[i] and those after it, of the level below; on level 0 leaves, on the
- * BVH's tree level trees. */
+/* Child i of a block is first_children + i on the level below: a leaf on level 0, a tree on the tree level. */
 typedef struct bvh_level {
     uint32_t block_count;
     uint32_t *first_children;
-    float *bounds; /* per block and axis 8 lows and 8 highs; no less than none for empty lanes */
+    float *bounds; /* per block and axis 8 lows and 8 highs; of empty lanes the lows are above the highs */
     lane_flags *flags;
-    uint64_t
-        *self_pairs; /* byte i of a block: its children that are to be compared with child i; NULL: all */
-    uint8_t
-        *obstacle_lanes; /* per block: its children that hold obstacles only, which are not compared with each
-                       * other; NULL: none, as below the tree level */
+
+    /* Byte i of a block: its children that are to be compared with child i, itself among them; NULL: all are. */
+    uint64_t *self_pairs;
+
+    /* The children of each block that hold obstacles only, which are not compared with each other; NULL: none do. */
+    uint8_t *obstacle_lanes;
 } bvh_level;
 
-/* A region, or a component. Its frame takes origin[0] from positions at the start and origin[1] at the end,
+/* The tree of one region. Its frame subtracts origin[0] from positions at the start, origin[1] from those at the end,
  * and multiplies by the BVH's scale. */
 typedef struct bvh_tree {
     uint32_t region;
@@ -46,13 +58,13 @@ typedef struct bvh_tree {
     uint32_t first_leaf, leaf_count, first_record, record_count;
     uint32_t first_blocks[TREE_LEVEL_MAX]; /* per level below the tree level */
     double origin[2][3];
-    float reach;           /* no scaled coordinate of the interval at hand is larger */
+    float reach;           /* no scaled coordinate in the interval has a larger magnitude */
     float slack[2];        /* bounds are rounded outward by so much along axes, and along diagonals */
     float detector[2][3];  /* its detector point in its frame */
     double weighted[2][3]; /* the mean of its records by their weights, at the start and at the end */
 } bvh_tree;
 
-/* Records begin to end - 1 of a tree: what one thread copies in at a time. */
+/* Records begin to end - 1 of a tree, which one thread copies in at a time. */
 typedef struct record_chunk {
     uint32_t tree, begin, end;
     copied copied;
@@ -65,48 +77,53 @@ typedef struct bvh {
     uint32_t tree_count, leaf_count, record_count;
     bvh_tree *trees;
     bvh_leaf *leaves;
-    lane_flags *leaf_flags; /* of triangles */
-    lane_flags *flags_before;
+    lane_flags *leaf_flags;             /* of triangles */
+    lane_flags *flags_before;           /* the leaf_flags before the last bvh_mark_newly_kept */
     uint64_t *leaf_self_pairs;          /* as in a level, of triangles; NULL: all */
-    uint32_t *block_trees, *leaf_trees; /* of the blocks of level 0, and of leaves */
+    uint32_t *block_trees, *leaf_trees; /* the tree of each block of level 0, and of each leaf */
     uint32_t *record_vertices;          /* the mesh's vertex of a record */
     float *record_weights;              /* in the detector point */
-    record_chunk *chunks;
+    record_chunk *chunks;               /* in the order of the trees */
     uint32_t chunk_count;
     float (*records)[8]; /* x y z . at the start, x y z . at the end, scaled, in the tree's frame */
     bvh_level levels[BVH_LEVEL_MAX];
-    int tree_level, level_count; /* on the tree level children are trees, and the last level has one block */
+    int tree_level, level_count;
     double scale;
     uint32_t *slots; /* where a triangle is: 8 * leaf + lane */
 } bvh;
 
-/* Triangles in regions 0 to count - 1, none of them empty; weights of triangles in their region's detector
- * point, which add up to 1 per region. */
+/* Triangles in regions 0 to count - 1, none of them empty, and none in two components unless joined on purpose by a
+ * baseline; the weights of a region's triangles in its detector point add up to 1. */
 typedef struct bvh_regions {
     const uint32_t *of_triangle;
     const double *triangle_weights;
     uint32_t count;
 } bvh_regions;
 
-/* Orders triangles and shapes the trees by positions. *out is untouched
- * unless CSCD_OK. */
+/* Orders the triangles and shapes the trees by positions; bounds and records are undefined before the first
+ * bvh_refit. *out is untouched unless CSCD_OK. */
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out);
 void bvh_free(bvh *f);
 
-/* Fills in the levels' obstacles children; a step of bvh_build. False: no memory. */
+/* Fills in obstacle_lanes, as a step of bvh_build. False: no memory. */
 bool bvh_mark_obstacles(bvh *f);
 
 static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
     return f->leaves[slot / LANES].triangles[slot % LANES];
 }
 
-/* Moves frames, records and bounds on to the interval from x0 to x1; the same array twice: to a moment. All
- * flags are cleared and no pair is hidden. distance: volumes are widened so that those of what comes within
- * it overlap. */
+/* Moves frames, records and bounds to the interval from x0 to x1, or to a moment if both are the same array. All flags
+ * are cleared, and no pair is hidden. The volumes are widened by so much that those of triangles that come within
+ * distance of each other overlap. */
 void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
 
-/* No pair is hidden by `within`, where there is such a thing. */
+/* The first fault of the structure as a sentence, or NULL. After a build: lanes fill prefixes, blocks of a tree and
+ * level lie together, slots and leaves are inverse. After a refit, bounds also hold what is below. Takes linear time;
+ * asserts call it in debug and sanitizer builds. */
+const char *bvh_validate(const bvh *f, bool refitted);
+
+/* Shows all pairs that are hidden, where there is room for hidden pairs. */
 void bvh_show_all(bvh *f);
 
 /* Makes room for hidden pairs, of which there are none yet. False: no memory. */
@@ -116,7 +133,7 @@ static inline bool bvh_can_hide(const bvh *f) {
     return f->leaf_self_pairs != NULL;
 }
 
-/* Whose pairs of adjacent triangles are left out: per component; NULL: nobody's. */
+/* Leaves out the pairs of adjacent triangles of these components; NULL: of none. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
 
 /* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that
@@ -137,16 +154,16 @@ typedef struct orientation_query {
     bool still;                          /* detector points stay where they are at the start */
 } orientation_query;
 
-/* Where the detector points are at both ends of the interval moved to last, per region, up to rounding. */
+/* Where the detector points are at both ends of the last interval, per region, up to rounding. */
 void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]);
 
-/* Detector points and flags of the interval moved to last; orientations: per triangle of the mesh, written
- * where they count. */
+/* Sets the detector points and the flags of the last interval. Writes the orientations of the triangles that are
+ * oriented, per triangle of the mesh. */
 void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations);
 
-/* Flags of leaves and blocks anew, from orientations per triangle before and now: newly_kept is what has lost
- * its. */
+/* Sets the flags of leaves and blocks by orientations per triangle, those before and those now. Newly kept are
+ * triangles that had an orientation and have none now. */
 void bvh_mark_newly_kept(bvh *f, const uint8_t *before, const uint8_t *now);
 
-/* Fresh are these triangles, and there are no other flags. */
+/* Marks these triangles as newly kept, and clears all other flags. */
 void bvh_mark_unproven(bvh *f, const bool *unproven);

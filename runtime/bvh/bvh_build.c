@@ -1,6 +1,7 @@
 /* The shape of the trees: the order of triangles, leaves, blocks, records. */
 #include "runtime/bvh/bvh.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -358,6 +359,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
         bvh_free(&f);
         return CSCD_OUT_OF_MEMORY;
     }
+    assert(bvh_validate(&f, false) == NULL);
     *out = f;
     return CSCD_OK;
 }

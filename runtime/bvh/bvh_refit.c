@@ -1,6 +1,7 @@
 /* The BVH follows the positions: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -192,6 +193,7 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
     }
     clear_flags(f->leaf_flags, f->leaf_count);
     bvh_show_all(f);
+    assert(bvh_validate(f, true) == NULL);
 }
 
 void bvh_skip_adjacent(bvh *f, const bool *components) {

@@ -1,0 +1,133 @@
+/* The validator of the BVH finds every kind of fault that is planted, and none in what is built and refitted. */
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+static scene shape; /* large; one test at a time */
+static bvh_rig rig_of_shape;
+
+static const bvh_setup many_trees = {CSCD_SIMD_SCALAR, 1, KDOP_AXES, 20};
+
+static bvh *build_and_refit(bvh_setup setup) {
+    assert_true(bvh_rig_create(&shape, setup, &rig_of_shape));
+    bvh *f = &rig_of_shape.bvh;
+    assert_null(bvh_validate(f, false));
+    bvh_refit(f, shape.x0, shape.x1, 0.0);
+    return f;
+}
+
+static void sound_ones_have_no_fault(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint32_t regions = 0; regions < 24; regions += 8) {
+            for (int axes = BOX_AXES; axes <= KDOP_AXES; axes += KDOP_AXES - BOX_AXES) {
+                scene_make((scene_family)family, 5, &shape);
+                bvh *f = build_and_refit((bvh_setup){CSCD_SIMD_SCALAR, 1, axes, regions});
+                assert_null(bvh_validate(f, true));
+                bvh_rig_destroy(&rig_of_shape);
+            }
+        }
+    }
+}
+
+/* Changes some bytes of the BVH, expects the fault, and puts them back. */
+static void expect_fault(bvh *f, void *place, const void *planted, size_t size, const char *expected) {
+    char saved[64];
+    assert_true(size <= sizeof saved && memcmp(place, planted, size) != 0);
+    memcpy(saved, place, size);
+    memcpy(place, planted, size);
+    const char *fault = bvh_validate(f, true);
+    assert_non_null(fault);
+    assert_string_equal(fault, expected);
+    memcpy(place, saved, size);
+    assert_null(bvh_validate(f, true));
+}
+
+#define PLANT(f, place, value, expected)                                                                     \
+    do {                                                                                                     \
+        __typeof__(place) planted = (value);                                                                 \
+        expect_fault(f, &(place), &planted, sizeof planted, expected);                                       \
+    } while (0)
+
+static bvh *many_trees_of_a_sphere(void) {
+    scene_clear(&shape);
+    scene_add_sphere(&shape, (double[3]){0, 0, 0}, 1.0, 30, 30);
+    bvh *f = build_and_refit(many_trees);
+    assert_true(f->tree_count == 20 && f->tree_level >= 1 && f->level_count > f->tree_level + 1);
+    return f;
+}
+
+static void faults_of_leaves(void **state) {
+    (void)state;
+    bvh *f = many_trees_of_a_sphere();
+    PLANT(f, f->leaf_flags[0].used, 0xfd, "the lanes of a leaf are no prefix");
+    PLANT(f, f->leaf_flags[0].used, 0x7f, "the lanes of a leaf are not those of its triangles");
+    PLANT(f, f->leaf_trees[0], 1, "a leaf names another tree than its own");
+    PLANT(f, f->slots[f->leaves[0].triangles[3]], 1, "slots and leaves are not inverse");
+    PLANT(f, f->leaves[0].triangles[3], f->leaves[0].triangles[2], "slots and leaves are not inverse");
+    PLANT(f, f->leaves[0].corners[1][3], f->trees[1].first_record, "a corner is a record of another tree");
+    PLANT(f, f->leaves[0].corners[1][3], f->leaves[0].corners[0][3],
+          "a corner is a record of another vertex");
+    PLANT(f, f->trees[1].first_leaf, f->trees[1].first_leaf + 1,
+          "the leaves of a tree do not follow the last tree's");
+    PLANT(f, f->trees[1].first_record, f->trees[1].first_record + 8,
+          "the records of a tree do not follow the last tree's");
+    PLANT(f, f->leaf_count, f->leaf_count + 1, "some leaves or records are of no tree");
+    bvh_rig_destroy(&rig_of_shape);
+}
+
+static void faults_of_levels(void **state) {
+    (void)state;
+    bvh *f = many_trees_of_a_sphere();
+    bvh_level *low = &f->levels[0], *trees = &f->levels[f->tree_level];
+    PLANT(f, low->flags[0].used, 0x5, "the lanes of a block are no prefix");
+    PLANT(f, low->first_children[1], low->first_children[1] + 1,
+          "the children of a level do not follow each other");
+    PLANT(f, trees->flags[2].used, 0x7, "a level has not every child once");
+    PLANT(f, f->trees[1].first_blocks[1], f->trees[2].first_blocks[1],
+          "the blocks of a tree do not lie together");
+    PLANT(f, f->block_trees[0], 1, "a block names another tree than its own");
+    bvh_rig_destroy(&rig_of_shape);
+}
+
+/* On every level, for the low and the high of a used lane, along an axis and a diagonal; and in an empty lane. */
+static void faults_of_bounds(void **state) {
+    (void)state;
+    bvh *f = many_trees_of_a_sphere();
+    static const int axes[] = {1, 5};
+    for (int level = 0; level < f->level_count; level++) {
+        for (int i = 0; i < 2; i++) {
+            float *low = f->levels[level].bounds + axes[i] * 2 * LANES, *high = low + LANES;
+            PLANT(f, low[0], 0.5f * (low[0] + high[0]), "bounds do not hold what is below");
+            PLANT(f, high[0], 0.5f * (low[0] + high[0]), "bounds do not hold what is below");
+        }
+    }
+    float *last = f->levels[f->level_count - 1].bounds + LANES - 1;
+    assert_true((f->levels[f->level_count - 1].flags[0].used >> (LANES - 1) & 1) == 0);
+    PLANT(f, last[0], last[LANES], "the bounds of an empty lane are not empty");
+    bvh_rig_destroy(&rig_of_shape);
+}
+
+/* One tree over two components, of which one is declared an obstacle afterwards. */
+static void obstacles_have_trees_of_their_own(void **state) {
+    (void)state;
+    bool obstacles[2] = {false, true};
+    scene_clear(&shape);
+    for (int i = 0; i < 2; i++) scene_add_sphere(&shape, (double[3]){3.0 * i, 0, 0}, 1.0, 8, 8);
+    bvh *f = build_and_refit((bvh_setup){CSCD_SIMD_SCALAR, 1, BOX_AXES, 1});
+    assert_null(bvh_validate(f, true));
+    PLANT(f, rig_of_shape.mesh->obstacles, obstacles, "a tree holds obstacles and other triangles");
+    bvh_rig_destroy(&rig_of_shape);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sound_ones_have_no_fault),
+        cmocka_unit_test(faults_of_leaves),
+        cmocka_unit_test(faults_of_levels),
+        cmocka_unit_test(faults_of_bounds),
+        cmocka_unit_test(obstacles_have_trees_of_their_own),
+    };
+    return cmocka_run_group_tests_name("bvh_validate", tests, NULL, NULL);
+}
