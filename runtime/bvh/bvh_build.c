@@ -1,4 +1,4 @@
-/* The shape of the trees: the order of triangles, leaves, blocks, records. */
+/* Builds the trees: the order of triangles, leaves, blocks and records. */
 #include "runtime/bvh/bvh.h"
 
 #include <assert.h>
@@ -7,7 +7,7 @@
 
 enum { CHUNK_RECORDS = 1024 };
 
-/* Things to be put in an order in which neighbours are near: triangles of a region, or regions. */
+/* Items that are ordered so that neighbours are near each other: the triangles of a region, or regions. */
 typedef struct ordering {
     uint32_t *items;
     float (*centres)[3]; /* indexed by what items holds */
@@ -19,7 +19,7 @@ typedef struct builder {
     bvh_regions given;
     ordering triangles, regions;
     uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
-    uint32_t *record_of;      /* per vertex, in the tree at hand if not below its first */
+    uint32_t *record_of;      /* per vertex: its last record; of an earlier tree if below the tree's first */
 } builder;
 
 /* ---- order --------------------------------------------------------------------------------------------- */
@@ -53,7 +53,7 @@ static void swap_items(uint32_t *items, uint32_t i, uint32_t j) {
     items[j] = item;
 }
 
-/* Hoare's selection: the items of the least coordinates come to stand before position nth. */
+/* Hoare's selection: moves the items of the least coordinates before position nth. */
 static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end, uint32_t nth) {
     uint32_t *items = o->items;
     while (end - begin > 1) {
@@ -64,7 +64,7 @@ static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end
             if (i >= j) break;
             swap_items(items, i++, j--);
         }
-        /* Where i and j meet on one item, that is the pivot, and in its place. */
+        /* If i and j end on one item, it is the pivot, and in its place. */
         if (i == j && nth == i) return;
         if (nth < i)
             end = i;
@@ -73,8 +73,8 @@ static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end
     }
 }
 
-/* How many items of a run come first: the largest power of two below count. Runs of 8 and 8^k items so begin
- * at multiples of these, and all runs at multiples of their size. */
+/* The number of items in the first half of a run: the largest power of two below count. So runs of 8^k items begin at
+ * multiples of 8^k, and all runs at multiples of their size. */
 static uint32_t first_share(uint32_t count) {
     uint32_t share = 1;
     while (share < count - share) share *= 2;
@@ -92,7 +92,7 @@ static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
         if (to - from < 2) continue;
         uint32_t middle = from + first_share(to - from);
         select_nth(o, longest_axis(o, from, to), from, to, middle);
-        /* The longer side waits, so no more than one side per halving does. */
+        /* The longer side is pushed first, so the stack holds at most one side per halving. */
         bool first_longer = middle - from > to - middle;
         begins[depth] = first_longer ? from : middle;
         ends[depth++] = first_longer ? middle : to;
@@ -101,7 +101,7 @@ static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
     }
 }
 
-/* Of triangles, and of regions the mean of these; relative to the first corner, scaled to floats. */
+/* Centres of triangles, and of regions as the mean of these: relative to the first corner, scaled to floats. */
 static void find_centres(builder *b, const double *positions, double scale) {
     const cscd_mesh *mesh = b->mesh;
     const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
@@ -117,10 +117,12 @@ static void find_centres(builder *b, const double *positions, double scale) {
     }
 }
 
-/* Triangles sorted by region. */
+/* Sorts the triangles by region. */
 static void list_triangles(builder *b) {
     uint32_t triangle_count = b->mesh->triangle_count, sum = 0;
-    uint32_t *next = b->region_offsets + 1; /* counts, then the next free places: at last the runs' ends */
+    uint32_t *next =
+        b->region_offsets +
+        1; /* first counts, then the next free place of each run, and in the end the runs' ends */
     for (uint32_t t = 0; t < triangle_count; t++) next[b->given.of_triangle[t]]++;
     for (uint32_t r = 0; r < b->given.count; r++) {
         uint32_t size = next[r];
@@ -161,7 +163,7 @@ static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *
     }
 }
 
-/* Chunks of a tree's records. */
+/* Cuts the records of a tree into chunks. */
 static void add_chunks(bvh *f, uint32_t index) {
     const bvh_tree *tree = &f->trees[index];
     uint32_t end = tree->first_record + tree->record_count;
@@ -210,7 +212,7 @@ static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, 
     return at;
 }
 
-/* How many levels the largest tree has, at least one. */
+/* The number of levels of the largest tree, at least one. */
 static int height_of(const bvh *f) {
     int height = 1;
     for (uint32_t p = 0; p < f->tree_count; p++) {
@@ -221,7 +223,8 @@ static int height_of(const bvh *f) {
     return height;
 }
 
-/* Blocks of one level of all trees; counts: of each tree's children there, and then of its blocks. */
+/* Adds the blocks of one level of all trees. counts: the number of children of each tree there, and on return that of its
+ * blocks. */
 static bool add_tree_level(bvh *f, int level, uint32_t *counts) {
     uint32_t total = 0, at = 0, child = 0;
     for (uint32_t p = 0; p < f->tree_count; p++) total += blocks_over(counts[p]);
@@ -321,7 +324,7 @@ static bool allocate_bvh(const builder *b, bvh *f) {
            f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
-/* The power of two that brings the positions' extent near 1. */
+/* The power of two that brings the extent of the positions near 1. */
 static double scale_for(const cscd_mesh *mesh, const double *positions) {
     const uint32_t *corners = mesh->triangles[0];
     const double *origin = positions + (size_t)corners[0] * 3;

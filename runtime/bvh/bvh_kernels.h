@@ -9,13 +9,13 @@ struct bvh_tree;
 struct traversal;
 struct traversal_lane;
 
-/* Of the records that were copied: the largest magnitude of a coordinate, and the sums by record_weights of
- * those at the start and at the end. */
+/* What is known of the records that were copied: the largest magnitude of a coordinate, and the weighted sums of those at
+ * the start and at the end. */
 typedef struct copied {
     double reach, weighted[2][3];
 } copied;
 
-/* Along the axes, added up. */
+/* Extents along the axes, added up. */
 typedef struct extents {
     double leaves, triangles;
 } extents;
@@ -25,10 +25,10 @@ typedef struct bvh_kernels {
     void (*copy_in)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                     const double *x0, const double *x1, copied *out);
 
-    /* Bounds of the children of blocks begin to end - 1 of any level but the tree level. */
+    /* Computes the bounds of the children of blocks begin to end - 1 of any level but the tree level. */
     void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
 
-    /* How far leaves, and their triangles, extend at the start. */
+    /* The extents of all leaves, and of all triangles, at the start. */
     extents (*extents_at_start)(const struct bvh *f);
 
     /* Writes the flags of leaves begin to end - 1 of a tree, and the orientations of their triangles. clean: per

@@ -1,4 +1,4 @@
-/* The BVH's flags: what faces the detector points, and what has lost its flag. */
+/* Flags of leaves and blocks: their orientations, and what is newly kept. */
 #include "runtime/bvh/bvh.h"
 
 enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
@@ -9,7 +9,7 @@ typedef struct orienting {
     uint8_t *orientations;
 } orienting;
 
-/* A point in a tree's frame is where it is there by definition: rounding only moves the detector point. */
+/* The detector point is defined as the rounded point in the frame of its tree, so that rounding only moves it. */
 static void place_detector(const bvh *f, bvh_tree *tree, const orientation_query *view) {
     for (int e = 0; e < 2; e++) {
         for (int k = 0; k < 3; k++) {

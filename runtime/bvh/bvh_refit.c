@@ -1,15 +1,15 @@
-/* The BVH follows the positions: frames, records, bounds, flags. */
+/* Refits the BVH to an interval: frames, records, bounds, flags. */
 #include "runtime/bvh/bvh.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-/* What makes a task of some microseconds; blocks of level 0 are a good deal more work than others. Levels of
- * fewer blocks are not worth a second thread. */
+/* Task sizes of a few microseconds each. Blocks of level 0 cost most. Levels of fewer than SHARED_BLOCKS_MIN blocks run on
+ * one thread. */
 enum { SAMPLE_COUNT = 64, SHARED_BLOCKS_MIN = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_BLOCKS_PER_TASK = 128 };
 
-/* Within these no product of the kernels over- or underflows. */
+/* For reaches between these no product of the kernels over- or underflows. */
 static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
 
 typedef struct moving {
@@ -21,8 +21,8 @@ typedef struct moving {
 
 /* ---- frames and records -------------------------------------------------------------------------------- */
 
-/* The origins are the means of a few vertices: any points serve. What lies between them at the two ends is
- * the tree's common displacement, which is so taken out of all its volumes. */
+/* The origins are the means of a few vertices, because any points serve. The difference of the two origins is the common
+ * displacement of the tree, which is thereby taken out of all its volumes. */
 static void place_frame(const bvh *f, bvh_tree *tree, const moving *m) {
     uint32_t step = tree->record_count / SAMPLE_COUNT + 1, count = 0;
     double sums[2][3] = {{0.0}};

@@ -1,4 +1,4 @@
-/* The corners of a leaf's eight triangles, as kernels see them. */
+/* The corners and volumes of a leaf's eight triangles, for kernels. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -34,8 +34,8 @@ static inline void diagonals_of(const f32x8 p[3], f32x8 out[KDOP_AXES - BOX_AXES
     out[3] = p[2] - difference;
 }
 
-static inline void enclose(const f32x8 *a, const f32x8 *b, const f32x8 *c, int count, float slack, f32x8 *low,
-                           f32x8 *high) {
+static inline void enclose_corners(const f32x8 *a, const f32x8 *b, const f32x8 *c, int count, float slack,
+                                   f32x8 *low, f32x8 *high) {
     for (int k = 0; k < count; k++) {
         low[k] = f32x8_min(f32x8_min(a[k], b[k]), c[k]) - f32x8_all(slack);
         high[k] = f32x8_max(f32x8_max(a[k], b[k]), c[k]) + f32x8_all(slack);
@@ -47,9 +47,10 @@ static inline void volumes_of(leaf_corners corners, const float slack[2], leaf_v
     for (int e = 0; e < 2; e++) {
         f32x8 diagonals[3][KDOP_AXES - BOX_AXES];
         for (int i = 0; i < 3; i++) diagonals_of(corners[i][e], diagonals[i]);
-        enclose(corners[0][e], corners[1][e], corners[2][e], BOX_AXES, slack[0], v->low[e], v->high[e]);
-        enclose(diagonals[0], diagonals[1], diagonals[2], KDOP_AXES - BOX_AXES, slack[1],
-                v->low[e] + BOX_AXES, v->high[e] + BOX_AXES);
+        enclose_corners(corners[0][e], corners[1][e], corners[2][e], BOX_AXES, slack[0], v->low[e],
+                        v->high[e]);
+        enclose_corners(diagonals[0], diagonals[1], diagonals[2], KDOP_AXES - BOX_AXES, slack[1],
+                        v->low[e] + BOX_AXES, v->high[e] + BOX_AXES);
     }
     for (int k = 0; k < BOX_AXES; k++) {
         v->swept[k][0] = f32x8_min(v->low[0][k], v->low[1][k]);

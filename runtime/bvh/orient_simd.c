@@ -23,16 +23,16 @@ static f32x8 largest_component(f32x8 (*v)[3]) {
     return largest;
 }
 
-static void cross(const f32x8 a[3], const f32x8 b[3], f32x8 out[3]) {
+static void cross_f32x8(const f32x8 a[3], const f32x8 b[3], f32x8 out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static f32x8 dot(const f32x8 a[3], const f32x8 b[3]) {
+static f32x8 dot_f32x8(const f32x8 a[3], const f32x8 b[3]) {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
 /* Writes which lanes are PLUS and MINUS; corners[i][end][axis]. */
-static void orient(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
+static void orient_lanes(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus, uint32_t *minus) {
     f32x8 a[2][3], b[2][3], c[2][3], start[3], end[3], one[3], other[3], mixed[3];
     float detector_reach = 0.0f;
     for (int e = 0; e < 2; e++) {
@@ -48,13 +48,13 @@ static void orient(const bvh_tree *tree, f32x8 (*corners)[2][3], uint32_t *plus,
     f32x8 bound = f32x8_all(0x1p-18f * (tree->reach + detector_reach)) *
                       (size_c * (size_a + size_b) + f32x8_all(4.0f) * size_a * size_b) +
                   f32x8_all(0x1p-100f);
-    cross(a[0], b[0], start);
-    cross(a[1], b[1], end);
-    cross(a[1], b[0], one);
-    cross(a[0], b[1], other);
+    cross_f32x8(a[0], b[0], start);
+    cross_f32x8(a[1], b[1], end);
+    cross_f32x8(a[1], b[0], one);
+    cross_f32x8(a[0], b[1], other);
     for (int k = 0; k < 3; k++) mixed[k] = one[k] + other[k];
-    f32x8 s[4] = {dot(start, c[0]), dot(mixed, c[0]) + dot(start, c[1]), dot(mixed, c[1]) + dot(end, c[0]),
-                  dot(end, c[1])};
+    f32x8 s[4] = {dot_f32x8(start, c[0]), dot_f32x8(mixed, c[0]) + dot_f32x8(start, c[1]),
+                  dot_f32x8(mixed, c[1]) + dot_f32x8(end, c[0]), dot_f32x8(end, c[1])};
     f32x8 least = f32x8_min(f32x8_min(s[0], s[3]), f32x8_min(s[1], s[2]));
     f32x8 greatest = f32x8_max(f32x8_max(s[0], s[3]), f32x8_max(s[1], s[2]));
     *plus = f32x8_below(bound, least);
@@ -90,7 +90,7 @@ static void orient_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, cons
     uint32_t counted = clean != NULL ? clean_lanes(l, used, clean) : used;
     leaf_corners corners;
     load_corners(f, l, corners);
-    orient(tree, corners, &plus, &minus);
+    orient_lanes(tree, corners, &plus, &minus);
     plus &= counted;
     minus &= counted;
     f->leaf_flags[index].plus = (uint8_t)plus;

@@ -1,13 +1,13 @@
-/* Copy-in: the caller's positions at both ends become records of floats in the order of the leaves. */
+/* Copy-in: turns the caller's positions at both ends into records of floats in the order of the leaves. */
 #include "runtime/bvh/bvh_kernels_simd.h"
 
-static void load(const double *x, const uint32_t *vertices, const double origin[3], double scale,
-                 f64x8 out[3]) {
+static void load_scaled(const double *x, const uint32_t *vertices, const double origin[3], double scale,
+                        f64x8 out[3]) {
     f64x8_load_points(x, vertices, out);
     for (int k = 0; k < 3; k++) out[k] = (out[k] - f64x8_all(origin[k])) * f64x8_all(scale);
 }
 
-static void store(f64x8 start[3], f64x8 end[3], float (*records)[8]) {
+static void store_records(f64x8 start[3], f64x8 end[3], float (*records)[8]) {
     f32x8 rows[8];
     for (int k = 0; k < 3; k++) {
         rows[k] = f32x8_from(start[k]);
@@ -28,14 +28,14 @@ void SIMD_NAME(copy_in)(const bvh *f, const bvh_tree *tree, uint32_t begin, uint
     for (int k = 0; k < 3; k++) start_sum[k] = end_sum[k] = f64x8_all(0.0);
     for (uint32_t i = begin; i < end; i += LANES) {
         f64x8 start[3], stop[3], weight = f64x8_from(f32x8_load(f->record_weights + i));
-        load(x0, f->record_vertices + i, tree->origin[0], f->scale, start);
-        load(x1, f->record_vertices + i, tree->origin[1], f->scale, stop);
+        load_scaled(x0, f->record_vertices + i, tree->origin[0], f->scale, start);
+        load_scaled(x1, f->record_vertices + i, tree->origin[1], f->scale, stop);
         for (int k = 0; k < 3; k++) {
             reach = f64x8_max(reach, f64x8_max(f64x8_abs(start[k]), f64x8_abs(stop[k])));
             start_sum[k] += weight * start[k];
             end_sum[k] += weight * stop[k];
         }
-        store(start, stop, f->records + i);
+        store_records(start, stop, f->records + i);
     }
     out->reach = 0.0;
     for (int i = 0; i < LANES; i++) out->reach = reach[i] > out->reach ? reach[i] : out->reach;

@@ -1,12 +1,12 @@
-/* Self-traversal of the BVH: batches, and how lanes share the work. */
+/* Self-traversal of the BVH: batches, and how threads share the work. */
 #include "runtime/bvh/traversal.h"
 
 #include "src/core/timer.h"
 
 #include <string.h>
 
-/* Shares are block pairs, at least so many per lane where there are as many. A BVH of fewer leaves is not
- * worth a second thread. */
+/* Shares are block pairs, if possible at least SHARES_PER_LANE per lane. A BVH of fewer than SHARED_LEAVES_MIN leaves is
+ * not worth a second thread. */
 enum { STACK_START = 1024, SHARES_PER_LANE = 128, SHARED_LEAVES_MIN = 96, VISITS_AT_ONCE = 16 };
 
 static bool create_lane(cscd_context *context, traversal_lane *lane) {
@@ -56,8 +56,8 @@ static bool make_room(cscd_context *context, traversal_lane *lane, size_t pushes
     return true;
 }
 
-/* Breadth-first on the first lane until there are shares enough, or nothing but leaves below them. */
-static bool spread(traversal *t) {
+/* Traverses breadth-first on the first lane until there are enough shares, or only leaves below them. */
+static bool spread_shares(traversal *t) {
     traversal_lane *first = &t->lanes[0];
     size_t wanted = (size_t)t->lane_count * SHARES_PER_LANE, next = 0;
     while (next < first->stack_count && first->stack_count - next < wanted && first->stack[next].level > 0) {
@@ -89,7 +89,7 @@ void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
     bool large = f->leaf_count >= SHARED_LEAVES_MIN;
     t->busy_lanes = large ? t->lane_count : 1;
     if (large && (t->lane_count > 1 || progress_wanted(&t->context->progress)))
-        t->lanes[0].out_of_memory = !spread(t);
+        t->lanes[0].out_of_memory = !spread_shares(t);
 }
 
 double traversal_done(const traversal *t) {
@@ -97,7 +97,7 @@ double traversal_done(const traversal *t) {
     return t->share_count > 0 ? (double)taken / t->share_count : 0.0;
 }
 
-/* Many at first, for neighbours have leaves in common, and then fewer and fewer. */
+/* Takes many shares at first, because neighbours have leaves in common, and then fewer and fewer. */
 static bool take_shares(traversal *t, traversal_lane *lane) {
     uint32_t next = atomic_load(&t->next_share), count;
     do {
@@ -113,7 +113,7 @@ static bool take_shares(traversal *t, traversal_lane *lane) {
     return true;
 }
 
-static void fill(traversal *t, traversal_lane *lane, uint32_t enough) {
+static void fill_batch(traversal *t, traversal_lane *lane, uint32_t enough) {
     lane->pair_count = 0;
     while (lane->pair_count < enough && !lane->out_of_memory) {
         if (lane->stack_count == 0 && !take_shares(t, lane)) return;
@@ -127,7 +127,7 @@ static void fill(traversal *t, traversal_lane *lane, uint32_t enough) {
 bool traversal_fill(traversal *t, uint32_t index) {
     traversal_lane *lane = &t->lanes[index];
     double since = timer_now_ms();
-    fill(t, lane, TRAVERSAL_BATCH_ENOUGH);
+    fill_batch(t, lane, TRAVERSAL_BATCH_ENOUGH);
     timer_lap(&since, &lane->search_ms);
     return lane->pair_count > 0;
 }
@@ -141,7 +141,7 @@ cscd_status traversal_status(const traversal *t) {
 
 static void fill_lane(void *data, uint32_t index) {
     traversal *t = data;
-    fill(t, &t->lanes[index], TRAVERSAL_BATCH_SIZE - TRAVERSAL_PAIRS_PER_VISIT + 1);
+    fill_batch(t, &t->lanes[index], TRAVERSAL_BATCH_SIZE - TRAVERSAL_PAIRS_PER_VISIT + 1);
 }
 
 cscd_status traversal_round(traversal *t, bool *more) {

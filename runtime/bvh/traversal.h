@@ -10,20 +10,22 @@ typedef struct triangle_pair {
     uint32_t a, b;
 } triangle_pair;
 
-/* Two blocks of one level whose children are still to be compared; the same block twice: with itself. Parts
- * are those of the blocks, below the tree level. */
+/* Two blocks of one level whose children are still to be compared, or one block and itself. Below the tree level, tree_a
+ * and tree_b are the trees that the blocks belong to. */
 typedef struct block_pair {
     uint32_t a, b, tree_a, tree_b;
     int32_t level;
 } block_pair;
 
-/* Which pairs of triangles are looked for, of those whose volumes overlap: all but those that are marked as
- * never touching (by flags, or by `within`); those that the flags before left out and the present ones do
- * not; those of two unproven. */
-typedef enum traversal_pass { TRAVERSAL_KEPT, TRAVERSAL_NEWLY_KEPT, TRAVERSAL_UNPROVEN } traversal_pass;
+/* Which pairs of triangles, of those whose volumes overlap, a pass looks for. */
+typedef enum traversal_pass {
+    TRAVERSAL_KEPT,       /* all that the flags keep and that are not hidden */
+    TRAVERSAL_NEWLY_KEPT, /* those that the flags keep now and did not keep before */
+    TRAVERSAL_UNPROVEN    /* those of two unproven triangles */
+} traversal_pass;
 
-/* Volumes of the triangles of leaves that were looked at lately: computed anew where they have made room.
- * They are the kernels' own (leaf_volumes); here is only how large they are. */
+/* Volumes of the triangles of leaves that were visited lately; a leaf that is visited again after it has made room for
+ * another one is computed again. The volumes are leaf_volumes of the kernels, of which only the size is known here. */
 enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * LANES };
 
 typedef struct leaf_cache {
@@ -66,23 +68,23 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts anew at the root of f, which is up to date. */
+/* Starts a pass at the root of f, which is up to date. */
 void traversal_begin(traversal *t, const bvh *f, traversal_pass pass);
 
-/* Lanes run on their own, each on one thread at a time: fills the lane's batch anew with some pairs, usually
- * TRAVERSAL_BATCH_ENOUGH or a few more, of what no lane has come to yet. False: the batch is empty, and
- * nothing is left that is not in the hands of another lane, or the call is cancelled. The union of all
- * batches, and the sum of boxes_tested, are the same for any lane count. */
+/* Fills the lane's batch with some pairs that no lane has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more. Each lane
+ * runs on one thread at a time, independently of the others. False: the batch is empty, and nothing is left but what
+ * other lanes are working on, or the call is cancelled. The union of all batches, and the sum of boxes_tested, are the
+ * same for any lane count. */
 bool traversal_fill(traversal *t, uint32_t lane);
 
 /* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
 cscd_status traversal_status(const traversal *t);
 
-/* All lanes at once, and batches as full as they get; *more is false when every batch is empty. Between two
- * rounds the caller consumes the batches. */
+/* Fills the batches of all lanes at once, as full as they get. *more is false when every batch is empty. Between two rounds
+ * the caller consumes the batches. */
 cscd_status traversal_round(traversal *t, bool *more);
 
-/* The share that lanes have taken, by block pairs; 0 as long as it is not known. */
+/* The share of the block pairs that lanes have taken; 0 as long as it is not known. */
 double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);

@@ -1,17 +1,29 @@
-/* The visit of the traversal: eight children against eight, then the triangles of leaves that overlap. */
+/* The visit of a pair of blocks: eight children are compared with eight.
+ *
+ *     block a        block b          visit_blocks(a, b), for each used lane i of a:
+ *     +-+-+-+-+      +-+-+-+-+          lanes = lanes_to_compare(i)       by flags: orientation, obstacles, hidden pairs
+ *     |0|1|2|.|      |0|1|2|.|          lanes &= ~lanes_apart(a[i], b)    eight volumes of b in one comparison
+ *     +-+-+-+-+      +-+-+-+-+          visit_children(a[i], lanes of b)
+ *        |  .         .  |                on a higher level: the pair (a[i], b[j]) goes on the stack, to be visited later
+ *        |    .     .    |                on level 0: two leaves are compared at once, triangle i with eight triangles,
+ *     +-+-+-+-+ .. +-+-+-+-+              by their boxes, then by their diagonals; what is left are pairs of the batch
+ *     |       |    |       |
+ *
+ * A block that is visited with itself compares lane i with the lanes after i, and its children with themselves. Blocks
+ * of two trees are in two frames: a displacement moves the volumes of a into the frame of b. */
 #include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
 
-/* Where tree b lies relative to tree a, per axis at each end of the interval, and how far that is rounded;
- * low and high hold it throughout. Volumes of a, moved by as much back, are compared with those of b. */
+/* Where tree b lies relative to tree a: per axis at both ends of the interval, rounded by at most slack, and between low
+ * and high throughout. Volumes of a, moved back by as much, are compared with those of b. */
 typedef struct displacement {
     float at[2][KDOP_AXES], slack, low[KDOP_AXES], high[KDOP_AXES];
 } displacement;
 
 /* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
  * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
-static displacement between(const bvh *f, const bvh_tree *a, const bvh_tree *b) {
+static displacement displacement_between(const bvh *f, const bvh_tree *a, const bvh_tree *b) {
     displacement out;
     double start[3], end[3], size = (double)a->reach + (double)b->reach;
     for (int k = 0; k < 3; k++) {
@@ -34,8 +46,9 @@ static displacement between(const bvh *f, const bvh_tree *a, const bvh_tree *b) 
     return out;
 }
 
-/* Of lanes, those of b whose volumes over the interval do not overlap lane i of a. */
-static inline uint32_t apart(const float *a, const float *b, int i, int axis_count, const displacement *d) {
+/* The lanes of b whose volumes over the interval do not overlap that of lane i of a. */
+static inline uint32_t lanes_apart(const float *a, const float *b, int i, int axis_count,
+                                   const displacement *d) {
     uint32_t lanes = 0;
     for (int k = 0; k < axis_count; k++) {
         float low = a[2 * k * LANES + i], high = a[(2 * k + 1) * LANES + i];
@@ -49,8 +62,8 @@ static inline uint32_t apart(const float *a, const float *b, int i, int axis_cou
     return lanes;
 }
 
-/* Of lanes, those of b that lie on one side of lane i of a at both ends, along one of the axes from first on:
- * then they do so throughout, for points move linearly. */
+/* The lanes of b that lie on one side of lane i of a at both ends, along one of the axes from first on. They do so
+ * throughout the interval, because points move linearly. */
 static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *b, int i, int first,
                                      int axis_end, const displacement *d) {
     uint32_t lanes = 0;
@@ -70,22 +83,22 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
     return lanes;
 }
 
-/* One pair of blocks or of leaves, whose lanes are compared. */
-typedef struct comparison {
+/* A pair of blocks or of leaves whose lanes are compared. */
+typedef struct lane_comparison {
     lane_flags a, b;
-    lane_flags before_a, before_b; /* leaves in pass FRESH */
+    lane_flags before_a, before_b; /* of leaves, in the pass NEWLY_KEPT */
     uint64_t self_pairs;
     uint32_t obstacles_a, obstacles_b; /* lanes that hold obstacles only */
     bool itself, one_tree, leaves;
     traversal_pass pass;
-} comparison;
+} lane_comparison;
 
 static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus_b, uint32_t minus_b, int i) {
     return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
 }
 
-/* Of b's lanes, those to be compared with lane i of a. */
-static inline uint32_t wanted(const comparison *c, int i) {
+/* The lanes of b that are to be compared with lane i of a. */
+static inline uint32_t lanes_to_compare(const lane_comparison *c, int i) {
     uint32_t lanes = c->b.used;
     if ((c->obstacles_a >> i & 1) != 0) lanes &= ~c->obstacles_b;
     if (c->itself) lanes &= (uint32_t)(c->self_pairs >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
@@ -118,10 +131,10 @@ static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint
     return out;
 }
 
-/* Of a leaf's triangles, those whose boxes overlap lane i of bounds, a block's. */
+/* The triangles of a leaf whose boxes overlap lane i of the bounds of a block. */
 static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bounds, int i,
                                  const displacement *d) {
-    return ~apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
+    return ~lanes_apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
 }
 
 static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first, uint32_t lanes) {
@@ -137,8 +150,9 @@ typedef struct leaf_pair {
     uint32_t rows, columns; /* lanes worth a look */
 } leaf_pair;
 
-/* Of lanes, those of b whose triangles share no vertex with triangle i of a. */
-static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes, bool one_tree) {
+/* The given lanes of b without those whose triangles share a vertex with triangle i of a. */
+static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes,
+                                                   bool one_tree) {
     const bvh_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
     if (one_tree) {
         i32x8 shared = {0};
@@ -162,23 +176,24 @@ static inline uint32_t strangers(const bvh *f, const leaf_pair *pair, int i, uin
 static inline void compare_leaves(const traversal *t, traversal_lane *lane, const leaf_pair *pair,
                                   bool skip_adjacent, bool one_tree, const displacement *d) {
     const bvh *f = t->bvh;
-    const comparison c = {.a = f->leaf_flags[pair->a],
-                          .b = f->leaf_flags[pair->b],
-                          .before_a = f->flags_before[pair->a],
-                          .before_b = f->flags_before[pair->b],
-                          .self_pairs = f->leaf_self_pairs != NULL ? f->leaf_self_pairs[pair->a] : UINT64_MAX,
-                          .itself = pair->a == pair->b,
-                          .one_tree = one_tree,
-                          .leaves = true,
-                          .pass = t->pass};
+    const lane_comparison c = {.a = f->leaf_flags[pair->a],
+                               .b = f->leaf_flags[pair->b],
+                               .before_a = f->flags_before[pair->a],
+                               .before_b = f->flags_before[pair->b],
+                               .self_pairs =
+                                   f->leaf_self_pairs != NULL ? f->leaf_self_pairs[pair->a] : UINT64_MAX,
+                               .itself = pair->a == pair->b,
+                               .one_tree = one_tree,
+                               .leaves = true,
+                               .pass = t->pass};
     for (uint32_t rows = pair->rows & c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
-        uint32_t lanes = wanted(&c, i) & pair->columns;
+        uint32_t lanes = lanes_to_compare(&c, i) & pair->columns;
         if (lanes == 0) continue;
         lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
         lanes &= ~apart_at_ends(pair->volumes_a, pair->volumes_b, i, 0, BOX_AXES, d);
         if (lanes != 0 && skip_adjacent) {
-            uint32_t kept = strangers(f, pair, i, lanes, one_tree);
+            uint32_t kept = lanes_without_shared_vertex(f, pair, i, lanes, one_tree);
             lane->adjacent += (uint32_t)__builtin_popcount(lanes & ~kept);
             lanes = kept;
         }
@@ -190,9 +205,9 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
 
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
-/* Lane i of block a against lanes of block b. */
-static inline void descend(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
-                           uint32_t lanes, const displacement *d) {
+/* Compares child i of block a with children of block b. */
+static inline void visit_children(const traversal *t, traversal_lane *lane, const block_pair *at, int i,
+                                  uint32_t lanes, const displacement *d) {
     const bvh *f = t->bvh;
     const bvh_level *level = &f->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
@@ -227,36 +242,36 @@ static inline void descend(const traversal *t, traversal_lane *lane, const block
     }
 }
 
-static inline void visit(const traversal *t, traversal_lane *lane, block_pair at) {
+static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_pair at) {
     const bvh *f = t->bvh;
     const bvh_level *level = &f->levels[at.level];
     bool below = at.level < f->tree_level, crosses = below && at.tree_a != at.tree_b;
     displacement between_trees;
-    if (crosses) between_trees = between(f, &f->trees[at.tree_a], &f->trees[at.tree_b]);
+    if (crosses) between_trees = displacement_between(f, &f->trees[at.tree_a], &f->trees[at.tree_b]);
     const displacement *d = crosses ? &between_trees : NULL;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
-    const comparison c = {.a = level->flags[at.a],
-                          .b = level->flags[at.b],
-                          .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
-                          .obstacles_a = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.a] : 0,
-                          .obstacles_b = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.b] : 0,
-                          .itself = at.a == at.b,
-                          .one_tree = below && !crosses,
-                          .pass = t->pass};
+    const lane_comparison c = {.a = level->flags[at.a],
+                               .b = level->flags[at.b],
+                               .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
+                               .obstacles_a = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.a] : 0,
+                               .obstacles_b = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.b] : 0,
+                               .itself = at.a == at.b,
+                               .one_tree = below && !crosses,
+                               .pass = t->pass};
     for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
-        uint32_t lanes = wanted(&c, i);
+        uint32_t lanes = lanes_to_compare(&c, i);
         if (lanes != 0) {
             lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
-            lanes &= ~apart(bounds_a, bounds_b, i, f->axis_count, d);
+            lanes &= ~lanes_apart(bounds_a, bounds_b, i, f->axis_count, d);
         }
         if (c.itself) {
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;
             if (own && (c.obstacles_a >> i & 1) == 0) lanes |= 1u << i;
         }
-        if (lanes != 0) descend(t, lane, &at, i, lanes, d);
+        if (lanes != 0) visit_children(t, lane, &at, i, lanes, d);
     }
 }
 
@@ -264,6 +279,6 @@ void SIMD_NAME(search)(const traversal *t, traversal_lane *lane, size_t visits_m
     while (lane->stack_count > 0 && visits_max-- > 0) {
         if (lane->pair_count + TRAVERSAL_PAIRS_PER_VISIT > TRAVERSAL_BATCH_SIZE) return;
         if (lane->stack_count + TRAVERSAL_PUSHES_PER_VISIT > lane->stack_capacity) return;
-        visit(t, lane, lane->stack[--lane->stack_count]);
+        visit_blocks(t, lane, lane->stack[--lane->stack_count]);
     }
 }

@@ -1,29 +1,20 @@
-/* Culling by orientation: regions, their detector points, the triangles' flags of an interval. */
+/* Culling by orientation: regions, their detector points, and the orientations of triangles in an interval. */
 #include "runtime/culling/culling.h"
 
 #include <string.h>
 
-static bool allocate(culling *c) {
-    cscd_context *context = c->context;
+static array_list list_arrays(culling *c) {
     size_t triangles = c->mesh->triangle_count, regions = c->region_count;
-    c->triangle_regions = context_allocate(context, triangles, sizeof *c->triangle_regions);
-    c->triangle_weights = context_allocate(context, triangles, sizeof *c->triangle_weights);
-    c->detector_offsets = context_allocate(context, regions, sizeof *c->detector_offsets);
-    c->detector_points = context_allocate(context, regions, sizeof *c->detector_points);
-    c->facing = context_allocate(context, triangles, sizeof *c->facing);
-    c->orientations = context_allocate(context, triangles, sizeof *c->orientations);
-    c->earlier = context_allocate(context, triangles, sizeof *c->earlier);
-    return c->triangle_regions != NULL && c->triangle_weights != NULL && c->detector_offsets != NULL &&
-           c->detector_points != NULL && c->facing != NULL && c->orientations != NULL && c->earlier != NULL;
+    return (array_list){{ARRAY(c->triangle_regions, triangles), ARRAY(c->triangle_weights, triangles),
+                         ARRAY(c->detector_offsets, regions), ARRAY(c->detector_points, regions),
+                         ARRAY(c->facing, triangles), ARRAY(c->orientations, triangles),
+                         ARRAY(c->earlier, triangles)}};
 }
 
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out) {
     culling c = {.context = mesh->context, .mesh = mesh};
     c.region_count = plan != NULL ? plan->region_count : mesh->component_count;
-    if (!allocate(&c)) {
-        culling_destroy(&c);
-        return CSCD_OUT_OF_MEMORY;
-    }
+    if (!context_allocate_all(c.context, list_arrays(&c))) return CSCD_OUT_OF_MEMORY;
     const uint32_t *regions = plan != NULL ? plan->triangle_regions : mesh->triangle_components;
     memcpy(c.triangle_regions, regions, mesh->triangle_count * sizeof *regions);
     for (uint32_t t = 0; plan == NULL && t < mesh->triangle_count; t++)
@@ -38,9 +29,7 @@ cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling
 }
 
 void culling_destroy(culling *c) {
-    void *blocks[] = {c->triangle_regions, c->triangle_weights, c->detector_offsets, c->detector_points,
-                      c->facing,           c->orientations,     c->earlier};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(c->context, blocks[i]);
+    context_free_all(c->context, list_arrays(c));
     *c = (culling){0};
 }
 

@@ -1,4 +1,4 @@
-/* Culling by orientation: regions, their detector points, the triangles' flags of an interval. */
+/* Culling by orientation: regions, their detector points, and the orientations of triangles in an interval. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
@@ -11,10 +11,10 @@ typedef struct culling {
     uint32_t *triangle_regions;
     double *triangle_weights;        /* as in the plan */
     double (*detector_offsets)[3];   /* as in the plan */
-    double (*detector_points)[2][3]; /* per region, at the start and at the end of the interval at hand */
-    uint8_t *facing;                 /* of the interval at hand; ZERO where a triangle was not clean */
+    double (*detector_points)[2][3]; /* per region, at the start and at the end of the interval */
+    uint8_t *facing;                 /* orientations in the interval; ZERO where a triangle was not clean */
     uint8_t *orientations; /* the same, but ZERO also where contacts have tainted a triangle since */
-    uint8_t *earlier;      /* the orientations of the passes before the one at hand */
+    uint8_t *earlier;      /* the orientations of the last pass */
     uint64_t plus, minus;  /* how many are facing PLUS and MINUS */
 } culling;
 
@@ -26,29 +26,29 @@ void culling_destroy(culling *c);
 /* Makes one region of all components, and another one of all obstacles; triangles keep their weights. */
 void culling_join_components(culling *c);
 
-/* What is facing has been filled in: the orientations are these, and counted. */
+/* Takes the orientations over from facing, which has been filled in, and counts them. */
 void culling_begin(culling *c);
 
-/* All pairs of triangles that the flags keep have been tested. */
+/* Ends a pass: all pairs of triangles that the orientations keep have been tested. */
 void culling_pass_done(culling *c);
 
-/* From now on all pairs of this triangle are kept. False: they were already. */
+/* Keeps all pairs of this triangle from now on. False: they were kept already. */
 static inline bool culling_taint(culling *c, uint32_t triangle) {
-    bool fresh = c->orientations[triangle] != ORIENTATION_ZERO;
+    bool newly_kept = c->orientations[triangle] != ORIENTATION_ZERO;
     c->orientations[triangle] = ORIENTATION_ZERO;
-    return fresh;
+    return newly_kept;
 }
 
-/* All triangles ZERO: nothing is culled. */
+/* Sets all orientations to ZERO, so that nothing is culled. */
 void culling_clear(culling *c);
 
-/* Do the flags leave this pair of triangles to be tested? */
+/* Do the orientations keep this pair of triangles, so that it is tested? */
 static inline bool culling_keeps(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->orientations[a], c->orientations[b]);
 }
 
-/* Did they in the passes before? */
+/* Was it kept in the last pass? */
 static inline bool culling_kept(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->earlier[a], c->earlier[b]);
