@@ -42,7 +42,8 @@ static void choose_axis(polygon *p, random_stream *random) {
 }
 
 /* One corner at one end, from plane coordinates and a height along the axis. */
-static void place(const polygon *p, double *x, uint32_t corner, double right, double up, double height) {
+static void place_vertex(const polygon *p, double *x, uint32_t corner, double right, double up,
+                         double height) {
     for (int k = 0; k < 3; k++)
         x[corner * 3 + (uint32_t)k] = right * p->frame[0][k] + up * p->frame[1][k] + height * p->frame[2][k];
 }
@@ -78,27 +79,28 @@ static void points_at(const polygon *p, long double t, point out[CORNERS_MAX]) {
     }
 }
 
-static long double side(point a, point b, point c) {
+static long double side_of_line(point a, point b, point c) {
     return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
 }
 
-static long double along(point a, point b, point c) {
+static long double position_along(point a, point b, point c) {
     return (b.right - a.right) * (c.right - a.right) + (b.up - a.up) * (c.up - a.up);
 }
 
 static bool lies_on(point c, point a, point b) {
-    return side(a, b, c) == 0.0L && along(c, a, b) <= 0.0L;
+    return side_of_line(a, b, c) == 0.0L && position_along(c, a, b) <= 0.0L;
 }
 
 static bool segments_meet(point a, point b, point c, point d) {
     if (lies_on(a, c, d) || lies_on(b, c, d) || lies_on(c, a, b) || lies_on(d, a, b)) return true;
-    return side(a, b, c) * side(a, b, d) < 0.0L && side(c, d, a) * side(c, d, b) < 0.0L;
+    return side_of_line(a, b, c) * side_of_line(a, b, d) < 0.0L &&
+           side_of_line(c, d, a) * side_of_line(c, d, b) < 0.0L;
 }
 
 static bool is_simple(const point *p, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         point a = p[i], b = p[(i + 1) % n], c = p[(i + 2) % n];
-        if (side(b, a, c) == 0.0L && along(b, a, c) >= 0.0L) return false;
+        if (side_of_line(b, a, c) == 0.0L && position_along(b, a, c) >= 0.0L) return false;
         for (uint32_t j = i + 2; j < n; j++) {
             if ((j + 1) % n != i && segments_meet(a, b, p[j], p[(j + 1) % n])) return false;
         }
@@ -119,11 +121,11 @@ static bool sampled_simple(const polygon *p) {
 
 typedef enum motion { MOTION_SMALL, MOTION_TURN, MOTION_MORPH, MOTION_ANY, MOTION_GRID, MOTION_COUNT } motion;
 
-static double reach(random_stream *random) {
+static double random_radius(random_stream *random) {
     return 1.0 + stream_between(random, -0.6, 0.6);
 }
 
-static double height(random_stream *random) {
+static double random_height(random_stream *random) {
     return stream_between(random, -2.0, 2.0);
 }
 
@@ -133,14 +135,14 @@ static polygon random_polygon(random_stream *random, motion kind) {
     double turn = kind == MOTION_TURN ? stream_between(random, -PI, PI) : 0.0;
     double change = stream_between(random, 0.0, 0.5);
     for (uint32_t i = 0; i < p.count; i++) {
-        double angle = 2.0 * PI * i / p.count, r = reach(random);
+        double angle = 2.0 * PI * i / p.count, r = random_radius(random);
         double x = r * cos(angle), y = r * sin(angle), x1 = cos(turn) * x - sin(turn) * y,
                y1 = sin(turn) * x + cos(turn) * y;
         if (kind == MOTION_SMALL) {
             x1 += change * stream_between(random, -1.0, 1.0);
             y1 += change * stream_between(random, -1.0, 1.0);
         } else if (kind == MOTION_MORPH) {
-            r = reach(random);
+            r = random_radius(random);
             angle += 2.0 * change * stream_between(random, -1.0, 1.0);
             x1 = r * cos(angle);
             y1 = r * sin(angle);
@@ -150,8 +152,8 @@ static polygon random_polygon(random_stream *random, motion kind) {
             x1 = x + change * stream_between(random, -1.0, 1.0);
             y1 = y + change * stream_between(random, -1.0, 1.0);
         }
-        place(&p, p.x0, i, x, y, height(random));
-        place(&p, p.x1, i, x1, y1, height(random));
+        place_vertex(&p, p.x0, i, x, y, random_height(random));
+        place_vertex(&p, p.x1, i, x1, y1, random_height(random));
     }
     return p;
 }
@@ -164,8 +166,9 @@ static polygon grid_polygon(random_stream *random) {
     for (uint32_t i = 0; i < p.count; i++) {
         uint32_t x = stream_below(random, 5), y = stream_below(random, 5);
         bool moves = stream_below(random, 3) == 0;
-        place(&p, p.x0, i, x, y, 0.0);
-        place(&p, p.x1, i, moves ? stream_below(random, 5) : x, moves ? stream_below(random, 5) : y, 0.0);
+        place_vertex(&p, p.x0, i, x, y, 0.0);
+        place_vertex(&p, p.x1, i, moves ? stream_below(random, 5) : x, moves ? stream_below(random, 5) : y,
+                     0.0);
     }
     return p;
 }
@@ -206,9 +209,10 @@ static void plain_motions_pass(void **state) {
         for (int k = 0; k < 3; k++) move[k] = stream_between(&random, -100.0, 100.0);
         for (int k = 0; k < 3; k++) start[k] = far * stream_between(&random, -1.0, 1.0);
         for (uint32_t j = 0; j < p.count; j++) {
-            double angle = 2.0 * PI * j / p.count, r = star && j % 2 == 0 ? 2.0 : 1.0, z = height(&random);
-            place(&p, p.x0, j, r * cos(angle), r * sin(angle), z);
-            place(&p, p.x1, j, r * cos(angle + turn), r * sin(angle + turn), z);
+            double angle = 2.0 * PI * j / p.count, r = star && j % 2 == 0 ? 2.0 : 1.0,
+                   z = random_height(&random);
+            place_vertex(&p, p.x0, j, r * cos(angle), r * sin(angle), z);
+            place_vertex(&p, p.x1, j, r * cos(angle + turn), r * sin(angle + turn), z);
             for (uint32_t k = 0; k < 3; k++) {
                 p.x0[j * 3 + k] = scale * (p.x0[j * 3 + k] + start[k]);
                 p.x1[j * 3 + k] = scale * (p.x1[j * 3 + k] + start[k] + move[k]);
@@ -221,11 +225,11 @@ static void plain_motions_pass(void **state) {
 
 /* ---- what each condition is for -------------------------------------------------------------------- */
 
-static polygon still(const double (*corners)[2], uint32_t count) {
+static polygon polygon_at_rest(const double (*corners)[2], uint32_t count) {
     polygon p = {.count = count,
                  .frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                  .axis = {0.0f, 0.0f, 1.0f}};
-    for (uint32_t i = 0; i < count; i++) place(&p, p.x0, i, corners[i][0], corners[i][1], 0.0);
+    for (uint32_t i = 0; i < count; i++) place_vertex(&p, p.x0, i, corners[i][0], corners[i][1], 0.0);
     memcpy(p.x1, p.x0, sizeof p.x1);
     return p;
 }
@@ -238,30 +242,30 @@ static void degenerate_contours_fail(void **state) {
     static const double touching[5][2] = {{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}};
     static const double one_point[4][2] = {{1, 1}, {1, 1}, {1, 1}, {1, 1}};
     (void)state;
-    polygon p = still(square, 4);
+    polygon p = polygon_at_rest(square, 4);
     assert_true(stays_simple(&p, 0, false));
-    p = still(crossed, 4); /* from the start, and as published it is taken not to be */
+    p = polygon_at_rest(crossed, 4); /* from the start, and as published it is taken not to be */
     assert_false(stays_simple(&p, 0, false));
     assert_true(stays_simple(&p, 0, true));
-    p = still(folded, 4);
+    p = polygon_at_rest(folded, 4);
     assert_false(stays_simple(&p, 0, false));
-    p = still(equal, 4);
+    p = polygon_at_rest(equal, 4);
     assert_false(stays_simple(&p, 0, false));
-    p = still(touching, 5);
+    p = polygon_at_rest(touching, 5);
     assert_false(stays_simple(&p, 0, false));
     assert_false(stays_simple(&p, 0, true));
     assert_true(stays_simple(&p, 5, true)); /* all of it inherited, as published */
-    p = still(one_point, 4);
+    p = polygon_at_rest(one_point, 4);
     assert_false(stays_simple(&p, 0, false));
-    p = still(square, 4); /* at the very end, and a little less */
-    place(&p, p.x1, 2, 1.0, 0.0, 0.0);
+    p = polygon_at_rest(square, 4); /* at the very end, and a little less */
+    place_vertex(&p, p.x1, 2, 1.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
-    place(&p, p.x1, 2, 0.0, 0.0, 0.0);
+    place_vertex(&p, p.x1, 2, 0.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
-    place(&p, p.x1, 2, 1.0, 1e-9, 0.0);
+    place_vertex(&p, p.x1, 2, 1.0, 1e-9, 0.0);
     assert_true(stays_simple(&p, 0, false));
-    p = still(square, 4); /* in between, all at once */
-    for (uint32_t i = 0; i < 4; i++) place(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
+    p = polygon_at_rest(square, 4); /* in between, all at once */
+    for (uint32_t i = 0; i < 4; i++) place_vertex(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
     assert_false(stays_simple(&p, 0, false));
 }
 

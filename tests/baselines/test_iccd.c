@@ -22,7 +22,7 @@ typedef struct iccd_outcome {
     cscd_counters counters;
 } iccd_outcome;
 
-static iccd_outcome run(cscd_detector_options options, cscd_method method, uint32_t threads) {
+static iccd_outcome run_method(cscd_detector_options options, cscd_method method, uint32_t threads) {
     iccd_outcome out;
     options.method = method;
     out.objects = rig_create(&interval, threads, &options);
@@ -40,7 +40,7 @@ static void check_same(const cscd_contacts *found, const cscd_contacts *truth) {
 /* The list of the method is that of none. */
 static iccd_outcome expect_same(cscd_detector_options options, cscd_method method, uint32_t threads,
                                 const cscd_contacts *truth) {
-    iccd_outcome out = run(options, method, threads);
+    iccd_outcome out = run_method(options, method, threads);
     check_same(&out.contacts, truth);
     return out;
 }
@@ -78,9 +78,9 @@ static uint64_t count_lost(const cscd_contacts *found, const cscd_contacts *trut
 
 static void run_interval(uint32_t seed, iccd_tally *sum) {
     cscd_detector_options options = cscd_detector_defaults();
-    iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+    iccd_outcome none = run_method(options, CSCD_METHOD_NONE, 1);
     iccd_outcome iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
-    iccd_outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+    iccd_outcome published = run_method(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
     if (seed % BRUTE_EVERY == 0) {
         iccd_outcome brute = expect_same(options, CSCD_METHOD_BRUTE, 1, &iccd.contacts);
         rig_destroy(&brute.objects);
@@ -131,14 +131,14 @@ static void options_change_nothing(void **state) {
     for (uint32_t seed = 0; seed < INTERVALS_PER_FAMILY * SCENE_FAMILY_COUNT; seed += OPTIONS_EVERY) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)(seed % SCENE_FAMILY_COUNT), seed + 40000, &interval);
-        iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+        iccd_outcome none = run_method(options, CSCD_METHOD_NONE, 1);
         iccd_outcome threaded = expect_same(options, CSCD_METHOD_ICCD, 4, &none.contacts);
         options.mode = CSCD_MODE_EARLIEST;
         iccd_outcome earliest = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
         assert_int_equal(threaded.counters.pcp, earliest.counters.pcp);
         assert_int_equal(threaded.counters.boxes_tested, earliest.counters.boxes_tested);
         options.ignore = ignore_some;
-        iccd_outcome some = run(options, CSCD_METHOD_NONE, 1);
+        iccd_outcome some = run_method(options, CSCD_METHOD_NONE, 1);
         iccd_outcome some_iccd = expect_same(options, CSCD_METHOD_ICCD, 1, &some.contacts);
         kept += some.contacts.count;
         iccd_outcome *done[] = {&none, &threaded, &earliest, &some, &some_iccd};
@@ -146,7 +146,7 @@ static void options_change_nothing(void **state) {
         if (seed % (8 * OPTIONS_EVERY) != 0) continue;
         options = cscd_detector_defaults();
         options.min_separation = 0.01;
-        none = run(options, CSCD_METHOD_NONE, 1);
+        none = run_method(options, CSCD_METHOD_NONE, 1);
         iccd_outcome apart = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
         assert_int_equal(apart.counters.pcp, none.counters.pcp);
         assert_int_equal(apart.counters.contours, 0);
@@ -164,7 +164,8 @@ static void steps_do_not_remember(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)family, 50000, &interval);
-        iccd_outcome none = run(options, CSCD_METHOD_NONE, 1), iccd = run(options, CSCD_METHOD_ICCD, 1);
+        iccd_outcome none = run_method(options, CSCD_METHOD_NONE, 1),
+                     iccd = run_method(options, CSCD_METHOD_ICCD, 1);
         const double *ends[4] = {interval.x1, interval.x0, interval.x0, interval.x1};
         const double *x = interval.x0;
         for (int i = 0; i < 4; i++) {
@@ -193,13 +194,13 @@ static void scales_change_nothing(void **state) {
             if (interval.x1[i] < 1e-3 && interval.x1[i] > -1e-3) interval.x1[i] = 0.0;
         }
         scene original = interval;
-        iccd_outcome plain = run(options, CSCD_METHOD_ICCD, 1);
+        iccd_outcome plain = run_method(options, CSCD_METHOD_ICCD, 1);
         for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
             for (uint32_t i = 0; i < interval.vertex_count * 3; i++) {
                 interval.x0[i] = original.x0[i] * scales[k];
                 interval.x1[i] = original.x1[i] * scales[k];
             }
-            iccd_outcome none = run(options, CSCD_METHOD_NONE, 1);
+            iccd_outcome none = run_method(options, CSCD_METHOD_NONE, 1);
             iccd_outcome scaled = expect_same(options, CSCD_METHOD_ICCD, 1, &none.contacts);
             assert_int_equal(scaled.counters.sealed, k < 4 ? plain.counters.sealed : 0);
             rig_destroy(&none.objects);
@@ -218,8 +219,8 @@ static void guarantees_say_how(void **state) {
         for (int mode = 0; mode < 2; mode++) {
             cscd_detector_options options = cscd_detector_defaults();
             options.mode = (cscd_mode)mode;
-            iccd_outcome iccd = run(options, CSCD_METHOD_ICCD, 1);
-            iccd_outcome published = run(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
+            iccd_outcome iccd = run_method(options, CSCD_METHOD_ICCD, 1);
+            iccd_outcome published = run_method(options, CSCD_METHOD_ICCD_PUBLISHED, 1);
             for (uint32_t c = 0; c < cscd_mesh_component_count(iccd.objects.mesh); c++) {
                 cscd_guarantee g = cscd_detector_guarantee(iccd.objects.detector, c);
                 assert_true(g.complete);

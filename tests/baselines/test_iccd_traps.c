@@ -39,7 +39,7 @@ typedef struct trap_outcome {
     cscd_counters counters;
 } trap_outcome;
 
-static trap_outcome run(cscd_method method) {
+static trap_outcome run_method(cscd_method method) {
     trap_outcome out;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
@@ -53,8 +53,9 @@ static trap_outcome run(cscd_method method) {
 typedef enum loss { LOSES_SOME, LOSES_ALL } loss;
 
 static cscd_counters expect_complete(loss lost) {
-    trap_outcome none = run(CSCD_METHOD_NONE), brute = run(CSCD_METHOD_BRUTE), iccd = run(CSCD_METHOD_ICCD);
-    trap_outcome published = run(CSCD_METHOD_ICCD_PUBLISHED);
+    trap_outcome none = run_method(CSCD_METHOD_NONE), brute = run_method(CSCD_METHOD_BRUTE),
+                 iccd = run_method(CSCD_METHOD_ICCD);
+    trap_outcome published = run_method(CSCD_METHOD_ICCD_PUBLISHED);
     size_t count = none.contacts.count;
     assert_true(count > 0);
     assert_int_equal(brute.contacts.count, count);
@@ -90,24 +91,24 @@ static void make_ramp(double turns, int steps, double climb, double half_width, 
     }
 }
 
-static double steady(double angle) {
+static double steady_motion(double angle) {
     (void)angle;
     return 1.0;
 }
 
 /* After a turn on the other side of 1; the strip lies over itself at two places only. */
-static double wandering(double angle) {
+static double wandering_motion(double angle) {
     return 1.0 + 0.4 * cos(0.5 * angle + 0.3);
 }
 
 /* Turns lie over each other in the projection; they pass through each other when the ramp turns over. */
 static void spiral_ramps(void **state) {
     (void)state;
-    make_ramp(2.4, 97, 0.01, 0.3, steady);
+    make_ramp(2.4, 97, 0.01, 0.3, steady_motion);
     assert_true(expect_complete(LOSES_ALL).sealed > 0);
-    make_ramp(2.0, 80, 0.01, 0.1, wandering);
+    make_ramp(2.0, 80, 0.01, 0.1, wandering_motion);
     assert_true(expect_complete(LOSES_SOME).sealed > 0);
-    make_ramp(5.3, 230, 0.02, 0.5, steady);
+    make_ramp(5.3, 230, 0.02, 0.5, steady_motion);
     assert_true(expect_complete(LOSES_ALL).sealed > 0);
 }
 

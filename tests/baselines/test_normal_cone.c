@@ -44,7 +44,7 @@ static long double angle_between(const float axis[3], const long double n[3]) {
 
 /* By how much the normal that is farthest from the axis at some sampled moment leaves the cone; below 0: none
  * does. */
-static long double excess(const normal_cone *cone, const moving_triangle *m) {
+static long double excess_angle(const normal_cone *cone, const moving_triangle *m) {
     long double most = -10.0L;
     for (int i = 0; i < MOMENTS; i++) {
         long double n[3];
@@ -88,7 +88,7 @@ static void cones_hold_all_normals(void **state) {
         if (!normal_cone_exists(&cone)) continue;
         exist++;
         wide += cone.angle > 1.0f;
-        most = fmaxl(most, excess(&cone, &m));
+        most = fmaxl(most, excess_angle(&cone, &m));
     }
     print_message("  %u cones of %d, %u wide; the nearest normal is %.1Le inside\n", exist, TRIANGLES, wide,
                   -most);
@@ -105,7 +105,7 @@ static void published_cones_lose_normals(void **state) {
         normal_cone cone = normal_cone_of_ends(corners, m.x0, m.x1);
         if (!(cone.angle < INFINITY)) continue;
         exist++;
-        lost += excess(&cone, &m) > 1e-3L;
+        lost += excess_angle(&cone, &m) > 1e-3L;
     }
     print_message("  as published: %u of %u cones do not hold all normals\n", lost, exist);
     assert_true(lost > 200);
@@ -135,14 +135,14 @@ static void unions_hold_all_normals(void **state) {
         }
         if (!normal_cone_exists(&cones[0])) continue;
         exist++;
-        for (int j = 0; j < 8; j++) most = fmaxl(most, excess(&cones[0], &all[j]));
+        for (int j = 0; j < 8; j++) most = fmaxl(most, excess_angle(&cones[0], &all[j]));
     }
     print_message("  %u unions of %d; the nearest normal is %.1Le inside\n", exist, TRIANGLES / 8, -most);
     assert_true(4 * exist > TRIANGLES / 8 && most < 0.0L);
 }
 
 /* A triangle at rest whose normal is at an angle to z, in a direction. */
-static moving_triangle tilted(double angle, double direction) {
+static moving_triangle tilted_triangle(double angle, double direction) {
     double c = cos(direction), d = sin(direction), e = cos(angle), f = sin(angle);
     moving_triangle m = {{0, 0, 0, c * e, d * e, -f, -d, c, 0}, {0}};
     memcpy(m.x1, m.x0, sizeof m.x1);
@@ -159,14 +159,14 @@ static void opposite_normals_have_no_cone(void **state) {
     for (int i = 0; i < TRIANGLES; i++) {
         double angle = right + stream_between(&random, i % 2 == 0 ? -1e-3 : -0.5, 5e-4);
         double direction = stream_between(&random, 0.0, 6.3);
-        moving_triangle m[2] = {tilted(angle, direction), tilted(-angle, direction)};
+        moving_triangle m[2] = {tilted_triangle(angle, direction), tilted_triangle(-angle, direction)};
         normal_cone a = cone_of(&m[0]), b = cone_of(&m[1]);
         normal_cone both = normal_cone_union(&a, &b, normal_cone_limit);
         assert_true(angle > 1.569 || normal_cone_exists(&both));
         if (!normal_cone_exists(&both)) continue;
         exist++;
         assert_true(angle < (double)normal_cone_limit);
-        for (int j = 0; j < 2; j++) assert_true(excess(&both, &m[j]) < 0.0L);
+        for (int j = 0; j < 2; j++) assert_true(excess_angle(&both, &m[j]) < 0.0L);
     }
     assert_true(2 * exist > TRIANGLES);
 }

@@ -63,18 +63,18 @@ static uint32_t root_of(uint32_t *roots, uint32_t v) {
     return v;
 }
 
-static void collect(const patch_tree *tree, uint32_t node, reference_patches *r) {
+static void collect_reference(const patch_tree *tree, uint32_t node, reference_patches *r) {
     const patch_node *n = &tree->nodes[node];
     if (patch_is_leaf(n)) {
         r->triangles[r->triangle_count++] = n->triangle;
         return;
     }
-    collect(tree, node + 1, r);
-    collect(tree, n->right, r);
+    collect_reference(tree, node + 1, r);
+    collect_reference(tree, n->right, r);
 }
 
 /* Vertices, edges and faces, V - E + F. */
-static int64_t characteristic(reference_patches *r) {
+static int64_t euler_characteristic(reference_patches *r) {
     int64_t sum = r->triangle_count;
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         for (int k = 0; k < 3; k++) {
@@ -133,7 +133,7 @@ static bool is_clean(const cscd_mesh *mesh, uint32_t triangle) {
 
 /* ---- comparisons ----------------------------------------------------------------------------------- */
 
-static bool contains(const uint32_t *list, size_t count, uint32_t value) {
+static bool list_contains(const uint32_t *list, size_t count, uint32_t value) {
     for (size_t i = 0; i < count; i++) {
         if (list[i] == value) return true;
     }
@@ -151,12 +151,12 @@ static void check_contour(const patches *p, const reference_patches *r, uint32_t
     for (uint32_t i = 0; i < r->triangle_count; i++) {
         for (int k = 0; k < 3; k++) {
             uint32_t edge = r->mesh->triangle_edges[r->triangles[i]][k];
-            assert_true(contains(own, size, edge) == (r->edge_counts[edge] % 2 == 1));
+            assert_true(list_contains(own, size, edge) == (r->edge_counts[edge] % 2 == 1));
         }
     }
     for (size_t i = 0; i < size; i++) {
-        assert_true(r->edge_counts[own[i]] > 0 && !contains(own, i, own[i]));
-        assert_true(contains(above, above_size, own[i]) == (i < p->inherited[node]));
+        assert_true(r->edge_counts[own[i]] > 0 && !list_contains(own, i, own[i]));
+        assert_true(list_contains(above, above_size, own[i]) == (i < p->inherited[node]));
     }
 }
 
@@ -169,8 +169,8 @@ static void check_node(const patch_subject *f, reference_patches *r, uint32_t no
     const patches *p = &f->patches;
     size_t begin = p->contour_offsets[node], size = p->contour_offsets[node + 1] - begin;
     r->triangle_count = 0;
-    collect(&f->patches.tree, node, r);
-    int64_t euler = characteristic(r);
+    collect_reference(&f->patches.tree, node, r);
+    int64_t euler = euler_characteristic(r);
     check_contour(p, r, node, parent);
     bool disk = euler == 1 && size > 0 && is_clean(f->mesh, r->triangles[0]) && is_connected(r) &&
                 is_one_loop(f->mesh, p->contour_edges + begin, (uint32_t)size);

@@ -38,13 +38,13 @@ static json_node *replay_by(const char *method) {
     return json_node_read_file(summary.text);
 }
 
-static const json_node *interval(const json_node *root, size_t k) {
+static const json_node *interval_at(const json_node *root, size_t k) {
     return json_node_item(json_node_member(root, "intervals"), k);
 }
 
 /* The guarantee of the one component in interval k. */
 static void expect_guarantee(const json_node *root, size_t k, const char *mode, const char *reason) {
-    const json_node *list = json_node_member(interval(root, k), "guarantee");
+    const json_node *list = json_node_member(interval_at(root, k), "guarantee");
     assert_int_equal(list->count, 1);
     assert_string_equal(json_node_string(json_node_item(list, 0), "mode"), mode);
     if (strstr(json_node_string(json_node_item(list, 0), "reason"), reason) == NULL)
@@ -92,9 +92,10 @@ static void iccd_has_a_column_for_contours(void **state) {
     assert_true(json_node_number(json_node_member(total, "contour_ms"), "mean") > 0);
     for (size_t k = 0; k < FRAMES - 1; k++) {
         expect_guarantee(root, k, "all", "patches");
-        assert_true(json_node_number(json_node_member(interval(root, k), "ms"), "contour") > 0);
-        assert_true(json_node_number(json_node_member(interval(none, k), "ms"), "contour") == 0);
-        assert_true(json_node_number(interval(root, k), "pcp") < json_node_number(interval(none, k), "pcp"));
+        assert_true(json_node_number(json_node_member(interval_at(root, k), "ms"), "contour") > 0);
+        assert_true(json_node_number(json_node_member(interval_at(none, k), "ms"), "contour") == 0);
+        assert_true(json_node_number(interval_at(root, k), "pcp") <
+                    json_node_number(interval_at(none, k), "pcp"));
     }
     json_node_free(root);
     json_node_free(none);

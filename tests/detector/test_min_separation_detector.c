@@ -19,7 +19,7 @@ static scene interval; /* large; one test at a time */
 static const double distances[] = {1e-8, 1e-3, 0.03, 0.2};
 enum { DISTANCE_COUNT = sizeof distances / sizeof *distances };
 
-static cscd_detector_options within(double distance, cscd_method method) {
+static cscd_detector_options options_within(double distance, cscd_method method) {
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = distance;
     options.method = method;
@@ -28,7 +28,7 @@ static cscd_detector_options within(double distance, cscd_method method) {
 
 /* ---- against brute force ---------------------------------------------------------------------------- */
 
-static void compare(const oracle_list *truth, const cscd_detector_options *options) {
+static void compare_with_truth(const oracle_list *truth, const cscd_detector_options *options) {
     rig r = rig_create(&interval, 1, options);
     cscd_contacts found = rig_step(&r, &interval);
     cscd_counters counters = cscd_detector_counters(r.detector);
@@ -62,10 +62,10 @@ static void every_method_equals_brute_force(void **state) {
                 interval.x1[i * 3 + 2] += 37.5;
             oracle_find_within(&interval, &limit, &truth);
             for (int method = 0; method < 2; method++) {
-                cscd_detector_options options = within(distance, (cscd_method)method);
-                if (!roomy) compare(&truth, &options);
+                cscd_detector_options options = options_within(distance, (cscd_method)method);
+                if (!roomy) compare_with_truth(&truth, &options);
                 options.tolerance = limit.tolerance; /* what 0 stands for, if it is not roomy */
-                if (roomy || method == CSCD_METHOD_NONE) compare(&truth, &options);
+                if (roomy || method == CSCD_METHOD_NONE) compare_with_truth(&truth, &options);
             }
             contacts += truth.count;
             with_contact += truth.count > 0;
@@ -83,7 +83,7 @@ static void same_pairs_when_scaled(void **state) {
     static const int exponents[] = {-250, -140, 100, 270};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 11, &interval);
-        cscd_detector_options options = within(0.03, CSCD_METHOD_NONE);
+        cscd_detector_options options = options_within(0.03, CSCD_METHOD_NONE);
         rig r = rig_create(&interval, 1, &options);
         cscd_contacts expected = rig_step(&r, &interval);
         for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++) {
@@ -110,7 +110,7 @@ static void same_bits_for_any_thread_count(void **state) {
     (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 4, &interval);
-        cscd_detector_options options = within(0.05, CSCD_METHOD_NONE);
+        cscd_detector_options options = options_within(0.05, CSCD_METHOD_NONE);
         rig one = rig_create(&interval, 1, &options);
         cscd_contacts expected = rig_step(&one, &interval);
         cscd_counters counters = cscd_detector_counters(one.detector);
@@ -139,7 +139,7 @@ static int compare_pairs(const void *left, const void *right) {
 
 /* The contacts sorted by their pairs, to be freed. */
 static cscd_contact *pairs_within(double distance, size_t *count) {
-    cscd_detector_options options = within(distance, CSCD_METHOD_NONE);
+    cscd_detector_options options = options_within(distance, CSCD_METHOD_NONE);
     rig r = rig_create(&interval, 1, &options);
     cscd_contacts found = rig_step(&r, &interval);
     cscd_contact *pairs = malloc((found.count + 1) * sizeof *pairs);
@@ -205,7 +205,7 @@ static void unfit_lengths_are_refused(void **state) {
     assert_true(defaults.min_separation == 0.0 && defaults.tolerance == 0.0);
     static const double good[] = {0x1p-300, 1e-30, 1.0, 0x1p300};
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
-        cscd_detector_options options = within(good[i], CSCD_METHOD_NONE);
+        cscd_detector_options options = options_within(good[i], CSCD_METHOD_NONE);
         rig fine = rig_create(&interval, 1, &options);
         rig_step(&fine, &interval);
         rig_destroy(&fine);
@@ -218,7 +218,7 @@ static void the_static_check_is_not_concerned(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 4; seed++) {
         scene_make(SCENE_FOLDED_SHEET, seed, &interval);
-        cscd_detector_options options = within(0.2, CSCD_METHOD_NONE);
+        cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
         rig plain = rig_create(&interval, 1, NULL), wide = rig_create(&interval, 1, &options);
         cscd_intersections expected, found;
         assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &expected), CSCD_OK);
@@ -239,14 +239,14 @@ static void separation_can_change(void **state) {
     static const double changes[] = {0.0, 0.03, 0.0, 0.2, 1e-3, 0.0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 5, &interval);
-        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        cscd_detector_options options = options_within(0.0, CSCD_METHOD_SINGLE);
         rig changing = rig_create(&interval, 1, &options);
         for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
             assert_int_equal(cscd_detector_set_separation(changing.detector, changes[i], 0.0), CSCD_OK);
             assert_int_equal(cscd_detector_set_separation(changing.detector, -1.0, 0.0),
                              CSCD_INVALID_ARGUMENT);
             cscd_contacts found = rig_step(&changing, &interval);
-            options = within(changes[i], CSCD_METHOD_SINGLE);
+            options = options_within(changes[i], CSCD_METHOD_SINGLE);
             rig fresh = rig_create(&interval, 1, &options);
             cscd_contacts expected = rig_step(&fresh, &interval);
             assert_int_equal(found.count, expected.count);
@@ -267,7 +267,7 @@ static void lines_follow_what_they_can(void **state) {
     static free_step_call call;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 6, &interval);
-        cscd_detector_options options = within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
+        cscd_detector_options options = options_within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
         rig r = rig_create(&interval, 1, &options);
         cscd_line *line = NULL;
         assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
@@ -307,7 +307,7 @@ static void a_start_behind_a_wall_is_not_clean(void **state) {
     size_t through = 0;
     for (uint64_t seed = 1; seed < 12; seed++) {
         scene_make(SCENE_SPIKE, seed, &interval);
-        cscd_detector_options options = within(0.0, CSCD_METHOD_SINGLE);
+        cscd_detector_options options = options_within(0.0, CSCD_METHOD_SINGLE);
         options.ignore = ignore_all;
         rig r = rig_create(&interval, 1, &options), plain = rig_create(&interval, 1, NULL);
         cscd_line *line = NULL;

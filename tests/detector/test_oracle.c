@@ -27,8 +27,8 @@ static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_
     return detector;
 }
 
-static void compare(const scene *s, const oracle_list *truth, cscd_method method, scene_family family,
-                    uint64_t seed) {
+static void compare_with_oracle(const scene *s, const oracle_list *truth, cscd_method method,
+                                scene_family family, uint64_t seed) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_contacts found;
@@ -56,8 +56,8 @@ static void run_family(scene_family family, method_tally *sum) {
     for (uint64_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
         scene_make(family, seed, &interval);
         oracle_find(&interval, &truth);
-        compare(&interval, &truth, CSCD_METHOD_NONE, family, seed);
-        compare(&interval, &truth, CSCD_METHOD_BRUTE, family, seed);
+        compare_with_oracle(&interval, &truth, CSCD_METHOD_NONE, family, seed);
+        compare_with_oracle(&interval, &truth, CSCD_METHOD_BRUTE, family, seed);
         own.intervals++;
         own.with_contact += truth.count > 0;
         own.contacts += truth.count;

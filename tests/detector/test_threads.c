@@ -36,7 +36,8 @@ typedef struct outcome {
 } outcome;
 
 /* The intervals one after the other, of a tube at rest in s. */
-static void run(uint32_t thread_count, const cscd_detector_options *options, outcome out[INTERVALS]) {
+static void run_intervals(uint32_t thread_count, const cscd_detector_options *options,
+                          outcome out[INTERVALS]) {
     static double x[INTERVALS + 1][SCENE_VERTICES_MAX * 3];
     rig r = rig_create(&s, thread_count, options);
     for (int i = 0; i <= INTERVALS; i++) tube_at(&s, 0.3 * i, x[i]);
@@ -52,16 +53,16 @@ static void run(uint32_t thread_count, const cscd_detector_options *options, out
     rig_destroy(&r);
 }
 
-static void discard(outcome of[INTERVALS]) {
+static void discard_outcomes(outcome of[INTERVALS]) {
     for (int i = 0; i < INTERVALS; i++) free(of[i].contacts);
 }
 
 static size_t compare_methods(const cscd_detector_options *options) {
     outcome expected[INTERVALS], found[INTERVALS];
     size_t contacts = 0;
-    run(1, options, expected);
+    run_intervals(1, options, expected);
     for (int k = 1; k < COUNTS; k++) {
-        run(thread_counts[k], options, found);
+        run_intervals(thread_counts[k], options, found);
         for (int i = 0; i < INTERVALS; i++) {
             assert_int_equal(found[i].count, expected[i].count);
             assert_memory_equal(found[i].contacts, expected[i].contacts,
@@ -69,9 +70,9 @@ static size_t compare_methods(const cscd_detector_options *options) {
             assert_memory_equal(&found[i].counters, &expected[i].counters, sizeof found[i].counters);
             contacts += found[i].count;
         }
-        discard(found);
+        discard_outcomes(found);
     }
-    discard(expected);
+    discard_outcomes(expected);
     return contacts;
 }
 

@@ -41,7 +41,7 @@ static void destroy_objects(objects *o) {
     cscd_mesh_destroy(o->mesh);
 }
 
-static cscd_contacts step(const objects *o, const scene *s) {
+static cscd_contacts step_topology(const objects *o, const scene *s) {
     cscd_contacts found = {NULL, 0};
     assert_int_equal(cscd_detector_step(o->detector, s->x0, s->x1, &found), CSCD_OK);
     return found;
@@ -64,7 +64,7 @@ static size_t check_against_brute_force(const scene *s, cscd_contacts found) {
 /* ---- a sheet that tears ------------------------------------------------------------------------------ */
 
 /* Waves, the whole sheet together. */
-static void wave(scene *s, double phase, double *x) {
+static void wave_at(scene *s, double phase, double *x) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         x[3 * v] = s->x0[3 * v];
         x[3 * v + 1] = s->x0[3 * v + 1];
@@ -76,12 +76,12 @@ static void make_sheet(uint64_t seed) {
     random_stream random = stream_start(seed);
     scene_clear(&whole);
     scene_add_sheet(&whole, 2.0, 1.6, COLUMNS, ROWS);
-    wave(&whole, stream_between(&random, 0.0, 6.0), whole.x1);
+    wave_at(&whole, stream_between(&random, 0.0, 6.0), whole.x1);
 }
 
 /* Cuts the column CUT, from the first row to TIP: what is right of it gets vertices of its own, behind the
  * others, in the places where the sheet ended. Lists the pairs of vertices that were one. */
-static void tear(uint32_t pairs[TIP][2]) {
+static void tear_sheet(uint32_t pairs[TIP][2]) {
     torn = whole;
     memcpy(torn.x0, whole.x1, sizeof whole.x1);
     for (uint32_t row = 0; row < TIP; row++) {
@@ -118,20 +118,20 @@ static size_t tear_once(cscd_context *context, uint64_t seed) {
     uint32_t pairs[TIP][2];
     make_sheet(seed);
     objects before = make_objects(context, &whole, NULL);
-    assert_int_equal(check_against_brute_force(&whole, step(&before, &whole)), 0);
+    assert_int_equal(check_against_brute_force(&whole, step_topology(&before, &whole)), 0);
     destroy_objects(&before);
 
-    tear(pairs);
+    tear_sheet(pairs);
     objects after = make_objects(context, &torn, NULL);
     cscd_component c = cscd_mesh_component(after.mesh, 0);
     assert_true(cscd_mesh_component_count(after.mesh) == 1 && c.non_manifold_vertices == 0);
     assert_int_equal(c.open_edges, 2 * (COLUMNS + ROWS) + 2 * TIP);
     move_right(0.15, 0.2);
-    size_t parting = check_against_brute_force(&torn, step(&after, &torn));
+    size_t parting = check_against_brute_force(&torn, step_topology(&after, &torn));
     assert_true(parting > 0); /* the lips touch where they are still in one place */
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
     move_right(-0.7, -0.5);
-    size_t count = check_against_brute_force(&torn, step(&after, &torn));
+    size_t count = check_against_brute_force(&torn, step_topology(&after, &torn));
     destroy_objects(&after);
     return count;
 }
@@ -155,19 +155,19 @@ static void seams_keep_the_lips_quiet_until_they_have_parted(void **state) {
     uint32_t pairs[TIP][2];
     cscd_context *context = make_context(1);
     make_sheet(1);
-    tear(pairs);
+    tear_sheet(pairs);
     move_right(0.15, 0.2);
     cscd_detector_options options = cscd_detector_defaults();
     objects bare = make_objects(context, &torn, &options);
-    assert_true(step(&bare, &torn).count > 0);
+    assert_true(step_topology(&bare, &torn).count > 0);
     options.seams = pairs[0];
     options.seam_count = TIP;
     objects sewn = make_objects(context, &torn, &options);
-    assert_int_equal(step(&sewn, &torn).count, 0);
+    assert_int_equal(step_topology(&sewn, &torn).count, 0);
 
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
     move_right(-0.7, -0.5); /* from here on without seams: nothing in one place any more */
-    assert_true(check_against_brute_force(&torn, step(&bare, &torn)) > 0);
+    assert_true(check_against_brute_force(&torn, step_topology(&bare, &torn)) > 0);
     destroy_objects(&sewn);
     destroy_objects(&bare);
     cscd_context_destroy(context);
@@ -266,9 +266,9 @@ static carried carry_once(cscd_context *context, uint64_t seed) {
     assert_int_equal(cscd_mesh_create(context, &desc, &planned.mesh), CSCD_OK);
     planned.plan = carry_over(old.plan, planned.mesh, origin);
     assert_int_equal(cscd_detector_create(planned.mesh, planned.plan, NULL, &planned.detector), CSCD_OK);
-    cscd_contacts found = step(&planned, &torn);
+    cscd_contacts found = step_topology(&planned, &torn);
     carried result = {check_against_brute_force(&torn, found), 0};
-    assert_same_contacts(found, step(&plain, &torn));
+    assert_same_contacts(found, step_topology(&plain, &torn));
     cscd_counters n = cscd_detector_counters(planned.detector);
     result.oriented = n.plus + n.minus;
     destroy_objects(&planned);

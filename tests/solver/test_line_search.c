@@ -40,7 +40,7 @@ static void search_destroy(step_search *s) {
     rig_destroy(&s->r);
 }
 
-static void begin(const step_search *s, const double *x0, const double *x1, double reach) {
+static void begin_line(const step_search *s, const double *x0, const double *x1, double reach) {
     assert_int_equal(cscd_line_begin(s->line, x0, x1, reach), CSCD_OK);
 }
 
@@ -89,7 +89,7 @@ static void steps_are_certified(void **state) {
             step_search s =
                 search_create(methods[turn % METHOD_COUNT], distances[turn % 4], 1 + (uint32_t)seed % 3);
             rig reference = free_step_reference(&interval, &s.options);
-            begin(&s, interval.x0, interval.x1, seed % 2 == 0 ? 0.0 : 0.01);
+            begin_line(&s, interval.x0, interval.x1, seed % 2 == 0 ? 0.0 : 0.01);
             check_steps(&s, &reference, &sum);
             rig_destroy(&reference);
             search_destroy(&s);
@@ -150,7 +150,7 @@ static void near_equals_the_detectors(void **state) {
             if (seed == 2) far_from_the_origin();
             step_search s = search_create(methods[turn % METHOD_COUNT], turn % 4 == 0 ? 1e-3 : 0.0,
                                           1 + (uint32_t)seed % 3);
-            begin(&s, interval.x0, interval.x1, reaches[turn % 3]);
+            begin_line(&s, interval.x0, interval.x1, reaches[turn % 3]);
             pairs += check_moments(&s, reaches[turn % 3], seed);
             search_destroy(&s);
         }
@@ -172,7 +172,7 @@ static void scales_do_not_matter(void **state) {
         step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
         rig reference = free_step_reference(&interval, &s.options);
         line_tally sum = {0};
-        begin(&s, interval.x0, interval.x1, ldexp(0.05, exponent));
+        begin_line(&s, interval.x0, interval.x1, ldexp(0.05, exponent));
         check_steps(&s, &reference, &sum);
         if (family % 3 == 0) check_moments(&s, ldexp(0.05, exponent), 1);
         rig_destroy(&reference);
@@ -215,7 +215,7 @@ static void the_detector_knows_the_end(void **state) {
         rig reference = free_step_reference(&interval, &s.options);
         cscd_contacts found;
         assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, interval.x0, &found), CSCD_OK);
-        begin(&s, interval.x0, interval.x1, 0.0);
+        begin_line(&s, interval.x0, interval.x1, 0.0);
         for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
             step_on(s.line, interval.x0, interval.x1, longest[i]);
             assert_true(free_step_check(&reference, s.r.context, &call));
@@ -232,7 +232,7 @@ static void what_is_not_known_stays_so(void **state) {
     make_limited(SCENE_SPIKE, 1);
     step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 1);
     cscd_contacts found;
-    begin(&s, interval.x0, interval.x1, 0.0);
+    begin_line(&s, interval.x0, interval.x1, 0.0);
     step_on(s.line, interval.x0, interval.x1, 1.0);
     assert_int_equal(call.status, CSCD_OK);
     assert_int_equal(cscd_detector_step(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
@@ -301,7 +301,7 @@ static void lines_and_steps_take_turns(void **state) {
         cscd_contacts found, truth;
         cscd_free_step ignored;
         assert_int_equal(cscd_line_create(s.r.detector, &second), CSCD_OK);
-        begin(&s, interval.x0, interval.x1, 0.01);
+        begin_line(&s, interval.x0, interval.x1, 0.01);
         assert_int_equal(cscd_line_begin(second, x2, interval.x1, 0.0), CSCD_OK);
         for (int round = 0; round < 1 + (family == SCENE_SPIKE); round++) {
             step_on(second, x2, interval.x1, 1.0);
@@ -348,7 +348,7 @@ static void misuse_is_named(void **state) {
     assert_int_equal(cscd_line_candidate_count(s.line), 0);
     expect_words(&s, cscd_line_begin(s.line, NULL, interval.x1, 0.1), "x0 is NULL");
     expect_words(&s, cscd_line_begin(s.line, interval.x0, NULL, 0.1), "x1 is NULL");
-    begin(&s, interval.x0, interval.x1, 0.1);
+    begin_line(&s, interval.x0, interval.x1, 0.1);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         expect_words(&s, cscd_line_near(s.line, bad[i], 0.1, &near), "length is ");
         expect_words(&s, cscd_line_max_step(s.line, bad[i], NULL, &step), "longest is ");
@@ -364,7 +364,7 @@ static void misuse_is_named(void **state) {
     expect_words(&s, cscd_line_positions(s.line, 0.5, NULL), "positions is NULL");
     assert_true(near.count == 4711 && step.length == -1.0);
     assert_int_equal(cscd_line_near(s.line, 0.5, 0.1, &near), CSCD_OK);
-    begin(&s, interval.x0, interval.x1, 0.0);
+    begin_line(&s, interval.x0, interval.x1, 0.0);
     expect_words(&s, cscd_line_near(s.line, 0.5, 0x1p-300, &near), "reach of 0");
     search_destroy(&s);
     cscd_line_destroy(NULL);

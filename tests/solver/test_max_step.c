@@ -75,7 +75,7 @@ static bool all_closed(const rig *r) {
 
 /* ---- one step ------------------------------------------------------------------------------------------ */
 
-static bool culls(const setting *s) {
+static bool is_culling(const setting *s) {
     bool by_orientation =
         s->method == CSCD_METHOD_SINGLE || s->method == CSCD_METHOD_KMEANS || s->method == CSCD_METHOD_CHARGE;
     return by_orientation && s->distance == 0.0;
@@ -87,7 +87,7 @@ static void check_next(const rig *r, const rig *reference, const setting *s, boo
     assert_int_equal(cscd_detector_step(reference->detector, call.end, call.x1, &truth), CSCD_OK);
     assert_int_equal(cscd_detector_step(r->detector, call.end, call.x1, &found), CSCD_OK);
     cscd_counters counters = cscd_detector_counters(r->detector);
-    if (embedded && culls(s)) {
+    if (embedded && is_culling(s)) {
         assert_int_equal(counters.static_checks, 0);
         if (all_closed(r)) assert_int_equal(counters.clean, cscd_mesh_triangle_count(r->mesh));
     }
@@ -158,7 +158,7 @@ static void march_to(const rig *r, const rig *reference, const setting *s, uint3
         sum->calls++;
         assert_true(free_step_check(reference, r->context, &call));
         cscd_counters counters = cscd_detector_counters(r->detector);
-        if (i > 0 && culls(s)) assert_int_equal(counters.static_checks, 0);
+        if (i > 0 && is_culling(s)) assert_int_equal(counters.static_checks, 0);
         sum->limited += call.step.limited;
         sum->whole += !call.step.limited;
         sum->in_contact += memcmp(x, call.end, bytes) == 0;

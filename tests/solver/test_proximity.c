@@ -123,14 +123,14 @@ static long double check_proximity(const rig *r, const cscd_proximity *p, const 
     return extent > 0.0L ? (named - features) / extent : 0.0L;
 }
 
-static cscd_proximities near(const rig *r, const double *x, double distance) {
+static cscd_proximities find_near(const rig *r, const double *x, double distance) {
     cscd_proximities found = {NULL, 4711};
     assert_int_equal(cscd_detector_near(r->detector, x, distance, &found), CSCD_OK);
     return found;
 }
 
-static void compare(const rig *r, const oracle_list *truth, double distance, long double *worst) {
-    cscd_proximities found = near(r, still.x0, distance);
+static void compare_with_oracle(const rig *r, const oracle_list *truth, double distance, long double *worst) {
+    cscd_proximities found = find_near(r, still.x0, distance);
     assert_int_equal(found.count, truth->count);
     for (size_t i = 0; i < found.count; i++) {
         const cscd_proximity *p = &found.items[i];
@@ -155,8 +155,8 @@ static void every_method_equals_brute_force(void **state) {
             if (truth.count > 0) qsort(truth.items, truth.count, sizeof *truth.items, compare_names);
             for (int m = 0; m < METHOD_COUNT; m++) {
                 rig r = rig_of(&still, methods[m], 1 + (uint32_t)((seed + (uint64_t)m) % 3));
-                compare(&r, &truth, distance, &worst);
-                if (seed == 1 && m == 0) compare(&r, &truth, distance, &worst);
+                compare_with_oracle(&r, &truth, distance, &worst);
+                if (seed == 1 && m == 0) compare_with_oracle(&r, &truth, distance, &worst);
                 rig_destroy(&r);
             }
             pairs += truth.count;
@@ -178,8 +178,8 @@ static void any_length_will_do(void **state) {
         scene_make((scene_family)family, 3, &interval);
         rig brute = rig_of(&interval, CSCD_METHOD_BRUTE, 1), trees = rig_of(&interval, CSCD_METHOD_NONE, 2);
         for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
-            cscd_proximities truth = near(&brute, interval.x0, lengths[i]);
-            cscd_proximities found = near(&trees, interval.x0, lengths[i]);
+            cscd_proximities truth = find_near(&brute, interval.x0, lengths[i]);
+            cscd_proximities found = find_near(&trees, interval.x0, lengths[i]);
             assert_int_equal(found.count, truth.count);
             if (found.count > 0)
                 assert_memory_equal(found.items, truth.items, found.count * sizeof *found.items);
@@ -190,7 +190,7 @@ static void any_length_will_do(void **state) {
     }
 }
 
-static void scale(double *x, uint32_t vertex_count, int exponent) {
+static void scale_scene(double *x, uint32_t vertex_count, int exponent) {
     for (uint32_t i = 0; i < vertex_count * 3; i++) x[i] = ldexp(x[i], exponent);
 }
 
@@ -202,10 +202,10 @@ static void same_when_scaled(void **state) {
             scene_make((scene_family)family, 11, &interval);
             rig plain = rig_of(&interval, CSCD_METHOD_NONE, 1),
                 scaled = rig_of(&interval, CSCD_METHOD_NONE, 1);
-            cscd_proximities expected = near(&plain, interval.x0, 0.03);
+            cscd_proximities expected = find_near(&plain, interval.x0, 0.03);
             hold_still();
-            scale(still.x0, still.vertex_count, exponents[e]);
-            cscd_proximities found = near(&scaled, still.x0, ldexp(0.03, exponents[e]));
+            scale_scene(still.x0, still.vertex_count, exponents[e]);
+            cscd_proximities found = find_near(&scaled, still.x0, ldexp(0.03, exponents[e]));
             assert_int_equal(found.count, expected.count);
             for (size_t i = 0; i < found.count; i++) {
                 const cscd_proximity *p = &found.items[i], *t = &expected.items[i];
@@ -234,7 +234,7 @@ static void same_as_brute_force_far_away(void **state) {
         if (truth.count > 0) qsort(truth.items, truth.count, sizeof *truth.items, compare_names);
         for (int m = 0; m < METHOD_COUNT; m++) {
             rig r = rig_of(&still, methods[m], 1);
-            compare(&r, &truth, 0.1, &worst);
+            compare_with_oracle(&r, &truth, 0.1, &worst);
             rig_destroy(&r);
         }
         pairs += truth.count;
@@ -284,8 +284,8 @@ static void steps_do_not_notice(void **state) {
                     assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
                 expect_same_state(&asked, &plain);
                 cscd_timings before = cscd_detector_timings(asked.detector);
-                near(&asked, frames[f + 1], 0.05);
-                near(&asked, frames[0], 0.2);
+                find_near(&asked, frames[f + 1], 0.05);
+                find_near(&asked, frames[0], 0.2);
                 cscd_timings after = cscd_detector_timings(asked.detector);
                 assert_memory_equal(&after, &before, sizeof after);
                 expect_same_state(&asked, &plain);
@@ -301,10 +301,10 @@ static void same_bits_for_any_thread_count(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 4, &interval);
         rig one = rig_of(&interval, CSCD_METHOD_NONE, 1);
-        cscd_proximities expected = near(&one, interval.x1, 0.2);
+        cscd_proximities expected = find_near(&one, interval.x1, 0.2);
         for (uint32_t threads = 2; threads <= 16; threads += 14) {
             rig many = rig_of(&interval, CSCD_METHOD_NONE, threads);
-            cscd_proximities found = near(&many, interval.x1, 0.2);
+            cscd_proximities found = find_near(&many, interval.x1, 0.2);
             assert_int_equal(found.count, expected.count);
             if (found.count > 0)
                 assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);

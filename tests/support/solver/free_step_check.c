@@ -26,12 +26,12 @@ rig free_step_reference(const scene *s, const cscd_detector_options *options) {
     return rig_create(s, 1, &brute);
 }
 
-static size_t coordinates(const rig *r) {
+static size_t coordinates_of(const rig *r) {
     return (size_t)cscd_mesh_vertex_count(r->mesh) * 3;
 }
 
 void free_step_positions(const rig *r, const double *x0, const double *x1, double length, double *out) {
-    for (size_t i = 0; i < coordinates(r); i++) {
+    for (size_t i = 0; i < coordinates_of(r); i++) {
         double x = x0[i] + length * (x1[i] - x0[i]);
         out[i] = length == 1.0 ? x1[i] : length == 0.0 ? x0[i] : fabs(x) < 0x1p-300 ? 0.0 : x;
     }
@@ -52,7 +52,7 @@ bool free_step_embedded(const rig *reference, const double *positions) {
 static void check_refused(const rig *reference, const cscd_context *called, const free_step_call *call) {
     assert_int_equal(call->status, CSCD_IN_CONTACT);
     assert_true(call->step.length == untouched && !call->step.limited);
-    for (size_t i = 0; i < coordinates(reference); i++) assert_true(call->end[i] == untouched);
+    for (size_t i = 0; i < coordinates_of(reference); i++) assert_true(call->end[i] == untouched);
     assert_non_null(strstr(cscd_context_detail(called), "at the start"));
 }
 
@@ -94,7 +94,7 @@ bool free_step_check(const rig *reference, const cscd_context *called, const fre
         check_limit(call, truth);
     }
     free_step_positions(reference, call->x0, call->x1, call->step.length, end);
-    assert_memory_equal(end, call->end, coordinates(reference) * sizeof(double));
+    assert_memory_equal(end, call->end, coordinates_of(reference) * sizeof(double));
     assert_int_equal(contacts_between(reference, call->x0, call->end).count, 0);
     assert_int_equal(contacts_between(reference, call->end, call->end).count, 0);
     if (truth.count == 0) check_unlimited(reference, call);
