@@ -9,6 +9,8 @@
 #include "runtime/ccd/inside_test.h"
 #include "runtime/ccd/separating_axis.h"
 
+#include <assert.h>
+
 static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
 
 /* A root interval must be as narrow for its begin to be the TOI. */
@@ -30,6 +32,7 @@ static elementary_verdict decide_at_roots(const elementary_query *query, const p
     int count = cubic_isolate(f, roots);
     if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, kind, f, hit);
     for (int i = 0; i < count; i++) {
+        assert(roots[i].begin <= roots[i].end && (i == 0 || roots[i - 1].end <= roots[i].begin));
         inside_verdict inside = inside_test(vectors, kind, &roots[i]);
         if (inside == INSIDE_NO) continue;
         if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)

@@ -4,6 +4,8 @@
 #include "runtime/ccd/elementary.h"
 #include "src/core/context.h"
 
+#include <assert.h>
+
 /* Whoever adds up to FEATURE_LIST_BURST pairs asks once whether there is room for them. */
 enum { FEATURE_LIST_CAPACITY = 512, FEATURE_LIST_BURST = 16 };
 
@@ -16,6 +18,7 @@ typedef struct feature_list {
 /* Writes a pair to place count and returns the count with it if `kept` is 1, without it if 0: no branch. */
 static inline uint32_t feature_list_put(feature_list *list, uint32_t count, uint32_t a, uint32_t b,
                                         uint32_t kept) {
+    assert(count < FEATURE_LIST_CAPACITY + FEATURE_LIST_BURST);
     list->a[count] = a;
     list->b[count] = b;
     return count + kept;

@@ -1,12 +1,14 @@
 /* Queue of feature pairs. SIMD kernels decide them in batches of eight; the scalar test decides the rest. */
 #include "runtime/narrow_phase/feature_queue.h"
 
+#include <assert.h>
+
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                         uint32_t i, const elementary_hit *hit, bool bounded, contact_lane *lane) {
     contact_lane_add(interval->mesh->context, lane, kind, pairs->a[i], pairs->b[i], hit, bounded);
 }
 
-/* What fills up the last eight. */
+/* Fills up the last eight with the last pair. */
 static void repeat_last(feature_pairs *pairs) {
     for (uint32_t i = 0; i < LANES - 1; i++) {
         pairs->a[pairs->count + i] = pairs->a[pairs->count - 1];
@@ -18,6 +20,7 @@ static void repeat_last(feature_pairs *pairs) {
 static uint32_t keep_lanes(feature_pairs *pairs, uint32_t i, uint32_t lanes, uint32_t kept) {
     for (; lanes != 0; lanes &= lanes - 1) {
         uint32_t from = i + (uint32_t)__builtin_ctz(lanes);
+        assert(kept <= from && from < pairs->count);
         pairs->a[kept] = pairs->a[from];
         pairs->b[kept++] = pairs->b[from];
     }
@@ -137,6 +140,7 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
 void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane) {
     feature_list *list = &lane->queue[kind];
     feature_pairs pairs = {list->a, list->b, list->count};
+    assert(list->count <= FEATURE_LIST_CAPACITY); /* kernels fill up behind it */
     if (interval->collecting)
         contact_lane_add_candidates(interval->mesh->context, lane, kind, list);
     else if (interval->limit.distance > 0.0)

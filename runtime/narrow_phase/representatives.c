@@ -4,6 +4,8 @@
 #include "runtime/narrow_phase/narrow_phase_kernels.h"
 #include "runtime/narrow_phase/orphan_pairs.h"
 
+#include <assert.h>
+
 /* The kernel marks the undecided features of so many pairs at a time. */
 enum { PAIRS_AT_ONCE = 256 };
 
@@ -79,6 +81,7 @@ static bool first_without_shared_vertex(const cscd_mesh *mesh, triangle_pair pai
 static void select_represented(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                                uint16_t *features) {
     const cscd_mesh *mesh = interval->mesh;
+    assert(count <= PAIRS_AT_ONCE);
     uint16_t undecided[PAIRS_AT_ONCE];
     narrow_phase_kernels_of(mesh->context)
         ->represent(mesh, interval->representatives, pairs, count, features, undecided);
