@@ -32,7 +32,7 @@ static int compare_pairs(const void *left, const void *right) {
     return (a->b > b->b) - (a->b < b->b);
 }
 
-static void step(const scene *s, cscd_method method, cscd_mode mode, contact_set *out) {
+static void step_motion(const scene *s, cscd_method method, cscd_mode mode, contact_set *out) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
     options.mode = mode;
@@ -72,7 +72,7 @@ static double body_length(const scene *s) {
 }
 
 /* unit: of what translations are multiples; 0: anything. */
-static void fly(const scene *from, double unit, scene *out) {
+static void fly_along(const scene *from, double unit, scene *out) {
     static const double start[3] = {0.31, -0.7, 1.9}, end[3] = {77.7, -50.1, 38.3};
     double length = body_length(from), by[2][3];
     for (int k = 0; k < 3; k++) {
@@ -91,11 +91,11 @@ static void for_all(double unit, int first_family, int end_family, void (*check)
     for (int i = first_family * SEED_COUNT; i < end_family * SEED_COUNT; i++) {
         scene_make((scene_family)(i / SEED_COUNT), (uint64_t)(500 + i % SEED_COUNT), &at_rest);
         round_to_grid(&at_rest);
-        fly(&at_rest, unit, &in_flight);
+        fly_along(&at_rest, unit, &in_flight);
         for (int k = 0; k < 2 * METHOD_COUNT; k++) {
             cscd_mode mode = k % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
-            step(&at_rest, method_or_none(methods[k / 2]), mode, &expected);
-            step(&in_flight, method_or_none(methods[k / 2]), mode, &found);
+            step_motion(&at_rest, method_or_none(methods[k / 2]), mode, &expected);
+            step_motion(&in_flight, method_or_none(methods[k / 2]), mode, &found);
             assert_same_contacts();
             check();
         }

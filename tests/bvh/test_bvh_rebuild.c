@@ -26,7 +26,7 @@ static void make_strip(void) {
 }
 
 /* Each column's step makes an angle with the last one at the pleats: closed at 0, flat at 1. */
-static void pose(double opened, double out[VERTICES][3]) {
+static void pose_at(double opened, double out[VERTICES][3]) {
     double angle = 0.5 * acos(-1.0) * (1.0 - opened) * 0.98, x = 0.0, z = 0.0;
     for (uint32_t column = 0; column <= COLUMNS; column++) {
         for (uint32_t row = 0; row <= ROWS; row++) {
@@ -64,7 +64,7 @@ static void close_run(rebuild_run *r) {
     cscd_context_destroy(r->context);
 }
 
-static cscd_counters step(rebuild_run *r) {
+static cscd_counters step_run(rebuild_run *r) {
     cscd_contacts found;
     assert_int_equal(cscd_detector_step(r->detector, &before[0][0], &after[0][0], &found), CSCD_OK);
     return cscd_detector_counters(r->detector);
@@ -79,15 +79,15 @@ static void pulled_flat(void **state) {
     open_run(&one, 1);
     open_run(&three, 3);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
-        pose((double)frame / FRAMES, before);
-        pose((frame + 1.0) / FRAMES, after);
-        last = step(&one);
-        cscd_counters other = step(&three);
+        pose_at((double)frame / FRAMES, before);
+        pose_at((frame + 1.0) / FRAMES, after);
+        last = step_run(&one);
+        cscd_counters other = step_run(&three);
         assert_memory_equal(&last, &other, sizeof last);
         rebuilds += last.rebuilds;
     }
     open_run(&rebuilt, 1);
-    cscd_counters best = step(&rebuilt);
+    cscd_counters best = step_run(&rebuilt);
     print_message("built anew %llu times; %llu boxes at the end, %llu with new trees\n",
                   (unsigned long long)rebuilds, (unsigned long long)last.boxes_tested,
                   (unsigned long long)best.boxes_tested);
@@ -108,13 +108,13 @@ static void lines_build_anew(void **state) {
     open_run(&r, 1);
     assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
-        pose((double)frame / FRAMES, before);
-        pose((frame + 1.0) / FRAMES, after);
+        pose_at((double)frame / FRAMES, before);
+        pose_at((frame + 1.0) / FRAMES, after);
         assert_int_equal(cscd_line_begin(line, &before[0][0], &after[0][0], 0.01), CSCD_OK);
     }
-    cscd_counters last = step(&r);
+    cscd_counters last = step_run(&r);
     open_run(&rebuilt, 1);
-    cscd_counters best = step(&rebuilt);
+    cscd_counters best = step_run(&rebuilt);
     print_message("%llu boxes, %llu with new trees\n", (unsigned long long)last.boxes_tested,
                   (unsigned long long)best.boxes_tested);
     assert_int_equal(last.rebuilds, 0);
@@ -131,9 +131,9 @@ static void flat_stays(void **state) {
     make_strip();
     open_run(&r, 1);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
-        pose(0.5 + 0.3 * sin(0.2 * frame), before);
-        pose(0.5 + 0.3 * sin(0.2 * (frame + 1.0)), after);
-        assert_int_equal(step(&r).rebuilds, 0);
+        pose_at(0.5 + 0.3 * sin(0.2 * frame), before);
+        pose_at(0.5 + 0.3 * sin(0.2 * (frame + 1.0)), after);
+        assert_int_equal(step_run(&r).rebuilds, 0);
     }
     close_run(&r);
 }
@@ -145,7 +145,7 @@ enum { BODIES = 400 };
 static uint32_t faces[BODIES * 4][3], places[BODIES];
 static double shapes[BODIES][4][3], centres[BODIES][3], rest[BODIES][4][3], moved[BODIES][4][3];
 
-static double unit(random_stream *random) {
+static double unit_noise(random_stream *random) {
     return (double)stream_below(random, 1u << 20) * 0x1p-20;
 }
 
@@ -154,8 +154,8 @@ static void make_bodies(void) {
     random_stream random = stream_start(17);
     for (uint32_t i = 0; i < BODIES; i++) {
         places[i] = i;
-        for (int k = 0; k < 12; k++) shapes[i][k / 3][k % 3] = 0.5 * unit(&random);
-        for (int k = 0; k < 3; k++) centres[i][k] = 16.0 * unit(&random);
+        for (int k = 0; k < 12; k++) shapes[i][k / 3][k % 3] = 0.5 * unit_noise(&random);
+        for (int k = 0; k < 3; k++) centres[i][k] = 16.0 * unit_noise(&random);
         for (int k = 0; k < 12; k++) faces[4 * i + (uint32_t)k / 3][k % 3] = 4 * i + of_one[k / 3][k % 3];
     }
 }

@@ -14,7 +14,7 @@ enum { UNIT_EXPONENT = -200 };
 
 static scene shape; /* large; one test at a time */
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(41);
     return 0;
@@ -91,7 +91,7 @@ static void exact_signs(const double x0[9], const double x1[9], const bvh *f, in
 
 /* ---- triangles ---- */
 
-static float nudged(float x) {
+static float nudged_by(float x) {
     for (int i = random_integer(0, 3); i > 0; i--)
         x = nextafterf(x, random_integer(0, 1) ? INFINITY : -INFINITY);
     return x;
@@ -121,7 +121,7 @@ static void put_into_plane(bvh *f, uint32_t t, int end) {
     bvh_tree *p = &f->trees[0];
     for (int k = 0; k < 3; k++) {
         double at = x[k] + u * (x[3 + k] - x[k]) + v * (x[6 + k] - x[k]);
-        p->detector[end][k] = nudged((float)((at - p->origin[end][k]) * f->scale));
+        p->detector[end][k] = nudged_by((float)((at - p->origin[end][k]) * f->scale));
     }
 }
 
@@ -285,9 +285,9 @@ static void flags_of_sets(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(signs_are_exact, seed),
+        cmocka_unit_test_setup(signs_are_exact, seed_random),
         cmocka_unit_test(sides_of_a_plane),
-        cmocka_unit_test_setup(detector_points_follow_their_regions, seed),
+        cmocka_unit_test_setup(detector_points_follow_their_regions, seed_random),
         cmocka_unit_test(flags_of_sets),
     };
     return cmocka_run_group_tests_name("orientation", tests, NULL, NULL);

@@ -49,7 +49,7 @@ static void traverse_but(const bvh_rig *r, traversal_pass pass, bool skip_adjace
     traversal_destroy(&t);
 }
 
-static void traverse(const bvh_rig *r, traversal_pass pass, pair_table *out) {
+static void traverse_all(const bvh_rig *r, traversal_pass pass, pair_table *out) {
     traverse_but(r, pass, false, out);
 }
 
@@ -76,7 +76,7 @@ static void check_scene(bvh_setup setup, double distance) {
     assert_true(shape.triangle_count <= TRIANGLES_MAX);
     assert_true(bvh_rig_create(&shape, setup, &r));
     bvh_refit(&r.bvh, shape.x0, shape.x1, distance);
-    traverse(&r, TRAVERSAL_KEPT, &all);
+    traverse_all(&r, TRAVERSAL_KEPT, &all);
     check_against_gaps(&all, distance);
     bvh_rig_destroy(&r);
 }
@@ -143,7 +143,7 @@ static void check_same(bvh_setup setup) {
     bvh_rig r;
     if (!bvh_rig_create(&shape, setup, &r)) return;
     bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
-    traverse(&r, TRAVERSAL_KEPT, &others);
+    traverse_all(&r, TRAVERSAL_KEPT, &others);
     assert_memory_equal(&others, &all, sizeof all);
     bvh_rig_destroy(&r);
 }
@@ -153,7 +153,7 @@ static void check_all_ways(uint32_t region_count) {
     bvh_rig r;
     assert_true(bvh_rig_create(&shape, setup, &r));
     bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
-    traverse(&r, TRAVERSAL_KEPT, &all);
+    traverse_all(&r, TRAVERSAL_KEPT, &all);
     bvh_rig_destroy(&r);
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
         for (uint32_t threads = 1; threads <= 3; threads++)
@@ -192,16 +192,16 @@ static void many_rounds(void **state) {
 static uint8_t before[TRIANGLES_MAX], now[TRIANGLES_MAX];
 static bool unproven[TRIANGLES_MAX];
 
-static bool hidden(const bvh_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
+static bool is_hidden(const bvh_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
     return r->regions[a] == r->regions[b] && !orientations_may_touch(orientations[a], orientations[b]);
 }
 
-static bool stays(const bvh_rig *r, uint32_t a, uint32_t b) {
-    return !hidden(r, now, a, b);
+static bool is_kept(const bvh_rig *r, uint32_t a, uint32_t b) {
+    return !is_hidden(r, now, a, b);
 }
 
 static bool has_come(const bvh_rig *r, uint32_t a, uint32_t b) {
-    return hidden(r, before, a, b) && !hidden(r, now, a, b);
+    return is_hidden(r, before, a, b) && !is_hidden(r, now, a, b);
 }
 
 static bool both_suspect(const bvh_rig *r, uint32_t a, uint32_t b) {
@@ -209,7 +209,7 @@ static bool both_suspect(const bvh_rig *r, uint32_t a, uint32_t b) {
     return unproven[a] && unproven[b];
 }
 
-static bool adjacent(uint32_t a, uint32_t b) {
+static bool are_adjacent(uint32_t a, uint32_t b) {
     const uint32_t *corners = shape.triangles + (size_t)b * 3;
     for (uint32_t i = 0; i < 3; i++) {
         if (triangle_contains(corners, shape.triangles[a * 3 + i])) return true;
@@ -224,7 +224,7 @@ static void check_pass(const bvh_rig *r, traversal_pass pass,
         traverse_but(r, pass, skip_adjacent != 0, &kept);
         for (uint32_t a = 0; a < shape.triangle_count; a++) {
             for (uint32_t b = a + 1; b < shape.triangle_count; b++) {
-                bool skipped = skip_adjacent != 0 && adjacent(a, b);
+                bool skipped = skip_adjacent != 0 && are_adjacent(a, b);
                 assert_int_equal(kept.found[a][b], all.found[a][b] && !skipped && of_pass(r, a, b));
             }
         }
@@ -247,11 +247,11 @@ static void check_passes(random_stream *random, uint32_t region_count) {
     bvh_rig r;
     assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
     bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
-    traverse(&r, TRAVERSAL_KEPT, &all);
+    traverse_all(&r, TRAVERSAL_KEPT, &all);
     for (uint32_t run = 1; run < 1000; run *= 6) {
         choose_flags(random, run);
         bvh_mark_newly_kept(&r.bvh, before, now);
-        check_pass(&r, TRAVERSAL_KEPT, stays);
+        check_pass(&r, TRAVERSAL_KEPT, is_kept);
         check_pass(&r, TRAVERSAL_NEWLY_KEPT, has_come);
         bvh_mark_unproven(&r.bvh, unproven);
         check_pass(&r, TRAVERSAL_UNPROVEN, both_suspect);

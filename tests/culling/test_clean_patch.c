@@ -32,7 +32,7 @@ static void states_destroy(states *c) {
     rig_destroy(&c->r);
 }
 
-static double height(uint32_t triangle) {
+static double height_of(uint32_t triangle) {
     const uint32_t *t = s.triangles + (size_t)triangle * 3;
     return (s.x0[t[0] * 3 + 2] + s.x0[t[1] * 3 + 2] + s.x0[t[2] * 3 + 2]) / 3.0;
 }
@@ -41,15 +41,15 @@ static double height(uint32_t triangle) {
 static void check_with_belt(states *c, double low, double high) {
     for (uint32_t t = 0; t < s.triangle_count; t++) {
         unproven[t] = true;
-        crossing[t] = height(t) > low && height(t) < high;
+        crossing[t] = height_of(t) > low && height_of(t) < high;
     }
     start_states_checked(&c->starts, unproven, crossing);
 }
 
-static uint32_t count(const states *c, triangle_state state, double low, double high) {
+static uint32_t count_between(const states *c, triangle_state state, double low, double high) {
     uint32_t found = 0;
     for (uint32_t t = 0; t < s.triangle_count; t++)
-        found += height(t) > low && height(t) < high && c->starts.triangles[t] == state;
+        found += height_of(t) > low && height_of(t) < high && c->starts.triangles[t] == state;
     return found;
 }
 
@@ -57,7 +57,7 @@ static void all_free_is_all_clean(void **state) {
     (void)state;
     states c = states_of_sphere(2);
     check_with_belt(&c, 5, 6);
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
     assert_int_equal(c.starts.of[0].clean + c.starts.of[1].clean, s.triangle_count);
     states_destroy(&c);
 }
@@ -67,12 +67,13 @@ static void what_is_cut_off_is_not_clean(void **state) {
     (void)state;
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.3, 0.7);
-    uint32_t cap = count(&c, TRIANGLE_FREE, 0.7, 2), rest = count(&c, TRIANGLE_CLEAN, -2, 0.3);
+    uint32_t cap = count_between(&c, TRIANGLE_FREE, 0.7, 2),
+             rest = count_between(&c, TRIANGLE_CLEAN, -2, 0.3);
     assert_true(cap > 0 && rest > cap);
-    assert_int_equal(cap + rest + count(&c, TRIANGLE_CROSSING, -2, 2), s.triangle_count);
+    assert_int_equal(cap + rest + count_between(&c, TRIANGLE_CROSSING, -2, 2), s.triangle_count);
     assert_int_equal(c.starts.of[0].clean, rest);
     check_with_belt(&c, 5, 6); /* the belt is gone */
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
     states_destroy(&c);
 }
 
@@ -81,17 +82,18 @@ static void clean_spreads_through_what_has_healed(void **state) {
     (void)state;
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.1, 0.6);
-    uint32_t cap = count(&c, TRIANGLE_FREE, 0.6, 2);
+    uint32_t cap = count_between(&c, TRIANGLE_FREE, 0.6, 2);
     assert_true(cap > 0);
     for (uint32_t t = 0; t < s.triangle_count; t++) {
         unproven[t] = c.starts.triangles[t] == TRIANGLE_CROSSING;
         crossing[t] = unproven[t] && s.x0[s.triangles[(size_t)t * 3] * 3] > 0.0;
     }
     start_states_end(&c.starts, s.x0, (bool[1]){false});
-    assert_int_equal(count(&c, TRIANGLE_UNKNOWN, 0.1, 0.6), count(&c, TRIANGLE_UNKNOWN, -2, 2));
+    assert_int_equal(count_between(&c, TRIANGLE_UNKNOWN, 0.1, 0.6),
+                     count_between(&c, TRIANGLE_UNKNOWN, -2, 2));
     start_states_checked(&c.starts, unproven, crossing);
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, 0.6, 2), cap);
-    assert_true(count(&c, TRIANGLE_CROSSING, 0.1, 0.6) > 0);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, 0.6, 2), cap);
+    assert_true(count_between(&c, TRIANGLE_CROSSING, 0.1, 0.6) > 0);
     states_destroy(&c);
 }
 
@@ -101,15 +103,16 @@ static void a_larger_patch_replaces_a_remnant(void **state) {
     states c = states_of_sphere(1);
     check_with_belt(&c, 0.3, 0.7);
     for (uint32_t t = 0; t < s.triangle_count; t++) {
-        if (c.starts.triangles[t] == TRIANGLE_CLEAN && height(t) > -0.8) start_states_taint(&c.starts, t);
+        if (c.starts.triangles[t] == TRIANGLE_CLEAN && height_of(t) > -0.8) start_states_taint(&c.starts, t);
     }
     start_states_end(&c.starts, s.x0, (bool[1]){false});
-    uint32_t remnant = count(&c, TRIANGLE_CLEAN, -2, 2), cap = count(&c, TRIANGLE_FREE, 0.7, 2);
+    uint32_t remnant = count_between(&c, TRIANGLE_CLEAN, -2, 2),
+             cap = count_between(&c, TRIANGLE_FREE, 0.7, 2);
     assert_true(remnant > 0 && remnant < cap);
     check_with_belt(&c, -0.8, 0.7);
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, 0.7, 2), cap);
-    assert_int_equal(count(&c, TRIANGLE_FREE, -2, -0.8), remnant);
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, -2, 2), c.starts.of[0].clean);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, 0.7, 2), cap);
+    assert_int_equal(count_between(&c, TRIANGLE_FREE, -2, -0.8), remnant);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), c.starts.of[0].clean);
     states_destroy(&c);
 }
 
@@ -134,15 +137,16 @@ static void states_follow_positions(void **state) {
 }
 
 /* The caller's word fills in what is not known, not what is known to be otherwise; a check takes it back. */
-static void vouching(void **state) {
+static void vouching_fills_in(void **state) {
     (void)state;
     states c = states_of_sphere(1);
     start_states_vouch(&c.starts);
-    assert_int_equal(count(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
+    assert_int_equal(count_between(&c, TRIANGLE_CLEAN, -2, 2), s.triangle_count);
     check_with_belt(&c, 0.3, 0.7);
-    assert_true(count(&c, TRIANGLE_FREE, 0.7, 2) > 0);
+    assert_true(count_between(&c, TRIANGLE_FREE, 0.7, 2) > 0);
     start_states_vouch(&c.starts);
-    assert_true(count(&c, TRIANGLE_FREE, 0.7, 2) > 0 && count(&c, TRIANGLE_CROSSING, -2, 2) > 0);
+    assert_true(count_between(&c, TRIANGLE_FREE, 0.7, 2) > 0 &&
+                count_between(&c, TRIANGLE_CROSSING, -2, 2) > 0);
     states_destroy(&c);
 }
 
@@ -228,7 +232,7 @@ int main(void) {
         cmocka_unit_test(clean_spreads_through_what_has_healed),
         cmocka_unit_test(a_larger_patch_replaces_a_remnant),
         cmocka_unit_test(states_follow_positions),
-        cmocka_unit_test(vouching),
+        cmocka_unit_test(vouching_fills_in),
         cmocka_unit_test(checks_in_vain_wait),
         cmocka_unit_test(a_tip_through_the_floor),
         cmocka_unit_test(same_bits_for_any_thread_count),

@@ -46,7 +46,7 @@ typedef struct trap_result {
     cscd_counters counters;
 } trap_result;
 
-static trap_result run(cscd_detector_options options, uint32_t k) {
+static trap_result run_trap(cscd_detector_options options, uint32_t k) {
     trap_result out = {.earliest = INFINITY};
     rig r = rig_create(&s, 1, NULL);
     cscd_plan *plan = NULL;
@@ -77,10 +77,10 @@ static cscd_detector_options with_mode(cscd_method method, cscd_mode mode) {
 
 /* Mode all equals no culling; mode earliest has the same first contact; one region and several. */
 static void check_first_contact(cscd_reason expected) {
-    trap_result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    trap_result truth = run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     for (uint32_t k = 0; k <= 4; k++) {
-        trap_result all = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_ALL), k);
-        trap_result earliest = run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k);
+        trap_result all = run_trap(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_ALL), k);
+        trap_result earliest = run_trap(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k);
         assert_int_equal(all.count, truth.count);
         assert_true(isinf(truth.earliest) == isinf(earliest.earliest));
         if (truth.count > 0) assert_true(fabs(earliest.earliest - truth.earliest) <= 1e-9);
@@ -105,10 +105,10 @@ static void pentagrammic_bipyramid(void **state) {
     for (uint32_t i = 0; i < s.vertex_count * 3; i++) s.x1[i] *= 1.1;
     cscd_detector_options vouched = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
     vouched.start = CSCD_START_VOUCHED;
-    trap_result trusting = run(vouched, 0);
+    trap_result trusting = run_trap(vouched, 0);
     assert_int_equal(trusting.counters.plus, s.triangle_count); /* or this test tests nothing */
     check_first_contact(CSCD_REASON_CROSSING);
-    assert_true(run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > trusting.count);
+    assert_true(run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > trusting.count);
 }
 
 /* An open sheet, rolled up about its axis: all S+, and its layers touch. */
@@ -126,7 +126,7 @@ static void rolled_sheet(void **state) {
         q[1] = narrow * sin(angle);
         q[2] = y;
     }
-    assert_true(run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > 0);
+    assert_true(run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > 0);
     check_first_contact(CSCD_REASON_SURFACE);
 }
 
@@ -160,7 +160,7 @@ static void vertex_meets_silhouette_edge(void **state) {
     add_horseshoe();
     move_to(2 * 3, -1, 8, 2);
     check_first_contact(CSCD_REASON_EARLIEST);
-    assert_true(fabs(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest - 0.5) <= 1e-9);
+    assert_true(fabs(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest - 0.5) <= 1e-9);
 }
 
 /* The same, past the edge: no contact, and a proof of it. */
@@ -169,7 +169,7 @@ static void vertex_misses_silhouette_edge(void **state) {
     add_horseshoe();
     move_to(2 * 3, 3.0 + 0x1p-40, 8, 2);
     check_first_contact(CSCD_REASON_CLEAN);
-    assert_int_equal(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).count, 0);
+    assert_int_equal(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).count, 0);
 }
 
 /* An arm comes to lie on the other, side on side: all contacts at one time, all degenerate. */
@@ -211,7 +211,7 @@ static void three_sheets_at_one_point(void **state) {
     for (int i = 0; i < 3; i++)
         move_to(nearest_vertex(cos(2.0 * PI * i / 3.0), sin(2.0 * PI * i / 3.0), 0.0), 0, 0, 0);
     check_first_contact(CSCD_REASON_EARLIEST);
-    assert_true(run(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest > 1.0 - 1e-9);
+    assert_true(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest > 1.0 - 1e-9);
 }
 
 /* ---- components ------------------------------------------------------------------------------------ */
@@ -226,10 +226,10 @@ static void inner_grows_through_outer(void **state) {
     scene_add_sphere(&s, origin, 0.5, 6, 8);
     keep_still();
     for (uint32_t i = outer * 3; i < s.vertex_count * 3; i++) s.x1[i] = 3.0 * s.x0[i];
-    trap_result truth = run(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
+    trap_result truth = run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     assert_true(truth.count > 0);
     for (uint32_t k = 0; k <= 4; k++)
-        assert_int_equal(run(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k).count, truth.count);
+        assert_int_equal(run_trap(with_mode(CSCD_METHOD_AUTO, CSCD_MODE_EARLIEST), k).count, truth.count);
     check_first_contact(CSCD_REASON_CLEAN);
 }
 
@@ -243,9 +243,9 @@ static void groove_with_minimum_separation(void **state) {
     move_to(2 * 3 + 1, 3.5, 8, 4);
     cscd_detector_options options = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
     options.min_separation = 1.0;
-    trap_result found = run(options, 0);
+    trap_result found = run_trap(options, 0);
     options.method = CSCD_METHOD_BRUTE;
-    trap_result truth = run(options, 0);
+    trap_result truth = run_trap(options, 0);
     assert_true(found.count > 0 && found.count == truth.count && found.earliest == truth.earliest);
     assert_int_equal(found.guarantee.reason, CSCD_REASON_METHOD);
     assert_true(found.guarantee.complete && found.counters.plus == 0);
@@ -259,7 +259,7 @@ typedef struct chain {
     uint64_t checks;
 } chain;
 
-static void step(chain *c, const double *start, const double *end, cscd_reason expected) {
+static void step_trap(chain *c, const double *start, const double *end, cscd_reason expected) {
     cscd_contacts found;
     assert_int_equal(cscd_detector_step(c->detector, start, end, &found), CSCD_OK);
     c->checks += cscd_detector_counters(c->detector).static_checks;
@@ -288,7 +288,7 @@ static void one_check_while_clean(void **state) {
         for (uint32_t j = 0; j < s.vertex_count * 3; j++) frames[i][j] = s.x0[j] * (1.0 + 0.01 * i);
     }
     chain c = start_chain(CSCD_START_PROVE);
-    for (int i = 0; i < 19; i++) step(&c, frames[i], frames[i + 1], CSCD_REASON_CLEAN);
+    for (int i = 0; i < 19; i++) step_trap(&c, frames[i], frames[i + 1], CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 1);
     end_chain(&c);
 }
@@ -303,20 +303,21 @@ static void contact_and_recovery(void **state) {
     memcpy(crossing, s.x1, sizeof crossing);
     chain c = start_chain(CSCD_START_PROVE);
     c.detector->starts.share_worth_it = 0.5;
-    step(&c, open, crossing, CSCD_REASON_FINISHED);
-    step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* most triangles stay clean, so the others are */
+    step_trap(&c, open, crossing, CSCD_REASON_FINISHED);
+    step_trap(&c, crossing, crossing,
+              CSCD_REASON_CROSSING); /* most triangles stay clean, so the others are */
     assert_true(cscd_detector_counters(c.detector).plus > 0);
-    step(&c, crossing, open, CSCD_REASON_CROSSING); /* checked at each start */
-    step(&c, open, open, CSCD_REASON_CLEAN);
+    step_trap(&c, crossing, open, CSCD_REASON_CROSSING); /* checked at each start */
+    step_trap(&c, open, open, CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 4);
     end_chain(&c);
 
     c = start_chain(CSCD_START_PROVE);
-    step(&c, open, crossing, CSCD_REASON_FINISHED);
-    step(&c, crossing, crossing, CSCD_REASON_CROSSING); /* too few are clean for culling to pay, */
+    step_trap(&c, open, crossing, CSCD_REASON_FINISHED);
+    step_trap(&c, crossing, crossing, CSCD_REASON_CROSSING); /* too few are clean for culling to pay, */
     assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
-    step(&c, crossing, open, CSCD_REASON_UNPROVEN); /* so the next check waits */
-    step(&c, open, open, CSCD_REASON_CLEAN);
+    step_trap(&c, crossing, open, CSCD_REASON_UNPROVEN); /* so the next check waits */
+    step_trap(&c, open, open, CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 3);
     end_chain(&c);
 }
@@ -326,15 +327,15 @@ static void without_a_proof_nothing_is_culled(void **state) {
     (void)state;
     add_horseshoe();
     chain c = start_chain(CSCD_START_UNKNOWN);
-    step(&c, s.x0, s.x1, CSCD_REASON_UNPROVEN);
+    step_trap(&c, s.x0, s.x1, CSCD_REASON_UNPROVEN);
     assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
     assert_int_equal(cscd_detector_check(c.detector, s.x0, &found), CSCD_OK);
-    step(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
+    step_trap(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
     assert_true(cscd_detector_counters(c.detector).plus > 0);
     assert_int_equal(c.checks, 0);
     end_chain(&c);
     c = start_chain(CSCD_START_VOUCHED);
-    step(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
+    step_trap(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 0);
     end_chain(&c);
 }

@@ -50,7 +50,7 @@ static void place_point(random_stream *random, double out[3]) {
 }
 
 /* Regions of a few triangles here and there, each within a component. */
-static cscd_plan *scatter(const cscd_mesh *mesh, random_stream *random) {
+static cscd_plan *scatter_regions(const cscd_mesh *mesh, random_stream *random) {
     static uint32_t regions[SCENE_TRIANGLES_MAX], numbers[REGIONS_MAX * 8];
     static double points[REGIONS_MAX * 8][3];
     uint32_t per_component = 1 + stream_below(random, REGIONS_MAX), count = 0;
@@ -98,7 +98,7 @@ static ways ways_create(uint64_t seed) {
     assert_int_equal(cscd_context_create(&options, &w.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(w.context, &desc, &w.mesh), CSCD_OK);
     assert_int_equal(cscd_detector_create(w.mesh, NULL, NULL, &w.none), CSCD_OK);
-    w.scattered = scatter(w.mesh, &random);
+    w.scattered = scatter_regions(w.mesh, &random);
     assert_int_equal(cscd_plan_create(w.mesh, q.shape.x0, &plan_options, &w.planned), CSCD_OK);
     for (int i = 0; i < CULLING_COUNT; i++) w.culling[i] = culling_detector(&w, i);
     return w;
@@ -234,7 +234,7 @@ static double half_angle(const uint32_t *t, const double *x, const double p[3]) 
 }
 
 /* Of the component, just outside the middle of its triangle t. */
-static double winding(const cscd_mesh *m, const double *x, uint32_t t) {
+static double winding_number(const cscd_mesh *m, const double *x, uint32_t t) {
     const double *a = x + (size_t)m->triangles[t][0] * 3, *b = x + (size_t)m->triangles[t][1] * 3,
                  *c = x + (size_t)m->triangles[t][2] * 3;
     double u[3], v[3], p[3], sum = 0.0;
@@ -267,7 +267,7 @@ static void check_clean(const cscd_detector *d, const double *x) {
                 assert_false(triangles_intersect(corners, m->triangles[o], x));
         }
         if (d->starts.triangles[t] < TRIANGLE_CLEAN) continue;
-        double number = winding(m, x, t);
+        double number = winding_number(m, x, t);
         if (fabs(number - round(number)) > 0.1) continue; /* another sheet is that near */
         if (isnan(common[component])) common[component] = round(number);
         assert_true(round(number) == common[component]);

@@ -11,12 +11,12 @@
 
 static scene interval; /* large; one test at a time */
 
-static void subtract(const double a[3], const double b[3], double out[3]) {
+static void subtract_points(const double a[3], const double b[3], double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
 /* The largest coordinate of the interval: rounding is relative to it. */
-static double reach(const scene *s) {
+static double reach_of(const scene *s) {
     double largest = 0.0;
     for (uint32_t i = 0; i < s->vertex_count * 3; i++)
         largest = fmax(largest, fmax(fabs(s->x0[i]), fabs(s->x1[i])));
@@ -55,8 +55,8 @@ static void without_a_plan_points_are_means(void **state) {
             mean_of(&r, &interval, interval.x0, c, means[0]);
             mean_of(&r, &interval, interval.x1, c, means[1]);
             for (int k = 0; k < 3; k++) {
-                assert_true(fabs(start[k] - means[0][k]) <= 1e-5 * reach(&interval));
-                assert_true(fabs(end[k] - means[1][k]) <= 1e-5 * reach(&interval));
+                assert_true(fabs(start[k] - means[0][k]) <= 1e-5 * reach_of(&interval));
+                assert_true(fabs(end[k] - means[1][k]) <= 1e-5 * reach_of(&interval));
             }
         }
         rig_destroy(&r);
@@ -64,7 +64,7 @@ static void without_a_plan_points_are_means(void **state) {
 }
 
 /* (p0 - d) . n of a triangle at a moment, and a size that its rounding is relative to. */
-static double facing(uint32_t t, double time, const double d0[3], const double d1[3], double *size) {
+static double facing_of(uint32_t t, double time, const double d0[3], const double d1[3], double *size) {
     double p[3][3], d[3], a[3], b[3];
     for (int i = 0; i < 3; i++) {
         size_t v = (size_t)interval.triangles[t * 3 + (uint32_t)i] * 3;
@@ -72,8 +72,8 @@ static double facing(uint32_t t, double time, const double d0[3], const double d
             p[i][k] = (1.0 - time) * interval.x0[v + k] + time * interval.x1[v + k];
     }
     for (int k = 0; k < 3; k++) d[k] = p[0][k] - ((1.0 - time) * d0[k] + time * d1[k]);
-    subtract(p[1], p[0], a);
-    subtract(p[2], p[0], b);
+    subtract_points(p[1], p[0], a);
+    subtract_points(p[2], p[0], b);
     double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     *size = sqrt((d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
     return d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
@@ -86,7 +86,7 @@ static uint32_t check_facing(const rig *r, const cscd_plan *plan) {
         double start[3], end[3], size;
         cscd_detector_region_point(r->detector, cscd_plan_triangle_region(plan, t), start, end);
         for (int i = 0; i <= 4 && orientation != 0; i++, checked++) {
-            double sign = facing(t, 0.25 * i, start, end, &size);
+            double sign = facing_of(t, 0.25 * i, start, end, &size);
             assert_true(orientation * sign >= -1e-4 * size);
         }
     }
@@ -116,7 +116,7 @@ static void orientations_are_seen_from_these_points(void **state) {
             cscd_region region = cscd_plan_region(plan, i);
             cscd_detector_region_point(r.detector, i, start, end);
             for (int k = 0; k < 3; k++)
-                assert_true(fabs(start[k] - region.detector_point[k]) <= 1e-5 * reach(&interval));
+                assert_true(fabs(start[k] - region.detector_point[k]) <= 1e-5 * reach_of(&interval));
         }
         checked += check_facing(&r, plan);
         cscd_plan_destroy(plan);

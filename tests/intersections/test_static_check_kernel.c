@@ -13,7 +13,7 @@
 
 enum { BATCH_MAX = 700, BATCHES = 600 };
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(20260405);
     return 0;
@@ -73,7 +73,7 @@ static const uint32_t (*triangles_of_work(void))[3] {
     return (const uint32_t(*)[3])work.triangles;
 }
 
-static bool meets(uint32_t i) {
+static bool do_intersect(uint32_t i) {
     return triangles_intersect(work.triangles[2 * i], work.triangles[2 * i + 1], work.positions);
 }
 
@@ -95,7 +95,7 @@ static void check_batch(uint64_t *apart, uint64_t *open) {
         kept[first[i].a / 2] = true;
     }
     for (uint32_t i = 0; i < work.count; i++) {
-        bool meeting = meets(i);
+        bool meeting = do_intersect(i);
         assert_true(kept[i] || !meeting);
         *apart += !meeting;
         *open += kept[i] && !meeting;
@@ -145,7 +145,7 @@ static void overflow_certifies_nothing(void **state) {
         work.count = BATCH_MAX;
         for (uint32_t j = 0; j < BATCH_MAX; j++) make_pair(i % 2 == 0 ? NEAR : GRID, (int)(j % 3), 0, j);
         for (uint32_t j = 0; j < BATCH_MAX; j++) {
-            if (!meets(j)) continue;
+            if (!do_intersect(j)) continue;
             memmove(work.triangles[2 * meeting], work.triangles[2 * j], 2 * sizeof *work.triangles);
             meeting++;
         }
@@ -201,10 +201,10 @@ static void thin_triangles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(near_pairs, seed),
-        cmocka_unit_test_setup(degenerate_pairs, seed),
-        cmocka_unit_test_setup(overflow_certifies_nothing, seed),
-        cmocka_unit_test_setup(thin_triangles, seed),
+        cmocka_unit_test_setup(near_pairs, seed_random),
+        cmocka_unit_test_setup(degenerate_pairs, seed_random),
+        cmocka_unit_test_setup(overflow_certifies_nothing, seed_random),
+        cmocka_unit_test_setup(thin_triangles, seed_random),
     };
     return cmocka_run_group_tests_name("static_kernel", tests, open_levels, close_levels);
 }

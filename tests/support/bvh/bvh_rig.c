@@ -15,7 +15,7 @@ static void choose_regions(bvh_rig *r, uint32_t region_count) {
                                           : (uint32_t)((uint64_t)t * r->region_count / mesh->triangle_count);
 }
 
-static void build(bvh_rig *r, const double *positions, int axis_count) {
+static void build_trees(bvh_rig *r, const double *positions, int axis_count) {
     uint32_t count = r->mesh->triangle_count;
     double *weights = malloc(count * sizeof *weights), *sizes = calloc(r->region_count, sizeof *sizes);
     assert_true(weights != NULL && sizes != NULL);
@@ -39,7 +39,7 @@ bool bvh_rig_create(const scene *s, bvh_setup setup, bvh_rig *out) {
     cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
     assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
     choose_regions(&r, setup.region_count);
-    build(&r, s->x0, setup.axis_count);
+    build_trees(&r, s->x0, setup.axis_count);
     *out = r;
     return true;
 }

@@ -16,11 +16,11 @@ typedef struct gap_extent {
     long double low, high;
 } gap_extent;
 
-static long double lesser(long double a, long double b) {
+static long double lesser_of(long double a, long double b) {
     return a < b ? a : b;
 }
 
-static long double greater(long double a, long double b) {
+static long double greater_of(long double a, long double b) {
     return a > b ? a : b;
 }
 
@@ -30,8 +30,8 @@ static gap_extent extent_of(const double *x, point_set points, int direction) {
         const double *p = x + (size_t)points.vertices[i] * 3;
         long double value =
             direction < 3 ? p[direction] : along_direction((long double[3]){p[0], p[1], p[2]}, direction);
-        out.low = lesser(out.low, value);
-        out.high = greater(out.high, value);
+        out.low = lesser_of(out.low, value);
+        out.high = greater_of(out.high, value);
     }
     return out;
 }
@@ -41,10 +41,10 @@ static long double gap_along_some(gap_motion m, point_set a, point_set b, int co
     for (int k = 0; k < count && largest <= enough; k++) {
         gap_extent a0 = extent_of(m.x0, a, k), a1 = extent_of(m.x1, a, k);
         gap_extent b0 = extent_of(m.x0, b, k), b1 = extent_of(m.x1, b, k);
-        long double above = lesser(a0.low - b0.high, a1.low - b1.high);
-        long double below = lesser(b0.low - a0.high, b1.low - a1.high);
-        long double gap = greater(above, below);
-        largest = greater(largest, k < 3 ? gap : gap / sqrtl(3.0L));
+        long double above = lesser_of(a0.low - b0.high, a1.low - b1.high);
+        long double below = lesser_of(b0.low - a0.high, b1.low - a1.high);
+        long double gap = greater_of(above, below);
+        largest = greater_of(largest, k < 3 ? gap : gap / sqrtl(3.0L));
     }
     return largest;
 }
