@@ -59,6 +59,11 @@ static void limited_steps_end_before_the_wall(void **state) {
         assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
         assert_true(fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        if (share > 0.4) continue;
+        w.tests = 0; /* half of the motion at most, but times are of the whole motion */
+        assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
+        assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }
     rig_destroy(&r);
 }
