@@ -17,7 +17,7 @@ typedef struct share_recording {
 } share_recording;
 
 /* The body sways, turns at the hips, and walks on: a few edge lengths a frame. */
-static void pose(const body *shape, double t, double *out) {
+static void pose_at(const body *shape, double t, double *out) {
     for (uint32_t v = 0; v < shape->vertex_count; v++) {
         const double *p = shape->positions + (size_t)v * 3;
         double angle = 0.5 * sin(2.0 * t) * p[2], lean = 0.15 * sin(3.0 * t) * p[2] * p[2];
@@ -27,7 +27,7 @@ static void pose(const body *shape, double t, double *out) {
     }
 }
 
-static int record(void **state) {
+static int record_poses(void **state) {
     static share_recording r;
     r.shape = body_of(BODY_FIGURE, TRIANGLE_COUNT);
     cscd_mesh_desc desc = {r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles};
@@ -36,13 +36,13 @@ static int record(void **state) {
     for (int i = 0; i < FRAME_COUNT; i++) {
         r.frames[i] = malloc(r.shape.vertex_count * sizeof(double[3]));
         if (r.frames[i] == NULL) return -1;
-        pose(&r.shape, (double)i / FRAME_COUNT, r.frames[i]);
+        pose_at(&r.shape, (double)i / FRAME_COUNT, r.frames[i]);
     }
     *state = &r;
     return 0;
 }
 
-static int release(void **state) {
+static int release_recording(void **state) {
     share_recording *r = *state;
     for (int i = 0; i < FRAME_COUNT; i++) free(r->frames[i]);
     cscd_mesh_destroy(r->mesh);
@@ -57,7 +57,7 @@ typedef struct totals {
     bool all_clean;
 } totals;
 
-static totals replay(const share_recording *r, cscd_method method, cscd_mode mode) {
+static totals replay_poses(const share_recording *r, cscd_method method, cscd_mode mode) {
     totals sum = {.all_clean = true};
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
@@ -83,12 +83,12 @@ static totals replay(const share_recording *r, cscd_method method, cscd_mode mod
 
 static void a_quarter_of_the_pairs(void **state) {
     const share_recording *r = *state;
-    totals none = replay(r, CSCD_METHOD_NONE, CSCD_MODE_ALL);
+    totals none = replay_poses(r, CSCD_METHOD_NONE, CSCD_MODE_ALL);
     assert_int_equal(none.contacts, 0);
     static const cscd_method methods[2] = {CSCD_METHOD_SINGLE, CSCD_METHOD_CHARGE};
     for (int i = 0; i < 4; i++) {
         cscd_mode mode = i < 2 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
-        totals culled = replay(r, methods[i % 2], mode);
+        totals culled = replay_poses(r, methods[i % 2], mode);
         print_message("  %s, %s: %.1f %% of %llu pairs\n", cscd_method_name(methods[i % 2]),
                       cscd_mode_name(mode), 100.0 * (double)culled.pairs / (double)none.pairs,
                       (unsigned long long)none.pairs);
@@ -101,5 +101,5 @@ static void a_quarter_of_the_pairs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_quarter_of_the_pairs)};
-    return cmocka_run_group_tests_name("culling_share", tests, record, release);
+    return cmocka_run_group_tests_name("culling_share", tests, record_poses, release_recording);
 }
