@@ -13,6 +13,8 @@ CSCD_QUERIES=$BUILD/benchmarks/queries
 CSCD_METHODS=$BUILD/benchmarks/methods
 export CSCD_TOOL CSCD_MODELS CSCD_QUERIES CSCD_METHODS
 
+[ $# -gt 0 ] || { echo 'run.sh: no test program is named, so nothing is tested (does ONLY name one?)' >&2; exit 1; }
+
 logs=$(mktemp -d) || exit 1
 trap 'rm -rf "$logs"' EXIT
 passed=0

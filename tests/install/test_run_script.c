@@ -57,6 +57,12 @@ static void silence_is_a_failure(void **state) {
     expect_text(run_script(1, "", "/no-such-program"), "0 passed, 1 failed\n");
 }
 
+static void no_program_is_a_failure(void **state) {
+    (void)state;
+    char *printed = shell_output(1, "BUILD='%s' tests/run.sh 2>&1", folder.path);
+    expect_text(printed, "nothing is tested");
+}
+
 static void named_recordings_must_be_there(void **state) {
     (void)state;
     char data[512];
@@ -87,6 +93,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(totals_are_added_up, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(silence_is_a_failure, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(no_program_is_a_failure, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(named_recordings_must_be_there, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(slowest_programs_are_listed, make_folder, remove_folder),
     };
