@@ -185,7 +185,7 @@ static uint32_t taint_by_contacts(const step_work *work) {
  * that want them all are found (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->detector;
-    if (!work->any_culled) return CSCD_OK;
+    if (!work->any_culled || d->traits->loses_contacts) return CSCD_OK;
     work->search.interval.closing_pass = true;
     for (;;) {
         double since = timer_now_ms();
