@@ -31,7 +31,7 @@ typedef struct recorded_triangles {
     size_t count, capacity;
 } recorded_triangles;
 
-typedef struct recording {
+typedef struct interval_recording {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
@@ -41,7 +41,7 @@ typedef struct recording {
     recorded_pairs of_kind[2];
     contact_lane *lane;
     size_t left; /* after what was timed last */
-} recording;
+} interval_recording;
 
 /* ---- recording --------------------------------------------------------------------------------------- */
 
@@ -70,14 +70,14 @@ static bool record_triangles(recorded_triangles *to, const traversal_lane *batch
     return true;
 }
 
-static uint32_t triangle_chunk(const recording *r, size_t i) {
+static uint32_t triangle_chunk(const interval_recording *r, size_t i) {
     return (uint32_t)(r->triangles.count - i < TRIANGLE_CHUNK ? r->triangles.count - i : TRIANGLE_CHUNK);
 }
 
 /* As a step does where nothing is culled, except for orphan pairs. Takes the pairs out of the queue before it is
  * full.
  */
-static bool record_pairs(recording *r) {
+static bool record_pairs(interval_recording *r) {
     traversal *t = &r->detector->space.traversal;
     bool good = true, more = true;
     traversal_begin(t, &r->detector->space.bvh, TRAVERSAL_KEPT);
@@ -94,7 +94,7 @@ static bool record_pairs(recording *r) {
     return good;
 }
 
-static bool open_recording(recording *r, io_error *error) {
+static bool open_recording(interval_recording *r, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_NONE;
     cscd_mesh_desc desc = {r->start.vertex_count, r->start.triangle_count, r->start.triangles};
@@ -118,7 +118,7 @@ static bool open_recording(recording *r, io_error *error) {
     return record_pairs(r) || io_fail(error, "out of memory");
 }
 
-static void close_recording(recording *r) {
+static void close_recording(interval_recording *r) {
     cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
@@ -134,7 +134,7 @@ static void close_recording(recording *r) {
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
 /* Representatives, feature_filter, queue; what is in the queue then is dropped. */
-static void feature_filter(recording *r, cscd_contact_kind kind) {
+static void feature_filter(interval_recording *r, cscd_contact_kind kind) {
     (void)kind;
     for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
         narrow_phase_test(&r->interval, r->triangles.pairs + i, triangle_chunk(r, i), r->lane);
@@ -142,7 +142,7 @@ static void feature_filter(recording *r, cscd_contact_kind kind) {
     }
 }
 
-static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list, bool signs_only) {
+static void decide_list(interval_recording *r, cscd_contact_kind kind, feature_list *list, bool signs_only) {
     const ccd_kernels *table = ccd_kernels_of(r->context);
     feature_source source = swept_interval_source(&r->interval);
     feature_pairs pairs = {list->a, list->b, list->count};
@@ -155,7 +155,7 @@ static void decide_list(recording *r, cscd_contact_kind kind, feature_list *list
     r->left += pairs.count;
 }
 
-static void decide_in_batches(recording *r, cscd_contact_kind kind, size_t size, bool signs_only) {
+static void decide_in_batches(interval_recording *r, cscd_contact_kind kind, size_t size, bool signs_only) {
     const recorded_pairs *pairs = &r->of_kind[kind];
     feature_list *list = &r->lane->queue[kind];
     r->left = 0;
@@ -168,15 +168,15 @@ static void decide_in_batches(recording *r, cscd_contact_kind kind, size_t size,
     }
 }
 
-static void by_signs(recording *r, cscd_contact_kind kind) {
+static void by_signs(interval_recording *r, cscd_contact_kind kind) {
     decide_in_batches(r, kind, CHUNK, true);
 }
 
-static void by_all(recording *r, cscd_contact_kind kind) {
+static void by_all(interval_recording *r, cscd_contact_kind kind) {
     decide_in_batches(r, kind, CHUNK, false);
 }
 
-static void one_by_one(recording *r, cscd_contact_kind kind) {
+static void one_by_one(interval_recording *r, cscd_contact_kind kind) {
     decide_in_batches(r, kind, 1, false);
 }
 
@@ -189,8 +189,8 @@ static double processor_ns(void) {
 }
 
 /* Per each of count pairs. */
-static double time_pairs(recording *r, cscd_contact_kind kind, size_t count,
-                         void (*decide)(recording *, cscd_contact_kind)) {
+static double time_pairs(interval_recording *r, cscd_contact_kind kind, size_t count,
+                         void (*decide)(interval_recording *, cscd_contact_kind)) {
     double least = 1e300;
     for (int i = 0; i < REPEATS; i++) {
         contact_lane_reset(r->lane);
@@ -206,11 +206,11 @@ static double percent_of(uint64_t part, size_t whole) {
     return whole > 0 ? 100.0 * (double)part / (double)whole : 0.0;
 }
 
-static void use_level(recording *r, cscd_simd level) {
+static void use_level(interval_recording *r, cscd_simd level) {
     r->context->simd = level;
 }
 
-static void print_triangles(recording *r) {
+static void print_triangles(interval_recording *r) {
     cscd_simd best = r->context->simd;
     size_t pairs = r->triangles.count, left = r->of_kind[0].count + r->of_kind[1].count;
     puts("ns per pair of triangles      pairs    feature_filter");
@@ -222,7 +222,7 @@ static void print_triangles(recording *r) {
     printf("    leaves %.2f of 15 pairs of features\n\n", (double)left / (double)(pairs > 0 ? pairs : 1));
 }
 
-static void print_kind(recording *r, cscd_contact_kind kind) {
+static void print_kind(interval_recording *r, cscd_contact_kind kind) {
     size_t pairs = r->of_kind[kind].count, open = 0;
     const char *name = cscd_contact_kind_name(kind);
     cscd_simd best = r->context->simd;
@@ -242,7 +242,7 @@ static void print_kind(recording *r, cscd_contact_kind kind) {
 }
 
 int main(int argument_count, char **arguments) {
-    recording r = {0};
+    interval_recording r = {0};
     io_error error = {""};
     if (argument_count != 3) {
         fputs(help, stderr);

@@ -16,16 +16,16 @@ typedef struct path_list {
     size_t count;
 } path_list;
 
-/* A way to record frames; source is the handle of its reader. */
-typedef struct recording {
+/* Reads frames that are recorded in one way; source is the handle of the open reader. */
+typedef struct animation_reader {
     bool (*open)(path_list list, uint32_t vertex_count, void **source, io_error *error);
     uint32_t (*frame_count)(const void *source);
     bool (*read)(void *source, uint32_t frame, double *positions, io_error *error);
     void (*close)(void *source);
-} recording;
+} animation_reader;
 
 struct animation {
-    const recording *recording;
+    const animation_reader *reader;
     void *source;
     char name[]; /* the first path */
 };
@@ -86,7 +86,7 @@ static void close_files(void *source) {
 
 enum { POINT_CACHE, FILE_PATTERN, FILE_FOLDER, FILE_LIST };
 
-static const recording recordings[] = {
+static const animation_reader readers[] = {
     [POINT_CACHE] = {open_cache, count_cache, read_cache, close_cache},
     [FILE_PATTERN] = {open_pattern, count_files, read_files, close_files},
     [FILE_FOLDER] = {open_folder, count_files, read_files, close_files},
@@ -96,35 +96,35 @@ static const recording recordings[] = {
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
 /* NULL after an error. A path that exists is taken as it is, even if it holds a percent sign. */
-static const recording *choose_recording(path_list list, io_error *error) {
+static const animation_reader *choose_reader(path_list list, io_error *error) {
     if (list.count == 0) {
         io_fail(error, "no animation given: expected a .pc2 or .mdd file, a pattern such as f_%%04d.obj, "
                        "a folder, or mesh files");
         return NULL;
     }
-    if (list.count > 1) return &recordings[FILE_LIST];
+    if (list.count > 1) return &readers[FILE_LIST];
     const char *path = list.paths[0];
     struct stat status;
     if (stat(path, &status) != 0) {
-        if (strchr(path, '%') != NULL) return &recordings[FILE_PATTERN];
+        if (strchr(path, '%') != NULL) return &readers[FILE_PATTERN];
         io_fail(error, "%s: cannot open: %s", path, strerror(errno));
         return NULL;
     }
-    if (S_ISDIR(status.st_mode)) return &recordings[FILE_FOLDER];
-    return &recordings[S_ISREG(status.st_mode) && point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
+    if (S_ISDIR(status.st_mode)) return &readers[FILE_FOLDER];
+    return &readers[S_ISREG(status.st_mode) && point_cache_recognise(path) ? POINT_CACHE : FILE_LIST];
 }
 
 bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
                     io_error *error) {
     const path_list list = {paths, path_count};
-    const recording *chosen = choose_recording(list, error);
+    const animation_reader *chosen = choose_reader(list, error);
     if (chosen == NULL) return false;
     if (vertex_count == 0)
         return io_fail(error, "%s: the model has no vertices, expected at least 1", paths[0]);
     const size_t name_size = strlen(paths[0]) + 1;
     animation *opened = io_realloc(NULL, sizeof *opened + name_size);
     if (opened == NULL) return io_fail(error, "%s: out of memory", paths[0]);
-    opened->recording = chosen;
+    opened->reader = chosen;
     memcpy(opened->name, paths[0], name_size);
     if (!chosen->open(list, vertex_count, &opened->source, error)) {
         free(opened);
@@ -136,12 +136,12 @@ bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex
 
 void animation_close(animation *opened) {
     if (opened == NULL) return;
-    opened->recording->close(opened->source);
+    opened->reader->close(opened->source);
     free(opened);
 }
 
 uint32_t animation_frame_count(const animation *opened) {
-    return opened->recording->frame_count(opened->source);
+    return opened->reader->frame_count(opened->source);
 }
 
 bool animation_read(animation *opened, uint32_t frame, double *positions, io_error *error) {
@@ -149,5 +149,5 @@ bool animation_read(animation *opened, uint32_t frame, double *positions, io_err
     if (frame >= count)
         return io_fail(error, "%s: no frame %" PRIu32 ", expected one from 0 to %" PRIu32, opened->name,
                        frame, count - 1);
-    return opened->recording->read(opened->source, frame, positions, error);
+    return opened->reader->read(opened->source, frame, positions, error);
 }

@@ -26,7 +26,7 @@ static cscd_context *make_context(uint32_t thread_count) {
     return cscd_context_create(&options, &context) == CSCD_OK ? context : NULL;
 }
 
-static void *work(void *argument) {
+static void *run_worker(void *argument) {
     worker *w = argument;
     for (int i = 0; i < ROUNDS; i++) {
         cscd_context *context = make_context(w->thread_count);
@@ -38,9 +38,9 @@ static void *work(void *argument) {
 }
 
 /* All at once give what each alone gives. */
-static void compare(worker workers[HOSTS]) {
+static void compare_with_alone(worker workers[HOSTS]) {
     for (int i = 0; i < HOSTS; i++)
-        assert_int_equal(pthread_create(&workers[i].thread, NULL, work, &workers[i]), 0);
+        assert_int_equal(pthread_create(&workers[i].thread, NULL, run_worker, &workers[i]), 0);
     for (int i = 0; i < HOSTS; i++) assert_int_equal(pthread_join(workers[i].thread, NULL), 0);
     for (int i = 0; i < HOSTS; i++) {
         cscd_context *context = make_context(1);
@@ -76,7 +76,7 @@ static void steps_and_checks(void **state) {
         workers[i].work.options.method = i == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
         workers[i].work.plan = i == 2 ? CSCD_METHOD_KMEANS : CSCD_METHOD_AUTO;
     }
-    compare(workers);
+    compare_with_alone(workers);
     free(workers);
     free(shapes);
 }
@@ -94,7 +94,7 @@ static void plans_by_charge(void **state) {
     }
     for (int count = 1; count <= 2; count++) {
         if (counts) openblas_set_num_threads(count);
-        compare(workers);
+        compare_with_alone(workers);
         if (counts) assert_int_equal(openblas_get_num_threads(), count);
     }
     if (counts) openblas_set_num_threads(threads);

@@ -89,7 +89,7 @@ static const uint32_t counts[] = {1, 3};
 static const uint32_t counts[] = {1, 2, 3, 8};
 #endif
 
-static void compare(const workload *w) {
+static void compare_loops(const workload *w) {
     static workload_result expected, found;
     expected = run_with(1, (cscd_parallel_for){NULL, NULL}, w);
     for (uint32_t i = 0; i < sizeof counts / sizeof *counts; i++) {
@@ -113,7 +113,7 @@ static void steps_are_the_same(void **state) {
     for (uint32_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         workload w = {.sequence = &q, .options = cscd_detector_defaults()};
         w.options.method = method_or_none(methods[i]);
-        compare(&w);
+        compare_loops(&w);
     }
 }
 
@@ -123,7 +123,7 @@ static void plans_are_the_same(void **state) {
     workload_tube(&q, 36, 18, 1);
     workload w = {.sequence = &q, .plan = CSCD_METHOD_CHARGE, .options = cscd_detector_defaults()};
     assert_true(q.shape.triangle_count > 3 * 256); /* several panels */
-    compare(&w);
+    compare_loops(&w);
 }
 
 /* ---- the context --------------------------------------------------------------------------------------- */

@@ -26,7 +26,7 @@ typedef struct watcher {
     size_t bytes; /* held after the last cancelled call */
 } watcher;
 
-static bool watch(void *user, const char *stage, double fraction) {
+static bool watch_progress(void *user, const char *stage, double fraction) {
     watcher *w = user;
     double now = timer_now_ms();
     if (w->reports > 0) w->closest_ms = fmin(w->closest_ms, now - w->last_ms);
@@ -74,7 +74,7 @@ static cscd_context *make_context(uint32_t thread_count, watcher *w, counting_al
     options.allocator = counting_allocator_interface(counter);
     if (w != NULL) {
         *w = (watcher){.thread = pthread_self(), .cancel_at = 1, .every = UINT32_MAX, .closest_ms = INFINITY};
-        options.progress = (cscd_progress){watch, w};
+        options.progress = (cscd_progress){watch_progress, w};
     }
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
     return context;
@@ -99,7 +99,7 @@ static void expect_equal(const workload_result *found, const workload_result *ex
 }
 
 /* Against a context whose calls nobody interrupts, or watches. */
-static workload_result interrupt(uint32_t thread_count, uint32_t every, workload w) {
+static workload_result check_interrupted(uint32_t thread_count, uint32_t every, workload w) {
     static workload_result found, expected;
     counting_allocator counter;
     watcher host;
@@ -140,9 +140,9 @@ static void culling_goes_on(void **state) {
     for (uint64_t seed = 0; seed < 6; seed++) {
         sequence_make(seed % 3 == 2 ? SEQUENCE_GRID : SEQUENCE_SCENE, seed + 20, 14, &q);
         cscd_mode mode = seed % 2 == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
-        workload_result found =
-            interrupt(seed % 2 == 0 ? 1 : 3, UINT32_MAX,
-                      (workload){.options = of_method(CSCD_METHOD_SINGLE, mode, starts[seed / 2 % 3])});
+        workload_result found = check_interrupted(
+            seed % 2 == 0 ? 1 : 3, UINT32_MAX,
+            (workload){.options = of_method(CSCD_METHOD_SINGLE, mode, starts[seed / 2 % 3])});
         contacts += found.contacts;
         culled += found.culled;
     }
@@ -156,7 +156,7 @@ static void other_methods_go_on(void **state) {
     (void)state;
     for (uint64_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         sequence_make(SEQUENCE_SCENE, i + 40, 8, &q);
-        interrupt(
+        check_interrupted(
             i % 2 == 0 ? 1 : 3, UINT32_MAX,
             (workload){.options = of_method(method_or_none(methods[i]), CSCD_MODE_ALL, CSCD_START_PROVE)});
     }
@@ -167,14 +167,14 @@ static void separation_goes_on(void **state) {
     (void)state;
     options.min_separation = 0.02;
     sequence_make(SEQUENCE_SCENE, 3, 6, &q);
-    interrupt(1, UINT32_MAX, (workload){.options = options});
+    check_interrupted(1, UINT32_MAX, (workload){.options = options});
 }
 
 static void brute_force_goes_on(void **state) {
     (void)state;
     sequence_make(SEQUENCE_GRID, 5, 4, &q);
-    interrupt(1, UINT32_MAX,
-              (workload){.options = of_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, CSCD_START_PROVE)});
+    check_interrupted(1, UINT32_MAX,
+                      (workload){.options = of_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, CSCD_START_PROVE)});
 }
 
 /* A pleated sheet that is pulled flat, so that its trees are rebuilt in a call that is cancelled. */
@@ -195,7 +195,7 @@ static void rebuilding_goes_on(void **state) {
             x[2] = (fold < PLEAT ? fold : 2.0 * PLEAT - fold) * sin(angle);
         }
     }
-    workload_result found = interrupt(
+    workload_result found = check_interrupted(
         1, UINT32_MAX, (workload){.options = of_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, CSCD_START_PROVE)});
     assert_true(found.rebuilds > 0);
 }
@@ -205,9 +205,9 @@ static void large_meshes_go_on(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads < 4; threads += 2) {
         workload_tube(&q, 36, 18, 5);
-        workload_result found =
-            interrupt(threads, 4,
-                      (workload){.options = of_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, CSCD_START_PROVE)});
+        workload_result found = check_interrupted(
+            threads, 4,
+            (workload){.options = of_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, CSCD_START_PROVE)});
         assert_true(found.contacts > 0);
     }
 }
@@ -221,9 +221,9 @@ static void plans_go_on(void **state) {
         scene_clear(&q.shape);
         scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
         q.frame_count = 1;
-        interrupt(1 + i / 2, UINT32_MAX,
-                  (workload){.plan = methods[i % 2],
-                             .options = of_method(methods[i % 2], CSCD_MODE_ALL, CSCD_START_PROVE)});
+        check_interrupted(1 + i / 2, UINT32_MAX,
+                          (workload){.plan = methods[i % 2],
+                                     .options = of_method(methods[i % 2], CSCD_MODE_ALL, CSCD_START_PROVE)});
     }
 }
 

@@ -39,7 +39,7 @@ static numbers random_numbers(random_stream *random) {
 }
 
 /* As many lanes equal as not. */
-static numbers like(random_stream *random, numbers a) {
+static numbers half_equal_numbers(random_stream *random, numbers a) {
     for (int i = 0; i < LANES; i++) a.x[i] = stream_below(random, 2) == 0 ? a.x[i] : random_number(random);
     return a;
 }
@@ -78,7 +78,7 @@ static void on_all_levels(void (*check)(const simd_operations *, random_stream *
 
 static void check_floats(const simd_operations *o, random_stream *random) {
     numbers wide = random_numbers(random);
-    floats a = to_floats(wide), b = to_floats(like(random, wide)), least, greatest, size;
+    floats a = to_floats(wide), b = to_floats(half_equal_numbers(random, wide)), least, greatest, size;
     o->f32_min(a.x, b.x, least.x);
     o->f32_max(a.x, b.x, greatest.x);
     o->f32_abs(a.x, size.x);
@@ -150,7 +150,8 @@ static void check_min_max(binary *min, binary *max, comparison *below, numbers a
 }
 
 static void check_doubles(const simd_operations *o, random_stream *random) {
-    numbers a = random_numbers(random), b = like(random, a), size, wide_size, root, chosen, same;
+    numbers a = random_numbers(random), b = half_equal_numbers(random, a), size, wide_size, root, chosen,
+            same;
     uint32_t lanes = (uint32_t)stream_bits(random) & 255, at_most = o->f64w_at_most(a.x, b.x);
     check_min_max(o->f64_min, o->f64_max, o->f64_below, a, b);
     check_min_max(o->f64w_min, o->f64w_max, o->f64w_below, a, b);

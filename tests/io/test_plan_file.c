@@ -50,7 +50,7 @@ static cscd_mesh *mesh_of(cscd_context *context, const recorded *shape) {
     return mesh;
 }
 
-static saved save(recorded shape, cscd_method method) {
+static saved save_plan(recorded shape, cscd_method method) {
     saved s = {.shape = shape, .path = temp_file_path(&folder, "a.plan.ply")};
     assert_int_equal(cscd_context_create(NULL, &s.context), CSCD_OK);
     s.mesh = mesh_of(s.context, &shape);
@@ -108,10 +108,10 @@ static void comes_back_bit_for_bit(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_CHARGE, CSCD_METHOD_KMEANS, CSCD_METHOD_SINGLE};
     for (int shape = 0; shape < 3; shape++) {
         for (int i = 0; i < 3; i++) {
-            saved s = save(shape == 0   ? recorded_torus(24, 12)
-                           : shape == 1 ? recorded_cube(false)
-                                        : recorded_fold(16, 4, 1),
-                           methods[i]);
+            saved s = save_plan(shape == 0   ? recorded_torus(24, 12)
+                                : shape == 1 ? recorded_cube(false)
+                                             : recorded_fold(16, 4, 1),
+                                methods[i]);
             cscd_plan *plan = read_back(&s);
             assert_same_plan(s.mesh, s.plan, plan);
             assert_true(plan_file_is_plan(s.path.text));
@@ -123,7 +123,7 @@ static void comes_back_bit_for_bit(void **state) {
 
 static void reads_as_a_mesh(void **state) {
     (void)state;
-    saved s = save(recorded_cube(true), CSCD_METHOD_CHARGE);
+    saved s = save_plan(recorded_cube(true), CSCD_METHOD_CHARGE);
     mesh_file mesh = {0};
     io_error error = {""};
     if (!mesh_file_read(s.path.text, &mesh, &error)) fail_msg("%s", error.text);
@@ -162,7 +162,7 @@ static void expect_other_mesh(saved *s, recorded other, const char *const *texts
 
 static void another_mesh_is_refused(void **state) {
     (void)state;
-    saved s = save(recorded_cube(false), CSCD_METHOD_SINGLE);
+    saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     expect_other_mesh(
         &s, recorded_cube(true),
         TEXTS("another mesh: it has 12 vertices and 16 triangles, expected 28 and 16", "the same --weld"));
@@ -180,7 +180,7 @@ static void another_mesh_is_refused(void **state) {
 
 static void nothing_to_read_is_refused(void **state) {
     (void)state;
-    saved s = save(recorded_cube(false), CSCD_METHOD_SINGLE);
+    saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     temp_path mesh = recorded_write_mesh(&folder, "mesh.ply", &s.shape, 0);
     expect_refused(&s, temp_file_path(&folder, "none.ply").text, TEXTS("No such file"));
     expect_refused(&s, folder.path, TEXTS("directory"));
@@ -194,7 +194,7 @@ static void nothing_to_read_is_refused(void **state) {
 /* Every prefix of the file is refused: in the header with a line, behind it with a byte or a number. */
 static void every_truncation_is_refused(void **state) {
     (void)state;
-    saved s = save(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
+    saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size;
     char *bytes = read_whole_file(s.path.text, &size), *end = strstr(bytes, "end_header");
     for (size_t cut = 0; cut < size; cut++) {
@@ -210,7 +210,7 @@ static void every_truncation_is_refused(void **state) {
 /* Refused, or a plan whose numbers are all in range: no bit of the file makes anything worse. */
 static void every_flipped_bit_is_survived(void **state) {
     (void)state;
-    saved s = save(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
+    saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
     size_t size;
     char *bytes = read_whole_file(s.path.text, &size);
     for (size_t i = 0; i < size * 8; i++) {
@@ -259,7 +259,7 @@ static temp_path write_text(const saved *s, const char *text) {
     return temp_file_write(&folder, "text.ply", bytes, (size_t)size);
 }
 
-static saved tetrahedron(void) {
+static saved tetrahedron_mesh(void) {
     static const uint32_t triangles[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     saved s = {.shape = {.vertex_count = 4, .triangle_count = 4}};
     s.shape.triangles = malloc(sizeof triangles);
@@ -271,7 +271,7 @@ static saved tetrahedron(void) {
 
 static void text_is_read_too(void **state) {
     (void)state;
-    saved s = tetrahedron();
+    saved s = tetrahedron_mesh();
     s.path = write_text(&s, HEADER VERTICES FACES REST);
     cscd_plan *plan = read_back(&s);
     assert_int_equal(cscd_plan_region_count(plan), 1);
@@ -282,7 +282,7 @@ static void text_is_read_too(void **state) {
 }
 
 static void expect_all_refused(const char *const (*cases)[3], size_t count) {
-    saved s = tetrahedron();
+    saved s = tetrahedron_mesh();
     for (size_t i = 0; i < count; i++) {
         temp_path path = write_text(&s, cases[i][0]);
         expect_refused(&s, path.text, TEXTS(cases[i][1], cases[i][2]));
@@ -350,7 +350,7 @@ static void bad_rows_are_refused(void **state) {
 
 static void memory_that_runs_out_is_an_error(void **state) {
     (void)state;
-    saved s = save(recorded_cube(false), CSCD_METHOD_CHARGE);
+    saved s = save_plan(recorded_cube(false), CSCD_METHOD_CHARGE);
     int failures = 0;
     for (bool read = false; !read; failures++) {
         cscd_plan *plan = NULL;
@@ -367,7 +367,7 @@ static void memory_that_runs_out_is_an_error(void **state) {
 
 static void what_cannot_be_written_is_not_left(void **state) {
     (void)state;
-    saved s = save(recorded_cube(false), CSCD_METHOD_SINGLE);
+    saved s = save_plan(recorded_cube(false), CSCD_METHOD_SINGLE);
     uint8_t colours[48] = {0};
     io_error error = {""};
     temp_path nowhere = temp_file_path(&folder, "no/such.ply");

@@ -47,14 +47,14 @@ static void put_value(byte_writer *writer, char type, double value) {
 }
 
 /* One value a letter: c, s, i are integers of 1, 2, 4 bytes, f and d float and double. */
-static void put(byte_writer *writer, const char *types, ...) {
+static void put_values(byte_writer *writer, const char *types, ...) {
     va_list values;
     va_start(values, types);
     for (; *types != '\0'; types++) put_value(writer, *types, va_arg(values, double));
     va_end(values);
 }
 
-static byte_writer begin(bool big_endian, const char *lines) {
+static byte_writer begin_file(bool big_endian, const char *lines) {
     byte_writer writer = {.big_endian = big_endian};
     int size = snprintf(writer.bytes, sizeof writer.bytes, "ply\nformat binary_%s_endian 1.0\n%send_header\n",
                         big_endian ? "big" : "little", lines);
@@ -72,23 +72,23 @@ static file_bytes file_of(const byte_writer *writer) {
 #define SQUARE_LINES "element vertex 4\n" XYZ "element face 2\n" CORNERS
 
 static void put_square_vertices(byte_writer *writer) {
-    put(writer, "ffffff", 0., 0., 0., 1., 0., 0.);
-    put(writer, "ffffff", 1., 1., 0., 0., 1., 0.);
+    put_values(writer, "ffffff", 0., 0., 0., 1., 0., 0.);
+    put_values(writer, "ffffff", 1., 1., 0., 0., 1., 0.);
 }
 
-static byte_writer square(bool big_endian) {
-    byte_writer writer = begin(big_endian, SQUARE_LINES);
+static byte_writer square_file(bool big_endian) {
+    byte_writer writer = begin_file(big_endian, SQUARE_LINES);
     put_square_vertices(&writer);
-    put(&writer, "ciiiciii", 3., 0., 1., 2., 3., 0., 2., 3.);
+    put_values(&writer, "ciiiciii", 3., 0., 1., 2., 3., 0., 2., 3.);
     return writer;
 }
 
 static void reads_both_byte_orders(void **state) {
     (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
-        byte_writer writer = square(big_endian);
+        byte_writer writer = square_file(big_endian);
         mesh_check_square(file_of(&writer));
-        put(&writer, "cc", 0., (double)'\n'); /* padding */
+        put_values(&writer, "cc", 0., (double)'\n'); /* padding */
         mesh_check_square(file_of(&writer));
     }
 }
@@ -107,11 +107,11 @@ static void reads_all_types(void **state) {
                  "element face 1\nproperty list int %s vertex_index\n",
                  index_types[i]);
         for (int big_endian = 0; big_endian < 2; big_endian++) {
-            byte_writer writer = begin(big_endian, lines);
+            byte_writer writer = begin_file(big_endian, lines);
             char types[] = "i???";
             memset(types + 1, index_letters[i], 3);
-            put(&writer, "fdcfdcfdc", 0.1, 0.1, -128., 255., -1.0 / 3, 127., 1., 65535., -1.);
-            put(&writer, types, 3., 2., 1., 0.);
+            put_values(&writer, "fdcfdcfdc", 0.1, 0.1, -128., 255., -1.0 / 3, 127., 1., 65535., -1.);
+            put_values(&writer, types, 3., 2., 1., 0.);
             mesh_check_equal(file_of(&writer), 3, positions, 1, triangles);
         }
     }
@@ -123,10 +123,10 @@ static void reads_integer_coordinates(void **state) {
     static const uint32_t triangles[] = {0, 1, 2};
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         byte_writer writer =
-            begin(big_endian, "element vertex 3\nproperty short x\nproperty ushort y\nproperty uint z\n"
-                              "element face 1\n" CORNERS);
-        put(&writer, "ssissi", -32768., 65535., 4294967295., 32767., 1., 2147483648.);
-        put(&writer, "ssiciii", -1., 0., 3., 3., 0., 1., 2.);
+            begin_file(big_endian, "element vertex 3\nproperty short x\nproperty ushort y\nproperty uint z\n"
+                                   "element face 1\n" CORNERS);
+        put_values(&writer, "ssissi", -32768., 65535., 4294967295., 32767., 1., 2147483648.);
+        put_values(&writer, "ssiciii", -1., 0., 3., 3., 0., 1., 2.);
         mesh_check_equal(file_of(&writer), 3, positions, 1, triangles);
     }
 }
@@ -134,19 +134,19 @@ static void reads_integer_coordinates(void **state) {
 static void skips_what_is_not_the_mesh(void **state) {
     (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
-        byte_writer writer = begin(
+        byte_writer writer = begin_file(
             big_endian, "element a 2\nproperty list short double l\nproperty short s\nelement b 99999999999\n"
                         "element face 1\nproperty double n\n" CORNERS "property list uchar char uv\n"
                         "element c 3\nproperty uchar v\nelement vertex 4\nproperty list int int ring\n" XYZ
                         "property uchar red\nelement d 1\nproperty list ushort float last\n");
-        put(&writer, "sddsss", 2., NAN, 1., 7., 0., 8.);
-        put(&writer, "dciiiiccc", INFINITY, 4., 0., 1., 2., 3., 2., 9., 9.);
-        put(&writer, "ccc", 1., 2., 3.);
-        put(&writer, "iiifffc", 2., 5., 6., 0., 0., 0., 255.);
-        put(&writer, "ifffc", 0., 1., 0., 0., 255.);
-        put(&writer, "ifffc", 0., 1., 1., 0., 255.);
-        put(&writer, "iifffc", 1., 9., 0., 1., 0., 255.);
-        put(&writer, "sfff", 3., 1., 2., 3.);
+        put_values(&writer, "sddsss", 2., NAN, 1., 7., 0., 8.);
+        put_values(&writer, "dciiiiccc", INFINITY, 4., 0., 1., 2., 3., 2., 9., 9.);
+        put_values(&writer, "ccc", 1., 2., 3.);
+        put_values(&writer, "iiifffc", 2., 5., 6., 0., 0., 0., 255.);
+        put_values(&writer, "ifffc", 0., 1., 0., 0., 255.);
+        put_values(&writer, "ifffc", 0., 1., 1., 0., 255.);
+        put_values(&writer, "iifffc", 1., 9., 0., 1., 0., 255.);
+        put_values(&writer, "sfff", 3., 1., 2., 3.);
         mesh_check_square(file_of(&writer));
     }
 }
@@ -166,8 +166,8 @@ static void finds_the_first_byte_of_the_data(void **state) {
             "property char z%selement face 1%sproperty list char char vertex_index%send_header%s",
             e, e, e, e, e, e, e, e, e);
         writer.size = (size_t)size;
-        put(&writer, "ccccccccc", 10., 0., 0., 13., 0., 0., 0., 1., 0.);
-        put(&writer, "cccc", 3., 0., 1., 2.);
+        put_values(&writer, "ccccccccc", 10., 0., 0., 13., 0., 0., 0., 1., 0.);
+        put_values(&writer, "cccc", 3., 0., 1., 2.);
         mesh_check_equal(file_of(&writer), 3, positions, 1, triangles);
     }
 }
@@ -181,11 +181,11 @@ static void check_error_at(const byte_writer *writer, size_t offset, const char 
 
 static void refuses_bad_vertices(void **state) {
     (void)state;
-    byte_writer writer = begin(false, SQUARE_LINES);
-    put(&writer, "ffffff", 0., 0., 0., 1., (double)NAN, 0.);
+    byte_writer writer = begin_file(false, SQUARE_LINES);
+    put_values(&writer, "ffffff", 0., 0., 0., 1., (double)NAN, 0.);
     check_error_at(&writer, 12, "coordinate y of vertex 1 is nan", "finite");
-    writer = begin(true, SQUARE_LINES);
-    put(&writer, "fff", 0., 0., (double)-INFINITY);
+    writer = begin_file(true, SQUARE_LINES);
+    put_values(&writer, "fff", 0., 0., (double)-INFINITY);
     check_error_at(&writer, 0, "coordinate z of vertex 0 is -inf", "finite");
 }
 
@@ -195,9 +195,9 @@ static void check_face_error(const char *corners, size_t offset, const char *fou
     char lines[512];
     snprintf(lines, sizeof lines, "element vertex 4\n" XYZ "element face 2\n%s", corners);
     for (int big_endian = 0; big_endian < 2; big_endian++) {
-        byte_writer writer = begin(big_endian, lines);
+        byte_writer writer = begin_file(big_endian, lines);
         put_square_vertices(&writer);
-        put(&writer, types, length, a, b, c);
+        put_values(&writer, types, length, a, b, c);
         check_error_at(&writer, 48 + offset, found, expected);
     }
 }
@@ -217,35 +217,36 @@ static void refuses_bad_faces(void **state) {
 
 static void refuses_counts_that_do_not_fit(void **state) {
     (void)state;
-    byte_writer writer = square(false);
+    byte_writer writer = square_file(false);
     writer.size -= 1;
     check_error_at(&writer, 73, "file ends inside face 2 of 2", "");
     writer.size = writer.data_start + 30;
     check_error_at(&writer, 30, "file ends inside vertex 3 of 4", "");
-    writer = square(true);
-    put(&writer, "cs", 1., 0.);
+    writer = square_file(true);
+    put_values(&writer, "cs", 1., 0.);
     check_error_at(&writer, 74, "3 bytes follow the last element", "end of the file");
 
-    writer = begin(false, "element vertex 2147483647\n" XYZ "element face 2\n" CORNERS);
+    writer = begin_file(false, "element vertex 2147483647\n" XYZ "element face 2\n" CORNERS);
     put_square_vertices(&writer);
     check_error_at(&writer, 48, "file ends inside vertex 5 of 2147483647", "");
-    writer = begin(false, "element a 1\nproperty list uint double l\n" SQUARE_LINES);
-    put(&writer, "iddd", 4294967295., 1., 2., 3.);
+    writer = begin_file(false, "element a 1\nproperty list uint double l\n" SQUARE_LINES);
+    put_values(&writer, "iddd", 4294967295., 1., 2., 3.);
     check_error_at(&writer, 28, "file ends inside a 1 of 1", "");
-    writer = begin(false, "element vertex 4\n" XYZ "element face 1\nproperty list uint uint vertex_index\n");
+    writer =
+        begin_file(false, "element vertex 4\n" XYZ "element face 1\nproperty list uint uint vertex_index\n");
     put_square_vertices(&writer);
-    put(&writer, "iiii", 4294967295., 1., 2., 3.);
+    put_values(&writer, "iiii", 4294967295., 1., 2., 3.);
     check_error_at(&writer, 64, "file ends inside face 1 of 1", "");
 }
 
 static void survives_damage(void **state) {
     (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
-        byte_writer writer = begin(big_endian, "element e 1\nproperty list uchar short a\n" SQUARE_LINES
-                                               "property uchar red\n");
-        put(&writer, "css", 2., 1., 2.);
+        byte_writer writer = begin_file(big_endian, "element e 1\nproperty list uchar short a\n" SQUARE_LINES
+                                                    "property uchar red\n");
+        put_values(&writer, "css", 2., 1., 2.);
         put_square_vertices(&writer);
-        put(&writer, "ciiicciiic", 3., 0., 1., 2., 7., 3., 0., 2., 3., 8.);
+        put_values(&writer, "ciiicciiic", 3., 0., 1., 2., 7., 3., 0., 2., 3., 8.);
         mesh_check_damage(file_of(&writer));
     }
 }

@@ -74,7 +74,7 @@ static cscd_context *new_context(counting_allocator *counter) {
     return context;
 }
 
-static cscd_status create(cscd_context *context, const shape *s, cscd_mesh **out) {
+static cscd_status create_mesh(cscd_context *context, const shape *s, cscd_mesh **out) {
     cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles[0]};
     return cscd_mesh_create(context, &desc, out);
 }
@@ -121,7 +121,7 @@ static void check_shape(const shape *s, uint32_t component_count, const expected
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = new_context(&counter);
     cscd_mesh *mesh = NULL;
-    assert_int_equal(create(context, s, &mesh), CSCD_OK);
+    assert_int_equal(create_mesh(context, s, &mesh), CSCD_OK);
     assert_int_equal(cscd_mesh_vertex_count(mesh), s->vertex_count);
     assert_int_equal(cscd_mesh_triangle_count(mesh), s->triangle_count);
     check_edges(mesh, s);
@@ -181,7 +181,7 @@ static void two_components(void **state) {
     cscd_mesh *mesh = NULL;
     memcpy(s.triangles[15], s.triangles[0],
            sizeof s.triangles[0]); /* the tetrahedron once more, at the end */
-    assert_int_equal(create(context, &s, &mesh), CSCD_OK);
+    assert_int_equal(create_mesh(context, &s, &mesh), CSCD_OK);
     for (uint32_t t = 0; t < s.triangle_count; t++)
         assert_int_equal(cscd_mesh_triangle_component(mesh, t), t < 4 || t == 15 ? 0 : 1);
     cscd_mesh_destroy(mesh);
@@ -282,7 +282,7 @@ static void check_refused(cscd_context *context, const cscd_mesh_desc *desc, csc
         fail_msg("no '%s' in '%s'", detail, cscd_context_detail(context));
 }
 
-static void refused(void **state) {
+static void refused_descriptions(void **state) {
     static const uint32_t good[] = {0, 1, 2, 0, 2, 3}, beyond[] = {0, 1, 2, 0, 2, 4};
     static const uint32_t last[] = {0, 1, 2, 3, 2, UINT32_MAX};
     static const uint32_t repeats[3][6] = {{0, 1, 2, 3, 3, 1}, {0, 1, 2, 3, 1, 3}, {0, 1, 2, 1, 3, 3}};
@@ -320,7 +320,7 @@ static bool fail_allocation(const shape *s, size_t fail_at, const expected_compo
     cscd_mesh *const untouched = (cscd_mesh *)&bytes;
     cscd_mesh *mesh = untouched;
     counter.fail_at = counter.calls + fail_at;
-    cscd_status status = create(context, s, &mesh);
+    cscd_status status = create_mesh(context, s, &mesh);
     bool failed = counter.calls > counter.fail_at;
     assert_int_equal(status, failed ? CSCD_OUT_OF_MEMORY : CSCD_OK);
     if (failed) {
@@ -329,7 +329,7 @@ static bool fail_allocation(const shape *s, size_t fail_at, const expected_compo
         assert_int_equal(counter.live, live);
         assert_int_equal(cscd_context_bytes(context), bytes);
         assert_non_null(strstr(cscd_context_detail(context), "out of memory"));
-        assert_int_equal(create(context, s, &mesh), CSCD_OK);
+        assert_int_equal(create_mesh(context, s, &mesh), CSCD_OK);
     }
     check_edges(mesh, s);
     check_stars(mesh, s);
@@ -363,7 +363,7 @@ int main(void) {
         cmocka_unit_test(three_on_an_edge),
         cmocka_unit_test(flipped_triangle),
         cmocka_unit_test(doubled_triangle),
-        cmocka_unit_test(refused),
+        cmocka_unit_test(refused_descriptions),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);

@@ -10,7 +10,7 @@
 
 #define ROUND_COUNT 100000
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(20240229);
     return 0;
@@ -21,14 +21,14 @@ static double into_domain(double value) {
     return fabs(value) < 0x1p-300 ? 0.0 : value;
 }
 
-static double nudge(double value) {
+static double nudge_by_ulp(double value) {
     int ulps = random_integer(-1, 1);
 
     return ulps == 0 ? value : nextafter(value, ulps * (double)INFINITY);
 }
 
 static void nudge_point(double point[3]) {
-    for (int k = 0; k < 3; k++) point[k] = into_domain(nudge(point[k]));
+    for (int k = 0; k < 3; k++) point[k] = into_domain(nudge_by_ulp(point[k]));
 }
 
 static struct exact_integer exact_difference(double a, double b) {
@@ -45,12 +45,12 @@ static struct exact_integer exact_cross(const double a[2], const double b[2], co
     return exact_subtract(&left, &right);
 }
 
-static int oracle2d(const double a[2], const double b[2], const double c[2]) {
+static int exact_orient2d(const double a[2], const double b[2], const double c[2]) {
     return exact_cross(a, b, c).sign;
 }
 
 /* Expanded by the z of a, b, c as seen from d. */
-static int oracle3d(const double *a, const double *b, const double *c, const double *d) {
+static int exact_orient3d(const double *a, const double *b, const double *c, const double *d) {
     const double *cycle[5] = {a, b, c, a, b};
     struct exact_integer sum = {0};
 
@@ -80,7 +80,7 @@ static int orient2d_points(const double *a, const double *b, const double *c) {
 
 /* All orders of the points, the sign of the permutation included. */
 static void check_plane(double p[3][3], struct tally *tally) {
-    int expected = oracle2d(p[0], p[1], p[2]);
+    int expected = exact_orient2d(p[0], p[1], p[2]);
 
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -92,7 +92,7 @@ static void check_plane(double p[3][3], struct tally *tally) {
 }
 
 static void check_space(double p[4][3], struct tally *tally) {
-    int expected = oracle3d(p[0], p[1], p[2], p[3]);
+    int expected = exact_orient3d(p[0], p[1], p[2], p[3]);
 
     for (int order = 0; order < 256; order++) {
         int i = order & 3, j = order >> 2 & 3, k = order >> 4 & 3, l = order >> 6;
@@ -114,7 +114,7 @@ static void check_collinear(double p[3][3], struct tally *tally) {
             q[i][0] = p[i][k];
             q[i][1] = p[i][(k + 1) % 3];
         }
-        turns |= oracle2d(q[0], q[1], q[2]);
+        turns |= exact_orient2d(q[0], q[1], q[2]);
     }
     assert_true(collinear(p[0], p[1], p[2]) == (turns == 0));
     assert_true(collinear(p[2], p[0], p[1]) == (turns == 0));
@@ -141,7 +141,7 @@ static void known_signs(void **state) {
 }
 
 /* Integers below 2^40: a third opinion in 128 bits, on the oracle as well. */
-static void integers(void **state) {
+static void integer_coordinates(void **state) {
     struct tally tally = {{0}};
 
     (void)state;
@@ -169,7 +169,7 @@ static double random_mixed(const int exponents[2]) {
     int exponent = exponents[random_integer(0, 1)];
     double value = ldexp(random_integer(-2, 2), exponent);
 
-    return random_integer(0, 9) == 0 ? into_domain(nudge(value)) : value;
+    return random_integer(0, 9) == 0 ? into_domain(nudge_by_ulp(value)) : value;
 }
 
 static double random_wide(void) {
@@ -198,7 +198,7 @@ static void mixed_magnitudes(void **state) {
 }
 
 /* Adds weight (to - from), rounded; with few bits the result is often exactly on the line or plane. */
-static void blend(const double from[3], const double to[3], double weight, double result[3]) {
+static void add_blend(const double from[3], const double to[3], double weight, double result[3]) {
     for (int k = 0; k < 3; k++) result[k] = into_domain(result[k] + weight * (to[k] - from[k]));
 }
 
@@ -222,8 +222,8 @@ static void near_planes(void **state) {
 
         for (int i = 0; i < 3; i++) random_point(p[i], bits, exponent);
         for (int k = 0; k < 3; k++) p[3][k] = p[0][k];
-        blend(p[0], p[1], random_weight(), p[3]);
-        blend(p[0], p[2], random_weight(), p[3]);
+        add_blend(p[0], p[1], random_weight(), p[3]);
+        add_blend(p[0], p[2], random_weight(), p[3]);
         if (random_integer(0, 1)) nudge_point(p[3]);
         nudge_point(p[3 - round % 2 * 3]);
         check_space(p, &space);
@@ -241,7 +241,7 @@ static void near_lines(void **state) {
 
         for (int i = 0; i < 2; i++) random_point(p[i], bits, exponent);
         for (int k = 0; k < 3; k++) p[2][k] = p[0][k];
-        blend(p[0], p[1], random_weight(), p[2]);
+        add_blend(p[0], p[1], random_weight(), p[2]);
         if (random_integer(0, 1)) nudge_point(p[2]);
         check_plane(p, &plane);
         check_collinear(p, &lines);
@@ -263,7 +263,7 @@ static void lowest_bit(void **state) {
 
         for (int shift = -300; shift <= 300; shift += 150) {
             p[3][2] = ldexp(1.0, shift);
-            assert_int_equal(oracle3d(p[0], p[1], p[2], p[3]), -1);
+            assert_int_equal(exact_orient3d(p[0], p[1], p[2], p[3]), -1);
             check_space(p, &tally);
             p[3][0] = nextafter(0x1p-300, 1);
             p[3][1] = 0x1p300;
@@ -274,7 +274,7 @@ static void lowest_bit(void **state) {
 }
 
 /* Powers of two, up to the ends of the domain, change nothing. */
-static void scaling(void **state) {
+static void powers_of_two(void **state) {
     (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {
         double p[4][3], q[4][3];
@@ -293,12 +293,12 @@ static void scaling(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_signs),
-        cmocka_unit_test_setup(integers, seed),
-        cmocka_unit_test_setup(mixed_magnitudes, seed),
-        cmocka_unit_test_setup(near_planes, seed),
-        cmocka_unit_test_setup(near_lines, seed),
+        cmocka_unit_test_setup(integer_coordinates, seed_random),
+        cmocka_unit_test_setup(mixed_magnitudes, seed_random),
+        cmocka_unit_test_setup(near_planes, seed_random),
+        cmocka_unit_test_setup(near_lines, seed_random),
         cmocka_unit_test(lowest_bit),
-        cmocka_unit_test_setup(scaling, seed),
+        cmocka_unit_test_setup(powers_of_two, seed_random),
     };
 
     return cmocka_run_group_tests_name("predicates", tests, NULL, NULL);

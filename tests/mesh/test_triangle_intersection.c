@@ -16,49 +16,50 @@ typedef struct {
     int64_t x, y, z;
 } integer_vector;
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(19690720);
     return 0;
 }
 
-static integer_vector cross(integer_vector a, integer_vector b) {
+static integer_vector integer_cross(integer_vector a, integer_vector b) {
     return (integer_vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-static int64_t dot(integer_vector a, integer_vector b) {
+static int64_t integer_dot(integer_vector a, integer_vector b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static int64_t determinant(integer_vector a, integer_vector b, integer_vector c) {
-    return dot(a, cross(b, c));
+static int64_t integer_determinant(integer_vector a, integer_vector b, integer_vector c) {
+    return integer_dot(a, integer_cross(b, c));
 }
 
 /* 0 = wa a + wb b + wc c with positive weights, a, b, c affinely independent: the weights are as the areas of
  * 0bc, 0ca, 0ab, which all turn the same way. */
 static bool inside_triangle(integer_vector a, integer_vector b, integer_vector c) {
-    integer_vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+    integer_vector bc = integer_cross(b, c), ca = integer_cross(c, a), ab = integer_cross(a, b);
 
-    return dot(a, bc) == 0 && dot(bc, ca) > 0 && dot(ca, ab) > 0 && dot(ab, bc) > 0;
+    return integer_dot(a, bc) == 0 && integer_dot(bc, ca) > 0 && integer_dot(ca, ab) > 0 &&
+           integer_dot(ab, bc) > 0;
 }
 
 /* Cramer's rule. */
 static bool inside_tetrahedron(integer_vector a, integer_vector b, integer_vector c, integer_vector d) {
-    int64_t wa = determinant(b, c, d), wb = -determinant(a, c, d);
-    int64_t wc = determinant(a, b, d), wd = -determinant(a, b, c);
+    int64_t wa = integer_determinant(b, c, d), wb = -integer_determinant(a, c, d);
+    int64_t wc = integer_determinant(a, b, d), wd = -integer_determinant(a, b, c);
 
     return (wa > 0 && wb > 0 && wc > 0 && wd > 0) || (wa < 0 && wb < 0 && wc < 0 && wd < 0);
 }
 
 static bool inside_segment(integer_vector a, integer_vector b) {
-    integer_vector n = cross(a, b);
+    integer_vector n = integer_cross(a, b);
 
-    return dot(n, n) == 0 && dot(a, b) < 0;
+    return integer_dot(n, n) == 0 && integer_dot(a, b) < 0;
 }
 
 static bool hull_contains_origin(const integer_vector *d, int count) {
     for (int i = 0; i < count; i++) {
-        if (dot(d[i], d[i]) == 0) return true;
+        if (integer_dot(d[i], d[i]) == 0) return true;
         for (int j = 0; j < i; j++) {
             if (inside_segment(d[i], d[j])) return true;
             for (int k = 0; k < j; k++) {
@@ -116,7 +117,7 @@ static bool pair_counts(int a_count, int b_count) {
     return (a_count == 3) != (b_count == 3) || (a_count == 2 && b_count == 2);
 }
 
-static bool oracle(const uint32_t a[3], const uint32_t b[3], const integer_vector *points) {
+static bool oracle_intersects(const uint32_t a[3], const uint32_t b[3], const integer_vector *points) {
     struct feature a_features[7], b_features[7];
 
     list_features(a, a_features);
@@ -150,7 +151,7 @@ static void random_points(integer_vector points[6]) {
     }
 }
 
-static void store(const integer_vector points[6], double scale, double positions[18]) {
+static void store_positions(const integer_vector points[6], double scale, double positions[18]) {
     for (int i = 0; i < 6; i++) {
         positions[3 * i] = scale * (double)points[i].x;
         positions[3 * i + 1] = scale * (double)points[i].y;
@@ -174,7 +175,7 @@ static void check_all_orders(const uint32_t a[3], const uint32_t b[3], const dou
 
 /* Shears along x, y and z, one after the other, so never singular: the image keeps what meets, and no plane
  * stays along the axes. */
-static integer_vector shear(integer_vector p, const int factor[6]) {
+static integer_vector shear_point(integer_vector p, const int factor[6]) {
     p.x += factor[0] * p.y + factor[1] * p.z;
     p.y += factor[2] * p.x + factor[3] * p.z;
     p.z += factor[4] * p.x + factor[5] * p.y;
@@ -188,7 +189,7 @@ static void random_shear(const integer_vector points[6], integer_vector sheared[
     for (int k = 0; k < 3; k++) offset[k] = random_integer(-1000000, 1000000);
     for (int k = 0; k < 6; k++) factor[k] = random_integer(-2000, 2000);
     for (int i = 0; i < 6; i++) {
-        sheared[i] = shear(points[i], factor);
+        sheared[i] = shear_point(points[i], factor);
         sheared[i].x += offset[0];
         sheared[i].y += offset[1];
         sheared[i].z += offset[2];
@@ -198,18 +199,18 @@ static void random_shear(const integer_vector points[6], integer_vector sheared[
 /* Compares one pair, its images under a shear and a scaling included. */
 static bool check_pair(const uint32_t a[3], const uint32_t b[3], const integer_vector points[6],
                        bool every_order) {
-    bool expected = oracle(a, b, points);
+    bool expected = oracle_intersects(a, b, points);
     integer_vector sheared[6];
     double positions[18];
 
-    store(points, 1.0, positions);
+    store_positions(points, 1.0, positions);
     assert_true(triangles_intersect(a, b, positions) == expected);
     assert_true(triangles_intersect(b, a, positions) == expected);
     if (every_order) check_all_orders(a, b, positions, expected);
-    store(points, ldexp(1.0, random_integer(-300, 298)), positions);
+    store_positions(points, ldexp(1.0, random_integer(-300, 298)), positions);
     assert_true(triangles_intersect(a, b, positions) == expected);
     random_shear(points, sheared);
-    store(sheared, ldexp(1.0, random_integer(-300, 250)), positions);
+    store_positions(sheared, ldexp(1.0, random_integer(-300, 250)), positions);
     assert_true(triangles_intersect(a, b, positions) == expected);
     if (every_order) check_all_orders(a, b, positions, expected);
     return expected;
@@ -280,10 +281,10 @@ static void known_pairs(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(known_pairs),
-        cmocka_unit_test_setup(no_shared_vertex, seed),
-        cmocka_unit_test_setup(one_shared_vertex, seed),
-        cmocka_unit_test_setup(two_shared_vertices, seed),
-        cmocka_unit_test_setup(three_shared_vertices, seed),
+        cmocka_unit_test_setup(no_shared_vertex, seed_random),
+        cmocka_unit_test_setup(one_shared_vertex, seed_random),
+        cmocka_unit_test_setup(two_shared_vertices, seed_random),
+        cmocka_unit_test_setup(three_shared_vertices, seed_random),
     };
 
     return cmocka_run_group_tests_name("triangle_intersection", tests, NULL, NULL);

@@ -42,7 +42,7 @@ static double triangle_area(const conductor *s, uint32_t triangle, double centro
     return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-static void sphere(void **state) {
+static void charge_of_sphere(void **state) {
     (void)state;
     double error_before = NAN, spread_before = NAN;
     for (int level = 1; level <= FINEST; level++) {
@@ -71,7 +71,7 @@ static void sphere(void **state) {
 
 /* 0.6606782 (the best values known agree in these digits). The density is infinite at the edges, so even
  * steps converge at first order; crowded towards the edges they do better. */
-static void cube(void **state) {
+static void charge_of_cube(void **state) {
     (void)state;
     const double exact = 0.6606782;
     double before = NAN, crowded = NAN;
@@ -101,7 +101,7 @@ static double carlson_rf(double x, double y, double z) {
 }
 
 /* density = Q / (4 pi a b c) / sqrt(x^2 / a^4 + y^2 / b^4 + z^2 / c^4) */
-static void ellipsoid(void **state) {
+static void charge_of_ellipsoid(void **state) {
     (void)state;
     const double axes[3] = {1.6, 1.0, 0.7}, nowhere[3] = {0.0, 0.0, 0.0};
     const double exact = 1.0 / carlson_rf(axes[0] * axes[0], axes[1] * axes[1], axes[2] * axes[2]);
@@ -145,7 +145,7 @@ static void one_triangle(void **state) {
 }
 
 /* Four triangles; the capacitance lies between those of the spheres inside and around. */
-static void tetrahedron(void **state) {
+static void charge_of_tetrahedron(void **state) {
     (void)state;
     conductor s = conductor_tetrahedron();
     charge_rig r = charge_rig_solve(&s, 3);
@@ -248,13 +248,10 @@ static int print_table(uint32_t thread_count) {
 /* With a number of threads as its argument it prints the table of docs/theory/charge.md and tests nothing. */
 int main(int argc, char **argv) {
     if (argc > 1) return print_table((uint32_t)strtoul(argv[1], NULL, 10));
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sphere),
-                                       cmocka_unit_test(cube),
-                                       cmocka_unit_test(ellipsoid),
-                                       cmocka_unit_test(one_triangle),
-                                       cmocka_unit_test(tetrahedron),
-                                       cmocka_unit_test(components_are_independent),
-                                       cmocka_unit_test(scales_with_length),
-                                       cmocka_unit_test(far_from_the_origin)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(charge_of_sphere),      cmocka_unit_test(charge_of_cube),
+        cmocka_unit_test(charge_of_ellipsoid),   cmocka_unit_test(one_triangle),
+        cmocka_unit_test(charge_of_tetrahedron), cmocka_unit_test(components_are_independent),
+        cmocka_unit_test(scales_with_length),    cmocka_unit_test(far_from_the_origin)};
     return cmocka_run_group_tests_name("charge", tests, NULL, NULL);
 }

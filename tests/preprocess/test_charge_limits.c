@@ -217,14 +217,14 @@ typedef struct watching_allocator {
     bool refuse;
 } watching_allocator;
 
-static void *watch(void *user, size_t size, size_t alignment) {
+static void *watching_allocate(void *user, size_t size, size_t alignment) {
     watching_allocator *watcher = user;
     watcher->calls++;
     watcher->largest = size > watcher->largest ? size : watcher->largest;
     return watcher->refuse ? NULL : aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
 }
 
-static void drop(void *user, void *block, size_t size) {
+static void watching_free(void *user, void *block, size_t size) {
     (void)user;
     (void)size;
     free(block);
@@ -233,7 +233,7 @@ static void drop(void *user, void *block, size_t size) {
 static void takes_what_it_estimates(void **state) {
     (void)state;
     watching_allocator watcher = {0, 0, false};
-    const cscd_allocator allocator = {watch, drop, &watcher};
+    const cscd_allocator allocator = {watching_allocate, watching_free, &watcher};
     conductor s = conductor_cube(2);
     charge_rig r = charge_rig_create(&s, 2, &allocator);
     size_t needed = charge_memory(r.mesh), held = cscd_context_bytes(r.context);

@@ -65,7 +65,7 @@ static void add_quads(uint32_t columns, uint32_t row, uint32_t first, uint32_t c
     }
 }
 
-static bool separates(bool may_grow, double relevant_area) {
+static bool cluster_separates(bool may_grow, double relevant_area) {
     return growth_separates(&f.growth, f.cluster, f.cluster_size, may_grow, relevant_area);
 }
 
@@ -80,14 +80,14 @@ static void belt_separates_at_once(void **state) {
     open_can(9, 10);
     add_quads(10, 6, 0, 10);
     for (int may_grow = 0; may_grow < 2; may_grow++) {
-        assert_true(separates(may_grow, 5.0));
+        assert_true(cluster_separates(may_grow, 5.0));
         assert_int_equal(f.growth.band_ring, 0);
         assert_int_equal(f.growth.part_count, 2);
         assert_int_equal(part_size(0), 20);
         assert_int_equal(part_size(f.growth.largest_part), 130);
         assert_int_equal(part_size(3 - f.growth.largest_part), 50);
     }
-    assert_false(separates(false, 51.0)); /* then the smaller part is an island */
+    assert_false(cluster_separates(false, 51.0)); /* then the smaller part is an island */
     close_field();
 }
 
@@ -96,8 +96,8 @@ static void gap_is_closed_by_growth(void **state) {
     (void)state;
     open_can(9, 12);
     add_quads(12, 5, 0, 7);
-    assert_false(separates(false, 5.0));
-    assert_true(separates(true, 5.0));
+    assert_false(cluster_separates(false, 5.0));
+    assert_true(cluster_separates(true, 5.0));
     assert_true(f.growth.band_ring >= 2 && f.growth.band_ring <= 3);
     assert_int_equal(f.growth.part_count, 2);
     close_field();
@@ -109,11 +109,11 @@ static void loop_on_a_torus_does_not_separate(void **state) {
     (void)state;
     open_grid(12, 8, true);
     add_quads(8, 3, 0, 8);
-    assert_false(separates(false, 1.0));
-    assert_false(separates(true, 1.0));
+    assert_false(cluster_separates(false, 1.0));
+    assert_false(cluster_separates(true, 1.0));
     add_quads(8, 9, 0, 8); /* a second loop, and a bridge between them */
     for (uint32_t row = 4; row < 9; row++) add_quads(8, row, 2, 1);
-    assert_true(separates(false, 1.0));
+    assert_true(cluster_separates(false, 1.0));
     assert_int_equal(f.growth.part_count, 2);
     close_field();
 }
@@ -122,31 +122,31 @@ static void growth_over_everything(void **state) {
     (void)state;
     open_can(8, 10);
     for (uint32_t j = 0; j < 10; j++) f.cluster[f.cluster_size++] = 160 + j; /* the lower fan */
-    assert_false(separates(true, 1.0));
+    assert_false(cluster_separates(true, 1.0));
     assert_int_equal(f.growth.reached_count, f.mesh->triangle_count);
     for (uint32_t t = 0; t < f.mesh->triangle_count; t++) f.cluster[t] = t; /* nothing left from the start */
     f.cluster_size = f.mesh->triangle_count;
-    assert_false(separates(true, 1.0));
-    assert_false(separates(false, 1.0));
+    assert_false(cluster_separates(true, 1.0));
+    assert_false(cluster_separates(false, 1.0));
     close_field();
 }
 
 /* A hole in the cluster belongs to the band, unless it is as large as a part. */
-static void islands(void **state) {
+static void islands_of_band(void **state) {
     (void)state;
     open_can(9, 10);
     for (uint32_t row = 3; row < 6; row++) add_quads(10, row, 0, row == 4 ? 8 : 10);
-    assert_true(separates(false, 5.0));
+    assert_true(cluster_separates(false, 5.0));
     assert_int_equal(f.growth.part_count, 2);
     assert_int_equal(part_size(0), 60);
-    assert_true(separates(false, 4.0));
+    assert_true(cluster_separates(false, 4.0));
     assert_int_equal(f.growth.part_count, 3);
     assert_int_equal(part_size(0), 56);
     f.cluster_size = 0; /* a frame around an island, on one side */
     for (uint32_t row = 3; row < 6; row++) add_quads(10, row, 2, row == 4 ? 1 : 3);
     add_quads(10, 4, 4, 1);
-    assert_false(separates(false, 3.0));
-    assert_true(separates(false, 2.0));
+    assert_false(cluster_separates(false, 3.0));
+    assert_true(cluster_separates(false, 2.0));
     close_field();
 }
 
@@ -180,7 +180,7 @@ static void more_than_two_parts(void **state) {
     add_quads(8, 3, 0, 8);
     add_quads(8, 7, 0, 8);
     for (uint32_t row = 4; row < 7; row++) add_quads(8, row, 2, 1);
-    assert_true(separates(false, 5.0));
+    assert_true(cluster_separates(false, 5.0));
     assert_int_equal(f.growth.part_count, 3);
     cuts_of_all_parts(owners);
     close_field();
@@ -193,7 +193,7 @@ static void a_little_further_for_more_parts(void **state) {
     add_quads(6, 4, 0, 4);
     for (uint32_t row = 5; row < 13; row++) add_quads(6, row, 2, 1);
     add_quads(6, 13, 1, 2);
-    assert_true(separates(true, 4.0));
+    assert_true(cluster_separates(true, 4.0));
     assert_int_equal(f.growth.part_count, 3);
     assert_int_equal(f.growth.relevant_counts[f.growth.band_ring - 1], 2);
     close_field();
@@ -206,12 +206,12 @@ static void other_components_take_no_part(void **state) {
     shape_add_tetrahedron(&s, s.vertex_count, s.vertex_count + 1, s.vertex_count + 2, s.vertex_count + 3);
     open_field(&s);
     add_quads(6, 2, 0, 6);
-    assert_true(separates(true, 5.0));
+    assert_true(cluster_separates(true, 5.0));
     assert_int_equal(f.growth.reached_count, 72);
     for (uint32_t t = 72; t < 76; t++) assert_int_equal(f.growth.rings[t], UINT32_MAX);
     for (uint32_t i = 0; i < 4; i++) f.cluster[i] = 72 + i;
     f.cluster_size = 4;
-    assert_false(separates(true, 0.0));
+    assert_false(cluster_separates(true, 0.0));
     assert_int_equal(f.growth.reached_count, 4);
     close_field();
 }
@@ -284,7 +284,7 @@ int main(void) {
         cmocka_unit_test(gap_is_closed_by_growth),
         cmocka_unit_test(loop_on_a_torus_does_not_separate),
         cmocka_unit_test(growth_over_everything),
-        cmocka_unit_test(islands),
+        cmocka_unit_test(islands_of_band),
         cmocka_unit_test(more_than_two_parts),
         cmocka_unit_test(a_little_further_for_more_parts),
         cmocka_unit_test(other_components_take_no_part),

@@ -33,7 +33,7 @@ static cscd_mesh *mesh_of(const shape *s) {
 }
 
 /* Triangle i is joined to i - 1 and i + 1. */
-static cscd_mesh *strip(uint32_t triangle_count) {
+static cscd_mesh *strip_mesh(uint32_t triangle_count) {
     shape s = {0};
     for (uint32_t i = 0; i < triangle_count; i++)
         shape_add_triangle(&s, i, i % 2 == 0 ? i + 1 : i + 2, i % 2 == 0 ? i + 2 : i + 1);
@@ -44,9 +44,9 @@ static void assert_doubles(const double *found, const double *expected, uint32_t
     for (uint32_t i = 0; i < count; i++) assert_true(found[i] == expected[i]);
 }
 
-static void ranks(void **state) {
+static void ranks_of_densities(void **state) {
     (void)state;
-    cscd_mesh *mesh = strip(8);
+    cscd_mesh *mesh = strip_mesh(8);
     const double density[8] = {3.0, -0.5, 1e300, -1e-300, 0.0, -1e300, 1e-320, 2.0};
     const double expected[8] = {7 / 8.0, 2 / 8.0, 8 / 8.0, 3 / 8.0, 4 / 8.0, 1 / 8.0, 5 / 8.0, 6 / 8.0};
     double found[8];
@@ -57,7 +57,7 @@ static void ranks(void **state) {
 
 static void ties_go_by_index(void **state) {
     (void)state;
-    cscd_mesh *mesh = strip(6);
+    cscd_mesh *mesh = strip_mesh(6);
     double found[6];
     const double same[6] = {1, 1, 1, 1, 1, 1}, zeros[6] = {0.0, -0.0, 1.0, 0.0, -1.0, -0.0};
     const double ascending[6] = {1 / 6.0, 2 / 6.0, 3 / 6.0, 4 / 6.0, 5 / 6.0, 6 / 6.0};
@@ -72,7 +72,7 @@ static void ties_go_by_index(void **state) {
 /* Noise beyond 24 bits does not change the order; a difference in the 23rd bit does. */
 static void rounded_to_24_bits(void **state) {
     (void)state;
-    cscd_mesh *mesh = strip(3);
+    cscd_mesh *mesh = strip_mesh(3);
     double found[3];
     for (int exponent = -1000; exponent <= 1000; exponent += 100) {
         double unit = ldexp(1.0, exponent);
@@ -106,7 +106,7 @@ static void each_component_on_its_own(void **state) {
 static void published_bins(void **state) {
     (void)state;
     enum { COUNT = 200 };
-    cscd_mesh *mesh = strip(COUNT);
+    cscd_mesh *mesh = strip_mesh(COUNT);
     double density[COUNT], found[COUNT];
     for (uint32_t i = 0; i < COUNT; i++) density[i] = random_integer(-20, 300);
     density[7] = -20.0;
@@ -130,7 +130,7 @@ static void published_bins(void **state) {
 
 static void not_finite_is_refused(void **state) {
     (void)state;
-    cscd_mesh *mesh = strip(4);
+    cscd_mesh *mesh = strip_mesh(4);
     const double bad[3] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
         double density[4] = {1, 2, bad[i], 4}, found[4] = {-7, -7, -7, -7};
@@ -163,7 +163,7 @@ static void assert_clusters(const cscd_mesh *mesh, const double *equalized, doub
 
 static void clusters_on_a_strip(void **state) {
     (void)state;
-    cscd_mesh *mesh = strip(10);
+    cscd_mesh *mesh = strip_mesh(10);
     const double equalized[10] = {0.1, 0.3, 0.2, 0.2, 0.9, 0.2, 0.8, 0.21, 0.1, 0.1};
     assert_clusters(mesh, equalized, 0.2, 4, (uint32_t[]){0, 1, 3, 4, 6}, (uint32_t[]){0, 2, 3, 5, 8, 9});
     assert_clusters(mesh, equalized, 0.05, 0, (uint32_t[]){0}, NULL);
@@ -189,14 +189,10 @@ static void edges_join_clusters(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranks),
-        cmocka_unit_test(ties_go_by_index),
-        cmocka_unit_test(rounded_to_24_bits),
-        cmocka_unit_test(each_component_on_its_own),
-        cmocka_unit_test(published_bins),
-        cmocka_unit_test(not_finite_is_refused),
-        cmocka_unit_test(clusters_on_a_strip),
-        cmocka_unit_test(edges_join_clusters),
+        cmocka_unit_test(ranks_of_densities),  cmocka_unit_test(ties_go_by_index),
+        cmocka_unit_test(rounded_to_24_bits),  cmocka_unit_test(each_component_on_its_own),
+        cmocka_unit_test(published_bins),      cmocka_unit_test(not_finite_is_refused),
+        cmocka_unit_test(clusters_on_a_strip), cmocka_unit_test(edges_join_clusters),
     };
     return cmocka_run_group_tests_name("equalize", tests, open_context, close_context);
 }

@@ -18,7 +18,7 @@ typedef struct kmeans_division {
 
 static kmeans_division found, other;
 
-static void divide(const body *b, uint32_t k, uint32_t seed, kmeans_division *out) {
+static void divide_body(const body *b, uint32_t k, uint32_t seed, kmeans_division *out) {
     cscd_mesh *mesh = body_mesh(b, 1);
     size_t bytes = cscd_context_bytes(mesh->context);
     memset(out, 0xff, sizeof *out);
@@ -44,7 +44,7 @@ static void one_is_the_mean(void **state) {
     double mean[3] = {0, 0, 0};
     for (uint32_t i = 0; i < b.vertex_count * 3; i++) mean[i % 3] += b.positions[i] / b.vertex_count;
     body_add_vertex(&b, 1e6, 0, 0); /* without a triangle: it does not count */
-    divide(&b, 1, 5, &found);
+    divide_body(&b, 1, 5, &found);
     assert_int_equal(found.count, 1);
     for (int k = 0; k < 3; k++) assert_true(fabs(found.points[k] - mean[k]) < 1e-12);
     body_free(&b);
@@ -55,7 +55,7 @@ static void two_balls(void **state) {
     (void)state;
     body b = body_of(BODY_DUMBBELL, 2000);
     for (uint32_t seed = 0; seed < 20; seed++) {
-        divide(&b, 2, seed, &found);
+        divide_body(&b, 2, seed, &found);
         assert_int_equal(found.count, 2);
         for (uint32_t t = 0; t < b.triangle_count; t++) {
             double z = b.positions[b.triangles[t * 3] * 3 + 2];
@@ -65,16 +65,16 @@ static void two_balls(void **state) {
     body_free(&b);
 }
 
-static void seeds(void **state) {
+static void different_seeds(void **state) {
     (void)state;
     body b = body_of(BODY_FIGURE, 2000);
     bool differ = false;
     for (uint32_t k = 2; k <= 9; k++) {
-        divide(&b, k, 7, &found);
+        divide_body(&b, k, 7, &found);
         assert_int_equal(found.count, k);
-        divide(&b, k, 7, &other);
+        divide_body(&b, k, 7, &other);
         assert_same(&found, &other);
-        divide(&b, k, 8, &other);
+        divide_body(&b, k, 8, &other);
         differ = differ || memcmp(found.regions, other.regions, sizeof found.regions) != 0;
     }
     assert_true(differ);
@@ -93,7 +93,7 @@ static void components_share_k(void **state) {
     uint32_t ball = b.triangle_count;
     for (int i = 0; i < 3; i++) body_append(&b, &small, (double[3]){3.0 + i, 0, 0});
     for (uint32_t k = 1; k <= 12; k++) {
-        divide(&b, k, k, &found);
+        divide_body(&b, k, k, &found);
         assert_int_equal(found.count, k < 4 ? 4 : k);
         for (uint32_t i = 0; i < 3; i++) assert_int_equal(found.regions[ball + i * 4], found.count - 3 + i);
     }
@@ -108,14 +108,14 @@ static void more_than_vertices(void **state) {
     const uint32_t ks[] = {100,     500,       750, b.vertex_count - 1, b.vertex_count, b.vertex_count + 1,
                            1000000, UINT32_MAX};
     for (size_t i = 0; i < sizeof ks / sizeof *ks; i++) {
-        divide(&b, ks[i], 3, &found);
+        divide_body(&b, ks[i], 3, &found);
         assert_true(found.count >= (ks[i] < 500 ? ks[i] * 9 / 10 : 300));
     }
     body_free(&b);
 }
 
 /* Edges from a vertex, as numbers of steps. */
-static void measure(const body *b, uint32_t from, uint32_t *distances) {
+static void measure_steps(const body *b, uint32_t from, uint32_t *distances) {
     for (uint32_t v = 0; v < b->vertex_count; v++) distances[v] = v == from ? 0 : UINT32_MAX - 1;
     for (bool changed = true; changed;) {
         changed = false;
@@ -148,10 +148,10 @@ static void fewest_edges(void **state) {
     enum { K = 5 };
     static uint32_t distances[K][TRIANGLES_MAX];
     body b = body_of(BODY_SPHERE, 1500);
-    divide(&b, K, 11, &found);
+    divide_body(&b, K, 11, &found);
     assert_int_equal(found.count, K);
     for (uint32_t r = 0; r < K; r++)
-        measure(&b, nearest_vertex(&b, found.points + (size_t)r * 3), distances[r]);
+        measure_steps(&b, nearest_vertex(&b, found.points + (size_t)r * 3), distances[r]);
     uint32_t farther = 0;
     for (uint32_t t = 0; t < b.triangle_count; t++) {
         uint32_t own = UINT32_MAX, least = UINT32_MAX;
@@ -204,14 +204,10 @@ static void zero_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_is_the_mean),
-        cmocka_unit_test(two_balls),
-        cmocka_unit_test(seeds),
-        cmocka_unit_test(components_share_k),
-        cmocka_unit_test(more_than_vertices),
-        cmocka_unit_test(fewest_edges),
-        cmocka_unit_test(lloyd_on_a_line),
-        cmocka_unit_test(zero_is_refused),
+        cmocka_unit_test(one_is_the_mean),    cmocka_unit_test(two_balls),
+        cmocka_unit_test(different_seeds),    cmocka_unit_test(components_share_k),
+        cmocka_unit_test(more_than_vertices), cmocka_unit_test(fewest_edges),
+        cmocka_unit_test(lloyd_on_a_line),    cmocka_unit_test(zero_is_refused),
     };
     return cmocka_run_group_tests_name("kmeans", tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ static double vectors[VECTORS_MAX * D];
 static uint32_t labels[VECTORS_MAX], order[VECTORS_MAX], candidates[VECTORS_MAX];
 static lbg_code codes[VECTORS_MAX];
 
-static void observe(void *user, uint32_t code_count, double distortion) {
+static void observe_distortion(void *user, uint32_t code_count, double distortion) {
     trace *t = user;
     assert_true(t->length < TRACE_MAX);
     t->codes[t->length] = code_count;
@@ -28,7 +28,8 @@ static void observe(void *user, uint32_t code_count, double distortion) {
 
 static lbg run_of(uint32_t vector_count, uint32_t codes_max, double epsilon) {
     told.length = 0;
-    return (lbg){vectors, vector_count, codes_max, epsilon, labels, codes, order, candidates, observe, &told};
+    return (lbg){vectors, vector_count, codes_max,          epsilon, labels, codes,
+                 order,   candidates,   observe_distortion, &told};
 }
 
 static double squared_distance(const double *a, const double *b) {
@@ -85,20 +86,20 @@ static void check_nearest(uint32_t vector_count, uint32_t code_count) {
     }
 }
 
-static void scatter(uint32_t vector_count, int dimensions) {
+static void scatter_vectors(uint32_t vector_count, int dimensions) {
     memset(vectors, 0, sizeof vectors);
     for (uint32_t i = 0; i < vector_count; i++) {
         for (int k = 0; k < dimensions; k++) vectors[i * D + (uint32_t)k] = random_unit();
     }
 }
 
-static void clouds(void **state) {
+static void random_clouds(void **state) {
     (void)state;
     random_seed(1);
     for (int n = 0; n < 400; n++) {
         uint32_t vector_count = (uint32_t)random_integer(1, VECTORS_MAX);
         uint32_t codes_max = (uint32_t)random_integer(1, (int)(vector_count < 50 ? vector_count : 50));
-        scatter(vector_count, random_integer(1, D));
+        scatter_vectors(vector_count, random_integer(1, D));
         uint32_t code_count = check_run(vector_count, codes_max, n % 2 == 0 ? 1e-3 : 0.0);
         assert_int_equal(code_count, codes_max);
         if (n % 2 != 0) check_nearest(vector_count, code_count);
@@ -106,7 +107,7 @@ static void clouds(void **state) {
 }
 
 /* Rings, lines, lattices: many equal distances. */
-static void shapes(void **state) {
+static void regular_shapes(void **state) {
     (void)state;
     random_seed(2);
     for (uint32_t codes_max = 1; codes_max <= 40; codes_max++) {
@@ -149,12 +150,12 @@ static void equal_vectors(void **state) {
 }
 
 /* As many codes as there are different vectors, but no more; each copy goes where the others are. */
-static void copies(void **state) {
+static void repeated_vectors(void **state) {
     (void)state;
     random_seed(3);
     for (int n = 0; n < 50; n++) {
         uint32_t different = (uint32_t)random_integer(2, 20), count = different * 5;
-        scatter(different, 6);
+        scatter_vectors(different, 6);
         for (uint32_t i = different; i < count; i++)
             memcpy(vectors + (size_t)i * D, vectors + (size_t)(i % different) * D, D * sizeof *vectors);
         assert_int_equal(check_run(count, count, 0.0), different);
@@ -165,7 +166,7 @@ static void copies(void **state) {
 
 static void two_points(void **state) {
     (void)state;
-    scatter(2, 0);
+    scatter_vectors(2, 0);
     vectors[D + 2] = 1.0;
     assert_int_equal(check_run(2, 1, 1e-3), 1);
     assert_int_equal(check_run(2, 2, 1e-3), 2);
@@ -180,18 +181,18 @@ static void two_points(void **state) {
 static void a_code_for_every_vector(void **state) {
     (void)state;
     random_seed(4);
-    scatter(300, D);
+    scatter_vectors(300, D);
     assert_int_equal(check_run(300, 300, 1e-3), 300);
     assert_true(told.distortions[told.length - 1] == 0.0);
 }
 
 /* The same numbers in the same order, and scaled by a power of two, bit for bit. */
-static void repeatable(void **state) {
+static void repeatable_and_scaled(void **state) {
     (void)state;
     static uint32_t before[VECTORS_MAX];
     static double distortions[TRACE_MAX];
     random_seed(5);
-    scatter(VECTORS_MAX, D);
+    scatter_vectors(VECTORS_MAX, D);
     for (uint32_t codes_max = 1; codes_max < 40; codes_max += 3) {
         check_run(VECTORS_MAX, codes_max, 1e-3);
         memcpy(before, labels, sizeof labels);
@@ -206,10 +207,10 @@ static void repeatable(void **state) {
 }
 
 /* Four far clusters are found with four codes. */
-static void clusters(void **state) {
+static void far_clusters(void **state) {
     (void)state;
     random_seed(6);
-    scatter(VECTORS_MAX, D);
+    scatter_vectors(VECTORS_MAX, D);
     for (uint32_t i = 0; i < VECTORS_MAX; i++) vectors[i * D + i % 4] += 50.0;
     assert_int_equal(check_run(VECTORS_MAX, 4, 1e-3), 4);
     for (uint32_t i = 0; i < VECTORS_MAX; i++) assert_int_equal(labels[i], labels[i % 4]);
@@ -217,10 +218,10 @@ static void clusters(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clouds),        cmocka_unit_test(shapes),
-        cmocka_unit_test(equal_vectors), cmocka_unit_test(symmetric_about_the_origin),
-        cmocka_unit_test(copies),        cmocka_unit_test(two_points),
-        cmocka_unit_test(clusters),      cmocka_unit_test(a_code_for_every_vector),
-        cmocka_unit_test(repeatable)};
+        cmocka_unit_test(random_clouds),        cmocka_unit_test(regular_shapes),
+        cmocka_unit_test(equal_vectors),        cmocka_unit_test(symmetric_about_the_origin),
+        cmocka_unit_test(repeated_vectors),     cmocka_unit_test(two_points),
+        cmocka_unit_test(far_clusters),         cmocka_unit_test(a_code_for_every_vector),
+        cmocka_unit_test(repeatable_and_scaled)};
     return cmocka_run_group_tests_name("vector quantization", tests, NULL, NULL);
 }

@@ -136,7 +136,7 @@ static void scale_and_place(void **state) {
 }
 
 /* All positions equal; and vertices without a triangle. */
-static void degenerate(void **state) {
+static void degenerate_meshes(void **state) {
     (void)state;
     body b = body_of(BODY_SPHERE, 200);
     uint32_t lonely = body_add_vertex(&b, 1.0, 2.0, 3.0);
@@ -309,7 +309,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(symmetric_cube),    cmocka_unit_test(any_number),
         cmocka_unit_test(concave_bodies),    cmocka_unit_test(random_scenes),
-        cmocka_unit_test(scale_and_place),   cmocka_unit_test(degenerate),
+        cmocka_unit_test(scale_and_place),   cmocka_unit_test(degenerate_meshes),
         cmocka_unit_test(distortion_falls),
 
         cmocka_unit_test(renewing_one_part), cmocka_unit_test(objects_of_scenes),

@@ -13,7 +13,7 @@ typedef struct fixture {
     body shape;
 } fixture;
 
-static void begin(fixture *f) {
+static void fixture_begin(fixture *f) {
     f->shape = body_of(BODY_DUMBBELL, 1500);
     f->counter = counting_allocator_start();
     cscd_context_options options = cscd_context_defaults();
@@ -26,7 +26,7 @@ static void begin(fixture *f) {
     assert_int_equal(cscd_plan_create(f->mesh, f->shape.positions, &plan_options, &f->plan), CSCD_OK);
 }
 
-static void end(fixture *f) {
+static void fixture_end(fixture *f) {
     cscd_plan_destroy(f->plan);
     cscd_mesh_destroy(f->mesh);
     cscd_context_destroy(f->context);
@@ -46,10 +46,10 @@ static void check_failure(const fixture *f, cscd_status status, size_t bytes) {
     assert_non_null(strstr(cscd_context_detail(f->context), "out of memory"));
 }
 
-static void creating(void **state) {
+static void create_without_memory(void **state) {
     (void)state;
     fixture f;
-    begin(&f);
+    fixture_begin(&f);
     cscd_partition_options options = watched_within();
     size_t bytes = cscd_context_bytes(f.context), failures = 0;
     for (;; failures++) {
@@ -66,13 +66,13 @@ static void creating(void **state) {
     }
     assert_int_equal(cscd_context_bytes(f.context), bytes);
     assert_true(failures > 30);
-    end(&f);
+    fixture_end(&f);
 }
 
-static void renewing(void **state) {
+static void renew_without_memory(void **state) {
     (void)state;
     fixture f;
-    begin(&f);
+    fixture_begin(&f);
     cscd_partition_options options = watched_within();
     cscd_partition *partition = NULL;
     assert_int_equal(cscd_partition_create(f.mesh, f.plan, f.shape.positions, &options, &partition), CSCD_OK);
@@ -92,10 +92,11 @@ static void renewing(void **state) {
     assert_true(failures > 15);
     check_partition(partition);
     cscd_partition_destroy(partition);
-    end(&f);
+    fixture_end(&f);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(creating), cmocka_unit_test(renewing)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(create_without_memory),
+                                       cmocka_unit_test(renew_without_memory)};
     return cmocka_run_group_tests_name("partition memory", tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@ static body shape;
 static cscd_context *context;
 static cscd_mesh *mesh;
 
-static int make(void **state) {
+static int make_body(void **state) {
     (void)state;
     shape = body_of(BODY_DUMBBELL, 1500);
     cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
@@ -19,7 +19,7 @@ static int make(void **state) {
     return cscd_mesh_create(context, &desc, &mesh) == CSCD_OK ? 0 : -1;
 }
 
-static int unmake(void **state) {
+static int destroy_body(void **state) {
     (void)state;
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);
@@ -208,5 +208,5 @@ int main(void) {
         cmocka_unit_test(every_method), cmocka_unit_test(from_parts),           cmocka_unit_test(bad_parts),
         cmocka_unit_test(bad_options),  cmocka_unit_test(plans_fit_their_mesh),
     };
-    return cmocka_run_group_tests_name("plan", tests, make, unmake);
+    return cmocka_run_group_tests_name("plan", tests, make_body, destroy_body);
 }

@@ -32,7 +32,7 @@ static void random_triangle(double corners[3][3]) {
 }
 
 /* a p0 + b p1 + (1 - a - b) p2 + h * (0.3, 0.5, -0.8), in whatever order */
-static void place(const double corners[3][3], double a, double b, double h, double out[3]) {
+static void place_point(const double corners[3][3], double a, double b, double h, double out[3]) {
     const double off[3] = {0.3, 0.5, -0.8};
     for (int k = 0; k < 3; k++)
         out[k] = corners[2][k] + a * (corners[0][k] - corners[2][k]) + b * (corners[1][k] - corners[2][k]) +
@@ -109,16 +109,16 @@ static real edge_integral(real t, real d, real from, real to) {
     return sum * step / 2.0L;
 }
 
-static real dot(const real a[3], const real b[3]) {
+static real real_dot(const real a[3], const real b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void cross(const real a[3], const real b[3], real out[3]) {
+static void real_cross(const real a[3], const real b[3], real out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static void normalise(real a[3]) {
-    real length = sqrtl(dot(a, a));
+static void real_normalise(real a[3]) {
+    real length = sqrtl(real_dot(a, a));
     for (int k = 0; k < 3; k++) a[k] /= length;
 }
 
@@ -127,17 +127,17 @@ static real by_edges(const double corners[3][3], const double point[3]) {
     for (int i = 0; i < 9; i++) to[i / 3][i % 3] = (real)corners[i / 3][i % 3] - (real)point[i % 3];
     for (int i = 0; i < 9; i++)
         along[i / 3][i % 3] = (real)corners[(i / 3 + 1) % 3][i % 3] - (real)corners[i / 3][i % 3];
-    cross(along[0], along[1], n);
-    normalise(n);
-    real slant =
-        dot(n, along[0]) / dot(along[0], along[0]); /* rounding that a sliver with a long edge 0 shows */
+    real_cross(along[0], along[1], n);
+    real_normalise(n);
+    real slant = real_dot(n, along[0]) /
+                 real_dot(along[0], along[0]); /* rounding that a sliver with a long edge 0 shows */
     for (int k = 0; k < 3; k++) n[k] -= slant * along[0][k];
     for (int i = 0; i < 3; i++) {
-        real outward[3], length = sqrtl(dot(along[i], along[i]));
-        normalise(along[i]);
-        cross(along[i], n, outward);
-        real from = dot(along[i], to[i]);
-        sum += edge_integral(dot(outward, to[i]), dot(n, to[i]), from, from + length);
+        real outward[3], length = sqrtl(real_dot(along[i], along[i]));
+        real_normalise(along[i]);
+        real_cross(along[i], n, outward);
+        real from = real_dot(along[i], to[i]);
+        sum += edge_integral(real_dot(outward, to[i]), real_dot(n, to[i]), from, from + length);
     }
     return sum;
 }
@@ -150,7 +150,7 @@ static void agrees_with_surface_quadrature(void **state) {
     for (int round = 0; round < 40; round++) {
         double corners[3][3], p[3];
         random_triangle(corners);
-        place((const double(*)[3])corners, random_unit(), random_unit(), random_between(0.05, 2.0), p);
+        place_point((const double(*)[3])corners, random_unit(), random_unit(), random_between(0.05, 2.0), p);
         real expected = surface_reference(corners, p);
         assert_close(potential_of((const double(*)[3])corners, p), expected, 1e-7L);
         assert_close((double)by_edges((const double(*)[3])corners, p), expected, 1e-7L);
@@ -183,7 +183,7 @@ static void agrees_with_edge_quadrature(void **state) {
         for (int round = 0; round < 8; round++) {
             double corners[3][3], p[3];
             random_triangle(corners);
-            place((const double(*)[3])corners, places[i].a, places[i].b, places[i].height, p);
+            place_point((const double(*)[3])corners, places[i].a, places[i].b, places[i].height, p);
             real expected = by_edges((const double(*)[3])corners, p);
             assert_close(potential_of((const double(*)[3])corners, p), expected, places[i].tolerance);
         }
@@ -197,7 +197,8 @@ static void agrees_with_surface_quadrature_far_away(void **state) {
     for (int round = 0; round < 60; round++) {
         double corners[3][3], p[3], distance = pow(10.0, 2.5 + round * 0.1);
         random_triangle(corners);
-        place((const double(*)[3])corners, distance * random_unit(), distance * random_unit(), distance, p);
+        place_point((const double(*)[3])corners, distance * random_unit(), distance * random_unit(), distance,
+                    p);
         assert_close(potential_of((const double(*)[3])corners, p), surface_reference(corners, p),
                      1e-11L + 1e-14L * (real)distance);
     }
@@ -212,13 +213,13 @@ static void known_values(void **state) {
     assert_close(potential_of(right, corner), sqrtl(2.0L) * logl(1.0L + sqrtl(2.0L)), 1e-15L);
 }
 
-static void slivers(void **state) {
+static void potential_of_slivers(void **state) {
     (void)state;
     random_seed(3);
     for (int round = 0; round < 60; round++) {
         double width = pow(10.0, random_between(-8.0, -2.0)), p[3];
         double corners[3][3] = {{-0.4, 0.3, 0.1}, {0.5, -0.2, 0.3}, {0, 0, 0}};
-        place((const double(*)[3])corners, 0.3, 0.3, 0.0, corners[2]);
+        place_point((const double(*)[3])corners, 0.3, 0.3, 0.0, corners[2]);
         for (int k = 0; k < 3; k++) corners[2][k] = 0.35 * corners[0][k] + 0.65 * corners[1][k];
         corners[2][1] += width;
         double near = width * random_between(0.1, 4.0) * (round % 3); /* 0: on the long edge */
@@ -247,7 +248,8 @@ static void scales_with_length(void **state) {
     for (int round = 0; round < 50; round++) {
         double corners[3][3], p[3], scaled[3][3], q[3];
         random_triangle(corners);
-        place((const double(*)[3])corners, random_unit(), random_unit(), round % 2 ? random_unit() : 0.0, p);
+        place_point((const double(*)[3])corners, random_unit(), random_unit(),
+                    round % 2 ? random_unit() : 0.0, p);
         double value = potential_of((const double(*)[3])corners, p);
         const double factors[4] = {0x1p40, 0x1p-40, 0x1p3, 3.7};
         for (int f = 0; f < 4; f++) {
@@ -288,7 +290,8 @@ static void does_not_depend_on_the_frame(void **state) {
     for (int round = 0; round < 50; round++) {
         double corners[3][3], turned[3][3], p[3], q[3];
         random_triangle(corners);
-        place((const double(*)[3])corners, random_unit(), random_unit(), round % 2 ? random_unit() : 0.0, p);
+        place_point((const double(*)[3])corners, random_unit(), random_unit(),
+                    round % 2 ? random_unit() : 0.0, p);
         double value = potential_of((const double(*)[3])corners, p), angle = 4.0 * random_unit();
         const double axes[3][3] = {{cos(angle), -sin(angle), 0.0},
                                    {0.6 * sin(angle), 0.6 * cos(angle), -0.8},
@@ -309,7 +312,8 @@ static void parts_add_up(void **state) {
     for (int round = 0; round < 50; round++) {
         double corners[3][3], middles[3][3], p[3], sum = 0.0;
         random_triangle(corners);
-        place((const double(*)[3])corners, random_unit(), random_unit(), round % 2 ? random_unit() : 0.0, p);
+        place_point((const double(*)[3])corners, random_unit(), random_unit(),
+                    round % 2 ? random_unit() : 0.0, p);
         for (int i = 0; i < 9; i++)
             middles[i / 3][i % 3] = 0.5 * (corners[i / 3][i % 3] + corners[(i / 3 + 1) % 3][i % 3]);
         for (int i = 0; i < 3; i++) {
@@ -335,7 +339,8 @@ static void many_points_at_once(void **state) {
     assert_true(potential_source_set(&source, (const double(*)[3])corners));
     for (int i = 0; i < COUNT; i++) {
         double p[3];
-        place((const double(*)[3])corners, random_unit(), random_unit(), i % 3 ? random_unit() : 0.0, p);
+        place_point((const double(*)[3])corners, random_unit(), random_unit(), i % 3 ? random_unit() : 0.0,
+                    p);
         for (int k = 0; k < 3; k++) points[k][i] = i < 3 ? corners[i][k] : p[k];
     }
     for (size_t count = 1; count <= COUNT; count += 3) {
@@ -354,7 +359,7 @@ int main(void) {
                                        cmocka_unit_test(agrees_with_edge_quadrature),
                                        cmocka_unit_test(agrees_with_surface_quadrature_far_away),
                                        cmocka_unit_test(known_values),
-                                       cmocka_unit_test(slivers),
+                                       cmocka_unit_test(potential_of_slivers),
                                        cmocka_unit_test(without_area),
                                        cmocka_unit_test(scales_with_length),
                                        cmocka_unit_test(far_from_the_origin),

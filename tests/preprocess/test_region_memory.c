@@ -38,7 +38,7 @@ static int free_shape(void **state) {
     return 0;
 }
 
-static cscd_status run(job j, const cscd_mesh *mesh, uint32_t *count, double *out) {
+static cscd_status run_job(job j, const cscd_mesh *mesh, uint32_t *count, double *out) {
     switch (j) {
     case JOB_CHARGE:
         return regions_from_charge(mesh, shape.positions, density, NULL, regions, count);
@@ -80,7 +80,7 @@ static void every_allocation_may_fail(void **state) {
             for (int i = 0; i < K * 3; i++) out[i] = 7.0;
             memset(regions, 0, shape.triangle_count * sizeof *regions);
             counter.fail_at = counter.calls + n;
-            status = run((job)j, mesh, &count, out);
+            status = run_job((job)j, mesh, &count, out);
             assert_int_equal(cscd_context_bytes(context), bytes);
             if (status == CSCD_OK) break;
             failures++;

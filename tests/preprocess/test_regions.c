@@ -96,7 +96,7 @@ static void divide_with(const body *b, const double *density, const region_optio
     body_mesh_destroy(mesh);
 }
 
-static void divide(const body *b, const double *density, division *out) {
+static void divide_body(const body *b, const double *density, division *out) {
     divide_with(b, density, NULL, out);
 }
 
@@ -177,15 +177,15 @@ static void bodies_are_divided(void **state) {
     }
 }
 
-static void repeatable(void **state) {
+static void repeatable_regions(void **state) {
     (void)state;
     const charged *c = &bodies[BODY_FIGURE];
     double capacitance[1], *density = malloc(c->shape.triangle_count * sizeof *density);
-    divide(&c->shape, c->density, &found);
+    divide_body(&c->shape, c->density, &found);
     cscd_mesh *mesh = body_mesh(&c->shape, 1);
     assert_int_equal(charge_solve(mesh, c->shape.positions, density, capacitance, NULL), CSCD_OK);
     body_mesh_destroy(mesh);
-    divide(&c->shape, density, &other);
+    divide_body(&c->shape, density, &other);
     assert_same(&found, &other);
     free(density);
 }
@@ -194,7 +194,7 @@ static void repeatable(void **state) {
 static void units_do_not_matter(void **state) {
     (void)state;
     const charged *c = &bodies[BODY_PAWN];
-    divide(&c->shape, c->density, &found);
+    divide_body(&c->shape, c->density, &found);
     for (int exponent = -290; exponent <= 290; exponent += 145) {
         body scaled = {0};
         double *density = malloc(c->shape.triangle_count * sizeof *density);
@@ -202,7 +202,7 @@ static void units_do_not_matter(void **state) {
         for (uint32_t i = 0; i < scaled.vertex_count * 3; i++)
             scaled.positions[i] = ldexp(scaled.positions[i], exponent);
         for (uint32_t t = 0; t < scaled.triangle_count; t++) density[t] = ldexp(c->density[t], -exponent);
-        divide(&scaled, density, &other);
+        divide_body(&scaled, density, &other);
         assert_same(&found, &other);
         body_free(&scaled);
         free(density);
@@ -221,8 +221,8 @@ static void two_components(void **state) {
     assert_true(both.shape.triangle_count <= TRIANGLES_MAX);
     memcpy(both.density, b->density, first * sizeof *both.density);
     memcpy(both.density + first, a->density, a->shape.triangle_count * sizeof *both.density);
-    divide(&a->shape, a->density, &other);
-    divide(&both.shape, both.density, &found);
+    divide_body(&a->shape, a->density, &other);
+    divide_body(&both.shape, both.density, &found);
     assert_int_equal(found.count, other.count + 1);
     for (uint32_t t = 0; t < first; t++) assert_int_equal(found.regions[t], 0);
     for (uint32_t t = 0; t < a->shape.triangle_count; t++)
@@ -241,7 +241,7 @@ static void noise_does_not_cut_a_ball(void **state) {
             double z = b->positions[b->triangles[t * 3] * 3 + 2];
             density[t] = round == 0 ? 1.0 : round == 1 ? z : round == 2 ? fabs(z) : random_unit();
         }
-        divide(b, density, &found);
+        divide_body(b, density, &found);
         assert_int_equal(found.count, 1);
     }
     free(density);
@@ -295,7 +295,7 @@ static void open_and_inside_out(void **state) {
     const charged *c = &bodies[BODY_DUMBBELL];
     body_append(&b, &c->shape, (double[3]){0, 0, 0});
     b.triangle_count -= 5;
-    divide(&b, c->density, &found);
+    divide_body(&b, c->density, &found);
     assert_int_equal(found.count, 2);
     b.triangle_count += 5;
     for (uint32_t t = 0; t < b.triangle_count; t++) {
@@ -326,7 +326,7 @@ static void odd_meshes(void **state) {
             body_add_triangle(&b, triangles[t][0], triangles[t][1], triangles[t][2]);
             density[t] = (double)(t * 5 % 7);
         }
-        divide(&b, density, &found);
+        divide_body(&b, density, &found);
         region_options options = region_options_defaults();
         options.threshold = 0.3;
         options.gain = -1.0;
@@ -356,7 +356,7 @@ static void refuses_bad_options(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_are_divided),
-        cmocka_unit_test(repeatable),
+        cmocka_unit_test(repeatable_regions),
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(two_components),
         cmocka_unit_test(noise_does_not_cut_a_ball),

@@ -28,7 +28,7 @@ static void add_torus(body *b, double major, double minor, uint32_t rings, uint3
 }
 
 /* The centre sees the outer side, where cos(across) > -minor / major. */
-static void torus(void **state) {
+static void share_in_torus(void **state) {
     (void)state;
     const double minor[3] = {0.2, 0.5, 0.8};
     for (int i = 0; i < 3; i++) {
@@ -112,7 +112,7 @@ static void regions_on_their_own(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(torus),
+        cmocka_unit_test(share_in_torus),
         cmocka_unit_test(weighted_by_area),
         cmocka_unit_test(regions_on_their_own),
     };

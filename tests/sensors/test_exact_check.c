@@ -25,7 +25,7 @@ typedef struct sides {
     uint8_t vertices[SCENE_VERTICES_MAX], edges[SCENE_TRIANGLES_MAX * 3], triangles[SCENE_TRIANGLES_MAX];
 } sides;
 
-static bool contains(const uint32_t *cells, uint32_t count, uint32_t cell) {
+static bool contains_cell(const uint32_t *cells, uint32_t count, uint32_t cell) {
     for (uint32_t i = 0; i < count; i++) {
         if (cells[i] == cell) return true;
     }
@@ -38,7 +38,8 @@ static void mark_side(const cscd_partition *p, const uint32_t *cells, uint32_t c
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *corners = mesh->triangles[t];
         bool within = false;
-        for (int k = 0; k < 3; k++) within = within || contains(cells, count, p->vertex_cells[corners[k]]);
+        for (int k = 0; k < 3; k++)
+            within = within || contains_cell(cells, count, p->vertex_cells[corners[k]]);
         if (!within) continue;
         out->triangles[t] |= side;
         for (int k = 0; k < 3; k++) {

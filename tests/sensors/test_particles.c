@@ -25,14 +25,14 @@ static int destroy_context(void **state) {
     return 0;
 }
 
-static void scatter(const double centre[3], double spread) {
+static void scatter_points(const double centre[3], double spread) {
     for (uint32_t i = 0; i < POINTS; i++) {
         for (int k = 0; k < 3; k++) points[i][k] = centre[k] + spread * random_unit();
         groups[i] = i % 7;
     }
 }
 
-static double distance(const double a[3], const double b[3]) {
+static double point_distance(const double a[3], const double b[3]) {
     double d[3];
     vec3_subtract(a, b, d);
     return sqrt(vec3_dot(d, d));
@@ -52,7 +52,7 @@ static void expect_all_found(particle_grid *grid, double radius) {
         }
         for (uint32_t j = 0; j < POINTS; j++) {
             assert_true(times[j] <= 1);
-            if (distance(points[i], points[j]) < radius) assert_int_equal(times[j], 1);
+            if (point_distance(points[i], points[j]) < radius) assert_int_equal(times[j], 1);
         }
     }
 }
@@ -65,12 +65,12 @@ static void the_grid_finds_each_neighbour_once(void **state) {
     random_seed(1);
     assert_int_equal(particle_grid_reserve(context, &grid, POINTS), CSCD_OK);
     for (size_t p = 0; p < sizeof places / sizeof *places; p++) {
-        scatter(places[p], 1.0);
+        scatter_points(places[p], 1.0);
         for (size_t r = 0; r < sizeof radii / sizeof *radii; r++) expect_all_found(&grid, radii[r]);
     }
-    scatter(places[0], 1e-90);
+    scatter_points(places[0], 1e-90);
     expect_all_found(&grid, 1e-91);
-    scatter(places[0], 1e90); /* more cells than numbers: they are larger */
+    scatter_points(places[0], 1e90); /* more cells than numbers: they are larger */
     expect_all_found(&grid, 1e-9);
     expect_all_found(&grid, 1e89);
     particle_grid_free(context, &grid);
@@ -88,7 +88,7 @@ static int by_number(const void *a, const void *b) {
     return (i > j) - (i < j);
 }
 
-static particles world(particle_rule rule, double radius, int worlds) {
+static particles random_world(particle_rule rule, double radius, int worlds) {
     particles p = {.context = context, .rule = rule, .steps = {step_offsets, step_targets}};
     for (uint32_t i = 0; i < POINTS; i++) {
         step_offsets[i + 1] = (i + 1) * WAYS;
@@ -113,7 +113,7 @@ static particles world(particle_rule rule, double radius, int worlds) {
 static double plain_worth(const particles *p, const uint32_t *vertices, uint32_t i, uint32_t at) {
     double vector[3] = {0, 0, 0}, scalar = 0.0, strongest = 0.0, potential = 0.0;
     for (uint32_t j = 0; j < p->count; j++) {
-        double d[3], r = distance(points[vertices[j]], points[at]);
+        double d[3], r = point_distance(points[vertices[j]], points[at]);
         if (j == i || r >= p->radius) continue;
         vec3_subtract(points[vertices[j]], points[at], d);
         double s = fmax(r, p->closest), own = p->objects[j] == p->objects[i];
@@ -151,8 +151,8 @@ static void every_particle_takes_the_best_way(void **state) {
     uint32_t before[WALKERS];
     random_seed(2);
     for (int round = 0; round < 30; round++) {
-        scatter(centre, 1.0);
-        particles p = world((particle_rule)(round % 4), round % 3 ? 0.4 : 1.5, 1);
+        scatter_points(centre, 1.0);
+        particles p = random_world((particle_rule)(round % 4), round % 3 ? 0.4 : 1.5, 1);
         memcpy(before, p.vertices, sizeof before);
         particles_begin(&p);
         uint32_t moved = particles_round(&p, points[0]), expected = 0;
@@ -171,7 +171,7 @@ static uint64_t plain_pairs(const particles *p) {
     for (uint32_t i = 0; i < p->count; i++)
         for (uint32_t j = 0; j < i; j++)
             pairs += p->groups[i] != p->groups[j] &&
-                     distance(points[p->vertices[i]], points[p->vertices[j]]) < p->radius;
+                     point_distance(points[p->vertices[i]], points[p->vertices[j]]) < p->radius;
     return pairs;
 }
 
@@ -179,8 +179,8 @@ static void counters_count(void **state) {
     (void)state;
     static const double centre[3] = {0, 0, 0};
     random_seed(3);
-    scatter(centre, 1.0);
-    particles p = world(PARTICLE_ATTRACTION, 0.5, 1);
+    scatter_points(centre, 1.0);
+    particles p = random_world(PARTICLE_ATTRACTION, 0.5, 1);
     uint64_t pairs = plain_pairs(&p);
     particles_begin(&p);
     particles_round(&p, points[0]);
@@ -211,7 +211,7 @@ static void lay_paths(particles *p, uint32_t paths, uint32_t length) {
     for (uint32_t i = 0; i < paths; i++) p->groups[i] = p->objects[i] = i;
 }
 
-static void put(uint32_t point, double x, double y) {
+static void put_point(uint32_t point, double x, double y) {
     points[point][0] = x;
     points[point][1] = y;
     points[point][2] = 0.0;
@@ -224,8 +224,8 @@ static void a_walk_rests_at_the_nearest_points(void **state) {
     particles p;
     lay_paths(&p, 2, LENGTH);
     for (uint32_t i = 0; i < LENGTH; i++) {
-        put(i, i, 0.0);
-        put(LENGTH + i, 20.0 + 0.1 * i, 1.0 + i);
+        put_point(i, i, 0.0);
+        put_point(LENGTH + i, 20.0 + 0.1 * i, 1.0 + i);
     }
     p.vertices[0] = 0;
     p.vertices[1] = 2 * LENGTH - 1;
@@ -247,7 +247,7 @@ static void swapping_for_ever_is_noticed(void **state) {
     (void)state;
     particles p;
     lay_paths(&p, 2, 2);
-    put(0, 0, 0), put(1, 1, 0), put(2, 0, 1), put(3, 1, 1);
+    put_point(0, 0, 0), put_point(1, 1, 0), put_point(2, 0, 1), put_point(3, 1, 1);
     p.vertices[0] = 0;
     p.vertices[1] = 3;
     particles_begin(&p);
@@ -267,9 +267,9 @@ static void cycles_are_as_long_as_they_say(void **state) {
     uint32_t start[WALKERS], longest = 0;
     random_seed(5);
     for (int i = 0; i < 100; i++) {
-        scatter(centre, 1.0);
+        scatter_points(centre, 1.0);
         for (uint32_t v = 0; v < POINTS; v++) points[v][0] += 100.0 * (v % WORLDS);
-        particles p = world((particle_rule)(i % 4), 1.0, WORLDS);
+        particles p = random_world((particle_rule)(i % 4), 1.0, WORLDS);
         particles_begin(&p);
         uint32_t length = particles_settle(&p, points[0], 2000);
         assert_true(p.rounds < 2000);
@@ -299,7 +299,7 @@ static void repulsion_spreads(void **state) {
     p.count = 2;
     for (uint32_t v = 0; v < RING; v++) {
         double angle = 2.0 * 3.14159265358979 * v / RING;
-        put(v, cos(angle), sin(angle));
+        put_point(v, cos(angle), sin(angle));
         step_offsets[v] = 2 * v;
         step_targets[2 * v] = (v + RING - 1) % RING;
         step_targets[2 * v + 1] = (v + 1) % RING;
@@ -310,7 +310,7 @@ static void repulsion_spreads(void **state) {
     p.vertices[1] = 1;
     particles_begin(&p);
     particles_settle(&p, points[0], 1000);
-    assert_true(distance(points[p.vertices[0]], points[p.vertices[1]]) > 1.9);
+    assert_true(point_distance(points[p.vertices[0]], points[p.vertices[1]]) > 1.9);
     particles_free(&p);
 }
 
@@ -322,7 +322,7 @@ static uint64_t distances_of(uint32_t clusters, uint64_t *vertices) {
     p.radius = 1.0;
     for (uint32_t c = 0; c < clusters; c++)
         for (uint32_t i = 0; i < EACH * 2; i++) {
-            put(c * EACH * 2 + i, 1000.0 * c + 0.4 * random_unit(), 0.4 * random_unit());
+            put_point(c * EACH * 2 + i, 1000.0 * c + 0.4 * random_unit(), 0.4 * random_unit());
             points[c * EACH * 2 + i][2] = 17.0 * (c % 3);
         }
     for (uint32_t i = 0; i < p.count; i++) p.vertices[i] = 2 * i;

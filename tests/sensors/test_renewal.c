@@ -47,13 +47,13 @@ static void bench_destroy(renewal_bench *b) {
 }
 
 /* How many are due at `moved`, by the limits. */
-static uint32_t due(renewal_bench *b, const renewal_limits *limits) {
+static uint32_t count_due(renewal_bench *b, const renewal_limits *limits) {
     return sensor_renewal_check(&b->renewal, b->partition, moved, particles, limits, renewals);
 }
 
 /* Undoes the half step that every second ring of a building block is turned by, which makes its quads fold
  * inwards. */
-static void straighten(uint32_t first_vertex, double middle, uint32_t rings, uint32_t segments) {
+static void straighten_rings(uint32_t first_vertex, double middle, uint32_t rings, uint32_t segments) {
     double angle = -3.14159265358979323846 / segments;
     for (uint32_t i = 0; i < rings * segments; i++) {
         double *p = body.x0 + (size_t)(first_vertex + 1 + i) * 3, x = p[0] - middle, y = p[1];
@@ -66,14 +66,15 @@ static void straighten(uint32_t first_vertex, double middle, uint32_t rings, uin
 static void make_two_bodies(void) {
     scene_clear(&body);
     scene_add_sphere(&body, (double[3]){-4.0, 0.0, 0.0}, 0.5, 12, 16);
-    straighten(0, -4.0, 12, 16);
+    straighten_rings(0, -4.0, 12, 16);
     uint32_t first_of_second = body.vertex_count;
     scene_add_capsule(&body, 6.0, 0.5, 24, 12);
-    straighten(first_of_second, 0.0, 24, 12);
+    straighten_rings(first_of_second, 0.0, 24, 12);
 }
 
 /* Moves the second body's vertices, or all. */
-static void move(bool all, void (*how)(const double at[3], double amount, double out[3]), double amount) {
+static void move_vertices(bool all, void (*how)(const double at[3], double amount, double out[3]),
+                          double amount) {
     uint32_t first_of_second = 0;
     while (body.x0[first_of_second * 3] < -2.0) first_of_second++;
     memcpy(moved, body.x0, sizeof moved);
@@ -81,15 +82,15 @@ static void move(bool all, void (*how)(const double at[3], double amount, double
         how(body.x0 + (size_t)v * 3, amount, moved + (size_t)v * 3);
 }
 
-static void grow(const double at[3], double amount, double out[3]) {
+static void grow_point(const double at[3], double amount, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = at[k] * amount;
 }
 
-static void stretch(const double at[3], double amount, double out[3]) {
+static void stretch_point(const double at[3], double amount, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = at[k] * (k == 2 ? amount : 1.0 / sqrt(amount));
 }
 
-static void turn(const double at[3], double amount, double out[3]) {
+static void turn_point(const double at[3], double amount, double out[3]) {
     double x = at[0] * cos(amount) - at[1] * sin(amount), z = at[2];
     out[0] = x * cos(2.0 * amount) - z * sin(2.0 * amount) + 100.0 * amount;
     out[1] = at[0] * sin(amount) + at[1] * cos(amount) - 7.0;
@@ -97,7 +98,7 @@ static void turn(const double at[3], double amount, double out[3]) {
 }
 
 /* Bends the capsule's axis to an arc of this angle. */
-static void bend(const double at[3], double amount, double out[3]) {
+static void bend_point(const double at[3], double amount, double out[3]) {
     double radius = 6.0 / amount, angle = at[2] / radius;
     out[0] = radius - (radius - at[0]) * cos(angle);
     out[1] = at[1];
@@ -115,9 +116,9 @@ static void rest_and_rigid_motion_need_nothing(void **state) {
     for (int i = 0; i < ROUNDS; i++) {
         hand_partition_particles(b.partition, particles);
         memcpy(moved, body.x0, sizeof moved);
-        assert_int_equal(due(&b, &narrow), 0);
-        move(true, turn, random_unit());
-        assert_int_equal(due(&b, &usual), 0);
+        assert_int_equal(count_due(&b, &narrow), 0);
+        move_vertices(true, turn_point, random_unit());
+        assert_int_equal(count_due(&b, &usual), 0);
     }
     for (uint32_t p = 0; p < 2; p++) assert_int_equal(renewals[p], CSCD_RENEWAL_NONE);
     bench_destroy(&b);
@@ -130,10 +131,10 @@ static void growth_is_seen(void **state) {
     random_seed(2);
     make_two_bodies();
     renewal_bench b = bench_create(12);
-    move(false, grow, 1.3);
-    assert_int_equal(due(&b, &usual), 0);
-    move(false, grow, 1.5);
-    assert_int_equal(due(&b, &usual), 1);
+    move_vertices(false, grow_point, 1.3);
+    assert_int_equal(count_due(&b, &usual), 0);
+    move_vertices(false, grow_point, 1.5);
+    assert_int_equal(count_due(&b, &usual), 1);
     assert_int_equal(renewals[0], CSCD_RENEWAL_NONE);
     assert_int_equal(renewals[1], CSCD_RENEWAL_AREA);
     bench_destroy(&b);
@@ -146,10 +147,10 @@ static void growth_is_estimated(void **state) {
     make_two_bodies();
     renewal_bench b = bench_create(12);
     for (uint32_t p = 0; p < 2; p++) b.renewal.first[p].area = INFINITY;
-    move(false, grow, 1.3);
-    assert_int_equal(due(&b, &usual), 0);
-    move(false, grow, 3.0);
-    assert_int_equal(due(&b, &usual), 1);
+    move_vertices(false, grow_point, 1.3);
+    assert_int_equal(count_due(&b, &usual), 0);
+    move_vertices(false, grow_point, 3.0);
+    assert_int_equal(count_due(&b, &usual), 1);
     assert_int_equal(renewals[1], CSCD_RENEWAL_AREA);
     assert_int_equal(sensor_renewal_check(&b.renewal, b.partition, moved, NULL, &usual, renewals), 0);
     bench_destroy(&b);
@@ -163,13 +164,13 @@ static void long_edges_are_seen(void **state) {
     double longest = sqrt(b.renewal.first[1].edge_squared);
     renewal_limits limits = {.area_factor = 4.0, .edge_length = 1.2 * longest};
     assert_true(sqrt(b.renewal.first[0].edge_squared) < limits.edge_length);
-    move(false, stretch, 1.1);
-    assert_int_equal(due(&b, &limits), 0);
-    move(false, stretch, 2.0);
-    assert_int_equal(due(&b, &limits), 1);
+    move_vertices(false, stretch_point, 1.1);
+    assert_int_equal(count_due(&b, &limits), 0);
+    move_vertices(false, stretch_point, 2.0);
+    assert_int_equal(count_due(&b, &limits), 1);
     assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
     limits.edge_length = 0.0;
-    assert_int_equal(due(&b, &limits), 0);
+    assert_int_equal(count_due(&b, &limits), 0);
     bench_destroy(&b);
 }
 
@@ -180,11 +181,11 @@ static void bending_is_told_before_long_edges(void **state) {
     make_two_bodies();
     renewal_bench b = bench_create(12);
     renewal_limits limits = {.area_factor = 4.0, .edge_length = 0.5 * sqrt(b.renewal.first[1].edge_squared)};
-    move(false, bend, 0.05);
-    due(&b, &limits);
+    move_vertices(false, bend_point, 0.05);
+    count_due(&b, &limits);
     assert_int_equal(renewals[1], CSCD_RENEWAL_EDGE);
-    move(false, bend, 3.0);
-    due(&b, &limits);
+    move_vertices(false, bend_point, 3.0);
+    count_due(&b, &limits);
     assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);
     bench_destroy(&b);
 }
@@ -206,10 +207,10 @@ static void bending_is_seen(void **state) {
         if (flipped != 0) flip_triangles();
         renewal_bench b = bench_create(12);
         assert_true(b.renewal.first[1].concave < 0.01);
-        move(false, bend, 0.05);
-        assert_int_equal(due(&b, &usual), 0);
-        move(false, bend, 3.0);
-        assert_int_equal(due(&b, &usual), 1);
+        move_vertices(false, bend_point, 0.05);
+        assert_int_equal(count_due(&b, &usual), 0);
+        move_vertices(false, bend_point, 3.0);
+        assert_int_equal(count_due(&b, &usual), 1);
         assert_int_equal(renewals[1], CSCD_RENEWAL_CONCAVE);
         bench_destroy(&b);
     }
@@ -221,12 +222,12 @@ static void renewal_settles_one_part(void **state) {
     random_seed(6);
     make_two_bodies();
     renewal_bench b = bench_create(12);
-    move(true, grow, 2.0);
-    assert_int_equal(due(&b, &usual), 2);
+    move_vertices(true, grow_point, 2.0);
+    assert_int_equal(count_due(&b, &usual), 2);
     b.partition->generation++;
     b.partition->part_generations[1] = b.partition->generation;
     sensor_renewal_follow(&b.renewal, b.partition, moved);
-    assert_int_equal(due(&b, &usual), 1);
+    assert_int_equal(count_due(&b, &usual), 1);
     assert_int_equal(renewals[0], CSCD_RENEWAL_AREA);
     assert_int_equal(renewals[1], CSCD_RENEWAL_NONE);
     bench_destroy(&b);
@@ -289,7 +290,7 @@ static void walks_end_on_any_mesh(void **state) {
             double estimate = sensor_renewal_estimate(b.partition, moved, v);
             assert_true(i % 4 == 3 || (estimate >= 0.0 && isfinite(estimate)));
         }
-        due(&b, &usual);
+        count_due(&b, &usual);
         bench_destroy(&b);
     }
 }

@@ -43,7 +43,7 @@ static void bench_destroy(bounds_bench *b) {
     rig_destroy(&b->rig);
 }
 
-static bool apart(bounds_bench *b, bool *boxes) {
+static bool bounds_apart(bounds_bench *b, bool *boxes) {
     sensor_bounds_update(&b->bounds, b->partition, interval.x0, interval.x1, centres);
     sensor_bounds_update_boxes(&b->bounds, b->partition, interval.x0, interval.x1);
     bool there = sensor_bounds_apart(&b->bounds, b->partition, 0, 1);
@@ -52,7 +52,7 @@ static bool apart(bounds_bench *b, bool *boxes) {
     return there;
 }
 
-static bool touching(bounds_bench *b) {
+static bool exact_contact(bounds_bench *b) {
     uint32_t cells[128];
     for (uint32_t c = 0; c < b->partition->cell_count; c++) cells[c] = c;
     uint32_t count = b->partition->parts[0].cell_count;
@@ -103,7 +103,7 @@ static void never_apart_in_contact(void **state) {
             bool boxes;
             move_bodies(&rest, first_of_second);
             hand_partition_particles(b.partition, centres);
-            bool balls = apart(&b, &boxes), contact = touching(&b);
+            bool balls = bounds_apart(&b, &boxes), contact = exact_contact(&b);
             sensor_bounds_update(&b.bounds, b.partition, interval.x0, interval.x1, NULL);
             bool middles = sensor_bounds_apart(&b.bounds, b.partition, 0, 1);
             assert_false((balls || boxes || middles) && contact);
@@ -159,11 +159,11 @@ static void exact_touches_are_not_apart(void **state) {
         bool boxes;
         double offset = i % 2 == 0 ? 0.0 : ldexp(1.0, random_integer(10, 40)) * random_integer(-1, 1);
         make_touch(offset, 0.0);
-        assert_true(touching(&b));
-        assert_false(apart(&b, &boxes));
+        assert_true(exact_contact(&b));
+        assert_false(bounds_apart(&b, &boxes));
         assert_false(boxes);
         make_touch(offset, offset == 0.0 ? 0x1p-30 : 0x1p-10);
-        assert_true(apart(&b, &boxes));
+        assert_true(bounds_apart(&b, &boxes));
     }
     bench_destroy(&b);
 }
@@ -180,10 +180,10 @@ static void far_bodies_are_apart(void **state) {
     bounds_bench b = bench_create(NULL, 2, 12);
     bool boxes;
     hand_partition_particles(b.partition, centres);
-    assert_true(apart(&b, &boxes));
+    assert_true(bounds_apart(&b, &boxes));
     assert_true(boxes);
     for (uint32_t v = 0; v < interval.vertex_count; v++) interval.x1[v * 3] = interval.x0[v * 3] + 20.0;
-    assert_true(apart(&b, &boxes));
+    assert_true(bounds_apart(&b, &boxes));
     assert_false(boxes);
     bench_destroy(&b);
 }
@@ -204,7 +204,7 @@ static void extreme_lengths_are_safe(void **state) {
             interval.x1[k] = rest.x1[k] * scales[i];
         }
         hand_partition_particles(b.partition, centres);
-        assert_false(apart(&b, &boxes));
+        assert_false(bounds_apart(&b, &boxes));
     }
     bench_destroy(&b);
 }

@@ -62,7 +62,7 @@ static uint32_t object_of(const cscd_mesh *mesh, uint32_t vertex) {
     return cscd_mesh_triangle_component(mesh, triangle);
 }
 
-static bool between(const cscd_mesh *mesh, const cscd_contact *c, uint32_t a, uint32_t b) {
+static bool contact_between(const cscd_mesh *mesh, const cscd_contact *c, uint32_t a, uint32_t b) {
     uint32_t first[3] = {c->a}, second[3];
     if (c->kind == CSCD_CONTACT_VF) {
         cscd_mesh_triangle(mesh, c->b, second);
@@ -74,20 +74,20 @@ static bool between(const cscd_mesh *mesh, const cscd_contact *c, uint32_t a, ui
     return (o == a && p == b) || (o == b && p == a);
 }
 
-static bool truth(cscd_detector *detector, const cscd_mesh *mesh, const double *x0, const double *x1,
-                  uint32_t a, uint32_t b, double *toi) {
+static bool detector_contact(cscd_detector *detector, const cscd_mesh *mesh, const double *x0,
+                             const double *x1, uint32_t a, uint32_t b, double *toi) {
     cscd_contacts contacts;
     assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
     bool any = false;
     for (size_t i = 0; i < contacts.count; i++) {
-        if (!between(mesh, &contacts.items[i], a, b)) continue;
+        if (!contact_between(mesh, &contacts.items[i], a, b)) continue;
         *toi = any && *toi < contacts.items[i].toi ? *toi : contacts.items[i].toi;
         any = true;
     }
     return any;
 }
 
-static first_frames run(const meeting *m, const sensor_setup *setup, uint32_t a, uint32_t b) {
+static first_frames run_meeting(const meeting *m, const sensor_setup *setup, uint32_t a, uint32_t b) {
     static double x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];
     first_frames first = {-1, -1, 0.0, 0.0};
     sensor_rig r = sensor_rig_create(&s, setup);
@@ -97,7 +97,7 @@ static first_frames run(const meeting *m, const sensor_setup *setup, uint32_t a,
         positions_at(m, 1.1 * f / FRAMES, x0);
         positions_at(m, 1.1 * (f + 1) / FRAMES, x1);
         cscd_warnings warnings = sensor_rig_step(&r, x0, x1);
-        if (truth(detector, r.mesh, x0, x1, a, b, &first.toi)) first.truly = f;
+        if (detector_contact(detector, r.mesh, x0, x1, a, b, &first.toi)) first.truly = f;
         const cscd_warning *w = find_contact(&warnings, a, b);
         if (w == NULL) continue;
         assert_int_equal(first.truly, f); /* what the exact check finds is there */
@@ -111,7 +111,7 @@ static first_frames run(const meeting *m, const sensor_setup *setup, uint32_t a,
 }
 
 static void expect_found(const meeting *m, const sensor_setup *setup, uint32_t a, uint32_t b) {
-    first_frames first = run(m, setup, a, b);
+    first_frames first = run_meeting(m, setup, a, b);
     assert_true(first.truly > 3);
     assert_int_equal(first.sensed, first.truly);
     print_message("objects %u and %u: frame %d, at %.4f, sensed %.4f\n", a, b, first.truly, first.toi,

@@ -16,7 +16,7 @@ enum { SEEDS = 12 };
 
 static scene s; /* large; one test at a time */
 
-static sensor_reach measure(const sensor_rig *r) {
+static sensor_reach measure_reach(const sensor_rig *r) {
     const cscd_partition *p = r->partition;
     const walk_areas areas = {p->cell_offsets, p->cell_vertices, p->cell_count};
     sensor_reach reach;
@@ -25,7 +25,7 @@ static sensor_reach measure(const sensor_rig *r) {
     return reach;
 }
 
-static double distance(const double *x, uint32_t a, uint32_t b) {
+static double vertex_distance(const double *x, uint32_t a, uint32_t b) {
     double sum = 0.0;
     for (uint32_t k = 0; k < 3; k++) sum += (x[a * 3 + k] - x[b * 3 + k]) * (x[a * 3 + k] - x[b * 3 + k]);
     return sqrt(sum);
@@ -50,7 +50,7 @@ static double nearest_in_mu(const sensor_rig *r, const sensor_reach *reach, cons
     for (uint32_t i = 0; i < 2; i++) {
         for (uint32_t k = 0; k < count; k++) {
             const uint32_t *parts = r->partition->vertex_parts;
-            double nearer = fmin(distance(s.x0, a[i], b[k]), distance(s.x1, a[i], b[k]));
+            double nearer = fmin(vertex_distance(s.x0, a[i], b[k]), vertex_distance(s.x1, a[i], b[k]));
             least = fmin(least, nearer / sensor_reach_mu(reach, parts[a[i]], parts[b[k]]));
         }
     }
@@ -68,7 +68,7 @@ static cscd_detector *detector_of(const sensor_rig *r) {
 
 /* The largest of a scene's contacts, whose number is added. */
 static double largest_in_mu(const sensor_rig *r, size_t *count) {
-    sensor_reach reach = measure(r);
+    sensor_reach reach = measure_reach(r);
     cscd_detector *detector = detector_of(r);
     cscd_contacts contacts;
     double largest = 0.0;
@@ -123,7 +123,7 @@ static void crossed_edges_need_it_all(void **state) {
         size_t count = 0;
         make_cross(10.0 * i);
         sensor_rig r = sensor_rig_create(&s, NULL);
-        sensor_reach reach = measure(&r);
+        sensor_reach reach = measure_reach(&r);
         assert_true(fabs(sensor_reach_mu(&reach, 0, 1) - (sqrt(2.0) + 5.0 * i)) < 1e-9);
         double largest = largest_in_mu(&r, &count);
         assert_true(count > 0);

@@ -58,7 +58,7 @@ static void check_counts(const cscd_mesh *mesh, const object_scene *scene) {
 }
 
 /* Counts the contacts that the detector finds in every `stride`-th frame. */
-static census count(object_stage *s, const cscd_mesh *mesh, uint32_t stride) {
+static census count_contacts(object_stage *s, const cscd_mesh *mesh, uint32_t stride) {
     census c;
     assert_int_equal(census_begin(mesh, &c), CSCD_OK);
     for (uint32_t frame = 0; frame < s->scene->frame_count; frame += stride) {
@@ -76,7 +76,7 @@ static void objects_touch_and_part(void **state) {
         cscd_mesh *mesh = mesh_of(&s.placed);
         check_closed(mesh, s.scene->object_count);
         check_counts(mesh, s.scene);
-        census c = count(&s, mesh, stride);
+        census c = count_contacts(&s, mesh, stride);
         intervals = c.frame_count - 1;
         touched = c.between_intervals;
         print_message("  %s: %u of %u intervals, %u pairs of objects\n", s.scene->name, touched, intervals,
@@ -108,7 +108,7 @@ static void the_second_ball_stays_near(void **state) {
     (void)state;
     object_stage s = stage_of("v-shape");
     cscd_mesh *mesh = mesh_of(&s.placed);
-    census c = count(&s, mesh, 2);
+    census c = count_contacts(&s, mesh, 2);
     assert_true(c.pairs[1]);
     assert_false(c.pairs[2]);
     assert_false(c.pairs[3 + 2]);
@@ -125,7 +125,7 @@ static void rows_touch_their_neighbours(void **state) {
     for (int i = 0; i < 3; i++) {
         object_stage s = stage_of(names[i]);
         cscd_mesh *mesh = mesh_of(&s.placed);
-        census c = count(&s, mesh, 3);
+        census c = count_contacts(&s, mesh, 3);
         assert_true(c.pairs[1]);
         assert_int_equal(c.pairs[2], first_with_third[i]);
         assert_int_equal(c.pairs[3 + 2], !first_with_third[i]);

@@ -15,7 +15,7 @@ static void two_spheres(double gap) {
     scene_add_sphere(&s, right, 1.0, 9, 14);
 }
 
-static double distance(const double *x, uint32_t a, uint32_t b) {
+static double vertex_distance(const double *x, uint32_t a, uint32_t b) {
     double sum = 0.0;
     for (int k = 0; k < 3; k++) {
         double d = x[a * 3 + (uint32_t)k] - x[b * 3 + (uint32_t)k];
@@ -183,7 +183,8 @@ static void a_given_mu_is_taken(void **state) {
     cscd_warnings found = step_with(1.0, &r);
     assert_int_equal(found.count, 1);
     double resting = found.items[0].distance;
-    assert_true(fabs(resting - distance(s.x0, found.items[0].vertex_a, found.items[0].vertex_b)) < 1e-12);
+    assert_true(fabs(resting - vertex_distance(s.x0, found.items[0].vertex_a, found.items[0].vertex_b)) <
+                1e-12);
     assert_false(found.items[0].contact);
     sensor_rig_destroy(&r);
     found = step_with(resting * 1.001, &r);
@@ -292,8 +293,8 @@ static void repulsion_spreads_them(void **state) {
         double least = INFINITY;
         for (uint32_t i = 0; i < 3; i++)
             for (uint32_t j = 0; j < i; j++)
-                least = fmin(least, distance(s.x0, cscd_sensors_particle(r.sensors, i),
-                                             cscd_sensors_particle(r.sensors, j)));
+                least = fmin(least, vertex_distance(s.x0, cscd_sensors_particle(r.sensors, i),
+                                                    cscd_sensors_particle(r.sensors, j)));
         assert_true(least > 0.6);
         one_sided += all_on_the_right(&r, first);
         sensor_rig_destroy(&r);

@@ -17,7 +17,7 @@ typedef struct sensed {
     cscd_sensors *sensors;
 } sensed;
 
-static cscd_status create(counting_allocator *counter, cscd_sensor_method method, sensed *out) {
+static cscd_status create_sensed(counting_allocator *counter, cscd_sensor_method method, sensed *out) {
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(counter);
     options.thread_count = 1;
@@ -32,7 +32,7 @@ static cscd_status create(counting_allocator *counter, cscd_sensor_method method
     return status;
 }
 
-static void destroy(sensed *r) {
+static void destroy_sensed(sensed *r) {
     cscd_sensors_destroy(r->sensors);
     cscd_partition_destroy(r->partition);
     cscd_mesh_destroy(r->mesh);
@@ -58,16 +58,16 @@ static void fail_each(cscd_sensor_method method) {
     sensed r = {0};
     cscd_warning expected, found;
     counting_allocator counter = counting_allocator_start();
-    assert_int_equal(create(&counter, method, &r), CSCD_OK);
+    assert_int_equal(create_sensed(&counter, method, &r), CSCD_OK);
     size_t created = counter.calls;
     assert_int_equal(step_twice(&r, &expected), CSCD_OK);
     size_t calls = counter.calls;
     assert_true(calls > created + 3);
-    destroy(&r);
+    destroy_sensed(&r);
     for (size_t n = 0; n < calls; n++) {
         counter = counting_allocator_start();
         counter.fail_at = n;
-        cscd_status status = create(&counter, method, &r);
+        cscd_status status = create_sensed(&counter, method, &r);
         assert_int_equal(status, n < created ? CSCD_OUT_OF_MEMORY : CSCD_OK);
         if (status == CSCD_OK) {
             assert_int_equal(step_twice(&r, &found), CSCD_OUT_OF_MEMORY);
@@ -75,7 +75,7 @@ static void fail_each(cscd_sensor_method method) {
             assert_int_equal(found.vertex_b, expected.vertex_b);
             assert_true(found.distance == expected.distance && found.toi == expected.toi);
         }
-        destroy(&r);
+        destroy_sensed(&r);
         assert_int_equal(counter.live, 0);
         assert_int_equal(counter.bytes, 0);
     }
@@ -95,14 +95,14 @@ static void steady_steps_allocate_nothing(void **state) {
         counting_allocator counter = counting_allocator_start();
         cscd_warnings found;
         scene_make(SCENE_LINKED_TORI, 2, &s);
-        assert_int_equal(create(&counter, (cscd_sensor_method)method, &r), CSCD_OK);
+        assert_int_equal(create_sensed(&counter, (cscd_sensor_method)method, &r), CSCD_OK);
         for (int frame = 0; frame < 40; frame++) {
             size_t before = counter.calls;
             const double *start = frame % 2 ? s.x1 : s.x0, *end = frame % 2 ? s.x0 : s.x1;
             assert_int_equal(cscd_sensors_step(r.sensors, start, end, &found), CSCD_OK);
             if (frame > 20) assert_int_equal(counter.calls, before);
         }
-        destroy(&r);
+        destroy_sensed(&r);
     }
 }
 
@@ -120,11 +120,11 @@ static cscd_sensor_counters work_of(int pairs) {
         scene_add_sphere(&s, centre, 1.0, 4, 8);
         for (uint32_t v = first; v < s.vertex_count; v++) s.x1[v * 3] -= i % 2 ? 0.2 : 0.0;
     }
-    assert_int_equal(create(&counter, CSCD_SENSORS_CELLS, &r), CSCD_OK);
+    assert_int_equal(create_sensed(&counter, CSCD_SENSORS_CELLS, &r), CSCD_OK);
     assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x1, &found), CSCD_OK);
     assert_int_equal(found.count, pairs);
     cscd_sensor_counters counters = cscd_sensors_counters(r.sensors);
-    destroy(&r);
+    destroy_sensed(&r);
     return counters;
 }
 

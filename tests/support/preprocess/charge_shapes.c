@@ -46,7 +46,7 @@ static uint32_t middle_of(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
 }
 
 /* Splits every triangle in four at the middles of its edges. */
-static void split(conductor *s) {
+static void split_triangles(conductor *s) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
@@ -92,7 +92,7 @@ conductor conductor_sphere(int level) {
     conductor s = copy_of(12, corners, 20, triangles);
     project_to_sphere(&s);
     for (int i = 0; i < level; i++) {
-        split(&s);
+        split_triangles(&s);
         project_to_sphere(&s);
     }
     return s;
@@ -103,7 +103,7 @@ conductor conductor_cube(int level) {
     const uint32_t triangles[36] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                                     2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
     conductor s = copy_of(8, corners, 12, triangles);
-    for (int i = 0; i < level; i++) split(&s);
+    for (int i = 0; i < level; i++) split_triangles(&s);
     return s;
 }
 

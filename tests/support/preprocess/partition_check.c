@@ -44,7 +44,7 @@ static void check_parts(const cscd_partition *partition) {
 }
 
 /* Vertices of the cell that are reached from its first along its neighbours. */
-static uint32_t reached(const cscd_partition *partition, uint32_t cell, bool *seen, uint32_t *stack) {
+static uint32_t count_reached(const cscd_partition *partition, uint32_t cell, bool *seen, uint32_t *stack) {
     uint32_t top = 0, count = 0;
     stack[top++] = partition->cell_vertices[partition->cell_offsets[cell]];
     seen[stack[0]] = true;
@@ -75,7 +75,7 @@ static void check_cells(const cscd_partition *partition) {
             assert_int_equal(partition->vertex_cells[partition->cell_vertices[i]], c);
             assert_true(i == begin || partition->cell_vertices[i - 1] < partition->cell_vertices[i]);
         }
-        assert_int_equal(reached(partition, c, seen, stack), end - begin);
+        assert_int_equal(count_reached(partition, c, seen, stack), end - begin);
         listed = end;
     }
     for (uint32_t v = 0; v < vertex_count; v++)

@@ -6,28 +6,28 @@
 
 #include <stdlib.h>
 
-static void *zeros(size_t count, size_t size) {
+static void *allocate_zeros(size_t count, size_t size) {
     void *block = calloc(count + 1, size);
     if (block == NULL) abort();
     return block;
 }
 
-static cscd_partition *allocate(const cscd_mesh *mesh, uint32_t part_count) {
+static cscd_partition *allocate_partition(const cscd_mesh *mesh, uint32_t part_count) {
     size_t vertices = mesh->vertex_count;
-    cscd_partition *p = zeros(1, sizeof *p);
+    cscd_partition *p = allocate_zeros(1, sizeof *p);
     *p = (cscd_partition){.context = mesh->context, .mesh = mesh, .part_count = part_count};
     p->object_count = part_count;
-    p->object_obstacles = zeros(part_count, sizeof *p->object_obstacles);
-    p->parts = zeros(part_count, sizeof *p->parts);
-    p->triangle_parts = zeros(mesh->triangle_count, sizeof(uint32_t));
-    p->vertex_parts = zeros(vertices, sizeof(uint32_t));
-    p->part_vertex_offsets = zeros((size_t)part_count + 1, sizeof(uint32_t));
-    p->part_vertices = zeros(vertices, sizeof(uint32_t));
-    p->vertex_cells = zeros(vertices, sizeof(uint32_t));
-    p->cell_parts = zeros(vertices, sizeof(uint32_t));
-    p->cell_offsets = zeros(vertices + 1, sizeof(uint32_t));
-    p->cell_vertices = zeros(vertices, sizeof(uint32_t));
-    p->part_generations = zeros(part_count, sizeof(uint64_t));
+    p->object_obstacles = allocate_zeros(part_count, sizeof *p->object_obstacles);
+    p->parts = allocate_zeros(part_count, sizeof *p->parts);
+    p->triangle_parts = allocate_zeros(mesh->triangle_count, sizeof(uint32_t));
+    p->vertex_parts = allocate_zeros(vertices, sizeof(uint32_t));
+    p->part_vertex_offsets = allocate_zeros((size_t)part_count + 1, sizeof(uint32_t));
+    p->part_vertices = allocate_zeros(vertices, sizeof(uint32_t));
+    p->vertex_cells = allocate_zeros(vertices, sizeof(uint32_t));
+    p->cell_parts = allocate_zeros(vertices, sizeof(uint32_t));
+    p->cell_offsets = allocate_zeros(vertices + 1, sizeof(uint32_t));
+    p->cell_vertices = allocate_zeros(vertices, sizeof(uint32_t));
+    p->part_generations = allocate_zeros(part_count, sizeof(uint64_t));
     p->generation = 1;
     for (uint32_t i = 0; i < part_count; i++) p->part_generations[i] = 1;
     return p;
@@ -61,7 +61,7 @@ static double squared_distance(const double *positions, uint32_t a, uint32_t b) 
 static void make_cells(cscd_partition *p, const double *positions, uint32_t part, uint32_t cells_max) {
     const uint32_t *vertices = p->part_vertices + p->part_vertex_offsets[part];
     uint32_t count = p->part_vertex_offsets[part + 1] - p->part_vertex_offsets[part], made = 0;
-    uint32_t *nearest = zeros(count, sizeof *nearest), centres[64];
+    uint32_t *nearest = allocate_zeros(count, sizeof *nearest), centres[64];
     p->parts[part] = (cscd_part){.object = part, .first_cell = p->cell_count};
     for (uint32_t c = 0; c < cells_max && count > 0; c++)
         centres[c] = vertices[random_integer(0, (int)count - 1)];
@@ -92,7 +92,7 @@ static void make_cells(cscd_partition *p, const double *positions, uint32_t part
 cscd_partition *hand_partition_create(const cscd_mesh *mesh, const double *positions,
                                       const uint32_t *triangle_parts, uint32_t part_count,
                                       uint32_t cells_max) {
-    cscd_partition *p = allocate(mesh, part_count);
+    cscd_partition *p = allocate_partition(mesh, part_count);
     memcpy(p->triangle_parts, triangle_parts != NULL ? triangle_parts : mesh->triangle_components,
            mesh->triangle_count * sizeof(uint32_t));
     list_part_vertices(p);

@@ -76,7 +76,7 @@ static void add_triangle(scene *s, uint32_t a, uint32_t b, uint32_t c) {
 }
 
 /* Across the path, in its plane. */
-static void across(const double (*path)[3], int count, int i, double normal[2]) {
+static void across_path(const double (*path)[3], int count, int i, double normal[2]) {
     int before = i > 0 ? i - 1 : i, after = i < count - 1 ? i + 1 : i;
     double x = path[after][0] - path[before][0], y = path[after][1] - path[before][1];
     double length = sqrt(x * x + y * y);
@@ -88,7 +88,7 @@ void scene_add_tube(scene *s, const double (*path)[3], int count, double radius,
     uint32_t n = (uint32_t)segments, rings = (uint32_t)count, first = s->vertex_count;
     for (int i = 0; i < count; i++) {
         double normal[2];
-        across(path, count, i, normal);
+        across_path(path, count, i, normal);
         for (uint32_t j = 0; j < n; j++) {
             double angle = 2.0 * 3.14159265358979 * j / n, out = radius * cos(angle);
             add_vertex(s, path[i][0] + out * normal[0], path[i][1] + out * normal[1],
