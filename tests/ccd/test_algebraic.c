@@ -13,7 +13,7 @@ enum { ROUND_COUNT = 20000, LIMBS_MAX = 12 };
 
 static integer_pool pool;
 
-static int seed(void **state) {
+static int seed_and_start_pool(void **state) {
     (void)state;
     random_seed(23);
     integer_pool_start(&pool);
@@ -57,7 +57,7 @@ static void check_equal(integer found, const mpz_t expected) {
     for (size_t i = 0; i < limbs; i++) assert_true(found.limbs[i] == mpz_getlimbn(expected, (mp_size_t)i));
 }
 
-static void integers(void **state) {
+static void integers_against_gmp(void **state) {
     mpz_t x, y, expected;
     mpz_inits(x, y, expected, NULL);
     (void)state;
@@ -139,7 +139,7 @@ static polynomial from_coefficients(const int64_t *c, int count) {
 }
 
 /* factor (bottom t - top) */
-static polynomial line(int64_t top, int64_t bottom) {
+static polynomial linear_polynomial(int64_t top, int64_t bottom) {
     return from_coefficients((int64_t[]){-top, bottom}, 2);
 }
 
@@ -163,7 +163,7 @@ static void rational_roots(void **state) {
         polynomial p = from_coefficients((int64_t[]){random_integer(0, 1) ? 3 : -2}, 1);
         for (int i = 0; i < degree; i++) {
             int64_t fraction[2] = {random_integer(-6, 9), random_integer(1, 6)};
-            polynomial factor = line(fraction[0], fraction[1]);
+            polynomial factor = linear_polynomial(fraction[0], fraction[1]);
             p = polynomial_multiply(&pool, &p, &factor);
             int place = 0;
             while (place < distinct && compare_fractions(fraction, roots[place]) > 0) place++;
@@ -183,7 +183,7 @@ static void rational_roots(void **state) {
         for (int i = 0; i < distinct; i++) {
             int which = 0; /* the multiple roots of a cubic come in no order */
             while (which < distinct) {
-                polynomial here = line(roots[which][0], roots[which][1]);
+                polynomial here = linear_polynomial(roots[which][0], roots[which][1]);
                 if (algebraic_sign(&pool, &found[i], &here) == 0) break;
                 which++;
             }
@@ -210,7 +210,7 @@ static void irrational_roots(void **state) {
     for (int round = 0; round < ROUND_COUNT; round++) {
         pool.used = 0;
         int64_t n = squares[random_integer(0, 5)], a = random_integer(-9, 9), b = random_integer(1, 4);
-        polynomial linear = line(a, b), square = from_coefficients((int64_t[]){-n, 0, 1}, 3);
+        polynomial linear = linear_polynomial(a, b), square = from_coefficients((int64_t[]){-n, 0, 1}, 3);
         polynomial p = polynomial_multiply(&pool, &linear, &square);
         algebraic found[3];
         assert_int_equal(algebraic_roots(&pool, &p, found), 3);
@@ -273,9 +273,12 @@ static void room_for_the_worst(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(integers, seed),         cmocka_unit_test_setup(doubles_as_integers, seed),
-        cmocka_unit_test_setup(kept_numbers, seed),     cmocka_unit_test_setup(rational_roots, seed),
-        cmocka_unit_test_setup(irrational_roots, seed), cmocka_unit_test_setup(room_for_the_worst, seed),
+        cmocka_unit_test_setup(integers_against_gmp, seed_and_start_pool),
+        cmocka_unit_test_setup(doubles_as_integers, seed_and_start_pool),
+        cmocka_unit_test_setup(kept_numbers, seed_and_start_pool),
+        cmocka_unit_test_setup(rational_roots, seed_and_start_pool),
+        cmocka_unit_test_setup(irrational_roots, seed_and_start_pool),
+        cmocka_unit_test_setup(room_for_the_worst, seed_and_start_pool),
     };
     return cmocka_run_group_tests_name("algebraic", tests, NULL, NULL);
 }

@@ -280,7 +280,7 @@ typedef struct subdivided {
 
 /* Contacts are close at their time, and nothing is before it; where there is none, nothing is at any time,
  * but for near misses that are too close to tell. */
-static void subdivide(cscd_contact_kind kind, const elementary_query *query, subdivided *counts) {
+static void check_by_subdivision(cscd_contact_kind kind, const elementary_query *query, subdivided *counts) {
     oracle_verdict verdict = algebraic_oracle(kind, query);
     if (verdict.touching) {
         counts->hits++;
@@ -301,7 +301,7 @@ static void agrees_with_subdivision(void **state) {
         subdivided counts = {0, 0, 0};
         for (int i = 0; i < 2 * SUBDIVIDED; i++) {
             elementary_query query = exact_query(&random, (cscd_contact_kind)(i % 2), (query_family)family);
-            subdivide((cscd_contact_kind)(i % 2), &query, &counts);
+            check_by_subdivision((cscd_contact_kind)(i % 2), &query, &counts);
         }
         printf("%-15s %4u contacts, %4u misses, %3u too close to tell\n",
                query_family_name((query_family)family), counts.hits, counts.misses, counts.open);
@@ -353,7 +353,7 @@ static void has_the_symmetries(void **state) {
     }
 }
 
-static int finish(void **state) {
+static int finish_oracle(void **state) {
     (void)state;
     algebraic_oracle_finish();
     return 0;
@@ -363,5 +363,5 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(known_vf), cmocka_unit_test(known_ee),
                                        cmocka_unit_test(agrees_with_subdivision),
                                        cmocka_unit_test(has_the_symmetries)};
-    return cmocka_run_group_tests_name("algebraic_oracle", tests, NULL, finish);
+    return cmocka_run_group_tests_name("algebraic_oracle", tests, NULL, finish_oracle);
 }

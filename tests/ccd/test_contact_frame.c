@@ -5,13 +5,13 @@
 
 #include <math.h>
 
-static double length(const double v[3]) {
+static double vector_length(const double v[3]) {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 static void check_normal(const elementary_hit *hit, double x, double y, double z) {
     double size = sqrt(x * x + y * y + z * z);
-    assert_true(fabs(length(hit->normal) - 1.0) < 1e-14);
+    assert_true(fabs(vector_length(hit->normal) - 1.0) < 1e-14);
     assert_true(fabs(hit->normal[0] * x + hit->normal[1] * y + hit->normal[2] * z) > (1.0 - 1e-12) * size);
 }
 
@@ -56,7 +56,7 @@ static void tiny_edge_on_a_long_one(void **state) {
 }
 
 /* The points named lie within 1e-8 of the largest displacement and 64 units in the last place. */
-static void needle(void **state) {
+static void needle_face(void **state) {
     static const elementary_query query = {
         {{-0x1.0b3a2d5415da1p-28, 0x1.03d08ac0a6fc9p-26, -0x1.a528fade0f952p-27},
          {-0x1.a6327cc1c6dfdp-2, 0x1.1f34b0eb52138p-3, -0x1.4cf47b36b12fp-4},
@@ -100,7 +100,7 @@ static void nearly_parallel_edges(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tiny_face_at_rest),       cmocka_unit_test(tiny_face_hit_aslant),
-        cmocka_unit_test(tiny_edge_on_a_long_one), cmocka_unit_test(needle),
+        cmocka_unit_test(tiny_edge_on_a_long_one), cmocka_unit_test(needle_face),
         cmocka_unit_test(nearly_parallel_edges),
     };
     return cmocka_run_group_tests_name("contact_frame", tests, NULL, NULL);

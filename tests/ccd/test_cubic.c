@@ -12,7 +12,7 @@
 
 enum { ROUND_COUNT = 20000 };
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(7);
     return 0;
@@ -69,7 +69,7 @@ static void check_intervals(const root_list *list, const test_polynomial *f) {
     }
 }
 
-static root_list find(const test_polynomial *f, double relative_error) {
+static root_list find_roots(const test_polynomial *f, double relative_error) {
     coplanarity cubic;
     to_bernstein(f, cubic.b);
     cubic.error = relative_error * largest_coefficient(cubic.b);
@@ -81,7 +81,7 @@ static root_list find(const test_polynomial *f, double relative_error) {
 
 /* Returns whether the roots could be isolated. */
 static bool check_polynomial(const test_polynomial *f) {
-    root_list list = find(f, random_integer(0, 1) ? 0x1p-44 : ldexp(1.0, -random_integer(20, 43)));
+    root_list list = find_roots(f, random_integer(0, 1) ? 0x1p-44 : ldexp(1.0, -random_integer(20, 43)));
     if (list.count == ROOTS_UNCERTAIN) return false;
     check_intervals(&list, f);
     long double spread = f->shift < 0 ? sqrtl(-f->shift) : 0;
@@ -112,7 +112,7 @@ static long double random_root(void) {
     }
 }
 
-static long double tiny(void) {
+static long double tiny_number(void) {
     return random_integer(0, 2) * pow(10.0, -random_integer(1, 18));
 }
 
@@ -122,8 +122,8 @@ static void known_roots(void **state) {
     (void)state;
     for (int round = 0; round < 5 * ROUND_COUNT; round++) {
         test_polynomial f = {.root = random_root(), .centre = random_root()};
-        if (random_integer(0, 2) == 0) f.root = f.centre + random_integer(-1, 1) * tiny();
-        f.shift = random_integer(-1, 1) * tiny();
+        if (random_integer(0, 2) == 0) f.root = f.centre + random_integer(-1, 1) * tiny_number();
+        f.shift = random_integer(-1, 1) * tiny_number();
         if (random_integer(0, 3) == 0) f.shift = random_unit();
         f.leading = ldexp(random_integer(0, 1) ? 1.0 : -1.0, random_integer(-300, 300));
         isolated += check_polynomial(&f);
@@ -138,7 +138,7 @@ static void tiny_leading_coefficient(void **state) {
     for (int exponent = 1; exponent < 1000; exponent++) {
         test_polynomial f = {.root = ldexp(random_unit(), exponent), .centre = random_between(0.0, 1.0)};
         f.leading = ldexp(1.0, -exponent);
-        f.shift = random_integer(-1, 1) * tiny();
+        f.shift = random_integer(-1, 1) * tiny_number();
         if (fabsl(f.root) > 1) check_polynomial(&f);
     }
 }
@@ -150,7 +150,7 @@ static void separate_roots(void **state) {
         double spread = random_between(0.05, 0.25), between = random_between(0.3, 0.7);
         test_polynomial f = {1, between + (random_integer(0, 1) ? spread / 2 : -spread / 2), between,
                              -(long double)spread * spread};
-        root_list list = find(&f, 0x1p-44);
+        root_list list = find_roots(&f, 0x1p-44);
         assert_int_equal(list.count, 3);
         check_intervals(&list, &f);
         for (int i = 0; i < 3; i++)
@@ -158,7 +158,8 @@ static void separate_roots(void **state) {
     }
 }
 
-static int isolate(double b0, double b1, double b2, double b3, double error, root_interval found[ROOTS_MAX]) {
+static int isolate_roots(double b0, double b1, double b2, double b3, double error,
+                         root_interval found[ROOTS_MAX]) {
     const coplanarity f = {{b0, b1, b2, b3}, error};
     return cubic_isolate(&f, found);
 }
@@ -166,16 +167,16 @@ static int isolate(double b0, double b1, double b2, double b3, double error, roo
 static void special_cases(void **state) {
     root_interval found[ROOTS_MAX];
     (void)state;
-    assert_int_equal(isolate(1, 1, 1, 1, 0.5, found), 0);
-    assert_int_equal(isolate(-1, -1, -1, -1, 0.5, found), 0);
-    assert_int_equal(isolate(1, -0.25, 0.25, 1, 0x1p-44, found), 0); /* by subdivision */
-    assert_int_equal(isolate(0, 0, 0, 0, 0x1p-1060, found), ROOTS_UNCERTAIN);
-    assert_int_equal(isolate(1, 1, 1, 1, 1.0, found), ROOTS_UNCERTAIN);
-    assert_int_equal(isolate(0, 1, 1, 1, 0x1p-44, found), 1);
+    assert_int_equal(isolate_roots(1, 1, 1, 1, 0.5, found), 0);
+    assert_int_equal(isolate_roots(-1, -1, -1, -1, 0.5, found), 0);
+    assert_int_equal(isolate_roots(1, -0.25, 0.25, 1, 0x1p-44, found), 0); /* by subdivision */
+    assert_int_equal(isolate_roots(0, 0, 0, 0, 0x1p-1060, found), ROOTS_UNCERTAIN);
+    assert_int_equal(isolate_roots(1, 1, 1, 1, 1.0, found), ROOTS_UNCERTAIN);
+    assert_int_equal(isolate_roots(0, 1, 1, 1, 0x1p-44, found), 1);
     assert_true(found[0].begin == 0.0 && found[0].end < 1e-12 && !found[0].certain);
-    assert_int_equal(isolate(1, 1, 1, 0, 0x1p-44, found), 1);
+    assert_int_equal(isolate_roots(1, 1, 1, 0, 0x1p-44, found), 1);
     assert_true(found[0].begin > 1.0 - 1e-12 && found[0].end == 1.0 && !found[0].certain);
-    assert_int_equal(isolate(1, 0, 0, -1, 0x1p-44, found), 1);
+    assert_int_equal(isolate_roots(1, 0, 0, -1, 0x1p-44, found), 1);
     assert_true(found[0].begin < 0.5 && found[0].end > 0.5 && found[0].certain);
 }
 
@@ -183,15 +184,15 @@ static void special_cases(void **state) {
 
 typedef struct exact_integer exact;
 
-static exact plus(exact a, exact b) {
+static exact exact_sum(exact a, exact b) {
     return exact_add(&a, &b);
 }
 
-static exact minus(exact a, exact b) {
+static exact exact_difference(exact a, exact b) {
     return exact_subtract(&a, &b);
 }
 
-static exact times(exact a, exact b) {
+static exact exact_product(exact a, exact b) {
     return exact_multiply(&a, &b);
 }
 
@@ -201,17 +202,17 @@ typedef struct tetrahedra {
     exact vectors[3][2][3];
 } tetrahedra;
 
-static double nudge(double value) {
+static double nudge_value(double value) {
     return value == 0.0 ? 0.0 : nextafter(value, random_integer(0, 1) ? INFINITY : -INFINITY);
 }
 
 /* One coordinate the same for all points at one end or both: a plane, which a nudge may then undo. */
-static void flatten(double x[2][4][3]) {
+static void flatten_coordinate(double x[2][4][3]) {
     int k = random_integer(0, 2), first = random_integer(0, 1), last = random_integer(first, 1);
     for (int end = first; end <= last; end++) {
         for (int i = 1; i < 4; i++) x[end][i][k] = x[end][0][k];
     }
-    if (random_integer(0, 1)) x[first][3][k] = nudge(x[first][3][k]);
+    if (random_integer(0, 1)) x[first][3][k] = nudge_value(x[first][3][k]);
 }
 
 static void random_tetrahedra(tetrahedra *s) {
@@ -221,13 +222,13 @@ static void random_tetrahedra(tetrahedra *s) {
     for (int i = 0; i < 24; i++) {
         double *x = &s->x[i / 12][i / 3 % 4][i % 3];
         *x = offset + ldexp(rint(ldexp(random_unit(), bits)), exponent - random_integer(0, 2) - bits);
-        if (random_integer(0, 15) == 0) *x = nudge(*x);
+        if (random_integer(0, 15) == 0) *x = nudge_value(*x);
     }
-    if (random_integer(0, 1)) flatten(s->x);
+    if (random_integer(0, 1)) flatten_coordinate(s->x);
     for (int i = 0; i < 18; i++) {
         int d = i / 6, end = i / 3 % 2, k = i % 3;
         s->vectors[d][end][k] =
-            minus(exact_from_double(s->x[end][d + 1][k]), exact_from_double(s->x[end][0][k]));
+            exact_difference(exact_from_double(s->x[end][d + 1][k]), exact_from_double(s->x[end][0][k]));
     }
 }
 
@@ -236,7 +237,8 @@ static exact exact_determinant(const tetrahedra *s, int a, int b, int c) {
     exact sum = {0};
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
-        sum = plus(sum, times(w[i], minus(times(u[j], v[k]), times(u[k], v[j]))));
+        sum = exact_sum(
+            sum, exact_product(w[i], exact_difference(exact_product(u[j], v[k]), exact_product(u[k], v[j]))));
     }
     return sum;
 }
@@ -245,18 +247,19 @@ static exact exact_determinant(const tetrahedra *s, int a, int b, int c) {
 static exact exact_coefficient(const tetrahedra *s, int i) {
     if (i == 0 || i == 3) {
         int end = i == 3;
-        return times((exact){1, 1, {3}}, exact_determinant(s, end, end, end));
+        return exact_product((exact){1, 1, {3}}, exact_determinant(s, end, end, end));
     }
     int one = i == 1, other = i == 2; /* the end that is taken once, and the one taken twice */
-    return plus(exact_determinant(s, one, other, other),
-                plus(exact_determinant(s, other, one, other), exact_determinant(s, other, other, one)));
+    return exact_sum(
+        exact_determinant(s, one, other, other),
+        exact_sum(exact_determinant(s, other, one, other), exact_determinant(s, other, other, one)));
 }
 
 /* 3 value in the same units; values below 2^-300 count as 0. */
-static exact tripled(double value) {
+static exact tripled_exact(double value) {
     exact one = exact_from_double(1.0), three = {1, 1, {3}};
     if (fabs(value) < 0x1p-300) return (exact){0};
-    return times(three, times(exact_from_double(value), times(one, one)));
+    return exact_product(three, exact_product(exact_from_double(value), exact_product(one, one)));
 }
 
 /* As a vertex, the last point, and the face of the others. */
@@ -281,9 +284,9 @@ static void error_bound(void **state) {
         int signs = 0;
         for (int i = 0; i < 4; i++) {
             exact value = exact_coefficient(&s, i);
-            exact difference = minus(tripled(f.b[i]), value);
+            exact difference = exact_difference(tripled_exact(f.b[i]), value);
             difference.sign = abs(difference.sign);
-            assert_true(minus(tripled(f.error), difference).sign >= 0);
+            assert_true(exact_difference(tripled_exact(f.error), difference).sign >= 0);
             signs += value.sign;
             zeros += value.sign == 0;
         }
@@ -316,9 +319,12 @@ static void excluded_by_signs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(known_roots, seed),    cmocka_unit_test_setup(tiny_leading_coefficient, seed),
-        cmocka_unit_test_setup(separate_roots, seed), cmocka_unit_test(special_cases),
-        cmocka_unit_test_setup(error_bound, seed),    cmocka_unit_test(excluded_by_signs),
+        cmocka_unit_test_setup(known_roots, seed_random),
+        cmocka_unit_test_setup(tiny_leading_coefficient, seed_random),
+        cmocka_unit_test_setup(separate_roots, seed_random),
+        cmocka_unit_test(special_cases),
+        cmocka_unit_test_setup(error_bound, seed_random),
+        cmocka_unit_test(excluded_by_signs),
     };
     return cmocka_run_group_tests_name("cubic", tests, NULL, NULL);
 }

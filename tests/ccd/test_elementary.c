@@ -10,7 +10,7 @@
 
 enum { ROUND_COUNT = 5000, SYMMETRY_ROUND_COUNT = 1000 };
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(3);
     return 0;
@@ -174,10 +174,13 @@ static void powers_of_two(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(vf_contacts, seed),     cmocka_unit_test_setup(ee_contacts, seed),
-        cmocka_unit_test_setup(vf_near_misses, seed),  cmocka_unit_test_setup(ee_near_misses, seed),
-        cmocka_unit_test_setup(order_of_points, seed), cmocka_unit_test_setup(reversed_time, seed),
-        cmocka_unit_test_setup(powers_of_two, seed),
+        cmocka_unit_test_setup(vf_contacts, seed_random),
+        cmocka_unit_test_setup(ee_contacts, seed_random),
+        cmocka_unit_test_setup(vf_near_misses, seed_random),
+        cmocka_unit_test_setup(ee_near_misses, seed_random),
+        cmocka_unit_test_setup(order_of_points, seed_random),
+        cmocka_unit_test_setup(reversed_time, seed_random),
+        cmocka_unit_test_setup(powers_of_two, seed_random),
     };
     return cmocka_run_group_tests_name("elementary", tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@
 
 enum { ROUND_COUNT = 20000 };
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(5);
     return 0;
@@ -106,7 +106,7 @@ typedef struct turning {
     double alpha, beta, c0, d0, c1, d1, e;
 } turning;
 
-static double bend(const turning *m) {
+static double volume_curvature(const turning *m) {
     return m->e * m->alpha * m->c0 - m->alpha * m->c1 - m->beta * m->d1;
 }
 
@@ -121,7 +121,7 @@ static turning random_turning(void) {
                       .c1 = 0.5 * random_integer(-4, 4),
                       .d1 = 0.5 * random_integer(-4, 4),
                       .e = random_integer(-1, 1)};
-    } while (fabs(bend(&m)) <= 0.5 * fabs(m.e * m.beta * m.d1));
+    } while (fabs(volume_curvature(&m)) <= 0.5 * fabs(m.e * m.beta * m.d1));
     return m;
 }
 
@@ -155,13 +155,13 @@ static void double_roots(void **state) {
         elementary_query query = turning_query(kind, &m, 0.0);
         elementary_hit hit = check_first(kind, &query, 0.5, 1e-9);
         if (kind == CSCD_CONTACT_VF) assert_true(fabs(hit.u - m.c0) < 1e-4 && fabs(hit.v - m.d0) < 1e-4);
-        query = turning_query(kind, &m, bend(&m) > 0.0 ? 0x1p-30 : -0x1p-30);
+        query = turning_query(kind, &m, volume_curvature(&m) > 0.0 ? 0x1p-30 : -0x1p-30);
         check_apart(kind, &query);
     }
 }
 
 /* Two edges in a plane close like scissors and stop, parallel, at a gap. */
-static void scissors(void **state) {
+static void closing_scissors(void **state) {
     (void)state;
     for (int exponent = -10; exponent >= -30; exponent--) {
         double gap = ldexp(1.0, exponent);
@@ -176,7 +176,7 @@ static void scissors(void **state) {
 
 /* ---- mirrored at the plane x = 0 ---- */
 
-static void mirror(const double p[3], double out[3]) {
+static void mirror_coordinates(const double p[3], double out[3]) {
     out[0] = -p[0];
     out[1] = p[1];
     out[2] = p[2];
@@ -193,8 +193,8 @@ static void random_right(elementary_query *query, int i, bool may_cross) {
 }
 
 static void mirror_point(elementary_query *query, int from, int to) {
-    mirror(query->x0[from], query->x0[to]);
-    mirror(query->x1[from], query->x1[to]);
+    mirror_coordinates(query->x0[from], query->x0[to]);
+    mirror_coordinates(query->x1[from], query->x1[to]);
 }
 
 /* When a point meets its mirror image; 2: never. */
@@ -249,8 +249,8 @@ static void symmetric_face(void **state) {
             velocity[i / 3][i % 3] = random_unit();
         }
         at[0][0] = at[1][0] = velocity[0][0] = velocity[1][0] = 0.0;
-        mirror(at[2], at[3]);
-        mirror(velocity[2], velocity[3]);
+        mirror_coordinates(at[2], at[3]);
+        mirror_coordinates(velocity[2], velocity[3]);
         double closing[3];
         for (int k = 1; k < 3; k++) {
             at[0][k] = (1.0 - 2.0 * u) * at[1][k] + 2.0 * u * at[2][k];
@@ -268,10 +268,13 @@ static void symmetric_face(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(exact_contacts, seed), cmocka_unit_test_setup(ends_of_the_interval, seed),
-        cmocka_unit_test_setup(double_roots, seed),   cmocka_unit_test(scissors),
-        cmocka_unit_test_setup(mirrored_edges, seed), cmocka_unit_test_setup(mirrored_vertices, seed),
-        cmocka_unit_test_setup(symmetric_face, seed),
+        cmocka_unit_test_setup(exact_contacts, seed_random),
+        cmocka_unit_test_setup(ends_of_the_interval, seed_random),
+        cmocka_unit_test_setup(double_roots, seed_random),
+        cmocka_unit_test(closing_scissors),
+        cmocka_unit_test_setup(mirrored_edges, seed_random),
+        cmocka_unit_test_setup(mirrored_vertices, seed_random),
+        cmocka_unit_test_setup(symmetric_face, seed_random),
     };
     return cmocka_run_group_tests_name("elementary_degenerate", tests, NULL, NULL);
 }

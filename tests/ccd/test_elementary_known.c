@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(6);
     return 0;
@@ -379,9 +379,11 @@ static void for_a_moment(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(sliding_in_a_plane, seed), cmocka_unit_test_setup(moving_on_a_line, seed),
-        cmocka_unit_test_setup(zero_sizes, seed),         cmocka_unit_test_setup(static_pairs, seed),
-        cmocka_unit_test_setup(for_a_moment, seed),
+        cmocka_unit_test_setup(sliding_in_a_plane, seed_random),
+        cmocka_unit_test_setup(moving_on_a_line, seed_random),
+        cmocka_unit_test_setup(zero_sizes, seed_random),
+        cmocka_unit_test_setup(static_pairs, seed_random),
+        cmocka_unit_test_setup(for_a_moment, seed_random),
     };
     return cmocka_run_group_tests_name("elementary_known", tests, NULL, NULL);
 }

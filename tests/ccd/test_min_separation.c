@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static separation within(double distance) {
+static separation separation_within(double distance) {
     return (separation){distance, 1e-6 * distance};
 }
 
@@ -125,7 +125,7 @@ static const known approaches[] = {
 };
 
 static void check_known(const known *k) {
-    separation limit = within(k->distance);
+    separation limit = separation_within(k->distance);
     elementary_hit hit;
     bool bounded;
     print_message("  %s\n", k->name);
@@ -140,7 +140,7 @@ static void check_known(const known *k) {
     if (k->u >= 0.0) assert_true(fabs(hit.u - k->u) <= 1e-9 && fabs(hit.v - k->v) <= 1e-9);
 }
 
-static void regions(void **state) {
+static void all_regions(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof approaches / sizeof *approaches; i++) check_known(&approaches[i]);
 }
@@ -153,7 +153,8 @@ static void distance_is_closed(void **state) {
     bool bounded;
     for (int flies = 0; flies < 2; flies++) {
         query.x1[0][2] = flies ? 7.0 : 0.5;
-        separation limit = within(0.5), less = within(0.5 * (1 - 1e-5)), more = within(2.0);
+        separation limit = separation_within(0.5), less = separation_within(0.5 * (1 - 1e-5)),
+                   more = separation_within(2.0);
         assert_true(separation_vf(&query, &limit, &hit, &bounded) && hit.toi == 0.0 && !bounded);
         assert_true(separation_vf(&query, &more, &hit, &bounded) && hit.toi == 0.0 && !bounded);
         assert_true(hit.normal[2] == 1.0 && hit.point[2] == 0.25 && hit.u == 0.25 && hit.v == 0.25);
@@ -165,7 +166,7 @@ static void distance_is_closed(void **state) {
 static void touching_at_the_start(void **state) {
     (void)state;
     elementary_query query = {{{1, 1, 0}, FACE}, {{1, 1, 2}, FACE}};
-    separation limit = within(0.25);
+    separation limit = separation_within(0.25);
     elementary_hit hit;
     bool bounded;
     assert_true(separation_vf(&query, &limit, &hit, &bounded) && hit.toi == 0.0);
@@ -192,14 +193,14 @@ static const elementary_query degenerate[] = {
 static void lines_and_points(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof degenerate / sizeof *degenerate; i++) {
-        separation limit = within(1.0);
+        separation limit = separation_within(1.0);
         elementary_hit hit;
         bool bounded;
         cscd_contact_kind kind = i < 3 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         assert_true(check_separation(kind, &degenerate[i], &limit, &bounded) && !bounded);
         separation_test(kind, &degenerate[i], &limit, &hit, &bounded);
         assert_true(hit.toi <= 0.5 && hit.toi > 0.5 - 1e-6 && fabs(hit.normal[2] - 1.0) < 1e-9);
-        limit = within(1e-9);
+        limit = separation_within(1e-9);
         assert_true(check_separation(kind, &degenerate[i], &limit, &bounded) && !bounded);
     }
 }
@@ -207,7 +208,7 @@ static void lines_and_points(void **state) {
 /* ---- grazing ---------------------------------------------------------------------------------------- */
 
 /* Passes a corner, or the end of an edge, at height h. */
-static elementary_query passing(cscd_contact_kind kind, double h) {
+static elementary_query passing_query(cscd_contact_kind kind, double h) {
     if (kind == CSCD_CONTACT_VF)
         return (elementary_query){{{-3, 0, h}, {0, 0, 0}, {4, 3, -1}, {4, -3, -1}},
                                   {{3, 0, h}, {0, 0, 0}, {4, 3, -1}, {4, -3, -1}}};
@@ -215,15 +216,15 @@ static elementary_query passing(cscd_contact_kind kind, double h) {
                               {{3, -1, h}, {3, 1, h}, {0, 0, 0}, {4, 0, -4}}};
 }
 
-static void grazing(void **state) {
+static void grazing_contacts(void **state) {
     (void)state;
     for (int exponent = 0; exponent > -20; exponent--) {
         for (int kind = 0; kind < 2; kind++) {
             double d = ldexp(1.0, exponent);
-            separation limit = within(d);
-            elementary_query exact = passing((cscd_contact_kind)kind, d),
-                             far = passing((cscd_contact_kind)kind, d * (1 + 1e-3)),
-                             near = passing((cscd_contact_kind)kind, d * (1 - 1e-9));
+            separation limit = separation_within(d);
+            elementary_query exact = passing_query((cscd_contact_kind)kind, d),
+                             far = passing_query((cscd_contact_kind)kind, d * (1 + 1e-3)),
+                             near = passing_query((cscd_contact_kind)kind, d * (1 - 1e-9));
             elementary_hit hit;
             bool bounded;
             assert_true(check_separation((cscd_contact_kind)kind, &exact, &limit, &bounded) && !bounded);
@@ -246,12 +247,12 @@ static void extreme_distances(void **state) {
     bool bounded;
     static const double tiny[] = {1e-10, 1e-20, 1e-60, 0x1p-300};
     for (size_t i = 0; i < sizeof tiny / sizeof *tiny; i++) {
-        separation limit = within(tiny[i]);
+        separation limit = separation_within(tiny[i]);
         assert_true(separation_vf(&through, &limit, &hit, &bounded) && !bounded);
         assert_true(hit.toi <= 0.5 && hit.toi > 0.5 - 1e-9);
         assert_false(separation_vf(&past, &limit, &hit, &bounded));
     }
-    separation huge = within(0x1p300);
+    separation huge = separation_within(0x1p300);
     assert_true(separation_vf(&past, &huge, &hit, &bounded) && hit.toi == 0.0 && !bounded);
     for (int exponent = -298; exponent <= 296; exponent += 99) {
         elementary_query scaled = query_scaled(&through, exponent);
@@ -276,7 +277,7 @@ static void next_to_each_other(void **state) {
         }
     }
     for (int exponent = -60; exponent < 0; exponent++) {
-        separation limit = within(ldexp(1.0, exponent));
+        separation limit = separation_within(ldexp(1.0, exponent));
         bool bounded;
         check_separation(CSCD_CONTACT_VF, &query, &limit, &bounded);
         check_separation(CSCD_CONTACT_EE, &query, &limit, &bounded);
@@ -304,8 +305,8 @@ static void along_the_directions(void **state) {
             memcpy(query.x1, query.x0, sizeof query.x1);
             elementary_hit hit;
             bool bounded = false;
-            separation near = within(ldexp(direction[3] * (1.0 + 0x1p-40), exponent));
-            separation far = within(ldexp(direction[3] * 0.998, exponent));
+            separation near = separation_within(ldexp(direction[3] * (1.0 + 0x1p-40), exponent));
+            separation far = separation_within(ldexp(direction[3] * 0.998, exponent));
             assert_true(separation_vf(&query, &near, &hit, &bounded));
             assert_false(separation_vf(&query, &far, &hit, &bounded));
         }
@@ -322,7 +323,7 @@ static const elementary_query twisting = {{{1e-9, 1e-9, 2e-9}, {-1, 0, 1}, {1, -
 
 static void bound_on_work(void **state) {
     (void)state;
-    separation limit = within(1e-9);
+    separation limit = separation_within(1e-9);
     elementary_hit hit;
     bool bounded = false;
     assert_true(check_separation(CSCD_CONTACT_VF, &twisting, &limit, &bounded));
@@ -335,14 +336,11 @@ static void bound_on_work(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(regions),
-                                       cmocka_unit_test(distance_is_closed),
-                                       cmocka_unit_test(touching_at_the_start),
-                                       cmocka_unit_test(lines_and_points),
-                                       cmocka_unit_test(grazing),
-                                       cmocka_unit_test(extreme_distances),
-                                       cmocka_unit_test(next_to_each_other),
-                                       cmocka_unit_test(along_the_directions),
-                                       cmocka_unit_test(bound_on_work)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_regions),           cmocka_unit_test(distance_is_closed),
+        cmocka_unit_test(touching_at_the_start), cmocka_unit_test(lines_and_points),
+        cmocka_unit_test(grazing_contacts),      cmocka_unit_test(extreme_distances),
+        cmocka_unit_test(next_to_each_other),    cmocka_unit_test(along_the_directions),
+        cmocka_unit_test(bound_on_work)};
     return cmocka_run_group_tests_name("separation", tests, NULL, NULL);
 }

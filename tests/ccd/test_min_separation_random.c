@@ -8,7 +8,7 @@
 
 enum { ROUND_COUNT = 800 };
 
-static int seed(void **state) {
+static int seed_random(void **state) {
     (void)state;
     random_seed(20);
     return 0;
@@ -19,7 +19,7 @@ static int seed(void **state) {
 typedef void family(elementary_query *query);
 
 /* Any features, any motion. */
-static void wild(elementary_query *query) {
+static void wild_motion(elementary_query *query) {
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
             query->x0[i][k] = random_unit();
@@ -29,8 +29,8 @@ static void wild(elementary_query *query) {
 }
 
 /* A tenth of their size at most, as in recordings. */
-static void slow(elementary_query *query) {
-    wild(query);
+static void slow_motion(elementary_query *query) {
+    wild_motion(query);
     double speed = ldexp(1.0, -random_integer(3, 20));
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) query->x1[i][k] = query->x0[i][k] + speed * random_unit();
@@ -38,9 +38,9 @@ static void slow(elementary_query *query) {
 }
 
 /* Each feature flies without turning. */
-static void rigid(elementary_query *query) {
+static void rigid_motion(elementary_query *query) {
     double motion[4][3];
-    wild(query);
+    wild_motion(query);
     for (int k = 0; k < 3; k++) {
         motion[0][k] = random_unit();
         motion[1][k] = random_unit();
@@ -59,8 +59,8 @@ static void on_a_grid(elementary_query *query) {
 }
 
 /* Needles and nearly parallel edges: two points of a feature nearly on a line with the others. */
-static void thin(elementary_query *query) {
-    slow(query);
+static void thin_features(elementary_query *query) {
+    slow_motion(query);
     double width = ldexp(1.0, -random_integer(4, 50)), along = random_between(-0.5, 1.5);
     for (int k = 0; k < 3; k++) {
         double offset = width * random_unit();
@@ -71,7 +71,7 @@ static void thin(elementary_query *query) {
 
 /* Edges side by side that turn through being parallel. */
 static void side_by_side(elementary_query *query) {
-    wild(query);
+    wild_motion(query);
     double turn = ldexp(1.0, -random_integer(0, 30)), height = ldexp(1.0, -random_integer(0, 12));
     for (int k = 0; k < 3; k++) {
         double along = random_unit(), up = k == 2 ? height : 0.0;
@@ -87,9 +87,9 @@ static void side_by_side(elementary_query *query) {
 }
 
 /* A vertex, or an edge, that stays as near to a turning face, or edge, as it can. */
-static void hovering(elementary_query *query) {
+static void hovering_features(elementary_query *query) {
     double h = ldexp(1.0, -random_integer(1, 20)), turn = ldexp(1.0, -random_integer(0, 12));
-    wild(query);
+    wild_motion(query);
     for (int i = 0; i < 4; i++) {
         query->x0[i][2] = query->x1[i][2] = 0.0;
         query->x0[i][2] = i == 0 ? h : turn * random_unit();
@@ -101,7 +101,7 @@ static void hovering(elementary_query *query) {
 /* Far from the origin, where coordinates have fewer digits. */
 static void far_away(elementary_query *query) {
     double place[3] = {4e5 * random_unit(), -3e6, 7e4};
-    slow(query);
+    slow_motion(query);
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) {
             query->x0[i][k] += place[k];
@@ -113,9 +113,10 @@ static void far_away(elementary_query *query) {
 static const struct {
     const char *name;
     family *make;
-} families[] = {{"wild", wild},         {"slow", slow},        {"rigid", rigid},
-                {"grid", on_a_grid},    {"thin", thin},        {"side by side", side_by_side},
-                {"hovering", hovering}, {"far away", far_away}};
+} families[] = {{"wild", wild_motion},           {"slow", slow_motion},
+                {"rigid", rigid_motion},         {"grid", on_a_grid},
+                {"thin", thin_features},         {"side by side", side_by_side},
+                {"hovering", hovering_features}, {"far away", far_away}};
 
 enum { FAMILY_COUNT = sizeof families / sizeof *families };
 
@@ -206,8 +207,8 @@ static void powers_of_two(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup(against_samples, seed),
-                                       cmocka_unit_test_setup(order_of_points, seed),
-                                       cmocka_unit_test_setup(powers_of_two, seed)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_setup(against_samples, seed_random),
+                                       cmocka_unit_test_setup(order_of_points, seed_random),
+                                       cmocka_unit_test_setup(powers_of_two, seed_random)};
     return cmocka_run_group_tests_name("separation_random", tests, NULL, NULL);
 }

@@ -51,8 +51,8 @@ typedef struct proximity_tally {
     size_t hits, misses, open;
 } proximity_tally;
 
-static void compare(const proximity_batch *b, const separation *limit, bool vf,
-                    const proximity_outcomes *found, proximity_tally *sum) {
+static void compare_with_pair_test(const proximity_batch *b, const separation *limit, bool vf,
+                                   const proximity_outcomes *found, proximity_tally *sum) {
     for (uint32_t i = 0; i < LANES; i++) {
         elementary_query query = query_of(b, i);
         elementary_hit hit;
@@ -90,7 +90,7 @@ static void never_against_the_test_of_one_pair(void **state) {
                 proximity_outcomes found;
                 (vf ? table->proximity_vf : table->proximity_ee)(&source, vf ? b.vf_a : b.ee_a,
                                                                  vf ? b.faces : b.ee_b, &limit, &found);
-                compare(&b, &limit, vf, &found, &sum);
+                compare_with_pair_test(&b, &limit, vf, &found, &sum);
                 double own = found.distance[random_integer(0, LANES - 1)];
                 if (level == 0 && own > 1e-9 && own < 1e9)
                     limit.distance = own * (1.0 + random_integer(-2, 2) * 0x1p-46);

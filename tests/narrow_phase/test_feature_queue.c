@@ -223,7 +223,7 @@ typedef struct answer {
 
 static scene interval;
 
-static answer detect(cscd_simd simd, uint32_t threads, cscd_method method, double distance) {
+static answer detect_contacts(cscd_simd simd, uint32_t threads, cscd_method method, double distance) {
     cscd_context_options options = cscd_context_defaults();
     cscd_detector_options wanted = cscd_detector_defaults();
     cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
@@ -250,10 +250,10 @@ static answer detect(cscd_simd simd, uint32_t threads, cscd_method method, doubl
 }
 
 static size_t check_interval(cscd_method method, double distance) {
-    answer first = detect(CSCD_SIMD_SCALAR, 1, method, distance);
+    answer first = detect_contacts(CSCD_SIMD_SCALAR, 1, method, distance);
     for (int level = 0; level < LEVEL_COUNT; level++) {
         for (uint32_t threads = 1; threads <= 3 && contexts[level] != NULL; threads++) {
-            answer other = detect((cscd_simd)(CSCD_SIMD_SCALAR + level), threads, method, distance);
+            answer other = detect_contacts((cscd_simd)(CSCD_SIMD_SCALAR + level), threads, method, distance);
             assert_int_equal(other.count, first.count);
             assert_memory_equal(other.contacts, first.contacts, first.count * sizeof *first.contacts);
             assert_memory_equal(&other.counters, &first.counters, sizeof first.counters);

@@ -26,7 +26,7 @@ void moments_clear(moment_list *list) {
     list->count = 0;
 }
 
-static algebraic_moment *append(moment_list *list) {
+static algebraic_moment *append_moment(moment_list *list) {
     if (list->count == MOMENT_MAX) abort();
     algebraic_moment *m = &list->items[list->count++];
     fmpz_poly_init(m->factor);
@@ -39,7 +39,7 @@ static algebraic_moment *append(moment_list *list) {
 }
 
 void moments_add_rational(moment_list *list, slong num, slong den) {
-    algebraic_moment *m = append(list);
+    algebraic_moment *m = append_moment(list);
     fmpz_set_si(m->num, num);
     fmpz_set_si(m->den, den);
 }
@@ -79,17 +79,17 @@ static slong descartes_bound(const fmpz_poly_struct *p) {
 }
 
 /* p(x / 2), times 2^degree */
-static void stretch(fmpz_poly_struct *p) {
+static void stretch_roots(fmpz_poly_struct *p) {
     slong degree = fmpz_poly_degree(p);
     for (slong i = 0; i < degree; i++) fmpz_mul_2exp(p->coeffs + i, p->coeffs + i, (ulong)(degree - i));
 }
 
 /* No end of any interval met here is a root: the factor is irreducible and not linear. */
-static void isolate(moment_list *list, const fmpz_poly_struct *factor, const fmpz_poly_struct *local,
-                    const fmpz_t num, slong depth) {
+static void isolate_roots(moment_list *list, const fmpz_poly_struct *factor, const fmpz_poly_struct *local,
+                          const fmpz_t num, slong depth) {
     slong bound = descartes_bound(local);
     if (bound == 1) {
-        algebraic_moment *m = append(list);
+        algebraic_moment *m = append_moment(list);
         fmpz_poly_set(m->factor, factor);
         fmpz_poly_set(m->local, local);
         fmpz_set(m->num, num);
@@ -101,12 +101,12 @@ static void isolate(moment_list *list, const fmpz_poly_struct *factor, const fmp
     fmpz_init(half_num);
     fmpz_poly_init(half);
     fmpz_poly_set(half, local);
-    stretch(half);
+    stretch_roots(half);
     fmpz_mul_2exp(half_num, num, 1);
-    isolate(list, factor, half, half_num, depth + 1);
+    isolate_roots(list, factor, half, half_num, depth + 1);
     shift_by_one(half);
     fmpz_add_ui(half_num, half_num, 1);
-    isolate(list, factor, half, half_num, depth + 1);
+    isolate_roots(list, factor, half, half_num, depth + 1);
     fmpz_poly_clear(half);
     fmpz_clear(half_num);
 }
@@ -115,7 +115,7 @@ static void isolate(moment_list *list, const fmpz_poly_struct *factor, const fmp
 static void add_linear(moment_list *list, const fmpz_poly_struct *p) {
     const fmpz *a = p->coeffs, *b = p->coeffs + 1;
     if (fmpz_sgn(a) * fmpz_sgn(b) > 0 || fmpz_cmpabs(a, b) > 0) return;
-    algebraic_moment *m = append(list);
+    algebraic_moment *m = append_moment(list);
     fmpz_abs(m->num, a);
     fmpz_abs(m->den, b);
 }
@@ -127,7 +127,7 @@ static void add_roots_of_factor(moment_list *list, const fmpz_poly_struct *facto
     }
     fmpz_t zero;
     fmpz_init(zero);
-    isolate(list, factor, factor, zero, 0);
+    isolate_roots(list, factor, factor, zero, 0);
     fmpz_clear(zero);
 }
 
@@ -152,11 +152,11 @@ void moments_add_roots(moment_list *list, const fmpz_poly_struct *p) {
 
 /* ---- refinement ---- */
 
-static void bisect(algebraic_moment *m) {
+static void bisect_interval(algebraic_moment *m) {
     fmpz_t middle;
     fmpz_init(middle);
     int start = fmpz_sgn(m->local->coeffs);
-    stretch(m->local);
+    stretch_roots(m->local);
     for (slong i = 0; i < m->local->length; i++) fmpz_add(middle, middle, m->local->coeffs + i);
     m->depth++;
     fmpz_mul_2exp(m->num, m->num, 1);
@@ -167,7 +167,7 @@ static void bisect(algebraic_moment *m) {
     fmpz_clear(middle);
 }
 
-static void enclose(algebraic_moment *m) {
+static void enclose_root(algebraic_moment *m) {
     arb_set_fmpz(m->root, m->num);
     arb_mul_2exp_si(m->root, m->root, 1);
     arb_add_ui(m->root, m->root, 1, ARF_PREC_EXACT);
@@ -177,7 +177,7 @@ static void enclose(algebraic_moment *m) {
 
 /* Newton steps from the enclosure, as long as they help. The derivative has no root in the enclosure, so the
  * enclosure has no other root. */
-static void newton(algebraic_moment *m, const fmpz_poly_struct *derivative, slong precision) {
+static void newton_steps(algebraic_moment *m, const fmpz_poly_struct *derivative, slong precision) {
     arb_t slope, value, middle;
     arb_init(slope);
     arb_init(value);
@@ -196,15 +196,15 @@ static void newton(algebraic_moment *m, const fmpz_poly_struct *derivative, slon
     arb_clear(middle);
 }
 
-static void refine(algebraic_moment *m, slong precision) {
+static void refine_root(algebraic_moment *m, slong precision) {
     if (arb_is_positive(m->root) && arb_rel_accuracy_bits(m->root) >= precision) return;
     fmpz_poly_t derivative;
     fmpz_poly_init(derivative);
     fmpz_poly_derivative(derivative, m->factor);
     do {
-        for (int i = 0; i < BISECTIONS; i++) bisect(m);
-        enclose(m);
-        newton(m, derivative, precision);
+        for (int i = 0; i < BISECTIONS; i++) bisect_interval(m);
+        enclose_root(m);
+        newton_steps(m, derivative, precision);
     } while (arb_rel_accuracy_bits(m->root) < precision);
     fmpz_poly_clear(derivative);
 }
@@ -246,7 +246,7 @@ int moment_sign(algebraic_moment *m, const fmpz_poly_struct *p) {
     arb_init(value);
     int sign = 0;
     for (slong precision = FIRST_PRECISION; sign == 0; precision *= 2) {
-        refine(m, precision);
+        refine_root(m, precision);
         arb_fmpz_poly_evaluate_arb(value, p, m->root, precision + 30);
         sign = arb_is_positive(value) - arb_is_negative(value);
         if (sign == 0 && precision == FIRST_PRECISION && is_zero_at(m, p)) break;
@@ -274,7 +274,7 @@ void moment_bounds(algebraic_moment *m, double *low, double *high) {
     arf_init(bound);
     slong precision = FIRST_PRECISION;
     do {
-        refine(m, precision);
+        refine_root(m, precision);
         arb_get_lbound_arf(bound, m->root, precision + 30);
         *low = arf_get_d(bound, ARF_RND_FLOOR);
         arb_get_ubound_arf(bound, m->root, precision + 30);

@@ -50,7 +50,7 @@ static bool apart_along(cscd_contact_kind kind, const double x[4][3], int k, int
     return true;
 }
 
-static bool apart(cscd_contact_kind kind, const elementary_query *query) {
+static bool apart_throughout(cscd_contact_kind kind, const elementary_query *query) {
     for (int k = 0; k < 3; k++)
         for (int direction = -1; direction <= 1; direction += 2)
             if (apart_along(kind, query->x0, k, direction) && apart_along(kind, query->x1, k, direction))
@@ -156,29 +156,29 @@ static void gram_clear(gram *g) {
 
 /* ---- minors; each lies in entry until the next one ---- */
 
-static const fmpz_poly_struct *at(const gram *g, int i, int j) {
+static const fmpz_poly_struct *gram_entry(const gram *g, int i, int j) {
     return i <= j ? g->at[i][j] : g->at[j][i];
 }
 
 /* g_ik g_jl - g_il g_jk: rows i, j, columns k, l */
-static const fmpz_poly_struct *minor(gram *g, int i, int j, int k, int l) {
-    fmpz_poly_mul(g->entry, at(g, i, k), at(g, j, l));
-    fmpz_poly_mul(g->product, at(g, i, l), at(g, j, k));
+static const fmpz_poly_struct *gram_minor(gram *g, int i, int j, int k, int l) {
+    fmpz_poly_mul(g->entry, gram_entry(g, i, k), gram_entry(g, j, l));
+    fmpz_poly_mul(g->product, gram_entry(g, i, l), gram_entry(g, j, k));
     fmpz_poly_sub(g->entry, g->entry, g->product);
     return g->entry;
 }
 
 /* Entry (i, column n) of the adjugate of rows and columns i, j, k. */
-static const fmpz_poly_struct *adjugate(gram *g, int i, int j, int k, int n) {
-    if (n == 0) return minor(g, j, k, j, k);
-    return n == 1 ? minor(g, j, k, k, i) : minor(g, j, k, i, j);
+static const fmpz_poly_struct *adjugate_entry(gram *g, int i, int j, int k, int n) {
+    if (n == 0) return gram_minor(g, j, k, j, k);
+    return n == 1 ? gram_minor(g, j, k, k, i) : gram_minor(g, j, k, i, j);
 }
 
 static void find_det(gram *g) {
     fmpz_poly_t term;
     fmpz_poly_init(term);
     for (int n = 0; n < 3; n++) {
-        fmpz_poly_mul(term, adjugate(g, 0, 1, 2, n), at(g, 0, n));
+        fmpz_poly_mul(term, adjugate_entry(g, 0, 1, 2, n), gram_entry(g, 0, n));
         fmpz_poly_add(g->det, g->det, term);
     }
     fmpz_poly_clear(term);
@@ -187,20 +187,20 @@ static void find_det(gram *g) {
 /* ---- a moment ---- */
 
 static bool pair_combines(gram *g, algebraic_moment *m, int i, int j) {
-    return moment_sign(m, at(g, i, j)) < 0 && moment_sign(m, minor(g, i, j, i, j)) == 0;
+    return moment_sign(m, gram_entry(g, i, j)) < 0 && moment_sign(m, gram_minor(g, i, j, i, j)) == 0;
 }
 
 /* Where det = 0. */
 static bool triple_combines(gram *g, algebraic_moment *m, int i, int j, int k) {
     for (int n = 2; n >= 0; n--)
-        if (moment_sign(m, adjugate(g, i, j, k, n)) <= 0) return false;
+        if (moment_sign(m, adjugate_entry(g, i, j, k, n)) <= 0) return false;
     return true;
 }
 
 static bool touching_at(gram *g, algebraic_moment *m) {
     if (moment_sign(m, g->det) != 0) return false;
     for (int i = 0; i < g->count; i++)
-        if (moment_sign(m, at(g, i, i)) == 0) return true;
+        if (moment_sign(m, gram_entry(g, i, i)) == 0) return true;
     for (int i = 0; i < g->count; i++)
         for (int j = i + 1; j < g->count; j++)
             if (pair_combines(g, m, i, j)) return true;
@@ -240,8 +240,8 @@ static void add_candidates(gram *g, moment_list *list) {
         return;
     }
     for (int i = 0; i < g->count; i++) {
-        add_multiple_roots(list, at(g, i, i));
-        for (int j = i + 1; j < g->count; j++) add_multiple_roots(list, minor(g, i, j, i, j));
+        add_multiple_roots(list, gram_entry(g, i, i));
+        for (int j = i + 1; j < g->count; j++) add_multiple_roots(list, gram_minor(g, i, j, i, j));
     }
 }
 
@@ -263,7 +263,7 @@ static oracle_verdict first_touch(gram *g, moment_list *list) {
 }
 
 oracle_verdict algebraic_oracle(cscd_contact_kind kind, const elementary_query *query) {
-    if (apart(kind, query)) return never;
+    if (apart_throughout(kind, query)) return never;
     gram g;
     moment_list list;
     gram_init(&g, kind, query);

@@ -65,26 +65,27 @@ static exact_positions positions_at(const elementary_query *query, long double t
     return out;
 }
 
-static void subtract(const long double a[3], const long double b[3], long double out[3]) {
+static void subtract_long(const long double a[3], const long double b[3], long double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
-static void cross(const long double a[3], const long double b[3], long double out[3]) {
+static void cross_long(const long double a[3], const long double b[3], long double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-static long double dot(const long double a[3], const long double b[3]) {
+static long double dot_long(const long double a[3], const long double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static long double length(const long double a[3]) {
-    return sqrtl(dot(a, a));
+static long double length_long(const long double a[3]) {
+    return sqrtl(dot_long(a, a));
 }
 
 /* Two directions that span the contact plane: sides of the face, or the two edges. */
-static void directions(cscd_contact_kind kind, const exact_positions *p, long double a[3], long double b[3]) {
-    subtract(p->x[kind == CSCD_CONTACT_VF ? 2 : 1], p->x[kind == CSCD_CONTACT_VF ? 1 : 0], a);
-    subtract(p->x[3], p->x[kind == CSCD_CONTACT_VF ? 1 : 2], b);
+static void contact_directions(cscd_contact_kind kind, const exact_positions *p, long double a[3],
+                               long double b[3]) {
+    subtract_long(p->x[kind == CSCD_CONTACT_VF ? 2 : 1], p->x[kind == CSCD_CONTACT_VF ? 1 : 0], a);
+    subtract_long(p->x[3], p->x[kind == CSCD_CONTACT_VF ? 1 : 2], b);
 }
 
 static void contact_points(cscd_contact_kind kind, const exact_positions *p, long double u, long double v,
@@ -113,10 +114,10 @@ static void relative_motion(cscd_contact_kind kind, const elementary_query *quer
 static long double volume_at(const elementary_query *query, cscd_contact_kind kind, long double t) {
     exact_positions p = positions_at(query, t);
     long double a[3], b[3], c[3], n[3];
-    directions(kind, &p, a, b);
-    subtract(p.x[0], p.x[kind == CSCD_CONTACT_VF ? 1 : 2], c);
-    cross(a, b, n);
-    return dot(n, c);
+    contact_directions(kind, &p, a, b);
+    subtract_long(p.x[0], p.x[kind == CSCD_CONTACT_VF ? 1 : 2], c);
+    cross_long(a, b, n);
+    return dot_long(n, c);
 }
 
 /* Of the volume, by its values at four times; returns the largest. */
@@ -182,14 +183,14 @@ static void touching_features(cscd_contact_kind kind, double u, double v, double
 static bool well_shaped(const contact_case *c) {
     exact_positions p = positions_at(&c->query, c->toi);
     long double a[3], b[3], n[3], motion[3];
-    directions(c->kind, &p, a, b);
-    cross(a, b, n);
+    contact_directions(c->kind, &p, a, b);
+    cross_long(a, b, n);
     relative_motion(c->kind, &c->query, c->u, c->v, motion);
-    return length(n) > 0.2L && fabsl(dot(n, motion)) > 0.1L * length(n);
+    return length_long(n) > 0.2L && fabsl(dot_long(n, motion)) > 0.1L * length_long(n);
 }
 
 /* At a random size, and at the origin, near it, or a thousand sizes away. */
-static void place(contact_case *c) {
+static void scale_and_place(contact_case *c) {
     double offset[3];
     c->size = pow(10.0, random_between(-6.0, 6.0));
     random_vector(c->size * (double[]){0.0, 1.0, 1000.0}[random_integer(0, 2)], offset);
@@ -225,7 +226,7 @@ contact_case random_contact(cscd_contact_kind kind) {
     double u, v;
     random_parameters(kind, &u, &v);
     contact_case c = unit_contact(kind, u, v, 0.0);
-    place(&c);
+    scale_and_place(&c);
     return c;
 }
 
@@ -233,7 +234,7 @@ contact_case random_short_miss(cscd_contact_kind kind) {
     double u, v;
     random_parameters(kind, &u, &v);
     contact_case c = unit_contact(kind, u, v, SHORT_MISS);
-    place(&c);
+    scale_and_place(&c);
     return c;
 }
 
@@ -253,13 +254,13 @@ contact_case random_side_miss(cscd_contact_kind kind) {
     do {
         c = unit_contact(kind, u, v, 0.0);
     } while (!crosses_once(&c.query, kind));
-    place(&c);
+    scale_and_place(&c);
     return c;
 }
 
 /* ---- checks ---- */
 
-static double extent(const elementary_query *query) {
+static double query_extent(const elementary_query *query) {
     double largest = 0.0;
     for (int i = 0; i < 12; i++) {
         largest = fmax(largest, fabs(query->x0[i / 3][i % 3] - query->x0[0][i % 3]));
@@ -289,7 +290,7 @@ static long double largest_displacement(const elementary_query *query) {
     for (int i = 0; i < 4; i++) {
         long double motion[3];
         for (int k = 0; k < 3; k++) motion[k] = (long double)query->x1[i][k] - query->x0[i][k];
-        largest = fmaxl(largest, length(motion));
+        largest = fmaxl(largest, length_long(motion));
     }
     return largest;
 }
@@ -300,9 +301,10 @@ static void check_points(cscd_contact_kind kind, const elementary_query *query, 
     long double on_a[3], on_b[3], apart[3];
     long double rounding = 0x1p-50L * farthest_coordinate(query);
     contact_points(kind, &p, hit->u, hit->v, on_a, on_b);
-    subtract(on_a, on_b, apart);
-    if (length(apart) > 1e-8L * largest_displacement(query) + 64 * 0x1p-52L * farthest_coordinate(query)) {
-        printf("%Lg of the size apart\n", length(apart) / size);
+    subtract_long(on_a, on_b, apart);
+    if (length_long(apart) >
+        1e-8L * largest_displacement(query) + 64 * 0x1p-52L * farthest_coordinate(query)) {
+        printf("%Lg of the size apart\n", length_long(apart) / size);
         fail_query(kind, query, hit->toi, hit->toi);
     }
     for (int k = 0; k < 3; k++)
@@ -313,19 +315,19 @@ static void check_normal(cscd_contact_kind kind, const elementary_query *query, 
                          const elementary_hit *hit) {
     exact_positions p = positions_at(query, hit->toi);
     long double n[3] = {hit->normal[0], hit->normal[1], hit->normal[2]}, a[3], b[3], area[3], motion[3];
-    directions(kind, &p, a, b);
-    cross(a, b, area);
-    long double quality = length(area) / ((long double)size * size);
-    if (dot(n, n) == 0) {
+    contact_directions(kind, &p, a, b);
+    cross_long(a, b, area);
+    long double quality = length_long(area) / ((long double)size * size);
+    if (dot_long(n, n) == 0) {
         assert_true(quality < 1e-9L);
         return;
     }
-    assert_true(fabsl(length(n) - 1) < 1e-14L);
+    assert_true(fabsl(length_long(n) - 1) < 1e-14L);
     if (quality < 1e-6L) return; /* what is left of a vanishing area is rounding */
     relative_motion(kind, query, hit->u, hit->v, motion);
-    assert_true(fabsl(dot(n, a)) <= 1e-13L / quality * size);
-    assert_true(fabsl(dot(n, b)) <= 1e-13L / quality * size);
-    assert_true(dot(n, motion) <= 1e-13L / quality * size);
+    assert_true(fabsl(dot_long(n, a)) <= 1e-13L / quality * size);
+    assert_true(fabsl(dot_long(n, b)) <= 1e-13L / quality * size);
+    assert_true(dot_long(n, motion) <= 1e-13L / quality * size);
 }
 
 void check_hit(cscd_contact_kind kind, const elementary_query *query, double size,
@@ -341,7 +343,7 @@ elementary_hit check_touches(cscd_contact_kind kind, const elementary_query *que
     elementary_hit hit = {.toi = 2.0};
     if (!pair_test(kind, query, &hit).touching || hit.toi > toi + TOI_LATE)
         fail_query(kind, query, hit.toi, toi);
-    check_hit(kind, query, extent(query), &hit);
+    check_hit(kind, query, query_extent(query), &hit);
     return hit;
 }
 

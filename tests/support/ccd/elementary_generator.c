@@ -20,7 +20,7 @@ static bool one_in(random_stream *random, uint32_t count) {
     return stream_below(random, count) == 0;
 }
 
-static double *coordinate(elementary_query *query, int i) {
+static double *coordinate_of(elementary_query *query, int i) {
     return i < 12 ? &query->x0[i / 3][i % 3] : &query->x1[i / 3 - 4][i % 3];
 }
 
@@ -32,15 +32,15 @@ static elementary_query some_exact_query(random_stream *random, cscd_contact_kin
 
 static double largest_coordinate(elementary_query *query) {
     double largest = 0.0;
-    for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(*coordinate(query, i)));
+    for (int i = 0; i < 24; i++) largest = fmax(largest, fabs(*coordinate_of(query, i)));
     return largest;
 }
 
 /* 0 goes by an ulp of the largest coordinate. */
-static elementary_query nudged(random_stream *random, cscd_contact_kind kind) {
+static elementary_query nudged_query(random_stream *random, cscd_contact_kind kind) {
     elementary_query query = some_exact_query(random, kind);
     for (int n = stream_integer(random, 1, 2); n > 0; n--) {
-        double *x = coordinate(&query, stream_integer(random, 0, 23));
+        double *x = coordinate_of(&query, stream_integer(random, 0, 23));
         double direction = one_in(random, 2) ? 1.0 : -1.0;
         if (*x == 0.0)
             *x = direction * 0x1p-52 * fmax(largest_coordinate(&query), 1.0);
@@ -50,21 +50,21 @@ static elementary_query nudged(random_stream *random, cscd_contact_kind kind) {
     return query;
 }
 
-static double unit(random_stream *random) {
+static double stream_unit(random_stream *random) {
     return stream_between(random, -1.0, 1.0);
 }
 
 /* In (0,1), or beside 0 or 1 by a little or by rounding. */
-static double parameter(random_stream *random) {
+static double random_parameter(random_stream *random) {
     if (one_in(random, 2)) return stream_between(random, 0.0, 1.0);
     double end = one_in(random, 2) ? 1.0 : 0.0;
-    return one_in(random, 3) ? end : end + unit(random) * ldexp(1.0, -stream_integer(random, 0, 52));
+    return one_in(random, 3) ? end : end + stream_unit(random) * ldexp(1.0, -stream_integer(random, 0, 52));
 }
 
 static void general_features(random_stream *random, cscd_contact_kind kind, double at[4][3]) {
-    double u = parameter(random), v = parameter(random);
+    double u = random_parameter(random), v = random_parameter(random);
     for (int k = 0; k < 3; k++) {
-        double meeting = unit(random), a = unit(random), b = unit(random);
+        double meeting = stream_unit(random), a = stream_unit(random), b = stream_unit(random);
         if (kind == CSCD_CONTACT_VF) {
             at[0][k] = meeting;
             at[1][k] = meeting - u * a - (1.0 - u) * v * b;
@@ -79,22 +79,22 @@ static void general_features(random_stream *random, cscd_contact_kind kind, doub
     }
 }
 
-static elementary_query general(random_stream *random, cscd_contact_kind kind) {
-    double at[4][3], velocity[4][3], before = parameter(random);
+static elementary_query general_query(random_stream *random, cscd_contact_kind kind) {
+    double at[4][3], velocity[4][3], before = random_parameter(random);
     double speed = ldexp(1.0, one_in(random, 3) ? -stream_integer(random, 0, 40) : 1);
     general_features(random, kind, at);
-    for (int i = 0; i < 12; i++) velocity[i / 3][i % 3] = speed * unit(random);
+    for (int i = 0; i < 12; i++) velocity[i / 3][i % 3] = speed * stream_unit(random);
     return query_through((const double(*)[3])at, (const double(*)[3])velocity, before, 1.0 - before);
 }
 
 /* Columns of random numbers do: the families are invariant to linear maps. */
-static elementary_query rounded(random_stream *random, cscd_contact_kind kind) {
+static elementary_query rounded_query(random_stream *random, cscd_contact_kind kind) {
     elementary_query exact = some_exact_query(random, kind), query;
     double map[3][3];
-    for (int i = 0; i < 9; i++) map[i / 3][i % 3] = unit(random);
+    for (int i = 0; i < 9; i++) map[i / 3][i % 3] = stream_unit(random);
     for (int i = 0; i < 24; i++) {
-        const double *x = coordinate(&exact, i / 3 * 3), *row = map[i % 3];
-        *coordinate(&query, i) = row[0] * x[0] + row[1] * x[1] + row[2] * x[2];
+        const double *x = coordinate_of(&exact, i / 3 * 3), *row = map[i % 3];
+        *coordinate_of(&query, i) = row[0] * x[0] + row[1] * x[1] + row[2] * x[2];
     }
     return query;
 }
@@ -107,12 +107,12 @@ static double wild_number(random_stream *random) {
 }
 
 /* All coordinates wild, or a few of an exact query's. */
-static elementary_query wild(random_stream *random, cscd_contact_kind kind) {
+static elementary_query wild_query(random_stream *random, cscd_contact_kind kind) {
     elementary_query query = some_exact_query(random, kind);
     int first = one_in(random, 4) ? 0 : stream_integer(random, 20, 24);
     for (int n = first; n < 24; n++) {
         int i = first == 0 ? n : stream_integer(random, 0, 23);
-        *coordinate(&query, i) = wild_number(random);
+        *coordinate_of(&query, i) = wild_number(random);
     }
     return query;
 }
@@ -121,15 +121,15 @@ static elementary_query wild(random_stream *random, cscd_contact_kind kind) {
 
 static bool in_range(elementary_query *query) {
     for (int i = 0; i < 24; i++) {
-        double size = fabs(*coordinate(query, i));
+        double size = fabs(*coordinate_of(query, i));
         if (size != 0.0 && (size < ldexp(1.0, -EXPONENT_LIMIT) || size > ldexp(1.0, EXPONENT_LIMIT)))
             return false;
     }
     return true;
 }
 
-static elementary_query renumbered(random_stream *random, cscd_contact_kind kind,
-                                   const elementary_query *query) {
+static elementary_query renumbered_points(random_stream *random, cscd_contact_kind kind,
+                                          const elementary_query *query) {
     static const int ee_orders[8][4] = {{0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2},
                                         {2, 3, 0, 1}, {3, 2, 0, 1}, {2, 3, 1, 0}, {3, 2, 1, 0}};
     static const int vf_orders[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
@@ -142,25 +142,26 @@ static elementary_query axes_exchanged(random_stream *random, elementary_query *
     static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}};
     const int *order = orders[stream_below(random, 6)];
     elementary_query out;
-    for (int i = 0; i < 24; i++) *coordinate(&out, i) = *coordinate(query, i / 3 * 3 + order[i % 3]);
+    for (int i = 0; i < 24; i++) *coordinate_of(&out, i) = *coordinate_of(query, i / 3 * 3 + order[i % 3]);
     return out;
 }
 
-static void scale(random_stream *random, elementary_query *query) {
+static void scale_axes(random_stream *random, elementary_query *query) {
     static const int limits[] = {0, 2, 20, 299};
     bool each_axis = one_in(random, 2);
     int limit = limits[stream_below(random, 4)], exponents[3];
     for (int k = 0; k < 3; k++)
         exponents[k] = k > 0 && !each_axis ? exponents[0] : stream_integer(random, -limit, limit);
-    for (int i = 0; i < 24; i++) *coordinate(query, i) = ldexp(*coordinate(query, i), exponents[i % 3]);
+    for (int i = 0; i < 24; i++) *coordinate_of(query, i) = ldexp(*coordinate_of(query, i), exponents[i % 3]);
 }
 
 /* Far from the origin, where that needs no rounding. */
-static void shift(random_stream *random, elementary_query *query) {
+static void shift_exactly(random_stream *random, elementary_query *query) {
     elementary_query shifted = *query;
     int exponent = stream_integer(random, 0, 40);
     for (int i = 0; i < 24; i++) {
-        double *x = coordinate(&shifted, i), before = *x, offset = ldexp(i % 3 == 1 ? -3.0 : 1.0, exponent);
+        double *x = coordinate_of(&shifted, i), before = *x,
+               offset = ldexp(i % 3 == 1 ? -3.0 : 1.0, exponent);
         *x += offset;
         if (*x - offset != before || *x - before != offset) return;
     }
@@ -171,26 +172,26 @@ elementary_query generate_query(random_stream *random, cscd_contact_kind kind, q
     elementary_query query;
     switch (family) {
     case FAMILY_NUDGED:
-        query = nudged(random, kind);
+        query = nudged_query(random, kind);
         break;
     case FAMILY_GENERAL:
-        query = general(random, kind);
+        query = general_query(random, kind);
         break;
     case FAMILY_ROUNDED:
-        query = rounded(random, kind);
+        query = rounded_query(random, kind);
         break;
     case FAMILY_WILD:
-        query = wild(random, kind);
+        query = wild_query(random, kind);
         break;
     default:
         query = exact_query(random, kind, family);
         break;
     }
-    query = renumbered(random, kind, &query);
+    query = renumbered_points(random, kind, &query);
     query = axes_exchanged(random, &query);
     if (one_in(random, 2)) query = query_reversed(&query);
-    if (one_in(random, 4)) shift(random, &query);
+    if (one_in(random, 4)) shift_exactly(random, &query);
     elementary_query scaled = query;
-    scale(random, &scaled);
+    scale_axes(random, &scaled);
     return in_range(&scaled) ? scaled : query;
 }

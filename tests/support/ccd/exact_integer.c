@@ -13,7 +13,7 @@ static void append_limb(struct exact_integer *a, uint32_t limb) {
     a->limb[a->limb_count++] = limb;
 }
 
-static void trim(struct exact_integer *a) {
+static void trim_limbs(struct exact_integer *a) {
     while (a->limb_count > 0 && a->limb[a->limb_count - 1] == 0) a->limb_count--;
     if (a->limb_count == 0) a->sign = 0;
 }
@@ -40,7 +40,7 @@ static struct exact_integer add_magnitudes(const struct exact_integer *a, const 
         append_limb(&result, (uint32_t)carry);
         carry >>= 32;
     }
-    trim(&result);
+    trim_limbs(&result);
     return result;
 }
 
@@ -56,7 +56,7 @@ static struct exact_integer subtract_magnitudes(const struct exact_integer *a, c
         borrow = taken > a->limb[i];
         append_limb(&result, (uint32_t)(a->limb[i] - taken));
     }
-    trim(&result);
+    trim_limbs(&result);
     return result;
 }
 
@@ -76,7 +76,7 @@ struct exact_integer exact_from_double(double value) {
     append_limb(&result, (uint32_t)(bits << shift % 32));
     append_limb(&result, (uint32_t)(bits >> (32 - shift % 32)));
     append_limb(&result, (uint32_t)(bits >> 32 >> (32 - shift % 32)));
-    trim(&result);
+    trim_limbs(&result);
     return result;
 }
 
@@ -109,6 +109,6 @@ struct exact_integer exact_multiply(const struct exact_integer *a, const struct 
         }
         result.limb[i + b->limb_count] = (uint32_t)carry;
     }
-    trim(&result);
+    trim_limbs(&result);
     return result;
 }

@@ -18,50 +18,52 @@ bool separation_test(cscd_contact_kind kind, const elementary_query *query, cons
 
 /* ---- distance at one moment ------------------------------------------------------------------------- */
 
-static long double dot(const vec a, const vec b) {
+static long double dot_long(const vec a, const vec b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void subtract(const vec a, const vec b, vec out) {
+static void subtract_long(const vec a, const vec b, vec out) {
     for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
-static long double clamped(long double x) {
+static long double clamped_to_unit(long double x) {
     return x < 0.0L ? 0.0L : x > 1.0L ? 1.0L : x;
 }
 
 /* Between p and the point of a b nearest to it. */
 static long double point_segment(const vec p, const vec a, const vec b) {
     vec along, offset;
-    subtract(b, a, along);
-    subtract(p, a, offset);
-    long double length = dot(along, along), s = length > 0.0L ? clamped(dot(offset, along) / length) : 0.0L;
+    subtract_long(b, a, along);
+    subtract_long(p, a, offset);
+    long double length = dot_long(along, along),
+                s = length > 0.0L ? clamped_to_unit(dot_long(offset, along) / length) : 0.0L;
     for (int k = 0; k < 3; k++) offset[k] -= s * along[k];
-    return sqrtl(dot(offset, offset));
+    return sqrtl(dot_long(offset, offset));
 }
 
 /* The least of |origin + s first + t second| where it lies inside of the square, or triangle, of s and t.
  * Solved again for what is left over, which makes it good for edges that are nearly parallel. */
 static long double inner_minimum(const vec origin, const vec first, const vec second, bool triangle) {
-    long double a = dot(first, first), b = dot(first, second), c = dot(second, second), s = 0.0L, t = 0.0L;
+    long double a = dot_long(first, first), b = dot_long(first, second), c = dot_long(second, second),
+                s = 0.0L, t = 0.0L;
     long double determinant = a * c - b * b;
     vec offset = {origin[0], origin[1], origin[2]};
     if (!(determinant > 0.0L)) return INFINITY;
     for (int pass = 0; pass < 4; pass++) {
-        long double d = dot(offset, first), e = dot(offset, second);
+        long double d = dot_long(offset, first), e = dot_long(offset, second);
         s += (b * e - c * d) / determinant;
         t += (b * d - a * e) / determinant;
         for (int k = 0; k < 3; k++) offset[k] = origin[k] + s * first[k] + t * second[k];
     }
     if (s < 0.0L || t < 0.0L || s > 1.0L || t > 1.0L || (triangle && s + t > 1.0L)) return INFINITY;
-    return sqrtl(dot(offset, offset));
+    return sqrtl(dot_long(offset, offset));
 }
 
 static long double distance_vf(const vec x[4]) {
     vec origin, first, second;
-    subtract(x[1], x[0], origin);
-    subtract(x[2], x[1], first);
-    subtract(x[3], x[1], second);
+    subtract_long(x[1], x[0], origin);
+    subtract_long(x[2], x[1], first);
+    subtract_long(x[3], x[1], second);
     long double least = inner_minimum(origin, first, second, true);
     for (int i = 1; i < 4; i++) least = fminl(least, point_segment(x[0], x[i], x[i % 3 + 1]));
     return least;
@@ -69,9 +71,9 @@ static long double distance_vf(const vec x[4]) {
 
 static long double distance_ee(const vec x[4]) {
     vec origin, first, second;
-    subtract(x[0], x[2], origin);
-    subtract(x[1], x[0], first);
-    subtract(x[2], x[3], second);
+    subtract_long(x[0], x[2], origin);
+    subtract_long(x[1], x[0], first);
+    subtract_long(x[2], x[3], second);
     long double least = inner_minimum(origin, first, second, false);
     for (int i = 0; i < 2; i++) {
         least = fminl(least, point_segment(x[i], x[2], x[3]));
@@ -81,7 +83,7 @@ static long double distance_ee(const vec x[4]) {
 }
 
 /* Relative to the first point at t = 0, which is exact for points that are not too far from it. */
-static void place(const elementary_query *query, int i, long double t, vec out) {
+static void position_at(const elementary_query *query, int i, long double t, vec out) {
     for (int k = 0; k < 3; k++) {
         long double origin = query->x0[0][k];
         out[k] = (1.0L - t) * (query->x0[i][k] - origin) + t * (query->x1[i][k] - origin);
@@ -90,7 +92,7 @@ static void place(const elementary_query *query, int i, long double t, vec out) 
 
 long double sampled_distance(cscd_contact_kind kind, const elementary_query *query, long double t) {
     vec x[4];
-    for (int i = 0; i < 4; i++) place(query, i, t, x[i]);
+    for (int i = 0; i < 4; i++) position_at(query, i, t, x[i]);
     return kind == CSCD_CONTACT_VF ? distance_vf((const vec *)x) : distance_ee((const vec *)x);
 }
 
@@ -105,7 +107,7 @@ static long double largest_speed(cscd_contact_kind kind, const elementary_query 
             for (int k = 0; k < 3; k++)
                 motion[k] = ((long double)query->x1[i][k] - query->x0[i][k]) -
                             ((long double)query->x1[j][k] - query->x0[j][k]);
-            largest = fmaxl(largest, sqrtl(dot(motion, motion)));
+            largest = fmaxl(largest, sqrtl(dot_long(motion, motion)));
         }
     }
     return largest;
@@ -222,7 +224,7 @@ static void named_points(cscd_contact_kind kind, const elementary_query *query, 
                          vec a, vec b) {
     vec x[4];
     long double t = hit->toi, u = hit->u, v = hit->v;
-    for (int i = 0; i < 4; i++) place(query, i, t, x[i]);
+    for (int i = 0; i < 4; i++) position_at(query, i, t, x[i]);
     for (int k = 0; k < 3; k++) {
         a[k] = kind == CSCD_CONTACT_VF ? x[0][k] : (1.0L - u) * x[0][k] + u * x[1][k];
         b[k] = kind == CSCD_CONTACT_VF ? (1.0L - u - v) * x[1][k] + u * x[2][k] + v * x[3][k]
@@ -235,8 +237,8 @@ static long double named_distance(cscd_contact_kind kind, const elementary_query
                                   const elementary_hit *hit) {
     vec a, b, offset;
     named_points(kind, query, hit, a, b);
-    subtract(a, b, offset);
-    return sqrtl(dot(offset, offset));
+    subtract_long(a, b, offset);
+    return sqrtl(dot_long(offset, offset));
 }
 
 /* What is wrong with the hit's place; NULL if nothing is. */
@@ -245,8 +247,8 @@ static const char *wrong_place(cscd_contact_kind kind, const elementary_query *q
     vec a, b, offset;
     long double rounding = 0x1p-46L * query_extent_of(query), size = 0.0L;
     named_points(kind, query, hit, a, b);
-    subtract(a, b, offset);
-    long double apart = sqrtl(dot(offset, offset));
+    subtract_long(a, b, offset);
+    long double apart = sqrtl(dot_long(offset, offset));
     for (int k = 0; k < 3; k++) {
         long double middle = query->x0[0][k] + 0.5L * (a[k] + b[k]);
         if (fabsl(hit->point[k] - middle) > rounding + 0x1p-52L * fabsl(middle))
