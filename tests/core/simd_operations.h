@@ -5,7 +5,7 @@
 
 enum { OPERATION_LANES = 8 };
 
-/* All on eight numbers; f64w: as many at a time as a vector of the level holds. */
+/* Each operation takes eight numbers; those of f64w take as many at a time as a vector of the level holds. */
 typedef struct simd_operations {
     int level;
 

@@ -16,7 +16,7 @@ typedef struct worker {
     pthread_t thread;
     workload work;
     uint32_t thread_count;
-    workload_result result; /* of the last round */
+    workload_result result; /* what the last round gave */
 } worker;
 
 static cscd_context *make_context(uint32_t thread_count) {
@@ -37,7 +37,7 @@ static void *run_worker(void *argument) {
     return NULL;
 }
 
-/* All at once give what each alone gives. */
+/* Runs all workers at once, then each workload alone, and compares what they gave. */
 static void compare_with_alone(worker workers[HOSTS]) {
     for (int i = 0; i < HOSTS; i++)
         assert_int_equal(pthread_create(&workers[i].thread, NULL, run_worker, &workers[i]), 0);
@@ -81,7 +81,7 @@ static void steps_and_checks(void **state) {
     free(shapes);
 }
 
-/* OpenBLAS has one thread count for the process: it is the host's before and after. */
+/* OpenBLAS has one thread count for the whole process, which the library must leave as the host set it. */
 static void plans_by_charge(void **state) {
     sequence *shapes;
     worker *workers = make_workers(&shapes);

@@ -1,6 +1,4 @@
-/* The host's own parallel loop: the same results as with threads of the context's own, which it does not
- * start.
- */
+/* With a parallel loop of the host's own, the context starts no threads and gives the same results. */
 #include "cscd/cscd.h"
 #include "tests/support/methods.h"
 #include "tests/support/test.h"
@@ -34,7 +32,7 @@ static void count_run(host *h, uint32_t task_count) {
     h->tasks += task_count;
 }
 
-/* On the calling thread, backwards. */
+/* Runs the tasks backwards on the calling thread. */
 static void run_backwards(void *user, uint32_t task_count, task_function *task, void *data) {
     host *h = user;
     count_run(h, task_count);
@@ -58,7 +56,7 @@ static void *take_tasks(void *argument) {
 
 enum { HOST_THREADS = 3 };
 
-/* On threads of the host's; the calling one only waits. */
+/* Runs the tasks on threads of the host's own, while the calling thread only waits. */
 static void run_elsewhere(void *user, uint32_t task_count, task_function *task, void *data) {
     pthread_t threads[HOST_THREADS];
     share s = {.task = task, .data = data, .task_count = task_count};
@@ -117,7 +115,7 @@ static void steps_are_the_same(void **state) {
     }
 }
 
-/* Charges and regions, bit for bit: the factors are cut into the same tasks for any number of threads. */
+/* Charges and regions agree bit for bit, because any number of threads factorizes in the same tasks. */
 static void plans_are_the_same(void **state) {
     (void)state;
     workload_tube(&q, 36, 18, 1);

@@ -1,4 +1,5 @@
-/* Progress and cancellation: wherever a call is cancelled, its repetition gives what it would have given. */
+/* Progress and cancellation: a call that was cancelled anywhere gives, when repeated, the result that it
+ * would have given. */
 #include "cscd/cscd.h"
 #include "src/core/context.h"
 #include "src/core/timer.h"
@@ -17,13 +18,13 @@ static sequence q; /* large; one test at a time */
 
 typedef struct watcher {
     pthread_t thread;
-    uint32_t reports, cancel_at; /* reports of this call; which of them cancels, from 1, or 0 for none */
-    uint32_t every;              /* of the first reports, or so; later ones are skipped by and by */
+    uint32_t reports, cancel_at; /* reports of this call; the one that cancels, counted from 1; 0: none */
+    uint32_t every;              /* cancels about one in so many early reports and fewer of the later ones */
     bool cancelled;
     double fraction, last_ms, closest_ms;
     bool fell, elsewhere, nameless;
     uint32_t cancellations, unexplained;
-    size_t bytes; /* held after the last cancelled call */
+    size_t bytes; /* held by the context after the last cancelled call */
 } watcher;
 
 static bool watch_progress(void *user, const char *stage, double fraction) {
@@ -46,8 +47,8 @@ static void next_call(watcher *w, uint32_t cancel_at) {
     w->fraction = 0.0;
 }
 
-/* Cancelled at its first report, its second, and so on (in large calls not at all of them), until a call has
- * no more reports than that. */
+/* Cancels a call at its first report, its second and so on, until it has no report of that number. In large
+ * calls it skips some. */
 static bool cancel_later(void *user, cscd_context *context, cscd_status status) {
     watcher *w = user;
     if (!w->cancelled) {
@@ -98,7 +99,7 @@ static void expect_equal(const workload_result *found, const workload_result *ex
     }
 }
 
-/* Against a context whose calls nobody interrupts, or watches. */
+/* Compares a workload whose calls are cancelled and repeated with one whose calls run through unwatched. */
 static workload_result check_interrupted(uint32_t thread_count, uint32_t every, workload w) {
     static workload_result found, expected;
     counting_allocator counter;
@@ -200,7 +201,7 @@ static void rebuilding_goes_on(void **state) {
     assert_true(found.rebuilds > 0);
 }
 
-/* Large enough that lanes share its trees; it bends until it meets itself. */
+/* The tube is large enough that lanes share its trees, and it bends until it touches itself. */
 static void large_meshes_go_on(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads < 4; threads += 2) {
@@ -227,7 +228,7 @@ static void plans_go_on(void **state) {
     }
 }
 
-/* By the bytes of the context, after each cancelled call. */
+/* After each cancelled call the context holds as many bytes as before it. */
 static void plans_leave_nothing_behind(void **state) {
     counting_allocator counter;
     watcher host;
@@ -254,7 +255,7 @@ static void plans_leave_nothing_behind(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-/* With the interval of the library's own; the fraction comes near 1. */
+/* Reports keep the library's own interval, and the fraction comes near 1. */
 static void reports_come_now_and_then(void **state) {
     counting_allocator counter;
     watcher host;

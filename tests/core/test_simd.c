@@ -1,5 +1,5 @@
-/* The operations of src/core/simd.h on every level that this machine has, against plain C: ends of the
- * ranges, signs of zero, what is not a number. */
+/* Compares the operations of src/core/simd.h with plain C on every level that this machine has, at the ends
+ * of the ranges, for zeros of both signs and for NaN. */
 #include "src/core/processor.h"
 #include "tests/core/simd_operations.h"
 #include "tests/support/random_stream.h"
@@ -38,7 +38,7 @@ static numbers random_numbers(random_stream *random) {
     return out;
 }
 
-/* As many lanes equal as not. */
+/* About half of the lanes equal those of a, the others are random. */
 static numbers half_equal_numbers(random_stream *random, numbers a) {
     for (int i = 0; i < LANES; i++) a.x[i] = stream_below(random, 2) == 0 ? a.x[i] : random_number(random);
     return a;
@@ -50,7 +50,7 @@ static floats to_floats(numbers a) {
     return out;
 }
 
-/* Bit for bit, but that what is not a number has many forms. */
+/* Numbers agree bit for bit; NaN has many forms, and any of them will do. */
 static void assert_number(double found, double expected) {
     assert_true(isnan(expected) ? isnan(found) : found == expected && signbit(found) == signbit(expected));
 }
@@ -59,7 +59,7 @@ static bool lane_of(uint32_t lanes, int i) {
     return (lanes >> i & 1) != 0;
 }
 
-/* Calls check on every level. */
+/* Calls `check` with the operations of every level. */
 static void on_all_levels(void (*check)(const simd_operations *, random_stream *)) {
     const simd_operations *levels[] = {
         &simd_operations_scalar,
@@ -193,7 +193,7 @@ static void conversions_as_in_c(void **state) {
 }
 
 enum { POINTS = 20 };
-static double *positions; /* after the last of them no memory can be read */
+static double *positions; /* the page behind the last of them cannot be read */
 
 static void check_points(const simd_operations *o, random_stream *random) {
     uint32_t indices[LANES];

@@ -16,7 +16,7 @@ static int compare_keys(const void *left, const void *right) {
 
 static sort_key merged[ITEMS_MAX], by_digits[ITEMS_MAX], scratch[ITEMS_MAX];
 
-/* Few keys, so that stability shows, and keys that differ in high digits only. */
+/* Some inputs have few keys, so that stability shows, and some have keys that differ in high digits only. */
 static void digits_as_merging(void **state) {
     (void)state;
     for (uint32_t count = 0; count < ITEMS_MAX; count = 2 * count + 1) {

@@ -187,7 +187,7 @@ static void says_how_far_the_size_is_off(void **state) {
     frame_fixture_check_error(&error, "too short: 20 bytes", "room for 0 whole frames", NULL);
 }
 
-/* A flipped bit in the times changes nothing; any other is found out. */
+/* A flipped bit in the times changes nothing; any other one is refused. */
 static void survives_flipped_header_bits(void **state) {
     (void)state;
     for (int mdd = 0; mdd < 2; mdd++) {

@@ -1,4 +1,5 @@
-/* The memory of animations: every allocation failed once, and a peak that does not grow with the frames. */
+/* The memory of animations: every allocation fails once, and the peak does not grow with the number of
+ * frames. */
 #include "src/io/growable.h"
 #include "src/io/point_cache_write.h"
 #include "tests/support/io/frame_fixture.h"
@@ -13,7 +14,7 @@
 
 enum { VERTICES = 4, FRAMES = 70 /* more names than the list first has room for */ };
 
-static long allocations_left = -1; /* the one after these fails; negative: none */
+static long allocations_left = -1; /* so many allocations succeed before one fails; negative: none fails */
 
 void *io_realloc(void *memory, size_t size) {
     if (allocations_left == 0) return NULL;

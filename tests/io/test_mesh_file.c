@@ -14,10 +14,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* How many allocations still succeed; negative: all. */
+/* So many allocations still succeed; negative: all of them. */
 static int allocations_left = -1;
 
-/* In the place of the readers' own. */
+/* Replaces the readers' own allocation. */
 void *io_realloc(void *memory, size_t size) {
     if (allocations_left == 0) return NULL;
     if (allocations_left > 0) allocations_left--;
@@ -108,7 +108,7 @@ static void frees_zeroed_meshes(void **state) {
     assert_null(mesh.positions);
 }
 
-/* The next after failure reads as if nothing had happened. */
+/* After a failure the next read works as if nothing had happened. */
 static void survives_every_failed_allocation(void **state) {
     (void)state;
     const file_bytes files[] = {FILE_OF("a.obj", SQUARE_OBJ), FILE_OF("a.off", SQUARE_OFF),

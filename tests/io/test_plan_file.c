@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many allocations still succeed; negative: all. */
+/* So many allocations still succeed; negative: all of them. */
 static int allocations_left = -1;
 
-/* In the place of the readers' own. */
+/* Replaces the readers' own allocation. */
 void *io_realloc(void *memory, size_t size) {
     if (allocations_left == 0) return NULL;
     if (allocations_left > 0) allocations_left--;
@@ -152,7 +152,7 @@ static void expect_refused(const saved *s, const char *path, const char *const *
     }
 }
 
-/* Read for the other mesh instead of its own. */
+/* Reads a plan file for another mesh than its own. */
 static void expect_other_mesh(saved *s, recorded other, const char *const *texts) {
     saved reader = {.shape = other, .context = s->context, .mesh = mesh_of(s->context, &other)};
     expect_refused(&reader, s->path.text, texts);
@@ -191,7 +191,8 @@ static void nothing_to_read_is_refused(void **state) {
     saved_free(&s);
 }
 
-/* Every prefix of the file is refused: in the header with a line, behind it with a byte or a number. */
+/* Every prefix of the file is refused. The error names a line when it ends in the header, a byte or a number
+ * when it ends behind it. */
 static void every_truncation_is_refused(void **state) {
     (void)state;
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
@@ -207,7 +208,7 @@ static void every_truncation_is_refused(void **state) {
     saved_free(&s);
 }
 
-/* Refused, or a plan whose numbers are all in range: no bit of the file makes anything worse. */
+/* A file with one flipped bit is either refused or gives a plan whose numbers are all in range. */
 static void every_flipped_bit_is_survived(void **state) {
     (void)state;
     saved s = save_plan(recorded_tetrahedra(1), CSCD_METHOD_CHARGE);
@@ -248,7 +249,7 @@ static void every_flipped_bit_is_survived(void **state) {
 #define FACES     "3 0 2 1 .5 0\n3 0 1 3 .25 0\n3 0 3 2 1 0\n3 1 2 3 2 0\n"
 #define REST      ".25 .25 .25\n1.5\n"
 
-/* The text with the mesh's hash in the place of its %s. */
+/* Writes the text to a file, with the mesh's hash in place of its %s. */
 static temp_path write_text(const saved *s, const char *text) {
     char bytes[2000], hash[17];
     const char *mark = strstr(text, "%s");

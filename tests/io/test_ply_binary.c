@@ -46,7 +46,7 @@ static void put_value(byte_writer *writer, char type, double value) {
     }
 }
 
-/* One value a letter: c, s, i are integers of 1, 2, 4 bytes, f and d float and double. */
+/* Writes one value per letter: c, s and i are integers of 1, 2 and 4 bytes, f is float and d is double. */
 static void put_values(byte_writer *writer, const char *types, ...) {
     va_list values;
     va_start(values, types);

@@ -165,7 +165,7 @@ static void refuses_bad_arguments(void **state) {
     assert_int_equal(read_bytes(other.text).size, 4);
 }
 
-/* A limit on file sizes stands for a full disk: reached within a frame, and only when the last of it is
+/* A limit on file sizes stands for a full disk. It is reached within a frame, or only when the last bytes are
  * flushed. */
 static void removes_the_file_when_the_disk_is_full(void **state) {
     (void)state;

@@ -22,7 +22,7 @@ static uint32_t has_vertex(const shape *s, uint32_t vertex, uint32_t triangle) {
     return v[0] == vertex || v[1] == vertex || v[2] == vertex;
 }
 
-/* Edges sorted, once each; a triangle's edge i joins its corners i and i + 1. */
+/* Edges are sorted and listed once each; a triangle's edge i joins its corners i and i + 1. */
 static void check_edges(const cscd_mesh *mesh, const shape *s) {
     for (uint32_t e = 0; e < cscd_mesh_edge_count(mesh); e++) {
         uint32_t v[2], before[2];
@@ -45,7 +45,7 @@ static void check_edges(const cscd_mesh *mesh, const shape *s) {
     }
 }
 
-/* The triangles that contain the feature, all of them, ascending. */
+/* Lists all triangles that contain the feature, in ascending order. */
 static void check_stars(const cscd_mesh *mesh, const shape *s) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         uint32_t count, next = 0;
@@ -312,7 +312,8 @@ static void refused_descriptions(void **state) {
 
 /* ---- memory ---- */
 
-/* Allocation number fail_at of cscd_mesh_create fails; the next try is right. False: it made no so many. */
+/* Lets allocation number fail_at of cscd_mesh_create fail; the next try must succeed. Returns false when
+ * there were not so many allocations. */
 static bool fail_allocation(const shape *s, size_t fail_at, const expected_component *expected) {
     counting_allocator counter = counting_allocator_start();
     cscd_context *context = new_context(&counter);

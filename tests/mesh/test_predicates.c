@@ -49,7 +49,7 @@ static int exact_orient2d(const double a[2], const double b[2], const double c[2
     return exact_cross(a, b, c).sign;
 }
 
-/* Expanded by the z of a, b, c as seen from d. */
+/* Expands the determinant along the z coordinates of a, b and c relative to d. */
 static int exact_orient3d(const double *a, const double *b, const double *c, const double *d) {
     const double *cycle[5] = {a, b, c, a, b};
     struct exact_integer sum = {0};
@@ -78,7 +78,7 @@ static int orient2d_points(const double *a, const double *b, const double *c) {
     return orient2d(a[0], a[1], b[0], b[1], c[0], c[1]);
 }
 
-/* All orders of the points, the sign of the permutation included. */
+/* Checks all orders of the points; an odd permutation turns the sign. */
 static void check_plane(double p[3][3], struct tally *tally) {
     int expected = exact_orient2d(p[0], p[1], p[2]);
 
@@ -140,7 +140,7 @@ static void known_signs(void **state) {
     assert_false(collinear(o, x, y));
 }
 
-/* Integers below 2^40: a third opinion in 128 bits, on the oracle as well. */
+/* Integers below 2^40 are also computed in 128 bits, which checks the oracle as well. */
 static void integer_coordinates(void **state) {
     struct tally tally = {{0}};
 
@@ -273,7 +273,7 @@ static void lowest_bit(void **state) {
     }
 }
 
-/* Powers of two, up to the ends of the domain, change nothing. */
+/* Scaling by powers of two, up to the ends of the domain, changes no sign. */
 static void powers_of_two(void **state) {
     (void)state;
     for (int round = 0; round < ROUND_COUNT; round++) {

@@ -34,8 +34,8 @@ static int64_t integer_determinant(integer_vector a, integer_vector b, integer_v
     return integer_dot(a, integer_cross(b, c));
 }
 
-/* 0 = wa a + wb b + wc c with positive weights, a, b, c affinely independent: the weights are as the areas of
- * 0bc, 0ca, 0ab, which all turn the same way. */
+/* Does 0 = wa a + wb b + wc c hold with positive weights for affinely independent a, b, c? The weights are
+ * proportional to the areas of 0bc, 0ca and 0ab, so these triangles must all turn the same way. */
 static bool inside_triangle(integer_vector a, integer_vector b, integer_vector c) {
     integer_vector bc = integer_cross(b, c), ca = integer_cross(c, a), ab = integer_cross(a, b);
 
@@ -112,7 +112,7 @@ static void list_features(const uint32_t triangle[3], struct feature features[7]
     features[6] = (struct feature){{triangle[0], triangle[1], triangle[2]}, 3};
 }
 
-/* Vertex or edge with face, either way, and edge with edge. */
+/* Counts a vertex or an edge with a face, either way, and an edge with an edge. */
 static bool pair_counts(int a_count, int b_count) {
     return (a_count == 3) != (b_count == 3) || (a_count == 2 && b_count == 2);
 }
@@ -159,7 +159,7 @@ static void store_positions(const integer_vector points[6], double scale, double
     }
 }
 
-/* Both arguments in all orders of their corners, and the arguments exchanged. */
+/* Checks both arguments in all orders of their corners, and the arguments exchanged. */
 static void check_all_orders(const uint32_t a[3], const uint32_t b[3], const double *positions,
                              bool expected) {
     static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -173,8 +173,8 @@ static void check_all_orders(const uint32_t a[3], const uint32_t b[3], const dou
     }
 }
 
-/* Shears along x, y and z, one after the other, so never singular: the image keeps what meets, and no plane
- * stays along the axes. */
+/* Shears along x, y and z one after the other, which is never singular. The images intersect where the
+ * originals do, and no plane stays along the axes. */
 static integer_vector shear_point(integer_vector p, const int factor[6]) {
     p.x += factor[0] * p.y + factor[1] * p.z;
     p.y += factor[2] * p.x + factor[3] * p.z;
@@ -196,7 +196,7 @@ static void random_shear(const integer_vector points[6], integer_vector sheared[
     }
 }
 
-/* Compares one pair, its images under a shear and a scaling included. */
+/* Compares one pair with the oracle, as it is, scaled, and sheared. */
 static bool check_pair(const uint32_t a[3], const uint32_t b[3], const integer_vector points[6],
                        bool every_order) {
     bool expected = oracle_intersects(a, b, points);

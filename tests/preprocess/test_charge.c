@@ -204,7 +204,7 @@ static void scales_with_length(void **state) {
     }
 }
 
-/* The cube's coordinates stay exact there: so does the result. */
+/* The cube's coordinates stay exact far from the origin, and so does the result. */
 static void far_from_the_origin(void **state) {
     (void)state;
     const double same[3] = {1.0, 1.0, 1.0}, offset[3] = {1e6, -1e6, 5e5};

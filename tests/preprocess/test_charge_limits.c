@@ -85,7 +85,7 @@ static void thread_count_changes_no_rank(void **state) {
     conductor_free(&s);
 }
 
-/* Triangles in another order: the same densities, to the bit. */
+/* Triangles in another order have the same densities, to the bit. */
 static void numbering_does_not_matter(void **state) {
     (void)state;
     conductor s = odd_ellipsoid(2), turned = odd_ellipsoid(2);
@@ -181,7 +181,7 @@ static void assert_refused(const conductor *s, const char *words) {
     charge_rig_destroy(&r);
 }
 
-/* Two triangles about one point: two equal equations. */
+/* Two triangles with one centroid give two equal equations. */
 static void one_centroid_for_two(void **state) {
     (void)state;
     double positions[18] = {3, 0, 0, 0, 3, 0, -3, -3, 0, -3, 0, 0, 0, -3, 0, 3, 3, 0};
@@ -190,8 +190,8 @@ static void one_centroid_for_two(void **state) {
     assert_refused(&s, "triangles 0 and 1 of component 0 have the same centroid");
 }
 
-/* A sheet that lies on another at a distance: told apart while single precision tells the potentials apart.
- */
+/* A sheet that lies close to another one is told apart from it while single precision tells their potentials
+ * apart. */
 static void sheets_near_each_other(void **state) {
     (void)state;
     for (int digits = 2; digits <= 14; digits += 4) {

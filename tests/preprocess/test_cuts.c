@@ -39,8 +39,8 @@ static void close_field(void) {
     cscd_context_destroy(f.context);
 }
 
-/* rows x columns quads of a cylinder or torus; quad (i, j) is made of the triangles 2 (i columns + j), + 1.
- */
+/* Starts with rows x columns quads of a cylinder or torus; the triangles of quad (i, j) are
+ * 2 (i columns + j) and the next one. */
 static void open_grid(uint32_t rows, uint32_t columns, bool rows_close) {
     shape s = {0};
     shape_add_grid(&s, rows, columns, rows_close, true);
@@ -172,7 +172,7 @@ static void cuts_of_all_parts(uint32_t *owners) {
     context_free(f.context, capacities);
 }
 
-/* Three parts at once, as of a body with two legs. */
+/* The rest falls into three parts at once, like a body with two legs. */
 static void more_than_two_parts(void **state) {
     (void)state;
     uint32_t owners[TRIANGLES_MAX];
@@ -231,7 +231,7 @@ static int64_t cost_of(const int64_t *capacities, const uint32_t *parts, const u
     return cost;
 }
 
-/* Two rows of a cylinder as the band: all 65,536 ways to cut it, once per seed. */
+/* The band is two rows of a cylinder; all 65,536 ways to cut it are tried, once per seed. */
 static void shortest_of_all_cuts(void **state) {
     (void)state;
     int64_t capacities[TRIANGLES_MAX * 4];

@@ -102,7 +102,7 @@ static void each_component_on_its_own(void **state) {
     cscd_mesh_destroy(mesh);
 }
 
-/* Equation 3.18, counted naively. */
+/* Counts equation 3.18 naively. */
 static void published_bins(void **state) {
     (void)state;
     enum { COUNT = 200 };

@@ -81,7 +81,8 @@ static void different_seeds(void **state) {
     body_free(&b);
 }
 
-/* At least one region each, the others by vertices; none spans two. */
+/* Each component gets at least one region and shares the others by its vertices; no region spans two
+ * components. */
 static void components_share_k(void **state) {
     (void)state;
     body b = body_of(BODY_SPHERE, 2000), small = {0};
@@ -101,7 +102,8 @@ static void components_share_k(void **state) {
     body_free(&b);
 }
 
-/* As many centroids as vertices, or more: no more regions than fit, and each is still connected. */
+/* Even with as many centroids as vertices, or more, there are no more regions than fit, and each is
+ * connected. */
 static void more_than_vertices(void **state) {
     (void)state;
     body b = body_of(BODY_DUMBBELL, 1500);
@@ -114,7 +116,7 @@ static void more_than_vertices(void **state) {
     body_free(&b);
 }
 
-/* Edges from a vertex, as numbers of steps. */
+/* Counts the edges on the shortest path from a vertex to every other one. */
 static void measure_steps(const body *b, uint32_t from, uint32_t *distances) {
     for (uint32_t v = 0; v < b->vertex_count; v++) distances[v] = v == from ? 0 : UINT32_MAX - 1;
     for (bool changed = true; changed;) {

@@ -77,7 +77,7 @@ static uint32_t check_run(uint32_t vector_count, uint32_t codes_max, double epsi
     return code_count;
 }
 
-/* Nobody is nearer to another code: with epsilon 0 the iteration ends where nothing changes. */
+/* No vector is nearer to another code: with epsilon 0 the iteration goes on until nothing changes. */
 static void check_nearest(uint32_t vector_count, uint32_t code_count) {
     for (uint32_t i = 0; i < vector_count; i++) {
         double own = squared_distance(vectors + (size_t)i * D, codes[labels[i]].mean);
@@ -106,7 +106,7 @@ static void random_clouds(void **state) {
     }
 }
 
-/* Rings, lines, lattices: many equal distances. */
+/* Rings, lines and lattices have many equal distances. */
 static void regular_shapes(void **state) {
     (void)state;
     random_seed(2);
@@ -149,7 +149,7 @@ static void equal_vectors(void **state) {
     for (uint32_t k = 0; k < D; k++) assert_true(codes[0].mean[k] == vectors[k]);
 }
 
-/* As many codes as there are different vectors, but no more; each copy goes where the others are. */
+/* There are as many codes as different vectors and no more; equal vectors have one code. */
 static void repeated_vectors(void **state) {
     (void)state;
     random_seed(3);
@@ -186,7 +186,7 @@ static void a_code_for_every_vector(void **state) {
     assert_true(told.distortions[told.length - 1] == 0.0);
 }
 
-/* The same numbers in the same order, and scaled by a power of two, bit for bit. */
+/* The same vectors give the same bits again, also when they are scaled by a power of two. */
 static void repeatable_and_scaled(void **state) {
     (void)state;
     static uint32_t before[VECTORS_MAX];

@@ -15,7 +15,7 @@ static cscd_partition_options with_cells(uint32_t cells) {
     return options;
 }
 
-/* Cells of a body that is one part, with so many asked for. */
+/* Counts the cells of a body that is one part, when so many are asked for. */
 static uint32_t cells_of(const body *b, uint32_t cells) {
     cscd_mesh *mesh = body_mesh(b, 1);
     cscd_partition_options options = with_cells(cells);
@@ -135,7 +135,7 @@ static void scale_and_place(void **state) {
     }
 }
 
-/* All positions equal; and vertices without a triangle. */
+/* All positions are equal, or some vertices have no triangle. */
 static void degenerate_meshes(void **state) {
     (void)state;
     body b = body_of(BODY_SPHERE, 200);
@@ -143,7 +143,7 @@ static void degenerate_meshes(void **state) {
     cscd_mesh *mesh = body_mesh(&b, 1);
     cscd_partition *partition = partition_of(mesh, NULL, b.positions, NULL);
     assert_int_equal(cscd_partition_vertex_cell(partition, lonely), UINT32_MAX);
-    assert_int_equal(cscd_partition_cell_count(partition), 1); /* nothing to be watched for */
+    assert_int_equal(cscd_partition_cell_count(partition), 1); /* there is no other part to watch for */
     cscd_partition_destroy(partition);
     for (uint32_t i = 0; i < b.vertex_count * 3; i++) b.positions[i] = 0.3;
     cscd_partition_options options = with_cells(12);

@@ -55,7 +55,7 @@ static void how_many_cells(void **state) {
     r = row_of(3, spheres, (double[]){1.0, 1.0, 0.125}, &options);
     assert_true(cells_in(&r, 0) == 20 && cells_in(&r, 1) == 20 && cells_in(&r, 2) == 3);
     row_free(&r);
-    options.cells = 33; /* beyond the cap, which is for those that are counted */
+    options.cells = 33; /* the cap is for counted cells, not for those that the caller asks for */
     r = row_of(2, spheres, (double[]){1.0, 1.0}, &options);
     assert_true(cells_in(&r, 0) == 33 && cells_in(&r, 1) == 33);
     row_free(&r);

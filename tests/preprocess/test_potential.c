@@ -31,7 +31,7 @@ static void random_triangle(double corners[3][3]) {
     } while (source.area < 0.1);
 }
 
-/* a p0 + b p1 + (1 - a - b) p2 + h * (0.3, 0.5, -0.8), in whatever order */
+/* Computes a p0 + b p1 + (1 - a - b) p2 + h (0.3, 0.5, -0.8). */
 static void place_point(const double corners[3][3], double a, double b, double h, double out[3]) {
     const double off[3] = {0.3, 0.5, -0.8};
     for (int k = 0; k < 3; k++)
@@ -157,7 +157,7 @@ static void agrees_with_surface_quadrature(void **state) {
     }
 }
 
-/* Weights a, b and height of a place, and the relative error allowed there. */
+/* The weights a and b and the height of a place, and the relative error that is allowed there. */
 static void agrees_with_edge_quadrature(void **state) {
     (void)state;
     static const struct {

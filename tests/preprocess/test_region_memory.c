@@ -18,7 +18,7 @@ static body shape;
 static double *density;
 static uint32_t *regions;
 
-/* Low at the rod of the dumbbell. */
+/* Makes a dumbbell whose density is low at its rod. */
 static int make_shape(void **state) {
     (void)state;
     shape = body_of(BODY_DUMBBELL, 1500);

@@ -100,7 +100,7 @@ static void divide_body(const body *b, const double *density, division *out) {
     divide_with(b, density, NULL, out);
 }
 
-/* Mean and range over five seeds. */
+/* Prints the mean and range of the visible shares over five seeds. */
 static void print_shares(const body *b, const char *name, const division *d) {
     static double points[TRIANGLES_MAX * 3];
     double mean = 0.0, least = 1.0, most = 0.0;
@@ -247,7 +247,8 @@ static void noise_does_not_cut_a_ball(void **state) {
     free(density);
 }
 
-/* Even where every cut that lets see as much is made, and whatever suggests it. */
+/* The detector points never see less than a single one would, even when gain 0 allows every cut that does not
+ * lower the share and waves of density suggest the cuts. */
 static void never_less_than_single(void **state) {
     (void)state;
     region_options options = region_options_defaults();
@@ -288,7 +289,7 @@ static void all_cuts(void **state) {
     free(density);
 }
 
-/* A hole changes little; a body that is inside out is divided all the same. */
+/* A hole changes little, and a body that is inside out is still divided. */
 static void open_and_inside_out(void **state) {
     (void)state;
     body b = {0};

@@ -53,7 +53,7 @@ static void share_in_torus(void **state) {
     }
 }
 
-/* Areas count, not triangles: a box with one finely divided side. */
+/* Areas count and not triangles, which a box with one finely divided side shows. */
 static void weighted_by_area(void **state) {
     (void)state;
     body b = {0};

@@ -20,7 +20,7 @@ static scene interval; /* large; one test at a time */
 
 /* ---- brute force --------------------------------------------------------------------------------------- */
 
-/* Bits per feature: which sides it is of. */
+/* One bit per side of each feature; a feature may be of both sides. */
 typedef struct sides {
     uint8_t vertices[SCENE_VERTICES_MAX], edges[SCENE_TRIANGLES_MAX * 3], triangles[SCENE_TRIANGLES_MAX];
 } sides;
@@ -49,7 +49,7 @@ static void mark_side(const cscd_partition *p, const uint32_t *cells, uint32_t c
     }
 }
 
-/* Is one of the one side and one of the other? */
+/* Is one of the features of the first side and the other of the second? */
 static bool facing_sides(uint8_t a, uint8_t b) {
     return ((a & 1) != 0 && (b & 2) != 0) || ((a & 2) != 0 && (b & 1) != 0);
 }
@@ -106,7 +106,7 @@ static void assert_same(const area_verdict *found, const area_verdict *expected)
     assert_int_equal(found->tests, expected->tests);
 }
 
-/* Each of a part's cells with a chance of two in three. */
+/* Chooses each of a part's cells with a chance of two in three. */
 static uint32_t choose_cells(const cscd_partition *p, uint32_t part, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < p->parts[part].cell_count; i++) {
@@ -115,7 +115,7 @@ static uint32_t choose_cells(const cscd_partition *p, uint32_t part, uint32_t *o
     return count;
 }
 
-/* Slabs of triangles, or any. */
+/* Makes parts of slabs of triangles, or, in one of four scenes, of random triangles. */
 static void choose_parts(const scene *s, uint32_t part_count, uint32_t *triangle_parts) {
     bool any = random_integer(0, 3) == 0;
     for (uint32_t t = 0; t < s->triangle_count; t++) {

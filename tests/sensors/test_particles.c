@@ -236,13 +236,13 @@ static void a_walk_rests_at_the_nearest_points(void **state) {
     assert_true(p.rounds > LENGTH - 2 && p.rounds < LENGTH + 3);
     p.vertices[0] = 0;
     particles_begin(&p);
-    assert_int_equal(particles_settle(&p, points[0], 4), 0); /* a limit ends it, too */
+    assert_int_equal(particles_settle(&p, points[0], 4), 0); /* a limit on the rounds ends the walk, too */
     assert_int_equal(p.rounds, 4);
     assert_int_equal(p.vertices[0], 4);
     particles_free(&p);
 }
 
-/* Each wants to be opposite to where the other one is. */
+/* Each particle wants to be opposite to the place where the other one is. */
 static void swapping_for_ever_is_noticed(void **state) {
     (void)state;
     particles p;
@@ -285,7 +285,7 @@ static void cycles_are_as_long_as_they_say(void **state) {
     assert_true(longest > PARTICLES_RECENT);
 }
 
-/* Two of one object on a ring flee until neither gains by going on. */
+/* Two particles of one object on a ring flee until neither gains by going on. */
 static void repulsion_spreads(void **state) {
     (void)state;
     enum { RING = 24 };
@@ -314,7 +314,7 @@ static void repulsion_spreads(void **state) {
     particles_free(&p);
 }
 
-/* Twice as many groups of particles, far apart: twice the work. */
+/* Twice as many groups of particles, far from each other, take twice the work. */
 static uint64_t distances_of(uint32_t clusters, uint64_t *vertices) {
     enum { EACH = 4 };
     particles p;

@@ -29,7 +29,7 @@ typedef struct renewal_bench {
     sensor_renewal renewal;
 } renewal_bench;
 
-/* Parts are the components; cells of body.x0, which the renewal knows. */
+/* Makes the components the parts, with cells at body.x0, and begins the renewal there. */
 static renewal_bench bench_create(uint32_t cells_max) {
     renewal_bench b = {.rig = rig_create(&body, 1, NULL)};
     b.partition = hand_partition_create(b.rig.mesh, body.x0, NULL, b.rig.mesh->component_count, cells_max);
@@ -46,7 +46,7 @@ static void bench_destroy(renewal_bench *b) {
     rig_destroy(&b->rig);
 }
 
-/* How many are due at `moved`, by the limits. */
+/* Returns how many parts are due at the positions `moved`, by the limits. */
 static uint32_t count_due(renewal_bench *b, const renewal_limits *limits) {
     return sensor_renewal_check(&b->renewal, b->partition, moved, particles, limits, renewals);
 }
@@ -140,7 +140,7 @@ static void growth_is_seen(void **state) {
     bench_destroy(&b);
 }
 
-/* The same by walks alone. */
+/* Walks alone find growth, too. */
 static void growth_is_estimated(void **state) {
     (void)state;
     random_seed(3);
@@ -198,7 +198,7 @@ static void flip_triangles(void) {
     }
 }
 
-/* Also where all triangles face inwards. */
+/* Bending is found also when all triangles face inwards. */
 static void bending_is_seen(void **state) {
     (void)state;
     for (int flipped = 0; flipped < 2; flipped++) {
@@ -275,7 +275,7 @@ static void estimates_are_near_areas(void **state) {
     }
 }
 
-/* Whatever the mesh, and whatever the motion has made of it. */
+/* Walks end on every mesh, even when the motion has flattened, scattered or inflated it. */
 static void walks_end_on_any_mesh(void **state) {
     (void)state;
     random_seed(9);

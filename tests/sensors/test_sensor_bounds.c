@@ -65,7 +65,7 @@ static bool exact_contact(bounds_bench *b) {
 
 /* ---- random motions ------------------------------------------------------------------------------------ */
 
-/* Two small bodies, moved to anywhere: slowly or fast, near the origin or far from it. */
+/* Places two small bodies anywhere, slow or fast, near the origin or far from it. */
 static void move_bodies(const scene *rest, uint32_t first_of_second) {
     double far_away = random_integer(0, 2) == 0 ? 1e9 : 0.0, speed = random_integer(0, 1) ? 0.3 : 20.0;
     double centre[3], places[2][3], offsets[2][3];
@@ -170,7 +170,7 @@ static void exact_touches_are_not_apart(void **state) {
 
 /* ---- other cases --------------------------------------------------------------------------------------- */
 
-/* Bodies far from each other, also such that fly one behind the other through each other's boxes. */
+/* Bodies are far from each other; some fly one behind the other through each other's boxes. */
 static void far_bodies_are_apart(void **state) {
     (void)state;
     scene_clear(&interval);
@@ -188,7 +188,7 @@ static void far_bodies_are_apart(void **state) {
     bench_destroy(&b);
 }
 
-/* Numbers whose squares or differences are beyond the range of doubles are not answered for. */
+/* The bounds never claim that parts are apart where squares or differences exceed the range of doubles. */
 static void extreme_lengths_are_safe(void **state) {
     (void)state;
     const double scales[] = {1e-320, 1e-200, 1e-160, 1e160, 1e200, 1e307};

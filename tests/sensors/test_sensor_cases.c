@@ -8,7 +8,7 @@ enum { FRAMES = 24, OBJECTS_MAX = 3, ALL_REGIONS_MAX = 12 };
 
 static scene s; /* large; one test at a time */
 
-/* Objects, and the offset that each goes until it touches another one. */
+/* The objects, and the offset that each travels until it touches another one. */
 typedef struct meeting {
     uint32_t count, first_vertices[OBJECTS_MAX + 1];
     double offsets[OBJECTS_MAX][3];
@@ -32,7 +32,7 @@ static void add_sphere(meeting *m, double x, double radius, double offset) {
     add_object(m, offset, 0.0, 0.0);
 }
 
-/* Opens to +y, or with sign -1 to -y; 2 wide and 2 high. */
+/* Adds a U, 2 wide and 2 high, that opens to +y, or with sign -1 to -y. */
 static void add_u(meeting *m, double x, double y, double z, double sign, double way_y) {
     const double corners[4][3] = {
         {x - 1, y + sign, z}, {x - 1, y - sign, z}, {x + 1, y - sign, z}, {x + 1, y + sign, z}};
@@ -40,7 +40,7 @@ static void add_u(meeting *m, double x, double y, double z, double sign, double 
     add_object(m, 0.0, way_y, 0.0);
 }
 
-/* At share 1 of its offsets, each object is where it was made. */
+/* Computes the positions at a share of the offsets; at share 1 each object is where it was made. */
 static void positions_at(const meeting *m, double share, double *x) {
     memcpy(x, s.x0, s.vertex_count * 3 * sizeof *x);
     for (uint32_t o = 0; o < m->count; o++) {
@@ -50,8 +50,8 @@ static void positions_at(const meeting *m, double share, double *x) {
     }
 }
 
-/* All objects go on until the end of their offsets and beyond it. The first frame with a contact of the two
- * is of the detector, and of the sensors. */
+/* The first frames in which the detector and the sensors find a contact of two objects. All objects move to
+ * the end of their offsets and beyond it. */
 typedef struct first_frames {
     int truly, sensed;
     double toi, sensed_toi;
@@ -100,7 +100,7 @@ static first_frames run_meeting(const meeting *m, const sensor_setup *setup, uin
         if (detector_contact(detector, r.mesh, x0, x1, a, b, &first.toi)) first.truly = f;
         const cscd_warning *w = find_contact(&warnings, a, b);
         if (w == NULL) continue;
-        assert_int_equal(first.truly, f); /* what the exact check finds is there */
+        assert_int_equal(first.truly, f); /* the detector finds the contact of the exact check as well */
         assert_true(w->toi >= first.toi);
         first.sensed = f;
         first.sensed_toi = w->toi;
@@ -150,7 +150,7 @@ static void case_3_unequal_spheres(void **state) {
 
 /* ---- concave ones ------------------------------------------------------------------------------------- */
 
-/* Three parts to a U, as in figure 4-10. */
+/* A U is divided into three parts, as in figure 4-10. */
 static const sensor_setup in_parts = {ALL_REGIONS_MAX, NULL, NULL};
 
 static void case_4_two_concave(void **state) {

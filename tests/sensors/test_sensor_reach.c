@@ -1,5 +1,5 @@
-/* The default mu: whatever touches has two vertices nearer than that at the start or at the end, and no
- * smaller bound would do. And how far around particles look. */
+/* Checks the default mu: two parts that touch have two vertices nearer than mu at the start or at the end,
+ * and no smaller bound would do. Also checks how far around them particles look. */
 #include "runtime/sensors/sensors.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
@@ -66,7 +66,7 @@ static cscd_detector *detector_of(const sensor_rig *r) {
     return detector;
 }
 
-/* The largest of a scene's contacts, whose number is added. */
+/* Returns the largest of these distances over a scene's contacts, and adds the number of contacts to *count. */
 static double largest_in_mu(const sensor_rig *r, size_t *count) {
     sensor_reach reach = measure_reach(r);
     cscd_detector *detector = detector_of(r);
@@ -116,7 +116,7 @@ static void make_cross(double motion) {
     }
 }
 
-/* At rest 0.71 edges are what it takes; and half of the motion is all that it adds. */
+/* Crossed edges at rest need 0.71 edge lengths, and the motion adds half of its length to that. */
 static void crossed_edges_need_it_all(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -166,7 +166,7 @@ static uint64_t distances_with(bool floor) {
     return distances;
 }
 
-/* Nobody walks along the floor's sides, which lead from cell to cell. */
+/* No particle walks along the floor's sides, which lead from cell to cell. */
 static void a_large_triangle_costs_nothing(void **state) {
     (void)state;
     assert_int_equal(distances_with(true), distances_with(false));

@@ -1,6 +1,6 @@
-/* Compares what sensors find with what the detector finds, on random scenes. Every contact that they report
- * is one. They do not promise to report all; the test asserts a share, below what they reach by a margin, and
- * prints what they reach. */
+/* Compares the contacts that sensors find with those of the detector, on random scenes. Every contact that
+ * sensors report must be one. They do not promise to report all; the test prints the share that they reach,
+ * and asserts a smaller one. */
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -135,8 +135,8 @@ static void count_family(scene_family family, const sensor_setup *setup, const c
     assert_recall(&sum, least);
 }
 
-/* At the time of writing, sensors in cells reached 100 % of all three, random ones at least 95, 68 and 43 %.
- * */
+/* When the shares were set, sensors in cells reached 100 % of all three. Random ones reached at least 95, 68
+ * and 43 %. */
 static void most_contacts_are_found_and_all_are_true(void **state) {
     (void)state;
     static const scene_family families[] = {SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES, SCENE_LINKED_TORI};

@@ -103,7 +103,7 @@ static void letters_have_the_counts_of_the_seed(void **state) {
     }
 }
 
-/* The seed's figure 2-20: only one arm of the V is hit. */
+/* Figure 2-20 of the thesis: the ball touches only one arm of the V. */
 static void the_second_ball_stays_near(void **state) {
     (void)state;
     object_stage s = stage_of("v-shape");
@@ -117,7 +117,7 @@ static void the_second_ball_stays_near(void **state) {
     object_stage_close(&s);
 }
 
-/* Each pair of neighbours in a row, and no others. */
+/* Neighbours in a row touch, and no others do. */
 static void rows_touch_their_neighbours(void **state) {
     (void)state;
     static const char *const names[] = {"three-spheres", "three-spheres-unequal", "u-three"};
@@ -136,7 +136,7 @@ static void rows_touch_their_neighbours(void **state) {
     }
 }
 
-/* Whatever was shown before. */
+/* A frame is the same, regardless of the frames that were shown before it. */
 static void frames_repeat(void **state) {
     (void)state;
     object_stage a = stage_of("three-spheres"), b = stage_of("three-spheres");
@@ -167,7 +167,7 @@ static void check_second(const double *frame) {
     tumble_close(&again);
 }
 
-/* At first they fall freely; they do so again. */
+/* The bodies fall freely for ten frames, and later touch each other but never themselves. */
 static void soft_bodies_fall_onto_each_other(void **state) {
     (void)state;
     io_error error;

@@ -147,7 +147,7 @@ static void results_are_repeated(void **state) {
     }
 }
 
-/* A step that fails leaves particles where they were, and a second one at rest has nowhere to walk. */
+/* A step that fails leaves the particles where they were, and in a second step at rest they walk nowhere. */
 static void walks_begin_where_they_ended(void **state) {
     (void)state;
     two_spheres(0.05);
@@ -196,7 +196,7 @@ static void a_given_mu_is_taken(void **state) {
     sensor_rig_destroy(&r);
 }
 
-/* Beyond R_eff nobody moves; within it they do. */
+/* Particles walk when R_eff reaches the other object, and rest when it does not. */
 static void a_given_radius_is_taken(void **state) {
     (void)state;
     two_spheres(1.0);
@@ -228,7 +228,7 @@ static uint32_t make_v(void) {
     return first;
 }
 
-/* The ball goes into the left arm. Does it touch, and is that sensed? */
+/* Moves the ball into the left arm, and tells whether the sensors find the contact. */
 static bool sensed_on_the_left(const sensor_rig *r, uint32_t first) {
     static double x0[SCENE_VERTICES_MAX * 3], x1[SCENE_VERTICES_MAX * 3];
     static const double by[3] = {0.15, 0, 0};
@@ -278,7 +278,7 @@ static void cells_do_not_miss_an_arm(void **state) {
     assert_true(missed > 0);
 }
 
-/* With repulsion all over the object, they do not stay on one arm. */
+/* With repulsion all over the object, particles do not stay on one arm. */
 static void repulsion_spreads_them(void **state) {
     (void)state;
     uint32_t first = make_v(), one_sided = 0;
@@ -320,7 +320,7 @@ static void new_cells_are_taken_up(void **state) {
         if (cscd_sensors_renewal(r.sensors, p) == CSCD_RENEWAL_NONE) continue;
         due++;
         assert_int_equal(cscd_partition_renew(r.partition, s.x1, p), CSCD_OK);
-        assert_false(cscd_sensors_apart(r.sensors, 0, 1)); /* of other cells it knows nothing */
+        assert_false(cscd_sensors_apart(r.sensors, 0, 1)); /* renewed cells have no bounds yet */
     }
     assert_int_equal(due, found.renewals_due);
     found = sensor_rig_step(&r, s.x1, s.x1);

@@ -40,7 +40,8 @@ static void destroy_sensed(sensed *r) {
     *r = (sensed){0};
 }
 
-/* A step that lacks memory succeeds when it is repeated, with what it would have given. */
+/* A step that failed for lack of memory succeeds when it is repeated, with the result that it would have
+ * given. */
 static cscd_status step_twice(const sensed *r, cscd_warning *warning) {
     cscd_warnings found = {NULL, 4711, 0};
     cscd_status status = cscd_sensors_step(r->sensors, s.x0, s.x1, &found);

@@ -67,7 +67,7 @@ static void add_pair(waiting_pairs *w, uint32_t a, uint32_t b) {
     w->pairs[w->count++][1] = b;
 }
 
-/* Contacts: as a step tests them, through the feature queue. */
+/* Finds contacts as a step does, through the feature queue. */
 static void find_contacts(const waiting_pairs *w, oracle_list *out) {
     size_t count;
     const feature_source source = {w->scene->x0, w->scene->x1, (const uint32_t(*)[3])w->scene->triangles,

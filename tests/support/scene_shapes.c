@@ -1,4 +1,4 @@
-/* The shapes of which scenes are made. */
+/* The shapes that scenes consist of. */
 #include "tests/support/scenes.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* Which program run_tool runs: the tool, or one of models/. */
+/* Chooses the program that run_tool runs: the tool, or one of models/. */
 #include "tests/support/models/model_program.h"
 #include "tests/support/test.h"
 

@@ -1,4 +1,4 @@
-/* Which program run_tool runs: the tool, or one of models/. */
+/* Chooses the program that run_tool runs: the tool, or one of models/. */
 #pragma once
 
 /* From now on run_tool runs models/NAME, or the tool again when name is NULL. Fails the test without the

@@ -13,10 +13,10 @@ typedef struct charge_rig {
 /* allocator NULL: the default */
 charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cscd_allocator *allocator);
 
-/* The same, solved; anything that fails there fails the test. */
+/* Makes a rig and solves for its charges; any failure fails the test. */
 charge_rig charge_rig_solve(const conductor *s, uint32_t thread_count);
 
-/* Whether density and capacitance are all -1 still. */
+/* Returns whether density and capacitance are all -1 still. */
 bool charge_rig_untouched(const charge_rig *r);
 
 void charge_rig_destroy(charge_rig *r);

@@ -43,7 +43,7 @@ static void check_parts(const cscd_partition *partition) {
     assert_int_equal(next, cscd_partition_cell_count(partition));
 }
 
-/* Vertices of the cell that are reached from its first along its neighbours. */
+/* Counts the cell's vertices that neighbours connect with its first one. */
 static uint32_t count_reached(const cscd_partition *partition, uint32_t cell, bool *seen, uint32_t *stack) {
     uint32_t top = 0, count = 0;
     stack[top++] = partition->cell_vertices[partition->cell_offsets[cell]];

@@ -8,7 +8,7 @@
  * are numbered part by part and connected; all lists agree. */
 void check_partition(const cscd_partition *partition);
 
-/* A partition that has passed the check; the test fails where it cannot be made. */
+/* Makes a partition and checks it; the test fails when it cannot be made. */
 cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                              const cscd_partition_options *options);
 

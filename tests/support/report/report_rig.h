@@ -16,7 +16,7 @@ typedef struct report_rig {
 report_rig report_rig_create(recorded shape, cscd_method method);
 void report_rig_destroy(report_rig *rig);
 
-/* Of a replay of all frames. */
+/* Returns the options for the report of a replay of all frames. */
 report_options report_rig_options(const report_rig *rig);
 
 /* Begins the report and adds every interval; false if the report has failed. */

@@ -11,5 +11,5 @@ cscd_partition *hand_partition_create(const cscd_mesh *mesh, const double *posit
                                       uint32_t cells_max);
 void hand_partition_destroy(cscd_partition *partition);
 
-/* A random vertex of each cell, one per cell; room for a vertex count. */
+/* Chooses a random vertex of each cell; `out` has room for as many as there are vertices. */
 void hand_partition_particles(const cscd_partition *partition, uint32_t *out);

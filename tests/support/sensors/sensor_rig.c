@@ -75,7 +75,7 @@ static void add_triangle(scene *s, uint32_t a, uint32_t b, uint32_t c) {
     t[0] = a, t[1] = b, t[2] = c;
 }
 
-/* Across the path, in its plane. */
+/* Computes the unit normal of the path at point i, within the path's plane. */
 static void across_path(const double (*path)[3], int count, int i, double normal[2]) {
     int before = i > 0 ? i - 1 : i, after = i < count - 1 ? i + 1 : i;
     double x = path[after][0] - path[before][0], y = path[after][1] - path[before][1];

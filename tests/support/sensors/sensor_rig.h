@@ -35,7 +35,7 @@ const cscd_warning *find_contact(const cscd_warnings *warnings, uint32_t object_
  * vertex on each of its ends. */
 void scene_add_tube(scene *s, const double (*path)[3], int count, double radius, int segments);
 
-/* A tube along corners, whose sides are cut into steps of about a length. */
+/* Adds a tube along corners; its sides are cut into steps of about this length. */
 void scene_add_bent_tube(scene *s, const double (*corners)[3], int count, double radius, double step);
 
 /* Moves vertices first .. end - 1 of the positions x. */

@@ -1,4 +1,4 @@
-/* What a step that is certified free of contact must be, by brute force. */
+/* Checks by brute force all that a step certified free of contact promises. */
 #pragma once
 
 #include "tests/support/rig.h"
@@ -25,5 +25,5 @@ void free_step_positions(const rig *r, const double *x0, const double *x1, doubl
 /* Asserts all that the call promises; `called` is the context that it was made in. False: IN_CONTACT. */
 bool free_step_check(const rig *reference, const cscd_context *called, const free_step_call *call);
 
-/* Does the mesh neither cross itself nor have a triangle without area? */
+/* Is the mesh free of intersections and of triangles without area? */
 bool free_step_embedded(const rig *reference, const double *positions);
