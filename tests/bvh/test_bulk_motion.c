@@ -1,4 +1,5 @@
-/* Bodies that fly a hundred times their length within an interval: the same pairs and contacts as at rest. */
+/* Bodies that fly a hundred times their length within an interval have the same pairs and contacts as at
+ * rest. */
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"
@@ -7,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Positions and translations that are multiples of it add up exactly. */
+/* Positions and translations that are multiples of this unit add up exactly. */
 #define GRID_UNIT 0x1p-20
 
 enum { CONTACTS_MAX = 20000, SEED_COUNT = 3 };
@@ -46,7 +47,7 @@ static void step_motion(const scene *s, cscd_method method, cscd_mode mode, cont
     rig_destroy(&r);
 }
 
-/* Times are found by other sums, so their last bits may differ. */
+/* Compares the contacts of both. Their times are found by other sums, so the last bits may differ. */
 static void assert_same_contacts(void) {
     assert_int_equal(found.count, expected.count);
     for (size_t i = 0; i < found.count; i++) {
@@ -71,7 +72,7 @@ static double body_length(const scene *s) {
     return high - low;
 }
 
-/* unit: of what translations are multiples; 0: anything. */
+/* Moves all bodies by one translation, a multiple of `unit`; 0 allows any translation. */
 static void fly_along(const scene *from, double unit, scene *out) {
     static const double start[3] = {0.31, -0.7, 1.9}, end[3] = {77.7, -50.1, 38.3};
     double length = body_length(from), by[2][3];
@@ -86,7 +87,7 @@ static void fly_along(const scene *from, double unit, scene *out) {
     translate(out->x1, out->vertex_count, by[1]);
 }
 
-/* Calls check for each scene, method and mode, of both the body at rest and the one in flight. */
+/* Calls check for the body at rest and the body in flight, for each scene, method and mode. */
 static void for_all(double unit, int first_family, int end_family, void (*check)(void)) {
     for (int i = first_family * SEED_COUNT; i < end_family * SEED_COUNT; i++) {
         scene_make((scene_family)(i / SEED_COUNT), (uint64_t)(500 + i % SEED_COUNT), &at_rest);
@@ -127,7 +128,7 @@ static void add_work(void) {
     sums[1][1] += found.counters.tests;
 }
 
-/* In generic position, that is: all families before the grid. */
+/* Scenes in generic position: all families before the grid. */
 static void nearly_the_same_where_they_are_not(void **state) {
     (void)state;
     for_all(0.0, 0, SCENE_GRID, add_work);

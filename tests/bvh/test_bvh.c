@@ -1,4 +1,4 @@
-/* The BVH: where triangles and corners lie in it, and that bounds hold what is below them. */
+/* The BVH has a place for each triangle and vertex, and every bound holds what is below it. */
 #include "runtime/bvh/bvh.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/test.h"
@@ -12,7 +12,7 @@ static const uint32_t region_counts[] = {1, 0, 7, 100};
 static const int axis_counts[] = {BOX_AXES, KDOP_AXES};
 enum { REGION_CHOICES = sizeof region_counts / sizeof *region_counts };
 
-/* Of each child of a level: its block, and its lane there. */
+/* The block of a child of a level, and its lane there. */
 typedef struct child_place {
     uint32_t block, lane;
 } child_place;
@@ -24,7 +24,7 @@ static uint32_t child_count(const bvh *f, int level) {
     return level == f->tree_level ? f->tree_count : f->levels[level - 1].block_count;
 }
 
-/* Each child has one place. */
+/* Finds the places and checks that each child has only one. */
 static void find_places(const bvh *f) {
     for (int level = 0; level < f->level_count; level++) {
         const bvh_level *l = &f->levels[level];
@@ -110,12 +110,12 @@ static const float *bounds_of(const bvh *f, int level, child_place at, int axis)
     return f->levels[level].bounds + at.block * stride + (size_t)axis * 2 * LANES + at.lane;
 }
 
-/* Part level and above have no bounds where there is nothing to tell apart. */
+/* The levels of trees and above have no bounds when there is only one tree. */
 static int bounded_levels(const bvh *f) {
     return f->tree_count > 1 ? f->level_count : f->tree_level;
 }
 
-/* All bounds above a triangle hold one of its corners, and what lies within half the distance of it. */
+/* Checks that all bounds above a triangle hold its vertex and everything within half the distance of it. */
 static void check_held(const bvh *f, uint32_t leaf, gap_motion m, uint32_t vertex, double distance) {
     const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int moment = 0; moment < 3; moment++) {
@@ -137,7 +137,7 @@ static void check_held(const bvh *f, uint32_t leaf, gap_motion m, uint32_t verte
     }
 }
 
-/* Bounds of a leaf are no wider than documented. */
+/* Checks that the bounds of a leaf are no wider than documented. */
 static void check_leaf_tight(const bvh *f, uint32_t leaf, gap_motion m) {
     const bvh_tree *p = &f->trees[f->leaf_trees[leaf]];
     for (int axis = 0; axis < f->axis_count; axis++) {
@@ -156,7 +156,7 @@ static void check_leaf_tight(const bvh *f, uint32_t leaf, gap_motion m) {
     }
 }
 
-/* Above leaves, bounds are the union of those below. */
+/* Checks that bounds above the leaves are the union of those below. */
 static void check_union(const bvh *f, int level, uint32_t child) {
     const lane_flags flags = f->levels[level - 1].flags[child];
     for (int axis = 0; axis < f->axis_count; axis++) {
@@ -220,7 +220,7 @@ static void bounds_hold_what_is_below(void **state) {
     }
 }
 
-/* Parts fly on together, and one stays behind. */
+/* Some bodies fly on together, and one stays behind. */
 static void bounds_of_bodies_that_fly(void **state) {
     const double far[3] = {1e3, -3e5, 77.0};
     (void)state;
@@ -233,7 +233,7 @@ static void bounds_of_bodies_that_fly(void **state) {
     }
 }
 
-/* The scale follows positions that leave it by far, in either direction and within one interval. */
+/* The scale follows positions that grow or shrink by far, also within one interval. */
 static void bounds_at_changing_scales(void **state) {
     static const int from[] = {0, 290, -290, 290, 10, -40, -40, 0},
                      to[] = {290, -290, 290, 290, 30, -40, 3, 0};
@@ -252,7 +252,7 @@ static void bounds_at_changing_scales(void **state) {
     bvh_rig_destroy(&r);
 }
 
-/* All corners in one place, and a mesh that starts so. */
+/* All vertices lie in one place, at the end or from the start. */
 static void bounds_of_points(void **state) {
     (void)state;
     scene_make(SCENE_GRID, 15, &shape);

@@ -1,5 +1,5 @@
-/* Trees that decay over a long deformation are built anew, once, and as the same for any number of threads.
- */
+/* Trees that decay over a long deformation are rebuilt once, with the same result for any number of
+ * threads. */
 #include "cscd/cscd.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* A pleated strip that is pulled flat: at first its layers lie on each other, so leaves hold triangles of
- * several of them. */
+/* A pleated strip that is pulled flat. At first its layers lie on each other, so leaves hold triangles of
+ * several layers. */
 enum { ROWS = 12, COLUMNS = 320, PLEAT = 8, FRAMES = 80 };
 enum { VERTICES = (ROWS + 1) * (COLUMNS + 1), TRIANGLES = ROWS * COLUMNS * 2 };
 
@@ -25,7 +25,7 @@ static void make_strip(void) {
     }
 }
 
-/* Each column's step makes an angle with the last one at the pleats: closed at 0, flat at 1. */
+/* Each column's step makes an angle with the previous one at the pleats: closed at 0, flat at 1. */
 static void pose_at(double opened, double out[VERTICES][3]) {
     double angle = 0.5 * acos(-1.0) * (1.0 - opened) * 0.98, x = 0.0, z = 0.0;
     for (uint32_t column = 0; column <= COLUMNS; column++) {
@@ -99,7 +99,7 @@ static void pulled_flat(void **state) {
     close_run(&rebuilt);
 }
 
-/* Lines alone keep the trees as steps do. */
+/* Line searches alone also rebuild the trees. */
 static void lines_build_anew(void **state) {
     rebuild_run r, rebuilt;
     cscd_line *line = NULL;
@@ -124,7 +124,7 @@ static void lines_build_anew(void **state) {
     close_run(&rebuilt);
 }
 
-/* What only moves and bends keeps its trees. */
+/* A motion that only moves and bends the strip keeps its trees. */
 static void flat_stays(void **state) {
     rebuild_run r;
     (void)state;
@@ -174,7 +174,7 @@ static cscd_counters step_bodies(rebuild_run *r) {
     return cscd_detector_counters(r->detector);
 }
 
-/* Bodies that change places leave the blocks of trees in disorder, though each of them stays as it is. */
+/* Bodies that change places put the blocks of the trees into disorder, though no tree changes. */
 static void bodies_change_places(void **state) {
     const cscd_mesh_desc desc = {BODIES * 4, BODIES * 4, &faces[0][0]};
     rebuild_run r, rebuilt;

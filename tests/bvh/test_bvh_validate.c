@@ -1,4 +1,5 @@
-/* The validator of the BVH finds every kind of fault that is planted, and none in what is built and refitted. */
+/* The validator of the BVH finds every kind of planted fault, and no fault in a BVH that was built and
+ * refitted. */
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/test.h"
 
@@ -31,7 +32,7 @@ static void sound_ones_have_no_fault(void **state) {
     }
 }
 
-/* Changes some bytes of the BVH, expects the fault, and puts them back. */
+/* Plants some bytes in the BVH, expects the validator to find the fault, and restores the bytes. */
 static void expect_fault(bvh *f, void *place, const void *planted, size_t size, const char *expected) {
     char saved[64];
     assert_true(size <= sizeof saved && memcmp(place, planted, size) != 0);
@@ -91,7 +92,8 @@ static void faults_of_levels(void **state) {
     bvh_rig_destroy(&rig_of_shape);
 }
 
-/* On every level, for the low and the high of a used lane, along an axis and a diagonal; and in an empty lane. */
+/* Plants faults on every level: in both bounds of a used lane along an axis and a diagonal, and in an
+ * empty lane. */
 static void faults_of_bounds(void **state) {
     (void)state;
     bvh *f = many_trees_of_a_sphere();
@@ -109,7 +111,7 @@ static void faults_of_bounds(void **state) {
     bvh_rig_destroy(&rig_of_shape);
 }
 
-/* One tree over two components, of which one is declared an obstacle afterwards. */
+/* One tree over two components becomes a fault when one of them is declared an obstacle afterwards. */
 static void obstacles_have_trees_of_their_own(void **state) {
     (void)state;
     bool obstacles[2] = {false, true};

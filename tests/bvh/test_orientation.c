@@ -1,4 +1,5 @@
-/* Orientation signs against exact arithmetic: one wrong S+ or S- fails. And where detector points are. */
+/* Orientation signs are checked by exact arithmetic: one wrong S+ or S- fails. So are the places of
+ * detector points. */
 #include "runtime/bvh/bvh.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/random.h"
@@ -58,8 +59,8 @@ static void add_determinant(const exact_vector *a, const exact_vector *b, const 
     mpz_clear(minor);
 }
 
-/* The signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the tree's detector point.
- */
+/* Computes the signs of the four exact Bernstein coefficients of (p0 - d) . n, where d is the tree's
+ * detector point. */
 static void exact_signs(const double x0[9], const double x1[9], const bvh *f, int signs[4]) {
     static const double zero[3] = {0.0, 0.0, 0.0};
     const bvh_tree *p = &f->trees[0];
@@ -78,7 +79,7 @@ static void exact_signs(const double x0[9], const double x1[9], const bvh *f, in
     }
     mpz_t sum;
     mpz_init(sum);
-    for (int ends = 0; ends < 4; ends++) { /* how many of the three vectors are taken at t = 1 */
+    for (int ends = 0; ends < 4; ends++) { /* the bits say which of the three vectors are taken at t = 1 */
         mpz_set_ui(sum, 0);
         for (int choice = 0; choice < 8; choice++) {
             int a = choice & 1, b = choice >> 1 & 1, c = choice >> 2;
@@ -114,7 +115,7 @@ static void move_triangles(double offset, double speed) {
     }
 }
 
-/* Nearly in the plane of triangle t, at one end. */
+/* Moves a vertex so that triangle t lies nearly in one plane with the detector point at one end. */
 static void put_into_plane(bvh *f, uint32_t t, int end) {
     const double *x = (end == 0 ? shape.x0 : shape.x1) + (size_t)t * 9;
     double u = 3.0 * random_unit(), v = 3.0 * random_unit();
@@ -133,12 +134,12 @@ static void place_detector(bvh *f, double speed, bool near_zero) {
     }
     if (!near_zero) return;
     uint32_t t = (uint32_t)random_integer(0, BATCH_SIZE - 1);
-    int where = random_integer(0, 2); /* at the start, at the end, at both */
+    int where = random_integer(0, 2); /* at the start, at the end, or at both */
     if (where != 1) put_into_plane(f, t, 0);
     if (where != 0) put_into_plane(f, t, 1);
 }
 
-/* Levels of vector instructions that the processor has not are left out. */
+/* Creates a BVH for each level of vector instructions that the processor has; returns how many there are. */
 static uint32_t open_levels(bvh_rig levels[CSCD_SIMD_AVX512]) {
     uint32_t count = 0;
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++)
@@ -223,7 +224,8 @@ static void sides_of_a_plane(void **state) {
 
 /* ---- detector points ---- */
 
-/* Weights are the same for all triangles of a region (tests/support/bvh/bvh_rig.h). */
+/* Computes the point as the weighted mean; tests/support/bvh/bvh_rig.h gives all triangles of a region
+ * equal weights. */
 static void expected_point(const bvh_rig *r, uint32_t region, const double *x, long double out[3]) {
     long double size = 0.0L;
     for (int k = 0; k < 3; k++) out[k] = 0.0L;

@@ -1,4 +1,5 @@
-/* The traversal against all pairs: what it must find, what it may find, and that nothing else matters. */
+/* The traversal is compared with all pairs: what it must find, what it may find, and that nothing else
+ * matters. */
 #include "runtime/bvh/traversal.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/bvh/touching.h"
@@ -9,7 +10,7 @@
 
 enum { TRIANGLES_MAX = 1600 };
 
-/* Of pairs a < b. */
+/* A flag for each pair a < b. */
 typedef struct pair_table {
     uint8_t found[TRIANGLES_MAX][TRIANGLES_MAX];
     size_t count;
@@ -19,7 +20,7 @@ typedef struct pair_table {
 static scene shape; /* large; one test at a time */
 static pair_table all, kept, others;
 
-/* Only pairs of two different triangles, none twice. */
+/* Adds a pair; fails when its triangles are the same or the table has it already. */
 static void add_pair(const bvh *f, triangle_pair pair, pair_table *out) {
     uint32_t a = bvh_triangle(f, pair.a), b = bvh_triangle(f, pair.b);
     assert_true(a < f->mesh->triangle_count && b < f->mesh->triangle_count && a != b);
@@ -56,7 +57,8 @@ static void traverse_all(const bvh_rig *r, traversal_pass pass, pair_table *out)
 /* ---- against all pairs ----------------------------------------------------------------------------------
  */
 
-/* Pairs that no direction separates are found, and none that one separates by more than rounding. */
+/* Checks that all pairs are found that no axis separates, and none that an axis separates by more than
+ * rounding. */
 static void check_against_gaps(const pair_table *table, double distance) {
     gap_motion m = {shape.x0, shape.x1};
     long double rounding = 0x1p-16L * motion_extent(m, shape.vertex_count);
@@ -94,7 +96,7 @@ static void finds_what_may_touch(void **state) {
     }
 }
 
-/* Bodies that fly with one another, and past one another. */
+/* Some bodies fly together, and some past each other. */
 static void finds_what_may_touch_in_flight(void **state) {
     const double far[3] = {700.0, -3e4, 77.0};
     (void)state;
@@ -107,7 +109,7 @@ static void finds_what_may_touch_in_flight(void **state) {
     }
 }
 
-/* What overlaps by nothing but rounding. */
+/* The volumes of these pairs overlap by no more than rounding. */
 static void finds_what_just_touches(void **state) {
     random_stream random = stream_start(26);
     (void)state;
@@ -117,7 +119,7 @@ static void finds_what_just_touches(void **state) {
     }
 }
 
-/* More leaves than the cache of their volumes has places, all over one another. */
+/* More leaves than the cache of volumes can hold, all overlapping each other. */
 static void finds_what_may_touch_in_a_crowd(void **state) {
     random_stream random = stream_start(27);
     (void)state;
@@ -171,7 +173,7 @@ static void same_pairs_on_all_levels_and_threads(void **state) {
     }
 }
 
-/* Everything near everything, many times over: more than all batches hold at once. */
+/* All triangles are near all others, and there are more pairs than all batches can hold at once. */
 static void many_rounds(void **state) {
     enum { COPIES = 4 };
     (void)state;
@@ -217,7 +219,7 @@ static bool are_adjacent(uint32_t a, uint32_t b) {
     return false;
 }
 
-/* A pass finds those of all pairs of which this is true. */
+/* Checks that a pass finds exactly those pairs for which the predicate is true. */
 static void check_pass(const bvh_rig *r, traversal_pass pass,
                        bool (*of_pass)(const bvh_rig *, uint32_t, uint32_t)) {
     for (int skip_adjacent = 0; skip_adjacent < 2; skip_adjacent++) {
@@ -232,7 +234,7 @@ static void check_pass(const bvh_rig *r, traversal_pass pass,
     }
 }
 
-/* Flags come in runs, so that whole blocks have one; some are lost. */
+/* Chooses flags in runs, so that whole blocks have one flag, and clears some of them. */
 static void choose_flags(random_stream *random, uint32_t run) {
     uint8_t flag = ORIENTATION_ZERO;
     for (uint32_t t = 0; t < shape.triangle_count; t++) {
