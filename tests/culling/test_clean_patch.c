@@ -1,4 +1,4 @@
-/* Which triangles are clean: what a static check leaves, what contacts take, what comes back. */
+/* Which triangles are clean after a static check, after contacts, and after they heal. */
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
@@ -37,7 +37,7 @@ static double height_of(uint32_t triangle) {
     return (s.x0[t[0] * 3 + 2] + s.x0[t[1] * 3 + 2] + s.x0[t[2] * 3 + 2]) / 3.0;
 }
 
-/* A check that finds the triangles between two heights in contact. */
+/* Runs a check that finds contacts at the triangles between two heights. */
 static void check_with_belt(states *c, double low, double high) {
     for (uint32_t t = 0; t < s.triangle_count; t++) {
         unproven[t] = true;
@@ -62,7 +62,7 @@ static void all_free_is_all_clean(void **state) {
     states_destroy(&c);
 }
 
-/* A belt of contact cuts off a cap: the cap may be inside another part, so it is not clean. */
+/* A belt of contacts cuts off a cap. The cap may be inside another part, so it is not clean. */
 static void what_is_cut_off_is_not_clean(void **state) {
     (void)state;
     states c = states_of_sphere(1);
@@ -77,7 +77,7 @@ static void what_is_cut_off_is_not_clean(void **state) {
     states_destroy(&c);
 }
 
-/* Healed triangles connect a patch that was cut off, and only that. */
+/* Healed triangles connect a patch that was cut off, and the clean state spreads through them only. */
 static void clean_spreads_through_what_has_healed(void **state) {
     (void)state;
     states c = states_of_sphere(1);
@@ -97,7 +97,7 @@ static void clean_spreads_through_what_has_healed(void **state) {
     states_destroy(&c);
 }
 
-/* When contacts have eaten all but a remnant, a larger patch of free triangles takes its place. */
+/* When contacts have left only a remnant of a patch, a larger patch of free triangles takes its place. */
 static void a_larger_patch_replaces_a_remnant(void **state) {
     (void)state;
     states c = states_of_sphere(1);
@@ -124,7 +124,7 @@ static void states_follow_positions(void **state) {
     start_states_begin(&c.starts, s.x0);
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].clean + c.starts.of[1].clean, s.triangle_count);
-    s.x0[3 * (s.vertex_count - 1)] += 0.125; /* of the second sphere */
+    s.x0[3 * (s.vertex_count - 1)] += 0.125; /* moves the second sphere */
     start_states_begin(&c.starts, s.x0);
     start_states_count(&c.starts);
     assert_int_equal(c.starts.of[0].clean, half);
@@ -136,7 +136,7 @@ static void states_follow_positions(void **state) {
     states_destroy(&c);
 }
 
-/* The caller's word fills in what is not known, not what is known to be otherwise; a check takes it back. */
+/* The caller's promise fills in unknown states but does not override known ones; a check takes it back. */
 static void vouching_fills_in(void **state) {
     (void)state;
     states c = states_of_sphere(1);
@@ -150,7 +150,7 @@ static void vouching_fills_in(void **state) {
     states_destroy(&c);
 }
 
-/* As long as most of a component stays unclean, its checks wait longer and longer. */
+/* As long as most of a component is not clean, its checks wait longer and longer. */
 static void checks_in_vain_wait(void **state) {
     (void)state;
     states c = states_of_sphere(1);
@@ -162,12 +162,12 @@ static void checks_in_vain_wait(void **state) {
         }
         start_states_end(&c.starts, s.x0, (bool[1]){false});
     }
-    assert_int_equal(checks, 6); /* in intervals 0, 2, 5, 10, 19 and 36 */
+    assert_int_equal(checks, 6); /* The checks are in intervals 0, 2, 5, 10, 19 and 36. */
     states_destroy(&c);
 }
 
-/* A sphere whose pole is pulled through its floor:
- * at the next start most is clean, the tip is not, and only what is not is looked at. */
+/* The pole of a sphere is pulled through its floor. At the next start most triangles are clean, the tip is
+ * not, and only pairs with unclean triangles are tested. */
 static void a_tip_through_the_floor(void **state) {
     (void)state;
     static scene next;
@@ -184,7 +184,7 @@ static void a_tip_through_the_floor(void **state) {
     assert_true(cscd_detector_counters(r.detector).passes > 0);
     next = s;
     memcpy(next.x0, s.x1, sizeof next.x0);
-    assert_int_equal(rig_step(&r, &next).count, 0); /* at rest, in itself */
+    assert_int_equal(rig_step(&r, &next).count, 0); /* at rest, intersecting itself */
     cscd_counters counters = cscd_detector_counters(r.detector);
     cscd_guarantee guarantee = cscd_detector_guarantee(r.detector, 0);
     assert_int_equal(guarantee.reason, CSCD_REASON_CROSSING);
@@ -195,7 +195,7 @@ static void a_tip_through_the_floor(void **state) {
     rig_destroy(&r);
 }
 
-/* The same lists and counters for any number of threads, through penetrations. */
+/* Lists and counters are the same for any number of threads, also while parts intersect. */
 static void same_bits_for_any_thread_count(void **state) {
     (void)state;
     cscd_detector_options options = cscd_detector_defaults();
@@ -216,7 +216,7 @@ static void same_bits_for_any_thread_count(void **state) {
                             memcmp(found.items, expected.items, found.count * sizeof *found.items) == 0);
                 assert_memory_equal(&own, &counters, sizeof own);
             }
-            static double turn[SCENE_VERTICES_MAX * 3]; /* and back */
+            static double turn[SCENE_VERTICES_MAX * 3]; /* the motion back */
             memcpy(turn, s.x0, sizeof turn);
             memcpy(s.x0, s.x1, sizeof s.x0);
             memcpy(s.x1, turn, sizeof s.x1);

@@ -18,7 +18,7 @@ enum { IGNORING_INTERVALS_PER_FAMILY = 150 };
 
 static scene interval; /* large; one test at a time */
 
-/* One scene, and what it has without culling. */
+/* A scene and its contacts without culling. */
 typedef struct reference {
     cscd_context *context;
     cscd_mesh *mesh;
@@ -51,8 +51,8 @@ static void check_complete(const cscd_contacts *found, const cscd_contacts *trut
     for (size_t i = 0; i < found->count; i++) assert_true(same_contact(&found->items[i], &truth->items[i]));
 }
 
-/* The list is part of the truth, in the same order; what is missing is of embedded components, and not their
- * first. Returns how many are missing. */
+/* Checks that the list is a part of the truth in the same order, and that every missing contact is of an
+ * embedded component and not its first. Returns how many are missing. */
 static size_t check_earliest(const reference *r, const scene *s, const cscd_detector *detector,
                              const cscd_contacts *found) {
     static double expected[COMPONENTS_MAX], times[COMPONENTS_MAX];
@@ -139,7 +139,7 @@ static void print_tally(const char *name, const culling_tally *t) {
         100.0 * (double)t->pairs / (double)t->pairs_without);
 }
 
-/* Modes alternate; each interval sees two of the variants in both. */
+/* Runs a family of scenes in alternating modes; each interval sees two of the variants in both modes. */
 static void run_family(scene_family family, culling_tally *sum) {
     static const variant variants[3] = {
         {CSCD_METHOD_SINGLE, 0}, {CSCD_METHOD_KMEANS, 2}, {CSCD_METHOD_KMEANS, 5}};
@@ -179,7 +179,7 @@ static bool ignore_some(void *user, uint32_t a, uint32_t b) {
     return (a * 2654435761u ^ b * 40503u) % 16 == 0;
 }
 
-/* A first contact that is left out must not hide a later one: mode earliest finishes then. */
+/* An ignored first contact must not hide a later one: mode earliest continues past it. */
 static void ignored_contacts_hide_none(void **state) {
     static const scene_family families[3] = {SCENE_BENT_CAPSULE, SCENE_SQUASHED_TORUS, SCENE_SPIKE};
     size_t kept = 0;

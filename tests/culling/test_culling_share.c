@@ -1,5 +1,5 @@
-/* That culling is really on: on a human-like body that moves without contact, charge and single leave at most
- * a quarter of the triangle pairs, and one static check serves the whole recording. */
+/* Culling is really on: on a human-like body that moves without contact, charge and single leave at most a
+ * quarter of the triangle pairs, and one static check serves the whole recording. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/test.h"
@@ -16,7 +16,7 @@ typedef struct share_recording {
     double *frames[FRAME_COUNT];
 } share_recording;
 
-/* The body sways, turns at the hips, and walks on: a few edge lengths a frame. */
+/* Poses the body, which sways, turns at the hips, and walks by a few edge lengths per frame. */
 static void pose_at(const body *shape, double t, double *out) {
     for (uint32_t v = 0; v < shape->vertex_count; v++) {
         const double *p = shape->positions + (size_t)v * 3;

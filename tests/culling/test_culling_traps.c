@@ -1,5 +1,5 @@
-/* Culling by orientation where it is easily wrong: surfaces without an inside, degenerate first touches,
- * starts that are not embedded, minimum separation. */
+/* Culling by orientation in cases that are easily wrong: surfaces without an inside, degenerate first
+ * contacts, starts that are not embedded, minimum separation. */
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "tests/support/rig.h"
@@ -75,7 +75,8 @@ static cscd_detector_options with_mode(cscd_method method, cscd_mode mode) {
     return options;
 }
 
-/* Mode all equals no culling; mode earliest has the same first contact; one region and several. */
+/* Checks that mode all equals no culling and mode earliest has the same first contact, with one region and
+ * several. */
 static void check_first_contact(cscd_reason expected) {
     trap_result truth = run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0);
     for (uint32_t k = 0; k <= 4; k++) {
@@ -91,7 +92,7 @@ static void check_first_contact(cscd_reason expected) {
 
 /* ---- no inside ------------------------------------------------------------------------------------- */
 
-/* Every triangle faces the centre, and yet the surface crosses itself: it winds around twice. */
+/* Every triangle faces the centre, and yet the surface intersects itself because it winds around twice. */
 static void pentagrammic_bipyramid(void **state) {
     (void)state;
     scene_clear(&s);
@@ -106,12 +107,12 @@ static void pentagrammic_bipyramid(void **state) {
     cscd_detector_options vouched = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST);
     vouched.start = CSCD_START_VOUCHED;
     trap_result trusting = run_trap(vouched, 0);
-    assert_int_equal(trusting.counters.plus, s.triangle_count); /* or this test tests nothing */
+    assert_int_equal(trusting.counters.plus, s.triangle_count); /* otherwise this test tests nothing */
     check_first_contact(CSCD_REASON_CROSSING);
     assert_true(run_trap(with_mode(CSCD_METHOD_NONE, CSCD_MODE_ALL), 0).count > trusting.count);
 }
 
-/* An open sheet, rolled up about its axis: all S+, and its layers touch. */
+/* An open sheet is rolled up about its axis. All triangles are S+, and its layers touch. */
 static void rolled_sheet(void **state) {
     (void)state;
     scene_clear(&s);
@@ -132,8 +133,8 @@ static void rolled_sheet(void **state) {
 
 /* ---- degenerate first touches ---------------------------------------------------------------------- */
 
-/* A horseshoe: the polygon extruded along z. Returns the number of its corners; corner i is vertex 2 i at z =
- * 0, 2 i + 1 at z = 4. */
+/* Adds a horseshoe: the polygon extruded along z. Corner i is vertex 2 i at z = 0 and vertex 2 i + 1 at z
+ * = 4. */
 static void add_horseshoe(void) {
     static const double corners[8][2] = {{0, 0}, {10, 0}, {10, 8}, {7, 8}, {7, 3}, {3, 3}, {3, 8}, {0, 8}};
     static const uint32_t cap[6][3] = {{0, 1, 5}, {1, 4, 5}, {1, 2, 4}, {2, 3, 4}, {0, 5, 7}, {5, 6, 7}};
@@ -154,7 +155,7 @@ static void add_horseshoe(void) {
     keep_still();
 }
 
-/* The tip of one arm meets the edge of the other at which its sides turn away from the detector point. */
+/* The tip of one arm touches the edge of the other where its sides turn away from the detector point. */
 static void vertex_meets_silhouette_edge(void **state) {
     (void)state;
     add_horseshoe();
@@ -163,7 +164,7 @@ static void vertex_meets_silhouette_edge(void **state) {
     assert_true(fabs(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).earliest - 0.5) <= 1e-9);
 }
 
-/* The same, past the edge: no contact, and a proof of it. */
+/* The same tip passes beside the edge: there is no contact, and the detector proves it. */
 static void vertex_misses_silhouette_edge(void **state) {
     (void)state;
     add_horseshoe();
@@ -172,7 +173,7 @@ static void vertex_misses_silhouette_edge(void **state) {
     assert_int_equal(run_trap(with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST), 0).count, 0);
 }
 
-/* An arm comes to lie on the other, side on side: all contacts at one time, all degenerate. */
+/* An arm comes to lie flat on the other: all contacts are at one time, and all are degenerate. */
 static void side_comes_to_lie_on_side(void **state) {
     (void)state;
     add_horseshoe();
@@ -216,7 +217,7 @@ static void three_sheets_at_one_point(void **state) {
 
 /* ---- components ------------------------------------------------------------------------------------ */
 
-/* The inner sphere grows through the outer one: contacts between components are never culled. */
+/* The inner sphere grows through the outer one. Contacts between components are never culled. */
 static void inner_grows_through_outer(void **state) {
     static const double origin[3] = {0, 0, 0};
     (void)state;
@@ -235,7 +236,7 @@ static void inner_grows_through_outer(void **state) {
 
 /* ---- minimum separation ---------------------------------------------------------------------------- */
 
-/* The walls of a groove face the detector point and come near to each other: orientation says nothing. */
+/* The walls of a groove face the detector point and approach each other, so orientation proves nothing. */
 static void groove_with_minimum_separation(void **state) {
     (void)state;
     add_horseshoe();
@@ -279,7 +280,7 @@ static void end_chain(chain *c) {
     rig_destroy(&c->r);
 }
 
-/* From clean interval to clean interval the proof is handed on: one static check in all. */
+/* The proof is handed on from clean interval to clean interval, so there is one static check in all. */
 static void one_check_while_clean(void **state) {
     static double frames[20][SCENE_VERTICES_MAX * 3];
     (void)state;
@@ -293,7 +294,7 @@ static void one_check_while_clean(void **state) {
     end_chain(&c);
 }
 
-/* Contact, crossing, apart again: what the detector knows follows. */
+/* The detector's knowledge follows a contact, an intersection, and the separation after it. */
 static void contact_and_recovery(void **state) {
     static double open[SCENE_VERTICES_MAX * 3], crossing[SCENE_VERTICES_MAX * 3];
     (void)state;
@@ -305,9 +306,9 @@ static void contact_and_recovery(void **state) {
     c.detector->starts.share_worth_it = 0.5;
     step_trap(&c, open, crossing, CSCD_REASON_FINISHED);
     step_trap(&c, crossing, crossing,
-              CSCD_REASON_CROSSING); /* most triangles stay clean, so the others are */
+              CSCD_REASON_CROSSING); /* most triangles stay clean, and the rest are culled too */
     assert_true(cscd_detector_counters(c.detector).plus > 0);
-    step_trap(&c, crossing, open, CSCD_REASON_CROSSING); /* checked at each start */
+    step_trap(&c, crossing, open, CSCD_REASON_CROSSING); /* every start is checked */
     step_trap(&c, open, open, CSCD_REASON_CLEAN);
     assert_int_equal(c.checks, 4);
     end_chain(&c);

@@ -1,5 +1,6 @@
-/* Culling clean triangles of meshes that go into themselves, interval after interval: every list equals that
- * of the method that culls nothing, no pair of features is tested twice, and what is called clean is. */
+/* Culling clean triangles of meshes that move into themselves over many intervals: every list equals that
+ * of the method that culls nothing, no feature pair is tested twice, and every triangle that is called
+ * clean is clean. */
 #include "cscd/cscd.h"
 #include "runtime/detector/detector.h"
 #include "src/mesh/predicates.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SEQUENCES = 12, EXACT_PERCENT = 85 }; /* of so few sequences */
+enum { SEQUENCES = 12, EXACT_PERCENT = 85 }; /* out of so few sequences */
 #else
 enum { SEQUENCES = 60, EXACT_PERCENT = 90 };
 #endif
@@ -27,7 +28,7 @@ static sequence q; /* large; one test at a time */
 
 typedef struct local_tally {
     uint64_t intervals, with_contact, partly_clean, all_clean, closing_passes, contacts, tests, tests_without;
-    uint64_t small, exactly; /* intervals in which tests were counted, and in which there was no choice */
+    uint64_t small, exactly; /* intervals whose tests were counted, and whose bounds were equal */
 } local_tally;
 
 enum { ALL_SINGLE, ALL_SCATTERED, ALL_PLANNED, UNKNOWN_SINGLE, EARLIEST_SCATTERED, CULLING_COUNT };
@@ -40,7 +41,7 @@ typedef struct ways {
     cscd_detector *culling[CULLING_COUNT];
 } ways;
 
-/* Where points are bad: on the surface, in a corner, far away. */
+/* Places a point where detector points are bad: on the surface, at a vertex, or far away. */
 static void place_point(random_stream *random, double out[3]) {
     uint32_t v = stream_below(random, q.shape.vertex_count), w = stream_below(random, q.shape.vertex_count);
     double share = stream_below(random, 3) * 0.5, spread = stream_below(random, 2) * 4.0;
@@ -49,7 +50,7 @@ static void place_point(random_stream *random, double out[3]) {
                  stream_between(random, -spread, spread);
 }
 
-/* Regions of a few triangles here and there, each within a component. */
+/* Makes regions of a few triangles here and there, each within one component. */
 static cscd_plan *scatter_regions(const cscd_mesh *mesh, random_stream *random) {
     static uint32_t regions[SCENE_TRIANGLES_MAX], numbers[REGIONS_MAX * 8];
     static double points[REGIONS_MAX * 8][3];
@@ -124,8 +125,8 @@ static uint32_t component_of(const ways *w, const cscd_contact *c) {
     return m->triangle_components[a] == m->triangle_components[b] ? m->triangle_components[a] : UINT32_MAX;
 }
 
-/* Part of the truth, in its order; what is missing is of components that were not to be complete, and not the
- * first of them. */
+/* Checks that the list is a part of the truth in its order, and that every missing contact is of a
+ * component that was not to be complete, and not the first of it. */
 static void check_contacts(const ways *w, const cscd_detector *detector, const cscd_contacts *found,
                            const cscd_contacts *truth) {
     bool seen[8] = {false};
@@ -157,14 +158,15 @@ static bool any_kept(const culling *c, const uint32_t *a, uint32_t a_count, cons
     return false;
 }
 
-/* How many tests there may be: pairs of features without a common vertex that some pair of triangles leaves,
- * and that no direction separates; at most also those that are separated by no more than rounding, and those
- * that only adjacent triangles contain and that no axis separates. */
+/* How many tests there may be. The least number is of feature pairs without a common vertex that some kept
+ * triangle pair contains and that no axis separates. The largest number adds those that are separated by
+ * no more than rounding, and those that only adjacent triangles contain and that no coordinate axis
+ * separates. */
 typedef struct test_range {
     uint64_t least, most;
 } test_range;
 
-/* Of triangles around a feature. */
+/* The triangles around a feature. */
 typedef struct star {
     const uint32_t *triangles;
     uint32_t count;
@@ -215,7 +217,7 @@ static test_range expected_tests(const cscd_detector *d, gap_motion moved) {
     return range;
 }
 
-/* Twice the solid angle of a triangle from p, by van Oosterom and Strackee. */
+/* Returns half the solid angle of a triangle from p, by van Oosterom and Strackee. */
 static double half_angle(const uint32_t *t, const double *x, const double p[3]) {
     double r[3][3], length[3];
     for (int i = 0; i < 3; i++) {
@@ -233,7 +235,7 @@ static double half_angle(const uint32_t *t, const double *x, const double p[3]) 
     return atan2(det, length[0] * length[1] * length[2] + dots[0] + dots[1] + dots[2]);
 }
 
-/* Of the component, just outside the middle of its triangle t. */
+/* Returns the component's winding number just outside the middle of its triangle t. */
 static double winding_number(const cscd_mesh *m, const double *x, uint32_t t) {
     const double *a = x + (size_t)m->triangles[t][0] * 3, *b = x + (size_t)m->triangles[t][1] * 3,
                  *c = x + (size_t)m->triangles[t][2] * 3;
@@ -251,7 +253,8 @@ static double winding_number(const cscd_mesh *m, const double *x, uint32_t t) {
     return sum / (2.0 * 3.14159265358979323846);
 }
 
-/* Clean triangles at x: nothing meets them, and they have one winding number in common. */
+/* Checks that no triangle intersects a clean one at x, and that clean triangles have one winding number
+ * per component. */
 static void check_clean(const cscd_detector *d, const double *x) {
     const cscd_mesh *m = d->mesh;
     double common[8];
@@ -268,7 +271,7 @@ static void check_clean(const cscd_detector *d, const double *x) {
         }
         if (d->starts.triangles[t] < TRIANGLE_CLEAN) continue;
         double number = winding_number(m, x, t);
-        if (fabs(number - round(number)) > 0.1) continue; /* another sheet is that near */
+        if (fabs(number - round(number)) > 0.1) continue; /* another sheet is too near */
         if (isnan(common[component])) common[component] = round(number);
         assert_true(round(number) == common[component]);
     }
@@ -310,7 +313,7 @@ static void check_sequence(uint64_t seed, local_tally *sum) {
         cscd_intersections crossing;
         if (stream_below(&random, 4) == 0)
             assert_int_equal(cscd_detector_check(w.culling[UNKNOWN_SINGLE], q.frames[f], &crossing), CSCD_OK);
-        /* A solver takes a step back now and then. */
+        /* a solver takes a step back now and then */
         uint32_t from = f > 0 && stream_below(&random, 10) == 0 ? f - 1 : f;
         check_interval(&w, q.frames[from], q.frames[f + 1], sum);
     }
@@ -327,7 +330,7 @@ static void print_tally(const char *name, const local_tally *t) {
         (unsigned long long)t->contacts, 100.0 * (double)t->tests / (double)t->tests_without);
 }
 
-/* LOCAL_SEQUENCES and LOCAL_FIRST, when they are set, choose other sequences, for longer runs by hand. */
+/* Longer runs by hand choose other sequences by the variables LOCAL_SEQUENCES and LOCAL_FIRST. */
 static void run_kind(sequence_kind kind, const char *name, local_tally *sum) {
     const char *count = getenv("LOCAL_SEQUENCES"), *first = getenv("LOCAL_FIRST");
     uint64_t sequences = count != NULL ? strtoull(count, NULL, 10) : SEQUENCES;

@@ -1,5 +1,5 @@
-/* Where a detector says that its regions' points are: the means of its triangles moved, and what orientations
- * are of. */
+/* The detector points that a detector reports are the moved means of their regions' triangles, and the
+ * reported orientations are relative to them. */
 #include "cscd/cscd.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"
@@ -15,7 +15,7 @@ static void subtract_points(const double a[3], const double b[3], double out[3])
     for (int k = 0; k < 3; k++) out[k] = a[k] - b[k];
 }
 
-/* The largest coordinate of the interval: rounding is relative to it. */
+/* Returns the largest coordinate of the interval; rounding is relative to it. */
 static double reach_of(const scene *s) {
     double largest = 0.0;
     for (uint32_t i = 0; i < s->vertex_count * 3; i++)
@@ -23,7 +23,7 @@ static double reach_of(const scene *s) {
     return largest;
 }
 
-/* The mean of a component's triangles' centroids. */
+/* Computes the mean of the centroids of a component's triangles. */
 static void mean_of(const rig *r, const scene *s, const double *x, uint32_t component, double out[3]) {
     uint32_t count = 0;
     memset(out, 0, sizeof(double[3]));
@@ -46,7 +46,8 @@ static void without_a_plan_points_are_means(void **state) {
         rig r = rig_create(&interval, 1, &options);
         rig_step(&r, &interval);
         cscd_intersections crossing;
-        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK); /* no trace */
+        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing),
+                         CSCD_OK); /* no trace left */
         uint32_t count = cscd_mesh_component_count(r.mesh);
         assert_int_equal(cscd_detector_region_count(r.detector), count);
         for (uint32_t c = 0; c < count; c++) {
@@ -63,7 +64,7 @@ static void without_a_plan_points_are_means(void **state) {
     }
 }
 
-/* (p0 - d) . n of a triangle at a moment, and a size that its rounding is relative to. */
+/* Returns (p0 - d) . n of a triangle at a moment, and the size that its rounding is relative to. */
 static double facing_of(uint32_t t, double time, const double d0[3], const double d1[3], double *size) {
     double p[3][3], d[3], a[3], b[3];
     for (int i = 0; i < 3; i++) {
@@ -111,7 +112,7 @@ static void orientations_are_seen_from_these_points(void **state) {
         assert_int_equal(cscd_detector_create(r.mesh, plan, &options, &r.detector), CSCD_OK);
         assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, &contacts), CSCD_OK);
         assert_int_equal(cscd_detector_region_count(r.detector), cscd_plan_region_count(plan));
-        for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) { /* at rest they are the plan's */
+        for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) { /* at rest they are those of the plan */
             double start[3], end[3];
             cscd_region region = cscd_plan_region(plan, i);
             cscd_detector_region_point(r.detector, i, start, end);
