@@ -1,4 +1,5 @@
-/* The static check equals all pairs of triangles, each decided exactly; and the states it tells apart. */
+/* The static check equals a test of all triangle pairs, each decided exactly, and reports the right
+ * states. */
 #include "cscd/cscd.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
@@ -18,7 +19,7 @@ static uint32_t count_zero_area(const scene *shape) {
     return count;
 }
 
-/* Compares with all pairs; returns how many meet. */
+/* Compares with all pairs; returns how many intersect. */
 static size_t compare_with_all_pairs(uint32_t thread_count) {
     rig r = rig_create(&s, thread_count, NULL);
     cscd_intersections found;
@@ -64,7 +65,7 @@ static size_t pairs_at(double x, double y, double z) {
     return compare_with_all_pairs(1);
 }
 
-/* The spheres' poles are at z = centre -+ 1, exactly. */
+/* The spheres' poles are exactly at z = centre - 1 and z = centre + 1. */
 static void touching_counts(void **state) {
     (void)state;
     assert_true(pairs_at(0, 0, 2.0) > 0);
@@ -73,7 +74,7 @@ static void touching_counts(void **state) {
     assert_int_equal(pairs_at(0, 0, 8.0), 0);
 }
 
-/* A sheet folded flat onto itself about its middle: neighbours across the fold overlap in the plane. */
+/* A sheet is folded flat onto itself about its middle, so neighbours across the fold overlap in the plane. */
 static void flat_folds_count(void **state) {
     (void)state;
     scene_clear(&s);

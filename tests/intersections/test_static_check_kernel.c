@@ -1,5 +1,6 @@
-/* The kernels of the static check: what they leave out never meets, or has an area, by the exact predicates;
- * they leave the same on every level that this machine has, and little of what does not meet. */
+/* The kernels of the static check, compared with exact predicates: pairs that they reject never intersect,
+ * and triangles that they reject have an area. All levels that this machine has leave the same pairs, and
+ * few of these are disjoint. */
 #include "runtime/intersections/intersection_kernels.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
@@ -21,16 +22,16 @@ static int seed_random(void **state) {
 
 /* ---- pairs ------------------------------------------------------------------------------------------- */
 
-/* Pair i is triangles 2 i and 2 i + 1, of six vertices of its own, some of which may be unused. */
+/* Pair i is triangles 2 i and 2 i + 1 with six vertices of its own, some of which may be unused. */
 static struct {
     uint32_t count, triangles[2 * BATCH_MAX][3];
     double positions[BATCH_MAX * 18];
 } work;
 
-/* NEAR: at random, about one triangle's size apart. GRID: integers from -3 to 3, so that points coincide and
- * share lines and planes. FLAT: GRID's or NEAR's points in one plane, rounded, which may be all that keeps
- * triangles apart. WIDE: each point scaled on its
- * own. */
+/* NEAR: random, about one triangle's size apart.
+ * GRID: integers from -3 to 3, so that points coincide and share lines and planes.
+ * FLAT: points of GRID or NEAR in one plane, rounded; the rounding may be all that keeps triangles apart.
+ * WIDE: each point is scaled by a factor of its own. */
 typedef enum family { NEAR, GRID, FLAT, WIDE, FAMILY_COUNT } family;
 
 static const char *const family_names[FAMILY_COUNT] = {"near", "grid", "flat", "wide"};
@@ -47,7 +48,7 @@ static void make_point(family f, const double plane[2][3], double scale, double 
     }
 }
 
-/* The second triangle begins with vertices of the first, then takes its own; both turned at random. */
+/* The second triangle begins with vertices of the first, followed by its own; both are rotated at random. */
 static void make_pair(family f, int shared, int scale, uint32_t i) {
     double plane[2][3];
     for (int k = 0; k < 6; k++) plane[k / 3][k % 3] = random_unit();
@@ -77,14 +78,14 @@ static bool do_intersect(uint32_t i) {
     return triangles_intersect(work.triangles[2 * i], work.triangles[2 * i + 1], work.positions);
 }
 
-/* By the kernel of a level, in pairs; how many. */
+/* Runs the kernel of a level on all pairs; returns how many pairs it leaves. */
 static uint32_t reject_disjoint(int level, triangle_pair *pairs) {
     for (uint32_t i = 0; i < work.count; i++) pairs[i] = (triangle_pair){2 * i, 2 * i + 1};
     return intersection_kernels_of(contexts[level])
         ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count);
 }
 
-/* Adds to how many pairs are apart, and to how many of these are left open. */
+/* Adds the number of disjoint pairs, and how many of these the kernel leaves undecided. */
 static void check_batch(uint64_t *apart, uint64_t *open) {
     triangle_pair first[BATCH_MAX], other[BATCH_MAX];
     bool kept[BATCH_MAX] = {false};
@@ -107,7 +108,7 @@ static void check_batch(uint64_t *apart, uint64_t *open) {
     }
 }
 
-/* Of pairs that do not meet, what may be left open, in percent. */
+/* Checks that the kernel leaves at most this percentage of disjoint pairs undecided. */
 static void check_family(family f, int shared, double most) {
     uint64_t apart = 0, open = 0;
     for (int i = 0; i < BATCHES; i++) {
@@ -135,7 +136,8 @@ static void degenerate_pairs(void **state) {
     }
 }
 
-/* Pairs that meet, scaled until products or differences overflow: no infinity says that they do not. */
+/* Intersecting pairs are scaled until products or differences overflow. An infinity must not prove them
+ * disjoint. */
 static void overflow_certifies_nothing(void **state) {
     (void)state;
     for (int i = 0; i < BATCHES; i++) {
