@@ -1,4 +1,5 @@
-/* The contacts of all lanes as one list: sorted by time and names, without those that the caller ignores. */
+/* The contacts of all lanes form one list, sorted by time and names, without those that the caller
+ * ignores. */
 #include "runtime/detector/contact_list.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -10,7 +11,7 @@ static scene shape; /* large; one test at a time */
 static const double times[] = {0.5, 0.25, 0.0, -0.0, 0.25, 1.0, 0.25, 0.0};
 enum { CONTACT_COUNT = sizeof times / sizeof *times };
 
-/* Contacts of two kinds, at equal times among others, dealt out to all lanes. */
+/* Makes contacts of two kinds, some at equal times, and deals them out to all lanes. */
 static void fill_lanes(cscd_context *context, search_space *s) {
     for (uint32_t i = 0; i < s->traversal.lane_count; i++) contact_lane_reset(&s->lanes[i]);
     for (uint32_t i = 0; i < CONTACT_COUNT; i++) {

@@ -1,4 +1,4 @@
-/* The detector: threads, repetition, ignored pairs, statuses. */
+/* The detector with several threads, repeated steps, ignored pairs, and bad arguments. */
 #include "cscd/cscd.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
@@ -68,7 +68,7 @@ static bool in_triangle(const scene *s, uint32_t triangle, uint32_t vertex) {
     return t[0] == vertex || t[1] == vertex || t[2] == vertex;
 }
 
-/* Does a feature of the contact belong to the triangle? */
+/* Returns whether a feature of the contact belongs to the triangle. */
 static bool touches_triangle(const scene *s, const rig *r, const cscd_contact *c, uint32_t triangle) {
     if (c->kind == CSCD_CONTACT_VF) return c->b == triangle || in_triangle(s, triangle, c->a);
     uint32_t a[2], b[2];

@@ -1,4 +1,5 @@
-/* The search by trees finds what brute force over all pairs of features finds, and needs the orphan pairs for it. */
+/* The search by trees finds what brute force over all feature pairs finds, and needs the orphan pairs for
+ * it. */
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/interval_search.h"
@@ -11,7 +12,7 @@ static scene interval; /* large; one test at a time */
 
 typedef cscd_status search_kind(interval_search *search);
 
-/* Adjacent triangles are skipped, and what only they would test is not tested apart. */
+/* Adjacent triangles are skipped, so feature pairs that only they contain are not tested. */
 static cscd_status search_without_orphans(interval_search *search) {
     interval_search_skip_adjacent(search, true);
     search->interval.skip_adjacent = true;

@@ -1,5 +1,4 @@
-/* What must not change the pairs that mode all reports: scale, numbering, the direction of time, bulk motion.
- */
+/* The pairs that mode all reports do not depend on scale, numbering, direction of time, or bulk motion. */
 #include "cscd/cscd.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
@@ -10,7 +9,7 @@
 
 static scene interval, other; /* large; one test at a time */
 
-/* The pairs of a step as sorted keys, vertices and triangles mapped back by the permutations. */
+/* The pairs of a step as sorted keys, with vertices and triangles mapped back by the permutations. */
 typedef struct pair_set {
     uint32_t keys[20000][5];
     size_t count;
@@ -134,7 +133,7 @@ static void same_pairs_under_bulk_motion(void **state) {
     }
 }
 
-/* Vertices and triangles in reverse order, corners rotated. */
+/* Vertices and triangles are numbered in reverse order, and corners are rotated. */
 static void same_pairs_when_renumbered(void **state) {
     (void)state;
     static uint32_t old_vertex[SCENE_VERTICES_MAX], old_triangle[SCENE_TRIANGLES_MAX];

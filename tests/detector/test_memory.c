@@ -1,4 +1,4 @@
-/* Memory: every allocation fails once, nothing leaks, a steady state allocates nothing. */
+/* Every allocation fails once without a leak, and a steady state allocates nothing. */
 #include "cscd/cscd.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
@@ -10,7 +10,7 @@
 
 static scene s; /* large; one test at a time */
 
-/* What a run of the whole library gave. */
+/* The result of a run of the whole library. */
 typedef struct memory_outcome {
     cscd_status status;
     size_t contacts, intersections;
@@ -29,8 +29,8 @@ static cscd_status use_detector(cscd_detector *detector, memory_outcome *out) {
     return status;
 }
 
-/* Everything from the context to a step and a check; when that fails for want of memory, once more with the
- * same objects, which must then succeed. */
+/* Runs everything from the context to a step and a check. After a failure for lack of memory the same
+ * objects are used once more, and must then succeed. */
 static memory_outcome run_library(counting_allocator *counter, uint32_t thread_count, cscd_method method) {
     memory_outcome out = {CSCD_OK, 0, 0};
     cscd_context *context = NULL;

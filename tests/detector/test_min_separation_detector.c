@@ -13,7 +13,7 @@
 
 enum { INTERVALS_PER_FAMILY = 8 };
 
-static scene interval; /* large; one test at a time */
+static scene interval; /* The scenes are a few units large, and their edges some tenths. */
 
 /* The scenes are a few units large, their edges some tenths. */
 static const double distances[] = {1e-8, 1e-3, 0.03, 0.2};
@@ -54,8 +54,7 @@ static void every_method_equals_brute_force(void **state) {
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < INTERVALS_PER_FAMILY; seed++) {
             double distance = distances[(family + (int)seed) % DISTANCE_COUNT];
-            bool roomy =
-                seed % 2 == 1; /* what stays within the tolerance only may be reported, by all or none */
+            bool roomy = seed % 2 == 1; /* pairs within the tolerance are reported by all methods or none */
             separation limit = {distance, (roomy ? 0.5 : 1e-6) * distance};
             scene_make((scene_family)family, seed, &interval);
             for (uint32_t i = 0; seed % 4 == 3 && i < interval.vertex_count; i++)
@@ -64,7 +63,7 @@ static void every_method_equals_brute_force(void **state) {
             for (int method = 0; method < 2; method++) {
                 cscd_detector_options options = options_within(distance, (cscd_method)method);
                 if (!roomy) compare_with_truth(&truth, &options);
-                options.tolerance = limit.tolerance; /* what 0 stands for, if it is not roomy */
+                options.tolerance = limit.tolerance; /* the value that 0 stands for, unless it is roomy */
                 if (roomy || method == CSCD_METHOD_NONE) compare_with_truth(&truth, &options);
             }
             contacts += truth.count;
@@ -77,7 +76,7 @@ static void every_method_equals_brute_force(void **state) {
     oracle_free(&truth);
 }
 
-/* Scaled far down and up the volumes are rounded differently; the pairs stay. */
+/* Far smaller and larger scenes round their volumes differently, but have the same pairs. */
 static void same_pairs_when_scaled(void **state) {
     (void)state;
     static const int exponents[] = {-250, -140, 100, 270};
@@ -137,7 +136,7 @@ static int compare_pairs(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-/* The contacts sorted by their pairs, to be freed. */
+/* Returns the contacts sorted by their pairs; the caller frees them. */
 static cscd_contact *pairs_within(double distance, size_t *count) {
     cscd_detector_options options = options_within(distance, CSCD_METHOD_NONE);
     rig r = rig_create(&interval, 1, &options);
@@ -213,7 +212,7 @@ static void unfit_lengths_are_refused(void **state) {
     rig_destroy(&r);
 }
 
-/* The check of one moment asks whether the mesh crosses itself, with any options. */
+/* The check of one moment looks for intersections only, with any options. */
 static void the_static_check_is_not_concerned(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 4; seed++) {
@@ -232,8 +231,8 @@ static void the_static_check_is_not_concerned(void **state) {
     }
 }
 
-/* One detector whose separation changes, to 0 and back, finds what new ones find; a bad one changes nothing.
- */
+/* A detector whose separation changes, to 0 and back, finds what new detectors find; a bad separation
+ * changes nothing. */
 static void separation_can_change(void **state) {
     (void)state;
     static const double changes[] = {0.0, 0.03, 0.0, 0.2, 1e-3, 0.0};
@@ -259,8 +258,8 @@ static void separation_can_change(void **state) {
     assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_INVALID_ARGUMENT);
 }
 
-/* A line's candidates serve separations up to the one that it was begun with, or its reach; a larger one is
- * refused. */
+/* A line search's candidates serve separations up to the one that it was begun with, or up to its reach; a
+ * larger one is refused. */
 static void lines_follow_what_they_can(void **state) {
     (void)state;
     static const double changes[] = {0.0, 1e-3, 0.03, 0.2};
@@ -297,8 +296,8 @@ static bool ignore_all(void *user, uint32_t a, uint32_t b) {
     return a < b;
 }
 
-/* A line that was begun without separation, and goes through what is left out with one: what the detector
- * knew of its start is not known of its end. */
+/* A line search begins without separation and then goes with one through a pair that is ignored. What the
+ * detector knew of the start must not be taken for its end. */
 static void a_start_behind_a_wall_is_not_clean(void **state) {
     (void)state;
     cscd_intersections crossing;

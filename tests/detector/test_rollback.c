@@ -1,4 +1,5 @@
-/* What a call that fails must restore is restored, and only where a call can be cancelled. */
+/* A failed call restores what it has changed, and a snapshot is taken only for calls that can be
+ * cancelled. */
 #include "runtime/detector/rollback.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -14,7 +15,7 @@ static bool go_on(void *user, const char *stage, double fraction) {
     return true;
 }
 
-/* Saves, changes everything that a call may change, and restores. Returns whether all is as it was. */
+/* Saves, changes everything that a call may change, and restores. Returns whether all is as before. */
 static bool comes_back(bool cancellable) {
     cscd_context_options options = cscd_context_defaults();
     if (cancellable) options.progress.report = go_on;
@@ -53,7 +54,7 @@ static bool comes_back(bool cancellable) {
 static void a_call_that_can_be_cancelled_is_undone(void **state) {
     (void)state;
     assert_true(comes_back(true));
-    assert_false(comes_back(false)); /* no memory is taken, and nothing changes */
+    assert_false(comes_back(false)); /* no memory is taken and nothing is restored */
 }
 
 int main(void) {

@@ -1,4 +1,5 @@
-/* Threads: contacts and counters are the same, bit for bit, for any number of them, whoever does what. */
+/* Contacts and counters are the same, bit for bit, for any number of threads, whichever thread does the
+ * work. */
 #include "cscd/cscd.h"
 #include "src/core/context.h"
 #include "tests/support/methods.h"
@@ -35,7 +36,7 @@ typedef struct outcome {
     cscd_counters counters;
 } outcome;
 
-/* The intervals one after the other, of a tube at rest in s. */
+/* Runs the intervals one after the other, on a tube whose rest shape is in s. */
 static void run_intervals(uint32_t thread_count, const cscd_detector_options *options,
                           outcome out[INTERVALS]) {
     static double x[INTERVALS + 1][SCENE_VERTICES_MAX * 3];
@@ -101,7 +102,7 @@ static void separation_gives_the_same(void **state) {
 /* ---- the crew itself ----------------------------------------------------------------------------------- */
 
 typedef struct threads_tally {
-    uint32_t runs[TASKS_MAX]; /* written by whoever has the task */
+    uint32_t runs[TASKS_MAX]; /* written by the thread that has the task */
     atomic_uint total;
 } threads_tally;
 
@@ -111,7 +112,7 @@ static void count_task(void *data, uint32_t task) {
     atomic_fetch_add(&t->total, 1);
 }
 
-/* Runs of all lengths, some at once after the other, some after helpers have gone to sleep. */
+/* Runs of all lengths; some follow at once, some after the helper threads have gone to sleep. */
 static void each_task_runs_once(void **state) {
     (void)state;
     for (int k = 0; k < COUNTS; k++) {

@@ -47,7 +47,7 @@ static cscd_contacts step_topology(const objects *o, const scene *s) {
     return found;
 }
 
-/* Returns how many there are. */
+/* Returns the number of contacts. */
 static size_t check_against_brute_force(const scene *s, cscd_contacts found) {
     oracle_list expected = {NULL, 0, 0};
     oracle_find(s, &expected);
@@ -63,7 +63,7 @@ static size_t check_against_brute_force(const scene *s, cscd_contacts found) {
 
 /* ---- a sheet that tears ------------------------------------------------------------------------------ */
 
-/* Waves, the whole sheet together. */
+/* Places the sheet in a wave that moves all of it. */
 static void wave_at(scene *s, double phase, double *x) {
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         x[3 * v] = s->x0[3 * v];
@@ -79,8 +79,8 @@ static void make_sheet(uint64_t seed) {
     wave_at(&whole, stream_between(&random, 0.0, 6.0), whole.x1);
 }
 
-/* Cuts the column CUT, from the first row to TIP: what is right of it gets vertices of its own, behind the
- * others, in the places where the sheet ended. Lists the pairs of vertices that were one. */
+/* Cuts the sheet along column CUT, from the first row to TIP. The part to the right gets new vertices,
+ * numbered after the others, in the old places. Lists the pairs of vertices that were one. */
 static void tear_sheet(uint32_t pairs[TIP][2]) {
     torn = whole;
     memcpy(torn.x0, whole.x1, sizeof whole.x1);
@@ -102,7 +102,7 @@ static bool is_new(uint32_t vertex) {
     return vertex >= (COLUMNS + 1) * (ROWS + 1);
 }
 
-/* The right of the sheet moves on, most where it is torn. */
+/* Moves the right part of the sheet, most where it is torn. */
 static void move_right(double dx, double dz) {
     for (uint32_t v = 0; v < torn.vertex_count; v++) {
         uint32_t row = is_new(v) ? v - (COLUMNS + 1) * (ROWS + 1) : v / (COLUMNS + 1);
@@ -113,7 +113,7 @@ static void move_right(double dx, double dz) {
     }
 }
 
-/* One tear: the sheet moves, tears, its lips part, and one flies through the other. */
+/* One tear: the sheet moves, tears, the two sides of the tear part, and one flies through the other. */
 static size_t tear_once(cscd_context *context, uint64_t seed) {
     uint32_t pairs[TIP][2];
     make_sheet(seed);
@@ -128,7 +128,7 @@ static size_t tear_once(cscd_context *context, uint64_t seed) {
     assert_int_equal(c.open_edges, 2 * (COLUMNS + ROWS) + 2 * TIP);
     move_right(0.15, 0.2);
     size_t parting = check_against_brute_force(&torn, step_topology(&after, &torn));
-    assert_true(parting > 0); /* the lips touch where they are still in one place */
+    assert_true(parting > 0); /* the sides touch where they are still in one place */
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
     move_right(-0.7, -0.5);
     size_t count = check_against_brute_force(&torn, step_topology(&after, &torn));
@@ -166,7 +166,7 @@ static void seams_keep_the_lips_quiet_until_they_have_parted(void **state) {
     assert_int_equal(step_topology(&sewn, &torn).count, 0);
 
     memcpy(torn.x0, torn.x1, sizeof torn.x1);
-    move_right(-0.7, -0.5); /* from here on without seams: nothing in one place any more */
+    move_right(-0.7, -0.5); /* from here on nothing is ignored: no two vertices are in one place any more */
     assert_true(check_against_brute_force(&torn, step_topology(&bare, &torn)) > 0);
     destroy_objects(&sewn);
     destroy_objects(&bare);
@@ -175,7 +175,7 @@ static void seams_keep_the_lips_quiet_until_they_have_parted(void **state) {
 
 /* ---- regions carried over ---------------------------------------------------------------------------- */
 
-/* A capsule that bends until it meets itself, and a sphere that it may meet. */
+/* A capsule that bends until it touches itself, and a sphere that it may touch. */
 static void make_bodies(uint64_t seed) {
     static scene sphere;
     random_stream random = stream_start(seed ^ 0xb0d7);
@@ -193,13 +193,13 @@ static void make_bodies(uint64_t seed) {
     whole.triangle_count += sphere.triangle_count;
 }
 
-/* Removes triangles of the second component and renumbers what is left; origin: the old triangle of each. */
+/* Removes triangles of the second component and renumbers the rest; origin is each triangle's old number. */
 static void remove_and_renumber(const cscd_mesh *mesh, random_stream *random, uint32_t *origin) {
     torn = whole;
     torn.triangle_count = 0;
     for (uint32_t t = 0; t < whole.triangle_count; t++) {
         if (cscd_mesh_triangle_component(mesh, t) == 1 && stream_below(random, 4) == 0) continue;
-        uint32_t at = stream_below(random, torn.triangle_count + 1); /* a random order, as it grows */
+        uint32_t at = stream_below(random, torn.triangle_count + 1); /* builds a random order */
         origin[torn.triangle_count] = origin[at];
         origin[at] = t;
         torn.triangle_count++;
@@ -208,8 +208,8 @@ static void remove_and_renumber(const cscd_mesh *mesh, random_stream *random, ui
         memcpy(torn.triangles + (size_t)t * 3, whole.triangles + (size_t)origin[t] * 3, sizeof(uint32_t[3]));
 }
 
-/* As docs/tuning.md has it: regions by where triangles come from, one per old region and new component, and
- * none without triangles. */
+/* Makes regions by where triangles come from: one per old region and new component, and none without
+ * triangles. */
 static cscd_plan *carry_over(const cscd_plan *old, const cscd_mesh *mesh, const uint32_t *origin) {
     static uint32_t regions[SCENE_TRIANGLES_MAX];
     uint32_t components = cscd_mesh_component_count(mesh), count = 0;
