@@ -19,7 +19,7 @@ static sequence q; /* large; one test at a time */
 typedef struct watcher {
     pthread_t thread;
     uint32_t reports, cancel_at; /* reports of this call; the one that cancels, counted from 1; 0: none */
-    uint32_t every;              /* cancels about one in so many early reports and fewer of the later ones */
+    uint32_t every;              /* cancels at each of so many first reports, then at ever larger gaps */
     bool cancelled;
     double fraction, last_ms, closest_ms;
     bool fell, elsewhere, nameless;
