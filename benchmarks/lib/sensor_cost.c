@@ -38,7 +38,7 @@ typedef struct contestants {
     cscd_detector *detector;
 } contestants;
 
-static bool make(const body *b, contestants *c, io_error *error) {
+static bool create_contestants(const body *b, contestants *c, io_error *error) {
     const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
     cscd_detector_options options = cscd_detector_defaults();
     cscd_sensor_options sensing = cscd_sensor_defaults();
@@ -52,7 +52,7 @@ static bool make(const body *b, contestants *c, io_error *error) {
            io_fail(error, "%s", cscd_context_detail(c->context));
 }
 
-static void destroy(contestants *c) {
+static void destroy_contestants(contestants *c) {
     cscd_detector_destroy(c->detector);
     cscd_sensors_destroy(c->sensors);
     cscd_partition_destroy(c->partition);
@@ -61,12 +61,12 @@ static void destroy(contestants *c) {
 }
 
 /* The first interval, which places particles and builds trees, is not counted. */
-static bool measure(const body *b, uint32_t vertices_each, cost *out, io_error *error) {
+static bool measure_cost(const body *b, uint32_t vertices_each, cost *out, io_error *error) {
     contestants c = {.context = NULL};
     double sense[INTERVALS], trees[INTERVALS];
     size_t size = (size_t)b->vertex_count * 3;
     double *x = body_allocate(size * 2, sizeof *x);
-    bool good = make(b, &c, error);
+    bool good = create_contestants(b, &c, error);
     *out = (cost){0};
     for (uint32_t i = 0; good && i <= INTERVALS; i++) {
         cscd_warnings warnings;
@@ -89,7 +89,7 @@ static bool measure(const body *b, uint32_t vertices_each, cost *out, io_error *
         out->sense_ms = sensor_median(sense, INTERVALS);
         out->trees_ms = sensor_median(trees, INTERVALS);
     }
-    destroy(&c);
+    destroy_contestants(&c);
     free(x);
     return good;
 }
@@ -99,7 +99,7 @@ static bool print_row(uint32_t triangles_each, uint32_t side[3], io_error *error
     cost c;
     if (!body_make(BODY_SPHERE, triangles_each, &ball, error)) return false;
     place_spheres(&ball, side, &all);
-    bool good = measure(&all, ball.vertex_count, &c, error);
+    bool good = measure_cost(&all, ball.vertex_count, &c, error);
     if (good)
         printf("  %7u %9u %9.0f %7.1f %10.0f %11.0f %8.1f %8.3f %8.2f %8.3f\n", side[0] * side[1] * side[2],
                all.triangle_count, c.particles, c.rounds, c.vertices, c.pairs,
