@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
-#include "src/core/simd.h"
+#include "src/core/simd_lanes.h"
 
 /* By corner, end of the interval and axis, a lane per triangle. */
 typedef f32x8 leaf_corners[3][2][3];

@@ -1,5 +1,6 @@
 /* Copy-in: turns the caller's positions at both ends into records of floats in the order of the leaves. */
 #include "runtime/bvh/bvh_kernels_simd.h"
+#include "src/core/simd_lanes.h"
 
 static void load_scaled(const double *x, const uint32_t *vertices, const double origin[3], double scale,
                         f64x8 out[3]) {

@@ -2,6 +2,7 @@
 #include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
+#include "src/core/simd_lanes.h"
 
 /* Least and greatest of a leaf's records, lane by lane. */
 static void enclose_records(const bvh *f, const bvh_leaf *l, f32x8 *low, f32x8 *high) {

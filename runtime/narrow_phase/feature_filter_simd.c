@@ -10,6 +10,7 @@
  * roundings of numbers below 3 M, 9 u M + 6 u M, and a gap of such sums less than 36 u M. Gaps count from
  * 8 u M and 48 u M on. */
 #include "runtime/narrow_phase/narrow_phase_kernels_simd.h"
+#include "src/core/simd_lanes.h"
 
 enum { FEATURE_COUNT = 15 };
 
