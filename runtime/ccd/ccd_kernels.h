@@ -27,9 +27,9 @@ typedef struct root_outcomes {
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
-/* Eight pairs. Misses certainly stay farther apart than a limit's distance and tolerance; hits are certainly
- * within its distance at the start. For hits: the nearest points at the start, as parameters, as the offset from
- * b's point to a's, and its length. */
+/* The outcomes for eight pairs. Misses certainly stay farther apart than a limit's distance and tolerance.
+ * Hits are certainly within its distance at the start. For hits, u, v and offset name the nearest points at
+ * the start as parameters and as the offset from b's point to a's; distance is the offset's length. */
 typedef struct proximity_outcomes {
     uint32_t misses, hits; /* sets of lanes */
     double u[LANES], v[LANES], offset[3][LANES], distance[LANES];

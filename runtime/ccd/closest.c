@@ -9,7 +9,7 @@ static double clamp_to_unit(double x) {
     return x < 0.0 ? 0.0 : x > 1.0 ? 1.0 : x;
 }
 
-/* Parameter of the point of segment a b nearest to p; 0 where the segment is a point. */
+/* Returns the parameter of the point of segment a b that is nearest to p, or 0 if the segment is a point. */
 static double nearest_on_segment(const double p[3], const double a[3], const double b[3]) {
     double direction[3], offset[3];
     vec3_subtract(b, a, direction);
@@ -28,7 +28,7 @@ static double squared_distance_at(const double p[3], const double a[3], const do
     return sum;
 }
 
-/* The nearest point on the three sides. */
+/* Finds the nearest point on the three sides. */
 static double closest_on_sides(const double p[3], const double a[3], const double b[3], const double c[3],
                                double *u, double *v) {
     double ab = nearest_on_segment(p, a, b), bc = nearest_on_segment(p, b, c),
@@ -48,8 +48,9 @@ static double closest_on_sides(const double p[3], const double a[3], const doubl
 
 enum { PROJECTIONS_MAX = 16 };
 
-/* Adds to u and v what the residual of p at them projects to, and says whether that changed them. Repeated,
- * the point becomes good to rounding even in a thin triangle, where the first answer is not. */
+/* Projects the residual of p at u and v onto the plane, adds the result to u and v, and says whether that
+ * changed them. Repeating it makes the point exact up to rounding even in a thin triangle, where the first
+ * answer is not. */
 static bool add_projection(const double p[3], const double a[3], const double ab[3], const double ac[3],
                            const double normal[3], double area, double *u, double *v) {
     double residual[3], side[3];
@@ -63,10 +64,10 @@ static bool add_projection(const double p[3], const double a[3], const double ab
     return *u != old_u || *v != old_v;
 }
 
-/* Squared distances below this share of the squared lengths are rounding: nothing is nearer. */
+/* A squared distance below this share of the squared lengths is rounding, so no other point is nearer. */
 static const double touching = 0x1p-90;
 
-/* Of the plane, if it is in the triangle; else INFINITY. */
+/* Finds the nearest point of the triangle's plane. Returns INFINITY if it is not in the triangle. */
 static double closest_in_plane(const double p[3], const double a[3], const double b[3], const double c[3],
                                double *u, double *v, double *size) {
     double ab[3], ac[3], normal[3], inside_u = 0.0, inside_v = 0.0;
@@ -91,7 +92,7 @@ double closest_point_triangle(const double p[3], const double a[3], const double
                  distance = closest_in_plane(p, a, b, c, &inside_u, &inside_v, &size);
     double best = distance <= touching * size ? INFINITY : closest_on_sides(p, a, b, c, u, v);
     if (distance > best || !(distance < INFINITY)) return best;
-    /* Where rounding sees no difference, the inner point is the better one. */
+    /* When rounding hides the difference, the inner point is the better one. */
     *u = inside_u;
     *v = inside_v;
     return distance;
@@ -107,8 +108,8 @@ static double segment_distance_at(const double a0[3], const double a1[3], const 
     return sum;
 }
 
-/* The crossing of the lines; between nearly parallel ones it is inexact, which projecting back and forth
- * mends. INFINITY: they are parallel. */
+/* Starts at the nearest points of the two lines. Between nearly parallel lines they are inexact, and
+ * projecting back and forth between the segments corrects that. Returns INFINITY for parallel lines. */
 static double closest_on_lines(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                                double *u, double *v, double *size) {
     double along_a[3], along_b[3], offset[3], normal[3], side[3], point[3];
@@ -128,7 +129,7 @@ static double closest_on_lines(const double a0[3], const double a1[3], const dou
     return segment_distance_at(a0, a1, b0, b1, *u, *v);
 }
 
-/* The best of the four ends. */
+/* Finds the nearest points of which one is an end. */
 static double closest_ends(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                            double *u, double *v) {
     const double candidates[4][2] = {{0.0, nearest_on_segment(a0, b0, b1)},
@@ -147,7 +148,7 @@ static double closest_ends(const double a0[3], const double a1[3], const double 
     return best;
 }
 
-/* The nearest points are two inner ones or include an end. */
+/* The nearest points are two inner points, or one of them is an end. */
 double closest_segments(const double a0[3], const double a1[3], const double b0[3], const double b1[3],
                         double *u, double *v) {
     double size, cross_u = 0.0, cross_v = 0.0,

@@ -1,19 +1,19 @@
-/* Describes a contact: a time that is safe to step to, the points, the normal. */
+/* Describes a contact: a time that is safe to step to, the points and the normal. */
 #include "runtime/ccd/contact_frame.h"
 
 #include "runtime/ccd/closest.h"
 #include "runtime/ccd/cubic.h"
 #include "src/core/vec3.h"
 
-/* Positions at a time, computed and rounded to doubles by whoever steps there, are off by at most 2 units in
- * the last place of the largest coordinate C, 2^-52 C each: with four points in the gap, two on either side
- * of it, and the diagonal of the cube, by less than 2 * 2 * sqrt(3) * 2^-52 C < 2^-49 C along the normal.
+/* A caller that steps to a time computes positions in doubles, which are off by at most 2 units in the last
+ * place of the largest coordinate C, 2^-52 C each. With four points at the gap, two on either side of it, and
+ * the diagonal of the cube, the error along the normal is less than 2 * 2 * sqrt(3) * 2^-52 C < 2^-49 C.
  * Twice that is left open. */
 static const double gap_left = 0x1p-48;
 static const double earlier_at_most = 0x1p-32;
 
-/* Vectors between the points at one moment, as in point_vectors. Blended differences keep the shape of
- * features that are small beside their motion; blended positions would not. */
+/* Vectors between the points at one moment, as in point_vectors. Blending differences keeps the shape of
+ * features that are small beside their motion; blending positions would not. */
 typedef struct moment_vectors {
     double a[3], b[3], c[3];
 } moment_vectors;
@@ -39,8 +39,8 @@ static moment_vectors vectors_at(const point_vectors *v, double t) {
     return m;
 }
 
-/* The power of two that brings the largest component to [1/2, 1), so that squares neither over- nor
- * underflow; returns the exponent that is taken out. */
+/* Multiplies v by the power of two that brings its largest component to [1/2, 1), so that squares neither
+ * over- nor underflow. Returns the exponent that is taken out. */
 static int scale_to_one(const double v[3], double out[3]) {
     int exponent = exponent_of(vec3_largest(v));
     double factor = power_of_two(-exponent);
@@ -48,15 +48,16 @@ static int scale_to_one(const double v[3], double out[3]) {
     return exponent;
 }
 
-/* a x b times 2^-*exponent. */
+/* Writes a x b times 2^-*exponent. */
 static void scaled_cross(const moment_vectors *m, double out[3], int *exponent) {
     double a[3], b[3];
     *exponent = scale_to_one(m->a, a) + scale_to_one(m->b, b);
     vec3_cross(a, b, out);
 }
 
-/* The gap is the volume over the area of the features' parallelogram, and closes at the rate of its slope;
- * where the slope is lost in rounding the root is not simple, and nothing is gained by being early. */
+/* Returns an earlier time, at which a gap is left. The gap is the volume over the area of the features'
+ * parallelogram, and it closes at the rate of the volume's slope over this area. When the slope is lost in
+ * rounding, the root is not simple, and an earlier time gains nothing. */
 static double leave_gap(const point_vectors *vectors, double coordinate, const coplanarity *f, double toi) {
     double cross[3], slope = fabs(cubic_slope(f, toi));
     int exponent;
@@ -67,8 +68,8 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
     return max_of(toi - min_of(gap_left * coordinate / speed, earlier_at_most), 0.0);
 }
 
-/* The nearest points at one moment, scaled, relative to the face's first corner (VF) or to the start of the
- * shorter edge (EE), so that its shape survives the addition. */
+/* Finds the nearest points at one moment. The vectors are scaled, and relative to the face's first corner
+ * (VF) or to the start of the shorter edge (EE), so that its shape survives the addition. */
 static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, elementary_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     double a[3], b[3], c[3], end[3];
@@ -91,14 +92,14 @@ static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, ele
     }
 }
 
-/* The vector from the point that u and v name on b to the one on a. */
+/* Writes the vector from the point that u and v name on b to the one that they name on a. */
 static void connect_points(const double a[3], const double b[3], const double c[3], cscd_contact_kind kind,
                            const elementary_hit *hit, double out[3]) {
     double sign = kind == CSCD_CONTACT_VF ? 1.0 : -1.0;
     for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - hit->u * a[k]) - hit->v * b[k];
 }
 
-/* Unit normal of the touching features, turned against the motion of a relative to b. */
+/* Writes the unit normal of the touching features, turned against the motion of a relative to b. */
 static void contact_normal(const point_vectors *v, const moment_vectors *m, cscd_contact_kind kind,
                            const elementary_hit *hit, double normal[3]) {
     double cross[3], start[3], end[3], motion[3];

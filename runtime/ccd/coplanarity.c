@@ -17,17 +17,19 @@ void point_vectors_from(const elementary_query *query, cscd_contact_kind kind, p
     subtract_at_ends(query, vf ? 0 : 2, vf ? 1 : 0, out->c, out->size_c);
 }
 
-/* With (a + t a')(b + t b') and so on: b0 = f(0), b3 = f(1), b1 and b2 a third each of the sums of the three
- * determinants with one vector, or two, taken from t = 1.
+/* Multiplying out the determinant of a + t a', b + t b' and c + t c' gives the coefficients: b0 = f(0), b3 =
+ * f(1), and b1 and b2 are a third of the sum of the three determinants with one vector, or two, taken from t
+ * = 1.
  *
- * Error: let u = 2^-53 and P the permanent of the components' largest magnitudes, which bounds the sum of the
- * magnitudes of the products in any of these coefficients. Each product passes 3 subtractions, 2
- * multiplications, 1 subtraction in the cross product, 1 addition of cross products, 2 additions in the dot
- * product, 1 addition of dot products and 1 division: 11 roundings, so a coefficient is off by at most
- * P ((1+u)^11 - 1) < 11.1 u P. Evaluation by blending at three parameters adds 3 multiplications, 3 additions
- * and 3 roundings of 1 - t to numbers below (1 + 11.1 u) P: at most 9.1 u P. The sum is below 20.2 u P; 24
- * leaves room for computing P. Underflow: each of some 100 operations may lose 2^-1075, covered by 2^-1060.
- */
+ * Error: let u = 2^-53, and P the permanent of the components' largest magnitudes, which bounds the sum of
+ * the magnitudes of the products in any of these coefficients.
+ *     Each product passes 3 subtractions, 2 multiplications, 1 subtraction in the cross product, 1 addition
+ *     of cross products, 2 additions in the dot product, 1 addition of dot products and 1 division: 11
+ *     roundings. So a coefficient is off by at most P ((1+u)^11 - 1) < 11.1 u P.
+ *     Evaluation by blending at three parameters adds 3 multiplications, 3 additions and 3 roundings of 1 - t
+ *     to numbers below (1 + 11.1 u) P: at most 9.1 u P.
+ * The sum is below 20.2 u P; 24 leaves room for computing P. Each of some 100 operations may lose 2^-1075 to
+ * underflow, which 2^-1060 covers. */
 coplanarity coplanarity_cubic(const point_vectors *v) {
     coplanarity f;
     double start[3], end[3], one[3], other[3], mixed[3];

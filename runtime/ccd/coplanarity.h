@@ -20,5 +20,5 @@ typedef struct coplanarity {
 
 coplanarity coplanarity_cubic(const point_vectors *vectors);
 
-/* All coefficients beyond the error on one side of zero: the points are never coplanar in [0,1]. */
+/* Are all coefficients beyond the error on one side of zero? Then the points are never coplanar in [0,1]. */
 bool coplanarity_excluded(const coplanarity *f);

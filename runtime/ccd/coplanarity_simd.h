@@ -1,5 +1,5 @@
-/* The coplanarity cubics of many pairs. The twin of coplanarity.c: the same operations in the same order, so its error
- * bounds hold. */
+/* The coplanarity cubics of many pairs. The twin of coplanarity.c: the same operations in the same order, so
+ * its error bounds hold. */
 #pragma once
 
 #include "runtime/ccd/feature_pairs_simd.h"

@@ -1,6 +1,6 @@
-/* Intervals of time that hold the roots of the coplanarity cubic, certified: the roots are guessed, polished,
- * and then proven by the signs of the Bernstein coefficients between them. A wrong or a missing guess, or a
- * multiple root, only makes the proof fail. */
+/* Finds certified intervals of time that hold the roots of the coplanarity cubic. The roots are guessed,
+ * polished, and then proven by the signs of the Bernstein coefficients between them. A wrong or missing
+ * guess, or a multiple root, only makes the proof fail. */
 #include "runtime/ccd/cubic.h"
 
 #include "runtime/ccd/cubic_guess.h"
@@ -8,8 +8,8 @@
 
 enum { POLISH_STEPS = 10, SUBDIVISIONS = 3 };
 
-/* What rounding of t itself moves a root by, and more. A step of Newton's method this short squares the error
- * to less than that, mostly; where it does not, the proof fails. */
+/* The rounding of t itself moves a root by less than root_rounding. A step of Newton's method shorter than
+ * `converged` usually squares the error to less than that. When it does not, the proof fails. */
 static const double root_rounding = 0x1p-50, converged = 0x1p-26;
 
 static const double widest_radius = 0x1p-7;
@@ -18,8 +18,8 @@ static double blend_linearly(double a, double b, double t) {
     return (1.0 - t) * a + t * b;
 }
 
-/* The cubic's polar_form form, by de Casteljau's scheme, at (t, t) and then at the third arguments: values of the
- * cubic and Bernstein coefficients of its parts. */
+/* Values of the cubic's polar form at (t, t, 0) and (t, t, 1), by de Casteljau's scheme. Blending them gives
+ * values of the cubic and Bernstein coefficients of its parts. */
 typedef struct polar_form {
     double low, high;
 } polar_form;
@@ -35,8 +35,8 @@ double cubic_slope(const coplanarity *f, double t) {
     return 3.0 * (p.high - p.low);
 }
 
-/* c[0] + c[1] t + c[2] t^2 + c[3] t^3, times a power of two at which no product of two over- or underflows.
- */
+/* Writes the coefficients of c[0] + c[1] t + c[2] t^2 + c[3] t^3, times a power of two at which no product of
+ * two of them over- or underflows. */
 static void to_monomials(const double coefficients[4], double c[4]) {
     int exponent = 0;
     double b[4];
@@ -50,7 +50,7 @@ static void to_monomials(const double coefficients[4], double c[4]) {
     c[3] = (b[3] - b[0]) + 3.0 * (b[1] - b[2]);
 }
 
-/* The certified sign of the exact cubic on all of [from, to]; 0: none was found. */
+/* Returns the certified sign of the exact cubic on all of [from, to], or 0 if none was found. */
 static int sign_between(const coplanarity *f, double from, double to, int subdivisions) {
     polar_form start = polar_at(f->b, from), stop = polar_at(f->b, to);
     double error = f->error;
@@ -64,8 +64,8 @@ static int sign_between(const coplanarity *f, double from, double to, int subdiv
     return left != 0 && left == sign_between(f, middle, to, subdivisions - 1) ? left : 0;
 }
 
-/* Newton's method, kept within [low, high], where the cubic has the sign `change` before the root and -change
- * after it; 0: unknown. False when it does not converge. */
+/* Newton's method, kept within [low, high]. The cubic has the sign `change` before the root and -change after
+ * it; `change` is 0 when that is unknown. Returns false when the method does not converge. */
 static bool polish_root(const double b[4], double low, double high, double change, double *t) {
     for (int i = 0; i < POLISH_STEPS; i++) {
         polar_form p = polar_at(b, *t);
@@ -80,8 +80,8 @@ static bool polish_root(const double b[4], double low, double high, double chang
     return false;
 }
 
-/* The interval in which rounding leaves the root's place open; false when it is too wide: the root is
- * multiple, or nearly. */
+/* Writes the interval in which rounding leaves the root's place open. Returns false when it is too wide,
+ * because the root is multiple, or nearly. */
 static bool interval_about(const coplanarity *f, double root, root_interval *out) {
     double radius = 1.25 * (f->error / fabs(cubic_slope(f, root))) + root_rounding;
     *out = (root_interval){max_of(root - radius, 0.0), min_of(root + radius, 1.0), true};
@@ -97,7 +97,7 @@ static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
         if (!(guesses[i] > -0x1p-20 && guesses[i] < 1.0 + 0x1p-20)) continue;
         if (!polish_root(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
             return ROOTS_UNCERTAIN;
-        if (!(out[count].begin < out[count].end)) continue; /* polished out of [0,1] */
+        if (!(out[count].begin < out[count].end)) continue; /* polishing moved it out of [0,1] */
         if (count > 0 && !(out[count - 1].end < out[count].begin)) return ROOTS_UNCERTAIN;
         count++;
     }
@@ -119,8 +119,9 @@ static int isolate_by_guesses(const coplanarity *f, root_interval out[ROOTS_MAX]
     return count;
 }
 
-/* The Bernstein coefficients change sign once, whatever their errors, from positive to negative (sign 1) or
- * back (-1): there is exactly one root in [0,1], and it is simple. 0: not so. */
+/* Returns 1 when the Bernstein coefficients change sign once, whatever their errors, from positive to
+ * negative, and -1 when they change it once from negative to positive: then there is exactly one root in
+ * [0,1], and it is simple. Returns 0 otherwise. */
 static int single_change(const coplanarity *f) {
     const double *b = f->b;
     double error = f->error;
@@ -129,8 +130,8 @@ static int single_change(const coplanarity *f) {
     return 0;
 }
 
-/* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
- * between which it has exactly one root. */
+/* Isolates the root in [low, high], from a guess. At the ends the cubic has the opposite signs `change` and
+ * -change, and between them it has exactly one root. */
 static bool isolate_between(const coplanarity *f, double low, double high, double change, double root,
                             root_interval *out) {
     if (!polish_root(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
@@ -141,8 +142,9 @@ static bool isolate_between(const coplanarity *f, double low, double high, doubl
            change * blend_linearly(end.low, end.high, out->end) < -f->error;
 }
 
-/* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
- * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
+/* Guesses where the cubic is least, if it first falls and rises in the end. That is a root of its slope,
+ * whose Bernstein coefficients over 3 are d0 < 0, d1 and d2 > 0. The formula takes ratios, which do not
+ * overflow. */
 static double lowest_at(const double b[4]) {
     double d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
     double half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
@@ -150,8 +152,9 @@ static double lowest_at(const double b[4]) {
     return half >= 0.0 ? 1.0 / (half + root) : (root - half) / square;
 }
 
-/* The same certain sign at both ends: two roots, or none, if the coefficients of the parts before and after
- * the place where the cubic is nearest to 0 say so for certain. */
+/* Isolates the roots of a cubic that certainly has the same sign at both ends, and so two roots or none. The
+ * coefficients of the parts before and after the place where it is nearest to 0 must say which for certain.
+ */
 static int isolate_two(const coplanarity *f, root_interval out[ROOTS_MAX]) {
     double sign = f->b[0] > 0.0 ? 1.0 : -1.0, error = f->error;
     coplanarity g = {.error = error};

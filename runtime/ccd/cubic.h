@@ -1,4 +1,4 @@
-/* Intervals of time that hold the roots of the coplanarity cubic, certified. */
+/* Finds certified intervals of time that hold the roots of the coplanarity cubic. */
 #pragma once
 
 #include "runtime/ccd/coplanarity.h"
@@ -10,10 +10,10 @@ typedef struct root_interval {
 
 enum { ROOTS_MAX = 3, ROOTS_UNCERTAIN = -1 };
 
-/* Ascending disjoint intervals outside of which the exact cubic has no root in [0,1]; as narrow as the
- * cubic's error allows, and below 1/64. Returns how many, or ROOTS_UNCERTAIN when that cannot be certified.
- */
+/* Writes ascending disjoint intervals outside of which the exact cubic has no root in [0,1]. They are as
+ * narrow as the cubic's error allows, and below 1/64. Returns how many there are, or ROOTS_UNCERTAIN when
+ * that cannot be certified. */
 int cubic_isolate(const coplanarity *f, root_interval out[ROOTS_MAX]);
 
-/* The slope of the computed cubic at t in [0,1]. */
+/* Returns the slope of the computed cubic at t in [0,1]. */
 double cubic_slope(const coplanarity *f, double t);

@@ -1,5 +1,5 @@
-/* Roots of many cubics: Newton's method and certified intervals. The twin of cubic.c: the same operations in the same
- * order, so its error bounds hold. */
+/* Roots of many cubics: Newton's method and certified intervals. The twin of cubic.c: the same operations in
+ * the same order, so its error bounds hold. */
 #pragma once
 
 #include "runtime/ccd/coplanarity_simd.h"
@@ -25,8 +25,8 @@ static inline f64w value_at(const f64w b[4], f64w t) {
     return blend_linearly(p.low, p.high, t);
 }
 
-/* Newton's method within [low, high], on the lanes given, where the cubic has the sign `change` before the
- * root and -change after it; returns those in which it converges. */
+/* Newton's method on the given lanes, kept within [low, high]. The cubic has the sign `change` before the
+ * root and -change after it. Returns the lanes in which the method converges. */
 static inline uint32_t polish_root(const f64w b[4], uint32_t lanes, f64w low, f64w high, f64w change,
                                    f64w *root) {
     const f64w converged = f64w_all(0x1p-26);
@@ -51,13 +51,14 @@ typedef struct intervals_x8 {
     f64w begin, end;
 } intervals_x8;
 
-/* A root interval must be as narrow for its begin to be the TOI. */
+/* A root interval must be this narrow for its begin to be the TOI. */
 static inline uint32_t narrow_enough(const intervals_x8 *interval) {
     return f64w_at_most(interval->end - interval->begin, f64w_all(0x1p-31));
 }
 
-/* From a guess within [low, high], at whose ends the cubic has the opposite signs `change` and -change, and
- * between which it has exactly one root: the lanes in which that is certainly in the interval. */
+/* Isolates the root in [low, high], from a guess. At the ends the cubic has the opposite signs `change` and
+ * -change, and between them it has exactly one root. Returns the lanes in which the root is certainly in the
+ * interval. */
 static inline uint32_t isolate_between(const f64w b[4], f64w error, uint32_t lanes, f64w low, f64w high,
                                        f64w change, f64w root, intervals_x8 *out) {
     lanes = polish_root(b, lanes, low, high, change, &root);

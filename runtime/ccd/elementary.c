@@ -13,10 +13,11 @@
 
 static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
 
-/* A root interval must be as narrow for its begin to be the TOI. */
+/* A root interval must be this narrow for its begin to be the TOI. */
 static const double narrow = 0x1p-31;
 
-/* Between the second level and the third: directions that cost more than they save before the second. */
+/* Decides what level two leaves open. The directions come here, because before level two they cost more than
+ * they save. */
 static elementary_verdict decide_what_is_left(const elementary_query *query, cscd_contact_kind kind,
                                               const coplanarity *f, elementary_hit *hit) {
     double toi;

@@ -11,7 +11,8 @@ typedef struct elementary_query {
     double x0[4][3], x1[4][3];
 } elementary_query;
 
-/* How many of the four points are the first feature's: its vertex, or the ends of its edge. */
+/* Returns how many of the four points belong to the first feature, as its vertex or as the ends of its edge.
+ */
 static inline int points_of_first(cscd_contact_kind kind) {
     return kind == CSCD_CONTACT_VF ? 1 : 2;
 }
@@ -22,7 +23,7 @@ typedef struct elementary_hit {
     double point[3], normal[3];
 } elementary_hit;
 
-/* What decided; each level is certified, and the next one sees only what it left open. */
+/* The level that decided. Each level is certified, and the next one sees only what it left open. */
 typedef enum elementary_level {
     ELEMENTARY_SIGNS, /* separating directions, signs of the coplanarity cubic */
     ELEMENTARY_ROOTS, /* intervals about its roots */
@@ -36,11 +37,13 @@ typedef struct elementary_verdict {
     elementary_level level;
 } elementary_verdict;
 
-/* The test after level one, for pairs that its kernel leaves undecided (see ccd_kernels.h). A pure function of
- * the query; *hit is written when they touch only. Features are closed, and so is the interval. */
+/* Decides pairs that the kernel of level one leaves undecided (see ccd_kernels.h). The result depends on
+ * nothing but the query; *hit is written only when they touch. Features are closed, and so is the interval.
+ */
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
                                           elementary_hit *hit);
 
-/* The contact of a pair for which a kernel found a root's interval that begins at toi, and a contact there. */
+/* Describes the contact of a pair for which a kernel found a root interval that begins at toi, and a contact
+ * in it. */
 void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
                          elementary_hit *hit);

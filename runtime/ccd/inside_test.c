@@ -1,19 +1,22 @@
 /* The inside test of level two: are two features' points, coplanar at some time in an interval, in touch?
  *
- * With a, b and c as in coplanarity.h and W = a x b, a point of the features' common plane is at the
- * parameters u = (c x b) / W and v = (a x c) / W (VF) or (c x a) / W (EE), each a quotient of components
- * along one axis, for which the one with the largest |W| serves. They touch if u, v >= 0 and u + v <= 1 (VF)
- * or u, v <= 1 (EE).
+ * With a, b and c as in coplanarity.h and W = a x b, a point of the features' common plane has the parameters
+ *     u = (c x b) / W,
+ *     v = (a x c) / W (VF) or (c x a) / W (EE),
+ * each a quotient of components along one axis. The axis with the largest |W| is taken. The features touch if
+ * u, v >= 0 and u + v <= 1 (VF) or u, v <= 1 (EE).
  *
- * Computed at the middle t of the interval, h its half width. Error, with u = 2^-53 and A, B the largest
- * magnitudes of components over both ends: a difference of two points carries a relative error u, blending
- * two differences at t adds those of 1 - t, of the products and of the sum, together less than 4.1 u A;
- * within the interval the vector itself moves by less than 2.1 h A. So each component is within r A of the
- * exact one, r = 4.1 u + 2.1 h. A component of a cross product, a_y b_z - a_z b_y, with the size
- * S = A_y B_z + A_z B_y, is off by (2 r + r^2) S, and its two products and their difference add less than
- * 2.1 u S: below (10.4 u + 4.3 h) S. The bound used, (16 u + 5 h) S, leaves room for computing it and for the
- * sums of up to three such components, whose bounds are added. Nothing underflows: components are multiples
- * of 2^-352, blended or not of 2^-460. */
+ * These are computed at the middle t of the interval; h is its half width. Let u = 2^-53, and A, B the
+ * largest magnitudes of components over both ends.
+ *     A difference of two points carries a relative error u. Blending two differences at t adds those of 1 -
+ *     t, of the products and of the sum. Together these are less than 4.1 u A.
+ *     Within the interval the vector itself moves by less than 2.1 h A.
+ *     So each component is within r A of the exact one, r = 4.1 u + 2.1 h.
+ *     A component of a cross product, a_y b_z - a_z b_y, with the size S = A_y B_z + A_z B_y, is off by (2 r
+ *     + r^2) S, and its two products and their difference add less than 2.1 u S: below (10.4 u + 4.3 h) S.
+ * The bound used, (16 u + 5 h) S, leaves room for computing it and for the sums of up to three such
+ * components, whose bounds are added. Nothing underflows: components are multiples of 2^-352, and blended
+ * ones of 2^-460. */
 #include "runtime/ccd/inside_test.h"
 
 #include "src/core/vec3.h"
@@ -46,7 +49,7 @@ static bounded_value subtract_bounded(bounded_value a, bounded_value b) {
     return (bounded_value){a.value - b.value, a.error + b.error};
 }
 
-/* Times sign, not negative: 1, negative: -1, unsure: 0. */
+/* Returns 1 when sign * x is certainly above 0, -1 when it is certainly below 0, and 0 when it is unsure. */
 static int certain_sign(bounded_value x, double sign) {
     double value = sign * x.value;
     return value > x.error ? 1 : value < -x.error ? -1 : 0;

@@ -6,7 +6,7 @@
 
 typedef enum inside_verdict { INSIDE_NO, INSIDE_YES, INSIDE_UNSURE } inside_verdict;
 
-/* Whether they touch at none (NO) or every one (YES) of the times in the interval at which the four points
- * are coplanar; certified. */
+/* Says whether the features touch at none (NO) or at every one (YES) of the times in the interval at which
+ * the four points are coplanar. The answer is certified. */
 inside_verdict inside_test(const point_vectors *vectors, cscd_contact_kind kind,
                            const root_interval *interval);

@@ -1,5 +1,5 @@
-/* The inside test of many pairs, each in its own interval. The twin of inside_test.c: the same operations in the same
- * order, so its error bounds hold. */
+/* The inside test of many pairs, each in its own interval. The twin of inside_test.c: the same operations in
+ * the same order, so its error bounds hold. */
 #pragma once
 
 #include "runtime/ccd/cubic_simd.h"
@@ -42,7 +42,7 @@ static inline sign_lanes join_signs(sign_lanes so_far, bounded_x8 x, f64w sign) 
                         so_far.wrong | f64w_below(value, -x.error)};
 }
 
-/* right: they touch at every time in the interval at which they are coplanar; wrong: at none. */
+/* right: the features touch at every time in the interval at which they are coplanar; wrong: at none. */
 static inline sign_lanes inside_test_x8(const vectors_x8 *v, cscd_contact_kind kind,
                                         const intervals_x8 *interval) {
     f64w t = 0.5 * (interval->begin + interval->end), at[3][3], w3[3];

@@ -18,9 +18,9 @@ static span span_along_axis(const double (*points)[3], int count, int axis) {
     return s;
 }
 
-/* Relative to an origin, because coordinates may be far larger than distances between the points. With
- * u = 2^-53 differences are off by u of themselves, their sum by 2 u more, and widening it by u: 4 u of the
- * sum of magnitudes, of 8 u taken. */
+/* Coordinates are taken relative to an origin, because they may be far larger than distances between the
+ * points. With u = 2^-53, differences are off by u of themselves, their sum by 2 u more, and widening it by
+ * u: together 4 u of the sum of magnitudes. 8 u is taken. */
 static span span_along_diagonal(const double (*points)[3], int count, int diagonal, const double origin[3]) {
     const double *signs = kdop_axes[BOX_AXES + diagonal];
     span s = {INFINITY, -INFINITY};
@@ -37,8 +37,8 @@ static span span_along_diagonal(const double (*points)[3], int count, int diagon
     return s;
 }
 
-/* On the same side at both ends, farther than a number: rounding is monotone, so a gap that is not above it
- * does not become so. */
+/* Are the spans on the same side at both ends, farther apart than `gap`? Rounding is monotone, so spans that
+ * are no farther apart than that are never computed to be. */
 static bool stay_beyond(span a0, span b0, span a1, span b1, double gap) {
     return (b0.low - a0.high > gap && b1.low - a1.high > gap) ||
            (a0.low - b0.high > gap && a1.low - b1.high > gap);

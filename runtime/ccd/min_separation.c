@@ -6,22 +6,25 @@
 #include "runtime/ccd/separating_plane.h"
 #include "src/core/vec3.h"
 
-/* The features are no farther apart than the computed distance and this. The distance is that of two of their
- * points; in units of 2^-53, of offset's coordinates: those of the points are off by 3 each, and by 1 each
- * from the subtraction in localise_query; differences below 2 round by 2, twice that for two of them, weighed by u
- * and v up to 1, and so do the products, then two sums by 2: together below 8 + 2 + 4 + 4 + 4 = 22. A sum u +
- * v above 1 by rounding is worth 2 more. So the vector is off by 24 sqrt 3 < 42, and its length rounds by
- * less than 12. */
+/* The features are farther apart than the computed distance by at most this. The computed distance is that of
+ * two of their points. In units of 2^-53, each coordinate of the offset between these is off by at most
+ *     8 for the two points: 3 each, and 1 each from the subtraction in localise_query,
+ *     2 for the first difference, which is below 2,
+ *     4 for the two differences that are weighed by u and v, which are at most 1,
+ *     4 for these two products,
+ *     4 for the two sums.
+ * Together these are 22. A sum u + v above 1 by rounding adds at most 2. So the vector is off by 24 sqrt 3 <
+ * 42, and its length rounds by less than 12. */
 #define DISTANCE_ERROR 0x1p-47
 
-/* Nearer than this the direction from one point to the other is rounding. */
+/* At a distance below this, the direction from one point to the other is only rounding. */
 static const double too_near = 0x1p-46;
 
-/* The query relative to its first point, scaled by a power of two. */
+/* A query relative to its first point, scaled by a power of two. */
 typedef struct local_query {
     elementary_query at;
     cscd_contact_kind kind;
-    double scale, distance; /* distance: the limit's, scaled */
+    double scale, distance; /* the limit's distance is scaled, too */
     bool still;             /* nothing moves */
 } local_query;
 
@@ -46,8 +49,9 @@ static double query_extent(const elementary_query *query) {
     return largest;
 }
 
-/* To an extent in [1/2, 1), so that no later product over- or underflows. The subtraction rounds: coordinates
- * are off by at most 2^-53. Scaling is exact, that of the distance too: its exponent stays within 1000. */
+/* Scales the query to an extent in [1/2, 1), so that no later product over- or underflows. The subtraction
+ * rounds, so coordinates are off by at most 2^-53. Scaling is exact, also for the distance: its exponent
+ * stays within 1000. */
 static local_query localise_query(const elementary_query *query, cscd_contact_kind kind, double distance) {
     local_query local = {.kind = kind, .still = memcmp(query->x0, query->x1, sizeof query->x0) == 0};
     int exponent = 0;
@@ -97,7 +101,8 @@ static void connect_ee(feature_moment *m) {
     m->shortest.inside[1] = v > 0.0 && v < 1.0;
 }
 
-/* Each coordinate is off by at most 3 * 2^-53: two roundings of (1 - t) x0, one of t x1, one of the sum. */
+/* Moves the features to time t. Each coordinate is off by at most 3 * 2^-53: (1 - t) x0 rounds twice, t x1
+ * once, and their sum once. */
 static void move_to(const local_query *local, double t, feature_moment *m) {
     m->t = t;
     for (int i = 0; i < 4; i++) {
@@ -120,8 +125,8 @@ static feature_moment start_moment(const local_query *local) {
 
 /* ---- conservative advancement ---------------------------------------------------------------------- */
 
-/* For how long from the moment on the features are certainly apart: any plane proves it, and fewer axes may
- * prove more. */
+/* Returns how long the features certainly stay apart from the moment on. Any plane is a proof, and a plane
+ * along fewer axes may prove more. */
 static double time_apart(const local_query *local, const feature_moment *m) {
     double longest = 0.0;
     for (int axes_max = 2; axes_max >= 0 && longest < 1.0 - m->t; axes_max--) {
@@ -133,7 +138,8 @@ static double time_apart(const local_query *local, const feature_moment *m) {
     return longest;
 }
 
-/* Where nothing moves the plane across the shortest connection mostly proves all there is to prove. */
+/* When nothing moves, the plane across the shortest connection usually proves that the features stay apart.
+ */
 static bool stays_apart(const local_query *local, const feature_moment *m) {
     separating_plane across = {.axis_count = 0};
     if (!local->still) return false;
@@ -141,8 +147,9 @@ static bool stays_apart(const local_query *local, const feature_moment *m) {
     return separating_plane_holds(&m->features, &across, local->distance) >= 1.0;
 }
 
-/* From moment to moment, each as late as a plane keeps the features apart, until they are no farther apart
- * than reach. A time t + s is rounded down: times 1 - 2^-53 is the next smaller double. */
+/* Steps from moment to moment, each as late as a plane keeps the features apart, until they are no farther
+ * apart than reach. A time t + s is rounded down: multiplied by 1 - 2^-53 it becomes the next smaller double.
+ */
 static bool advance_moment(const local_query *local, double reach, feature_moment *m, bool *bounded) {
     *bounded = false;
     if (m->distance > reach && stays_apart(local, m)) return false;
@@ -156,7 +163,8 @@ static bool advance_moment(const local_query *local, double reach, feature_momen
     return true;
 }
 
-/* The features' own normal, against the motion of a relative to b: where they touch there is no other. */
+/* Writes the features' own normal, turned against the motion of a relative to b. Features that touch have no
+ * other, because their shortest connection has no direction. */
 static void touching_normal(const feature_moment *m, double normal[3]) {
     const double(*x)[3] = (const double(*)[3])m->features.x;
     double a[3], b[3];
@@ -179,8 +187,9 @@ static void describe_hit(const elementary_query *query, const local_query *local
     if (m->distance < too_near) touching_normal(m, hit->normal);
 }
 
-/* The extent being at least 1/2, half of SEPARATION_FINEST is no more of a tolerance than promised; it is 16
- * times DISTANCE_ERROR and 8 times what a plane proves nothing about: steps end at reach, not before it. */
+/* The extent is at least 1/2, so half of SEPARATION_FINEST is no larger a tolerance than promised. It is 16
+ * times DISTANCE_ERROR and 8 times SEPARATING_PLANE_ERROR, so the steps get down to `reach` and do not
+ * end before it. */
 static bool comes_within(const elementary_query *query, cscd_contact_kind kind, const separation *limit,
                          elementary_hit *hit, bool *bounded) {
     local_query local = localise_query(query, kind, limit->distance);

@@ -9,7 +9,8 @@
 
 enum { DIAGONAL_COUNT = 4 };
 
-/* +1: the first feature lies beyond the second along axis k; -1: before it; 0: neither. Exact. */
+/* Returns 1 when the first feature lies beyond the second along axis k, -1 when it lies before it, and 0
+ * otherwise. The comparison is exact. */
 static int side_along_axis(const double x[4][3], cscd_contact_kind kind, int k) {
     bool edges = kind == CSCD_CONTACT_EE;
     double a = x[0][k], b = x[1][k], c = x[2][k], d = x[3][k];
@@ -22,9 +23,9 @@ static int side_along_axis(const double x[4][3], cscd_contact_kind kind, int k) 
     return (a_low > b_high) - (a_high < b_low);
 }
 
-/* x+y+z, x+y-z, x-y+z, -x+y+z relative to nothing, and how far they may be off: two additions, each with a
- * relative error u = 2^-53 of numbers below s = |x|+|y|+|z|, at most (2u + u^2) s; 2^-51 s = 4u s covers the
- * rounding of s and of the comparison, too. */
+/* Writes x+y+z, x+y-z, x-y+z and -x+y+z, and how far they may be off. Each takes two additions with a
+ * relative error u = 2^-53 of numbers below s = |x|+|y|+|z|, which makes at most (2u + u^2) s. 2^-51 s = 4u s
+ * covers the rounding of s and of the comparison, too. */
 static void sum_diagonals(const double p[3], double sums[DIAGONAL_COUNT], double *error) {
     sums[0] = p[0] + p[1] + p[2];
     sums[1] = p[0] + p[1] - p[2];
@@ -70,9 +71,9 @@ bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kin
     return false;
 }
 
-/* Every point of the first feature beyond every one of the second along n. A gap is three differences, three
- * products and two sums, 4 roundings of parts that add up to `size`: below 4.1 u size, u = 2^-53; the bound,
- * 8 u size, leaves room for computing it; underflow loses 3 times 2^-1075 at most. */
+/* Does every point of the first feature lie beyond every point of the second along n? A gap is three
+ * differences, three products and two sums: 4 roundings of parts that add up to `size`, below 4.1 u size with
+ * u = 2^-53. The bound 8 u size leaves room for computing it. Underflow loses 3 times 2^-1075 at most. */
 static bool beyond_along(const double x[4][3], cscd_contact_kind kind, const double n[3]) {
     int first = points_of_first(kind);
     for (int i = 0; i < first; i++) {
@@ -93,7 +94,7 @@ static bool separated_along(const elementary_query *query, cscd_contact_kind kin
     return beyond_along(query->x0, kind, n) && beyond_along(query->x1, kind, n);
 }
 
-/* times * n, at a size at which nothing over- or underflows. */
+/* Tries the direction times * n, at a size at which nothing over- or underflows. */
 static bool separated_along_scaled(const elementary_query *query, cscd_contact_kind kind, double times,
                                    const double n[3]) {
     int exponent;
@@ -104,13 +105,13 @@ static bool separated_along_scaled(const elementary_query *query, cscd_contact_k
     return separated_along(query, kind, scaled);
 }
 
-/* Twice the vector between two points at t = 1/2. */
+/* Writes twice the vector between two points at t = 1/2. */
 static void between_at_middle(const elementary_query *query, int from, int to, double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = (query->x0[to][k] - query->x0[from][k]) + (query->x1[to][k] - query->x1[from][k]);
 }
 
-/* A vertex on the outer side of a side of the face. */
+/* Tries the directions along which the vertex lies beyond a side of the face at mid-interval. */
 static bool vertex_outside_face(const elementary_query *query) {
     double sides[3][3], normal[3];
     for (int i = 0; i < 3; i++) between_at_middle(query, 1 + i, 1 + (i + 1) % 3, sides[i]);
@@ -126,7 +127,7 @@ static bool vertex_outside_face(const elementary_query *query) {
     return false;
 }
 
-/* Both ends of one edge on one side of the other. */
+/* Tries the directions along which both ends of one edge lie on one side of the other at mid-interval. */
 static bool edges_beside(const elementary_query *query) {
     double a[3], b[3], normal[3];
     between_at_middle(query, 0, 1, a);

@@ -4,11 +4,10 @@
 
 #include "runtime/ccd/elementary.h"
 
-/* All of these: true means certainly apart. The points of the features are
- * compared at one time, so the axes and the diagonals together reject whatever swept 14-DOPs of the features
- * would, and more. */
+/* These return true only for features that are certainly apart. They compare the points at one time, so the
+ * axes and the diagonals together reject whatever swept 14-DOPs of the features would reject, and more. */
 bool separated_by_axes(const elementary_query *query, cscd_contact_kind kind);
 bool separated_by_diagonals(const elementary_query *query, cscd_contact_kind kind);
 
-/* By directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
+/* Tries directions in the features' common plane at mid-interval, for points that are nearly coplanar. */
 bool separated_in_plane(const elementary_query *query, cscd_contact_kind kind);

@@ -1,27 +1,27 @@
-/* How long a plane that turns with two moving features keeps them farther apart than a distance. */
+/* Computes how long a plane that turns with two moving features keeps them farther apart than a distance. */
 #include "runtime/ccd/separating_plane.h"
 
 #include "src/core/vec3.h"
 
-/* What is left of an edge beside the direction of another, as a fraction of its length, when it is taken for
- * rounding. */
+/* When less than this fraction of an edge's length is left beside the direction of another edge, the rest is
+ * taken for rounding. */
 static const double parallel = 0x1p-40;
 
-/* What the rounding of the nearest points may make of an edge's cosine with offset, times its length, where
- * it is 0. */
+/* The rounding of the nearest points may make this of the cosine between an edge and the offset, times the
+ * offset's length, when it should be 0. */
 static const double offset_error = 0x1p-47;
 
-/* Squares of what is shorter lose digits, and so would the unit normal. */
+/* Squares of shorter vectors lose digits, and so would the unit normal. */
 static const double shortest_normal = 0x1p-400;
 
-/* Removes from v what lies along axis; returns what multiple of axis that was. */
+/* Removes the part of v that lies along axis, and returns which multiple of axis it was. */
 static double remove_along(const double axis[3], double v[3]) {
     double share = vec3_dot(v, axis) / vec3_dot(axis, axis);
     vec3_add_scaled(v, -share, axis, v);
     return share;
 }
 
-/* Orthogonal axes that stay perpendicular to the shortest connection, and how they change. */
+/* Orthogonal axes that stay perpendicular to the shortest connection, and their rates of change. */
 typedef struct axis_list {
     int count;
     double axis[2][3], change[2][3];
@@ -41,7 +41,7 @@ static void add_axis(axis_list *axes, const double axis[3], const double change[
     axes->count++;
 }
 
-/* The edges in which the shortest connection ends, and those that are perpendicular to it by chance. */
+/* Finds the edges in which the shortest connection ends, and those that are perpendicular to it by chance. */
 static axis_list find_axes(const moving_features *f, const shortest_connection *shortest, int axes_max) {
     static const int ends[2][3][2] = {
         [CSCD_CONTACT_VF] = {{1, 2}, {1, 3}, {2, 3}}, [CSCD_CONTACT_EE] = {{0, 1}, {2, 3}}};
@@ -58,9 +58,10 @@ static axis_list find_axes(const moving_features *f, const shortest_connection *
     return axes;
 }
 
-/* The normal n is offset made perpendicular to the axes q, which removes the rounding of the nearest points
- * where it would tilt the plane. It turns by n': n'.q = -n.q' keeps it so, n'.n = 0, and what freedom is left
- * follows the offset. A normal of 0 proves nothing. */
+/* The normal n is the offset made perpendicular to the axes q, which removes rounding of the nearest points
+ * that would tilt the plane. It turns by n': n'.q = -n.q' keeps it perpendicular to the axes, n'.n = 0 keeps
+ * its length to first order, and the freedom that is left follows the offset. A normal of 0 proves nothing.
+ */
 separating_plane separating_plane_find(const moving_features *f, const shortest_connection *shortest,
                                        int axes_max) {
     axis_list axes = find_axes(f, shortest, axes_max);
@@ -87,10 +88,10 @@ separating_plane separating_plane_find(const moving_features *f, const shortest_
     return plane;
 }
 
-/* The least s > 0 at which a + b s + c s^2 is not above 0, or less; 0 when a is not above 0, INFINITY when
- * there is none. The computed discriminant is, but for a factor 1 + 2u, that of a quadratic whose c is off by
- * 2u, the result, but for 1 + 6u, that one's root: what is subtracted covers the latter, the caller the
- * former. */
+/* Returns the least s > 0 at which a + b s + c s^2 is not above 0, or a smaller number. It returns 0 when a
+ * is not above 0, and INFINITY when there is no such s. Up to a factor 1 + 2u, the computed discriminant is
+ * that of a quadratic whose c is off by 2u. Up to a factor 1 + 6u, the result is the root of that quadratic.
+ * The subtraction in the last line covers this factor, and the caller covers the error of c. */
 static double first_loss(double a, double b, double c) {
     if (!(a > 0.0)) return 0.0;
     if (b >= 0.0 && c >= 0.0) return INFINITY;
@@ -98,10 +99,10 @@ static double first_loss(double a, double b, double c) {
     if (discriminant < 0.0) return INFINITY;
     double root = sqrt(discriminant);
     double s = b < 0.0 ? 2.0 * a / (root - b) : (b + root) / (-2.0 * c);
-    return s > 0.0 ? s * (1.0 - 0x1p-49) : 0.0; /* 0 for NaN, which an edge of next to no length can give */
+    return s > 0.0 ? s * (1.0 - 0x1p-49) : 0.0; /* 0 for NaN, which a tiny edge can give */
 }
 
-/* Along normal and turn: where the points are, and how fast they move. */
+/* Positions and velocities of the points along normal and turn. */
 typedef struct projection {
     double x_normal[4], v_normal[4], x_turn[4], v_turn[4];
 } projection;
@@ -122,14 +123,21 @@ static projection project_points(const moving_features *f, const separating_plan
  *     (D + s W).(n + s m) > d (1 + s |n.m| + s^2 m^2 / 2) >= d |n + s m|,
  * a quadratic in s. When every pair of points passes, every pair of points in their hulls does.
  *
- * Error, for 0 <= s <= 1, in units of u = 2^-53: each component of x + s velocity is off by 3 + 2, so D + s W
- * by 10 sqrt 3 < 17.4; the coordinates themselves were rounded, by 1 each: 3.5 more. Dot products, with |x|
- * <= sqrt 3 and |velocity| <= 2 sqrt 3, are off by 3 each times that: in pairs 10.4 for x.n, 20.8 for
- * velocity.n; their differences round by 3.5 and 6.9. |n| <= 1 + 5u costs 5 d, and d < 3.5 where a > 0 can
- * be. Sums that make a: 7, that make b: 21. Together below 109; 128 is taken from a. With m, times |m|
- * s: 20.9 for the positions, 10.4 + 3.5 for x.m, 20.8 + 6.9 for velocity.m, 10.5 for d n.m, 10.5 for sums:
- * below 84; 128 |m| is taken from b. What is relative to c, the 2u of first_loss included, is below 16u
- * (|velocity.m| + d m^2). Underflow loses 2^-1070 at most. */
+ * Errors for 0 <= s <= 1, in units of u = 2^-53. At most 128 are taken from a, for
+ *     17.4 > 10 sqrt 3: D + s W, because each component of x + s velocity is off by 3 + 2,
+ *     3.5: the coordinates themselves were rounded, by 1 each,
+ *     10.4 and 20.8: pairs of x.n and velocity.n, off by 3 |x| and 3 |velocity|, at most sqrt 3 and 2 sqrt 3,
+ *     3.5 and 6.9: the differences of these pairs,
+ *     17.5: |n| <= 1 + 5u costs 5 d, and d < 3.5 if a > 0 is possible,
+ *     7 and 21: the sums that make a, and those that make b,
+ * together below 109. With m, times |m| s, 128 |m| are taken from b, for
+ *     20.9: the positions,
+ *     10.4 + 3.5: x.m,
+ *     20.8 + 6.9: velocity.m,
+ *     10.5: d n.m,
+ *     10.5: the sums,
+ * together below 84. Errors relative to c, with the 2u of first_loss, are below 16u (|velocity.m| + d m^2).
+ * Underflow loses 2^-1070 at most. */
 static double time_plane_holds(const moving_features *f, const projection *p, double distance, double lean,
                                double size) {
     double least = INFINITY, bend = distance * (size * size);

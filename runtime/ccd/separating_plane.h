@@ -1,14 +1,14 @@
-/* How long a plane that turns with two moving features keeps them farther apart than a distance. */
+/* Computes how long a plane that turns with two moving features keeps them farther apart than a distance. */
 #pragma once
 
 #include "runtime/ccd/elementary.h"
 
 #include <stdbool.h>
 
-/* Two features at one moment. Their coordinates are below 1 in magnitude during the whole interval. */
+/* Two features at one moment. Their coordinates stay below 1 in magnitude during the whole interval. */
 typedef struct moving_features {
     cscd_contact_kind kind;
-    double x[4][3], velocity[4][3]; /* off by at most 3 * 2^-53 and 2 * 2^-53 each */
+    double x[4][3], velocity[4][3]; /* off by at most 3 * 2^-53 and 2 * 2^-53 */
 } moving_features;
 
 /* The shortest connection of the features. */
@@ -19,24 +19,25 @@ typedef struct shortest_connection {
                        * ends? In a face: of the first two */
 } shortest_connection;
 
-/* Perpendicular to normal + s * turn at time s from now; normal is a unit vector up to rounding. */
+/* The plane is perpendicular to normal + s * turn at time s from now. The normal is a unit vector up to
+ * rounding. */
 typedef struct separating_plane {
     double normal[3], turn[3];
     int axis_count;
 } separating_plane;
 
-/* The plane that stays, to first order, across the shortest connection and along axes_max of the edges in
- * which that ends, or fewer: axis_count. Two edges that are nearly parallel tilt it by rounding; fewer do
- * not. */
+/* Finds the plane that stays, to first order, perpendicular to the shortest connection and parallel to at
+ * most axes_max of the edges in which the connection ends; axis_count says to how many. Rounding tilts a
+ * plane along two edges that are nearly parallel. It does not tilt a plane along fewer edges. */
 separating_plane separating_plane_find(const moving_features *features, const shortest_connection *shortest,
                                        int axes_max);
 
-/* What separating_plane_holds must allow for rounding: it proves nothing to features that are no more than
- * this beyond the distance. */
+/* The allowance of separating_plane_holds for rounding. It proves nothing about features that are no more
+ * than this beyond the distance. */
 #define SEPARATING_PLANE_ERROR 0x1p-46
 
-/* For how long from now does the plane keep each point of a more than distance beyond each point of b? Found
- * times of 1 or more, INFINITY among them, mean until the end of the interval; 0: not even now. Holds for any
- * plane: a bad one only gives a short time. */
+/* Returns for how long from now the plane keeps each point of a more than distance beyond each point of b. A
+ * time of 1 or more, which may be INFINITY, means until the end of the interval; 0 means not even now. The
+ * time holds for any plane: a bad plane only gives a short time. */
 double separating_plane_holds(const moving_features *features, const separating_plane *plane,
                               double distance);

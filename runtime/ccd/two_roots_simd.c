@@ -9,8 +9,9 @@ typedef struct cut_cubics {
     f64w b[4], t, first, low, value, high, last;
 } cut_cubics;
 
-/* Where the cubic is least, if it first falls and in the end rises: a root of its slope, whose Bernstein
- * coefficients are d0 < 0, d1, d2 > 0 (over 3). Only a guess; of ratios, which do not overflow. */
+/* Guesses where the cubic is least, if it first falls and rises in the end. That is a root of its slope,
+ * whose Bernstein coefficients over 3 are d0 < 0, d1 and d2 > 0. The formula takes ratios, which do not
+ * overflow. */
 static inline f64w lowest_at(const f64w b[4]) {
     f64w d0 = b[1] - b[0], d1 = b[2] - b[1], d2 = b[3] - b[2];
     f64w half = (d0 - d1) / d0, square = ((d1 - d0) - (d2 - d1)) / d0;
@@ -34,20 +35,20 @@ static inline uint32_t cut_at_lowest(const cubics_x8 *f, cut_cubics *out) {
     return f64w_below(f->error, b[0]) & f64w_below(f->error, b[3]) & f64w_below(zero, t) & f64w_below(t, one);
 }
 
-/* All coefficients of both parts are above the error. */
+/* Returns the lanes in which all coefficients of both parts are above the error. */
 static inline uint32_t without_root(const cut_cubics *c, f64w error) {
     return f64w_below(error, c->first) & f64w_below(error, c->low) & f64w_below(error, c->value) &
            f64w_below(error, c->high) & f64w_below(error, c->last);
 }
 
-/* In either part the coefficients certainly change sign once. */
+/* Returns the lanes in which the coefficients of each part certainly change sign once. */
 static inline uint32_t with_two_roots(const cut_cubics *c, f64w error) {
     uint32_t left = f64w_below(error, c->first) | f64w_below(c->low, -error);
     uint32_t right = f64w_below(error, c->last) | f64w_below(c->high, -error);
     return left & right & f64w_below(c->value, -error);
 }
 
-/* The two roots, one after the other, in the lanes in which both are isolated. */
+/* Writes the two roots, one after the other, and returns the lanes in which both are isolated. */
 static inline uint32_t isolate_both(const cut_cubics *c, f64w error, uint32_t lanes, intervals_x8 roots[2]) {
     f64w zero = f64w_all(0.0), one = f64w_all(1.0);
     f64w left = c->t * (c->b[0] / (c->b[0] - c->value));

@@ -23,5 +23,6 @@ static inline bool exclusions_any(const exclusions *e) {
 /* Is this contact, or proximity, of two features without a common vertex to be left out? */
 bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b);
 
-/* Is this intersection of two triangles a < b? Seams: where all that meets has a vertex of one in common. */
+/* Is this intersection of triangles a < b to be left out? Seams exclude it when every two of their features
+ * that intersect have a vertex of one seam in common. */
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);

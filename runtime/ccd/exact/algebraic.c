@@ -1,9 +1,10 @@
 /* Real roots of integer polynomials, and exact signs of other polynomials at them.
  *
- * Nothing is refined: a root is told from its neighbours by its number among the distinct real roots, and a
- * sign at it follows from where it stands among the roots of the other polynomial. That comes down, by
- * Sturm's theorem and by reduction modulo a polynomial, to signs of polynomials at roots of quadratics, and
- * these to signs of integers: so the cost has a bound, however close the roots. */
+ * No sign needs a root to be refined. A root is told from its neighbours by its number among the distinct
+ * real roots, and the sign of another polynomial at it follows from its place among the roots of that
+ * polynomial. By Sturm's theorem and by reduction modulo a polynomial, this comes down to signs of
+ * polynomials at roots of quadratics, and these to signs of integers. So the cost has a bound, however close
+ * the roots are. */
 #include "runtime/ccd/exact/algebraic.h"
 
 #include "runtime/ccd/cubic_guess.h"
@@ -11,8 +12,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Places are told in units of 1 / grid. The first width about a guess that is tried, the factor by which it
- * grows until it holds the root, and what is narrow enough. */
+/* Places are given in units of 1 / grid. The first width that is tried about a guess is first_width. It grows
+ * by the factor width_growth until it holds the root. A bracket below `narrow` is narrow enough. */
 static const int64_t grid = (int64_t)1 << 60;
 static const int64_t first_width = (int64_t)1 << 14, width_growth = 32, narrow = (int64_t)1 << 26;
 
@@ -57,7 +58,7 @@ static int sign_changes(const int *signs, int count) {
     return changes;
 }
 
-/* p = c3 (t - d)^2 (t - e) with d = -r0 / r1 and 2 d + e = -c2 / c3. */
+/* Writes the roots of p = c3 (t - d)^2 (t - e), where d = -r0 / r1 and 2 d + e = -c2 / c3. */
 static int double_and_simple_root(integer_pool *pool, const integer c[4], integer r0, integer r1,
                                   algebraic out[2]) {
     integer numerator = integer_subtract(pool, integer_scale(pool, integer_multiply(pool, r0, c[3]), 2),
@@ -67,8 +68,11 @@ static int double_and_simple_root(integer_pool *pool, const integer c[4], intege
     return 2;
 }
 
-/* Sturm's chain for c3 > 0: 9 c3 p = (3 c3 t + c2) p' + r0 + r1 t with r1 = 6 c1 c3 - 2 c2^2 and
- * r0 = 9 c0 c3 - c1 c2; then -(r0 + r1 t), and against the sign of p' at its root, -r0 / r1. */
+/* Sturm's chain for c3 > 0 is
+ *     p,
+ *     p',
+ *     -(r0 + r1 t), where 9 c3 p = (3 c3 t + c2) p' + r0 + r1 t, r1 = 6 c1 c3 - 2 c2^2, r0 = 9 c0 c3 - c1 c2,
+ *     a constant whose sign is opposite to that of p' at -r0 / r1. */
 static int cubic_roots(integer_pool *pool, const polynomial *p, algebraic out[3]) {
     const integer *c = p->c;
     integer r1 = integer_subtract(pool, integer_scale(pool, integer_multiply(pool, c[1], c[3]), 6),
@@ -108,7 +112,8 @@ int algebraic_roots(integer_pool *pool, const polynomial *a, algebraic out[3]) {
     return p.degree == 2 ? quadratic_roots(pool, &p, out) : cubic_roots(pool, &p, out);
 }
 
-/* At -c0 / c1, by Horner's rule with the denominators multiplied out: c1 > 0. */
+/* Returns the sign of q at -c0 / c1, the root of p, by Horner's rule with the denominators multiplied out. c1
+ * is above 0. */
 static int sign_at_rational(integer_pool *pool, const polynomial *p, const polynomial *q) {
     integer numerator = integer_negate(p->c[0]), denominator = p->c[1], power = denominator;
     integer value = q->c[q->degree];
@@ -120,8 +125,9 @@ static int sign_at_rational(integer_pool *pool, const polynomial *p, const polyn
     return integer_sign(value);
 }
 
-/* The sign of root - tau, where root is one of the two of p and tau = -l0 / l1 that of the line l. Between
- * the two p is negative; beyond them, and at them, the sign of p' tells the one side from the other. */
+/* Returns the sign of root - tau, where root is one of the two roots of p, and tau = -l0 / l1 is the root of
+ * the line l. Between the two roots p is negative. Beyond them, and at them, the sign of p' says on which
+ * side tau is. */
 static int compare_with_line(integer_pool *pool, const algebraic *root, const polynomial *l) {
     integer p0 = root->p.c[0], p1 = root->p.c[1], p2 = root->p.c[2], l0 = l->c[0], l1 = l->c[1];
     integer p2_l0 = integer_multiply(pool, p2, l0), p1_l1 = integer_multiply(pool, p1, l1);
@@ -150,7 +156,8 @@ static int sign_below_cubic(integer_pool *pool, const algebraic *root, const pol
     return sign;
 }
 
-/* The sign of root - other; root is one of a cubic's, other of a lower degree. */
+/* Returns the sign of root - other, where root is one of a cubic's roots and other is one of a polynomial of
+ * lower degree. */
 static int compare_roots(integer_pool *pool, const algebraic *root, const algebraic *other) {
     const int signs[4] = {sign_below_cubic(pool, other, &root->p),
                           sign_below_cubic(pool, other, &root->derivative),
@@ -170,7 +177,8 @@ static int sign_at_cubic_root(integer_pool *pool, const algebraic *root, const p
     return sign;
 }
 
-/* c[0] + ... to a relative error of 2^-52 each, times a power of two that makes the largest one nearly 1. */
+/* Writes the coefficients, each to a relative error of 2^-52, times a power of two that brings the largest
+ * one near 1. */
 static void approximate_coefficients(const polynomial *p, double c[4]) {
     int exponents[4], largest = INT32_MIN;
     for (int i = 0; i <= POLYNOMIAL_DEGREE_MAX; i++) {
@@ -181,10 +189,11 @@ static void approximate_coefficients(const polynomial *p, double c[4]) {
         if (c[i] != 0.0) c[i] = ldexp(c[i], exponents[i] - largest);
 }
 
-/* The sign of q, of degree 2, at a located root if floating point is certain of it, or 0. With s the sum of
- * the coefficients' magnitudes: they carry relative errors of 2^-52 and Horner's rule adds at most 4
- * roundings each, together below 2^-50 s; the slope is at most 2 s. Bounds are doubled for their own
- * rounding; coefficients lost to underflow are below 2^-1020 s. */
+/* Returns the sign of q, of degree 2 at most, at a located root if floating point is certain of it, and 0
+ * otherwise. Let s be the sum of the coefficients' magnitudes. The coefficients carry relative errors of
+ * 2^-52, and Horner's rule adds at most 4 roundings to each, together below 2^-50 s. The slope is at most 2
+ * s. The bounds are doubled to cover their own rounding. Coefficients lost to underflow are below 2^-1020 s.
+ */
 static int sign_by_approximation(const algebraic *root, const polynomial *q) {
     double c[4];
     approximate_coefficients(q, c);
@@ -200,12 +209,12 @@ int algebraic_sign(integer_pool *pool, const algebraic *root, const polynomial *
     return root->p.degree == 3 ? sign_at_cubic_root(pool, root, q) : sign_below_cubic(pool, root, q);
 }
 
-/* What is known of the root: low <= root <= high. */
+/* Bounds of the root: low <= root <= high. */
 typedef struct bracket {
     int64_t low, high;
 } bracket;
 
-/* The sign of root - at. */
+/* Returns the sign of root - at, and narrows the bracket by it. */
 static int compare_at(integer_pool *pool, const algebraic *root, int64_t at, bracket *known) {
     uint32_t mark = pool->used;
     polynomial line = polynomial_linear(integer_from_int(pool, -at), integer_from_int(pool, grid));
@@ -216,7 +225,7 @@ static int compare_at(integer_pool *pool, const algebraic *root, int64_t at, bra
     return sign;
 }
 
-/* The approximate root nearest to [0,1] in question, or 1/2. */
+/* Returns an approximation of the root, moved into [0,1], or 1/2 if there is none. */
 static double guess_root(const algebraic *root) {
     double c[4], guesses[3];
     approximate_coefficients(&root->p, c);
@@ -225,7 +234,7 @@ static double guess_root(const algebraic *root) {
     return guess > 0.0 ? (guess < 1.0 ? guess : 1.0) : 0.0;
 }
 
-/* From a guess outwards, in growing steps. */
+/* Searches for the root from a guess outwards, in growing steps. */
 static void search_from_guess(integer_pool *pool, const algebraic *root, bracket *known) {
     int64_t at = (int64_t)(guess_root(root) * (double)grid), width = first_width;
     int direction = compare_at(pool, root, at, known);
@@ -237,7 +246,7 @@ static void search_from_guess(integer_pool *pool, const algebraic *root, bracket
     }
 }
 
-/* Towards zero and away from it to the next double. */
+/* These round to a double, the first one towards zero and the second one away from it. */
 static double double_below(int64_t x) {
     double rounded = (double)x;
     return (int64_t)rounded > x ? nextafter(rounded, 0.0) : rounded;

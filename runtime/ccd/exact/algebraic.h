@@ -5,27 +5,28 @@
 
 #include <stdbool.h>
 
-/* One root: which of the distinct real roots of p, ascending from 0. p has degree 1 to 3, no multiple root,
- * and a positive leading coefficient. */
+/* One real root: number `index`, ascending from 0, of the distinct real roots of p. p has degree 1 to 3, no
+ * multiple root, and a positive leading coefficient. */
 typedef struct algebraic {
     polynomial p;
     int index;
-    /* Degree 3: the Sturm chain p, p', linear, a constant with the sign last; how often it changes sign at
-     * -infinity. */
+    /* For degree 3, the Sturm chain is p, p', linear, and a constant with the sign `last`. It changes sign
+     * `changes` times at -infinity. */
     polynomial derivative, linear;
     int last, changes;
-    /* Once located: low <= root <= high. */
+    /* Set once the root is located: low <= root <= high. */
     bool located;
     double low, high;
 } algebraic;
 
-/* The distinct real roots of a, at most 3, in no particular order; none for a constant. What out refers to
- * stays in the pool. */
+/* Writes the distinct real roots of a, at most 3, in no particular order, and returns how many there are. A
+ * constant has none. The numbers that out refers to stay in the pool. */
 int algebraic_roots(integer_pool *pool, const polynomial *a, algebraic out[3]);
 
-/* Finds low and high, less than 2^-34 apart, low == high only for a root equal to it. False: the root is not
- * in [0,1]. */
+/* Finds low and high, less than 2^-34 apart; they are equal only if the root is equal to them. Returns false
+ * if the root is not in [0,1]. */
 bool algebraic_locate(integer_pool *pool, algebraic *root);
 
-/* The sign of q, of degree 2 at most, at the root: -1, 0 or 1. Faster where the root is located. */
+/* Returns the sign of q, of degree 2 at most, at the root: -1, 0 or 1. This is faster once the root is
+ * located. */
 int algebraic_sign(integer_pool *pool, const algebraic *root, const polynomial *q);

@@ -3,17 +3,19 @@
  * At any moment, whether the features touch follows from the signs of finitely many polynomials in t: the
  * volume f of the four points (degree 3), the areas of the projections of their triangles onto the coordinate
  * planes (degree 2) and differences of coordinates (degree 1). So the set of times at which they touch, which
- * is closed, begins at 0 or at a root of one of these polynomials that is not identically 0: only such times
- * have to be looked at; where f is not identically 0, only its roots, for features that touch are coplanar.
+ * is closed, begins at 0 or at a root of one of these polynomials that is not identically 0, and only such
+ * times are tried. If f is not identically 0, its roots are enough, because features that touch are coplanar.
  *
- * At such a time: with areas m_i of the triangle without point i, in one projection, and w_i = (-1)^i m_i,
- * sum w_i = 0 and sum w_i x_i = 0 for coplanar points (Radon). Let W be the sum of the first feature's w_i: a
- * component of the face's normal (VF) or of the cross product of the edges (EE). Where some projection has
- * W != 0, it is one-to-one on the plane of the points, and the features touch if and only if the first
- * feature's w_i have the sign of W or are 0 and the others' the opposite sign or are 0. Where all three W
- * are 0, the face has collapsed to a segment, the union of its sides, or the edges are parallel or points:
- * the features touch if and only if some vertex of one lies on a segment of the other: is collinear with its
- * ends (all three areas 0) and between them in each coordinate. */
+ * Consider one projection at such a time. Let m_i be the area of the triangle without point i, and w_i =
+ * (-1)^i m_i. For coplanar points, sum w_i = 0 and sum w_i x_i = 0 (Radon). Let W be the sum of the first
+ * feature's w_i: it is a component of the face's normal (VF) or of the cross product of the edges (EE).
+ *     If W != 0 in some projection, it is one-to-one on the plane of the points. The features touch if and
+ *     only if the first feature's w_i have the sign of W or are 0, and the others' have the opposite sign or
+ *     are 0.
+ *     If W = 0 in all three, the face has collapsed to a segment, the union of its sides, or the edges are
+ *     parallel or points. The features touch if and only if some vertex of one lies on a segment of the
+ *     other: it is collinear with the segment's ends (all three areas are 0) and between them in each
+ *     coordinate. */
 #include "runtime/ccd/exact/exact_test.h"
 
 #include "runtime/ccd/exact/algebraic.h"
@@ -38,7 +40,8 @@ static int common_exponent(const elementary_query *query) {
     return least;
 }
 
-/* a0 + (a1 - a0) t - (b0 + (b1 - b0) t), all times 2^-exponent. */
+/* Returns a0 + (a1 - a0) t - (b0 + (b1 - b0) t), all times 2^-exponent, where a is coordinate k of point i
+ * and b is that of point 0. */
 static polynomial coordinate_offset(integer_pool *pool, const elementary_query *query, int i, int k,
                                     int exponent) {
     uint32_t mark = pool->used;
@@ -51,7 +54,7 @@ static polynomial coordinate_offset(integer_pool *pool, const elementary_query *
     return out;
 }
 
-/* Component k of a x b. */
+/* Returns component k of a x b. */
 static polynomial cross_component(integer_pool *pool, const polynomial a[3], const polynomial b[3], int k) {
     uint32_t mark = pool->used;
     polynomial plus = polynomial_multiply(pool, &a[(k + 1) % 3], &b[(k + 2) % 3]);
@@ -61,7 +64,7 @@ static polynomial cross_component(integer_pool *pool, const polynomial a[3], con
     return out;
 }
 
-/* The determinant along axis 0: x1 m1 - x2 m2 + x3 m3 but for a sign. */
+/* Returns the determinant along axis 0, x1 m1 - x2 m2 + x3 m3, up to its sign. */
 static polynomial volume_of(integer_pool *pool, const configuration *c) {
     uint32_t mark = pool->used;
     polynomial sum = polynomial_zero();
@@ -92,7 +95,7 @@ static void find_configuration(integer_pool *pool, const elementary_query *query
     c->volume = volume_of(pool, c);
 }
 
-/* W: the sum of w_i over the first feature. */
+/* Returns W, the sum of w_i over the first feature. */
 static polynomial radon_sum(integer_pool *pool, const configuration *c, int k) {
     if (c->kind == CSCD_CONTACT_VF) return c->area[0][k];
     return polynomial_subtract(pool, &c->area[0][k], &c->area[1][k]);
@@ -106,7 +109,7 @@ static bool weights_agree(integer_pool *pool, const configuration *c, const alge
     return true;
 }
 
-/* other is the fourth point. */
+/* Does a point lie on the segment between two others? `other` is the fourth point. */
 static bool on_segment(integer_pool *pool, const configuration *c, const algebraic *root, int point, int from,
                        int to, int other) {
     for (int k = 0; k < 3; k++) {
@@ -134,7 +137,7 @@ static bool collapsed_touch(integer_pool *pool, const configuration *c, const al
     return false;
 }
 
-/* At a time at which the points are coplanar. */
+/* Do the features touch at a time at which the points are coplanar? */
 static bool touch_at(integer_pool *pool, const configuration *c, const algebraic *root) {
     for (int k = 0; k < 3; k++) {
         uint32_t mark = pool->used;
@@ -146,14 +149,14 @@ static bool touch_at(integer_pool *pool, const configuration *c, const algebraic
     return collapsed_touch(pool, c, root);
 }
 
-/* The first touch so far; 2: none. */
+/* The time of the first touch that was found so far, or 2 if there is none. */
 typedef struct touch_search {
     integer_pool *pool;
     const configuration *configuration;
     double toi;
 } touch_search;
 
-/* One candidate time: the first touch, if the features touch then and none so far is earlier. */
+/* Tries one time. It becomes the first touch if the features touch then and no touch so far is earlier. */
 static void try_root(touch_search *s, algebraic *root) {
     if (!algebraic_locate(s->pool, root) || root->low >= s->toi) return;
     if (touch_at(s->pool, s->configuration, root)) s->toi = root->low;
@@ -169,7 +172,7 @@ static void try_roots(touch_search *s, const polynomial *p) {
     s->pool->used = mark;
 }
 
-/* Points coplanar all the time: every time at which one of the signs may change. */
+/* For points that are coplanar all the time: tries every time at which one of the signs may change. */
 static void try_coplanar(touch_search *s) {
     const configuration *c = s->configuration;
     polynomial start = polynomial_linear((integer){0}, integer_from_int(s->pool, 1));

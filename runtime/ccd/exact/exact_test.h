@@ -4,10 +4,9 @@
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/exact/integer.h"
 
-/* True when the features touch at some t in
- * [0,1]; *toi is then not above the first such t, and less than 2^-34 below it. Coordinates are 0 or have a
- * magnitude in [2^-300, 2^300]. */
+/* Returns true when the features touch at some t in [0,1]. *toi is then not above the first such t, and less
+ * than 2^-34 below it. Coordinates are 0 or have a magnitude in [2^-300, 2^300]. */
 bool exact_touch(const elementary_query *query, cscd_contact_kind kind, double *toi);
 
-/* The same, with a pool of the caller's, whose peak then tells what was needed. */
+/* The same with the caller's pool, whose peak then tells how much room was needed. */
 bool exact_touch_in(integer_pool *pool, const elementary_query *query, cscd_contact_kind kind, double *toi);

@@ -1,7 +1,7 @@
 /* Integers of any sign and up to thousands of bits, in a pool on the caller's stack: no allocation.
  *
- * Schoolbook multiplication: at the sizes that occur (1 to 4 limbs mostly, below 190 ever) nothing beats it
- * by enough to be worth a dependency. */
+ * Multiplication is by the schoolbook: at the sizes that occur (mostly 1 to 4 limbs, always below 190)
+ * nothing beats it by enough to be worth a dependency. */
 #include "runtime/ccd/exact/integer.h"
 
 #include <assert.h>
@@ -27,7 +27,7 @@ static int32_t limb_count(integer a) {
     return a.size < 0 ? -a.size : a.size;
 }
 
-/* Drops leading zeros and gives their room back: limbs must be what was taken last. */
+/* Drops leading zeros and gives their room back. These limbs must be the last that were taken. */
 static integer finish_integer(integer_pool *pool, const uint64_t *limbs, int32_t count, bool negative) {
     while (count > 0 && limbs[count - 1] == 0) count--;
     pool->used = (uint32_t)(limbs - pool->limbs) + (uint32_t)count;
@@ -36,7 +36,8 @@ static integer finish_integer(integer_pool *pool, const uint64_t *limbs, int32_t
 
 enum { KEEP_MAX = 16 };
 
-/* By their place, so that none is overwritten before it is moved; older ones stay where they are. */
+/* Sorts the numbers by their place, so that none is overwritten before it is moved. Older ones stay where
+ * they are. */
 static int order_by_place(const integer_pool *pool, uint32_t mark, integer *numbers, int count,
                           integer *order[KEEP_MAX]) {
     int kept = 0;
@@ -56,7 +57,7 @@ void integer_pool_keep(integer_pool *pool, uint32_t mark, integer *numbers, int 
     int kept = order_by_place(pool, mark, numbers, count, order);
     pool->used = mark;
     for (int i = 0; i < kept; i++) {
-        if (order[i]->limbs != moved_from) { /* else the same number again, or its negative */
+        if (order[i]->limbs != moved_from) { /* otherwise it is the same number again, or its negative */
             int32_t limbs = limb_count(*order[i]);
             uint64_t *place = take_limbs(pool, limbs);
             moved_from = order[i]->limbs;
@@ -72,7 +73,7 @@ int integer_lowest_bit(double x) {
     return exponent - 53 + __builtin_ctzll((uint64_t)mantissa);
 }
 
-/* magnitude * 2^shift */
+/* Returns magnitude * 2^shift. */
 static integer place_magnitude(integer_pool *pool, uint64_t magnitude, int shift, bool negative) {
     int32_t whole = shift / 64, bits = shift % 64;
     uint64_t *limbs = take_limbs(pool, whole + 2);
@@ -94,7 +95,7 @@ integer integer_from_int(integer_pool *pool, int64_t x) {
     return place_magnitude(pool, x < 0 ? -(uint64_t)x : (uint64_t)x, 0, x < 0);
 }
 
-/* |a| + |b|, |a| no shorter */
+/* Returns |a| + |b|, where |a| is no shorter. */
 static integer add_magnitudes(integer_pool *pool, integer a, integer b, bool negative) {
     int32_t longer = limb_count(a), shorter = limb_count(b);
     uint64_t *limbs = take_limbs(pool, longer + 1);
@@ -117,7 +118,7 @@ static int compare_magnitudes(integer a, integer b) {
     return 0;
 }
 
-/* |a| - |b|, |a| no smaller */
+/* Returns |a| - |b|, where |a| is no smaller. */
 static integer subtract_magnitudes(integer_pool *pool, integer a, integer b, bool negative) {
     int32_t longer = limb_count(a), shorter = limb_count(b);
     uint64_t *limbs = take_limbs(pool, longer);
@@ -145,7 +146,7 @@ integer integer_subtract(integer_pool *pool, integer a, integer b) {
     return integer_add(pool, a, integer_negate(b));
 }
 
-/* limbs += a * factor; returns what is carried out of them. */
+/* Adds a * factor to limbs, and returns what is carried out of them. */
 static uint64_t add_product(uint64_t *limbs, const uint64_t *a, int32_t count, uint64_t factor) {
     uint64_t carry = 0;
     for (int32_t i = 0; i < count; i++) {

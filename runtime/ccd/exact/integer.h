@@ -3,11 +3,12 @@
 
 #include <stdint.h>
 
-/* More limbs of 64 bits than the exact level of one elementary test ever holds at once, with coordinates from
- * 2^-300 to 2^300 in one query: docs/theory/elementary.md counts them. */
+/* The exact level of one elementary test never holds so many limbs of 64 bits at once, with coordinates from
+ * 2^-300 to 2^300 in one query. docs/theory/elementary.md counts them. */
 enum { INTEGER_POOL_LIMBS = 6144 };
 
-/* |size| limbs, least significant first, the last one not 0; a negative size means a negative number. */
+/* A number has |size| limbs, least significant first, and the last one is not 0. A negative size means a
+ * negative number. */
 typedef struct integer {
     int32_t size;
     const uint64_t *limbs;
@@ -24,10 +25,11 @@ void integer_pool_start(integer_pool *pool);
 /* Keeps count numbers and gives back all others taken since pool->used was mark. */
 void integer_pool_keep(integer_pool *pool, uint32_t mark, integer *numbers, int count);
 
-/* The exponent of the lowest bit set in x, finite and not 0: x is an odd multiple of 2 to it. */
+/* Returns the exponent of the lowest bit set in x, which is finite and not 0: x is an odd multiple of 2 to
+ * this power. */
 int integer_lowest_bit(double x);
 
-/* x / 2^exponent, which must be an integer. */
+/* Returns x / 2^exponent, which must be an integer. */
 integer integer_from_double(integer_pool *pool, double x, int exponent);
 integer integer_from_int(integer_pool *pool, int64_t x);
 
@@ -35,7 +37,7 @@ integer integer_add(integer_pool *pool, integer a, integer b);
 integer integer_subtract(integer_pool *pool, integer a, integer b);
 integer integer_multiply(integer_pool *pool, integer a, integer b);
 
-/* a * factor, |factor| below 2^31. */
+/* Returns a * factor, where |factor| is below 2^31. */
 integer integer_scale(integer_pool *pool, integer a, int factor);
 
 static inline integer integer_negate(integer a) {
@@ -46,5 +48,6 @@ static inline int integer_sign(integer a) {
     return (a.size > 0) - (a.size < 0);
 }
 
-/* a = result * 2^*exponent to a relative error of 2^-52, result in (-1, 1); no over- or underflow. */
+/* Returns a number in (-1, 1). Times 2^*exponent it is a, to a relative error of 2^-52. Nothing over- or
+ * underflows. */
 double integer_to_double(integer a, int *exponent);

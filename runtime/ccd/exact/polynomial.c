@@ -69,7 +69,7 @@ polynomial polynomial_remainder(integer_pool *pool, const polynomial *a, const p
     return out;
 }
 
-/* Degree 2: c0, c0 + c1 / 2, c0 + c1 + c2. */
+/* The Bernstein coefficients for degree 2 are c0, c0 + c1 / 2 and c0 + c1 + c2. */
 int polynomial_sign_on_interval(integer_pool *pool, const polynomial *a) {
     if (a->degree < 0 || a->degree > 2) return 0;
     uint32_t mark = pool->used;
