@@ -1,4 +1,4 @@
-/* Candidates of a motion hold every contact of it and of every shorter motion. */
+/* The candidates of a motion contain every contact of it and of every shorter motion. */
 #include "runtime/detector/contact_list.h"
 #include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
@@ -12,7 +12,7 @@ static size_t count_of(const candidates *c) {
     return c->lists[CSCD_CONTACT_VF].count + c->lists[CSCD_CONTACT_EE].count;
 }
 
-/* Tests the candidates up to a share of the motion; their contacts are those of a step there. */
+/* Tests the candidates up to a share of the motion; their contacts must be those of a step to that point. */
 static size_t compare_share(const rig *r, const rig *reference, const candidates *c, double share,
                             result_buffer *buffer) {
     cscd_detector *d = r->detector;

@@ -1,4 +1,4 @@
-/* Steps that shrink until one is free, for tests of motions that the test program makes up. */
+/* The search for a free step, which shortens steps until one is free, on motions that the test makes up. */
 #include "runtime/solver/free_step.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -8,7 +8,7 @@
 static scene shape; /* large; one test at a time */
 static double ends[SCENE_VERTICES_MAX * 3], reached[SCENE_VERTICES_MAX * 3];
 
-/* A wall that every motion of vertex 0 along x meets at this coordinate; INFINITY: nowhere. */
+/* A wall that every motion of vertex 0 along x reaches at this coordinate; INFINITY means no wall. */
 typedef struct wall {
     double at;
     uint32_t tests;
@@ -60,7 +60,7 @@ static void limited_steps_end_before_the_wall(void **state) {
         assert_true(fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
-        w.tests = 0; /* half of the motion at most, but times are of the whole motion */
+        w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
         assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
         assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
         assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);

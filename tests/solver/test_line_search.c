@@ -1,4 +1,5 @@
-/* Line searches: their steps against brute force, their candidates and proximity against the detector's. */
+/* The steps of line searches are compared with brute force, their candidates and proximity with the
+ * detector's. */
 #include "cscd/cscd.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/methods.h"
@@ -19,7 +20,7 @@ static const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD
                                       CSCD_METHOD_BRUTE, CSCD_METHOD_PUBLISHED};
 enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 
-/* A detector with a line. */
+/* A detector with a line search. */
 typedef struct step_search {
     rig r;
     cscd_line *line;
@@ -102,7 +103,8 @@ static void steps_are_certified(void **state) {
 
 /* ---- proximity ------------------------------------------------------------------------------------------ */
 
-/* What the line finds at a length, the detector finds at its positions, bit for bit; and brute force. */
+/* Checks that line search and detector find the same pairs, bit for bit, at the positions of a length, and
+ * that brute force agrees. */
 static size_t check_near(const step_search *s, const rig *other, const rig *brute, double length,
                          double distance) {
     cscd_proximities on_line, by_trees, truth;
@@ -182,7 +184,7 @@ static void scales_do_not_matter(void **state) {
 
 /* ---- states -------------------------------------------------------------------------------------------- */
 
-/* An embedded start of closed surfaces, and an end in contact. */
+/* Makes an embedded start of closed surfaces, and an end in contact. */
 static void make_limited(scene_family family, uint64_t seed) {
     for (;; seed++) {
         scene_make(family, seed, &interval);
@@ -203,7 +205,8 @@ static void expect_known(const step_search *s, const rig *reference, const doubl
     if (found.count > 0) assert_memory_equal(found.items, truth.items, found.count * sizeof *found.items);
 }
 
-/* The detector knows where a step of the line ends, as often as one is taken, whatever lies between. */
+/* The detector knows the state at the end of each step of the line search, however many there are and
+ * whatever lies between them. */
 static void the_detector_knows_the_end(void **state) {
     (void)state;
     static const scene_family families[] = {SCENE_SPIKE, SCENE_TWO_SPHERES, SCENE_NESTED_SPHERES,
@@ -226,7 +229,7 @@ static void the_detector_knows_the_end(void **state) {
     }
 }
 
-/* It did not know the start: its next step proves its own. */
+/* The detector did not know the start, so its next step checks its own start. */
 static void what_is_not_known_stays_so(void **state) {
     (void)state;
     make_limited(SCENE_SPIKE, 1);
@@ -240,7 +243,8 @@ static void what_is_not_known_stays_so(void **state) {
     search_destroy(&s);
 }
 
-/* A sphere whose pole has been pushed through the other one: the cap there meets nothing, but is cut off. */
+/* The pole of a sphere has been pushed through the other one. The cap there intersects nothing, but is cut
+ * off. */
 static void make_cut_off(void) {
     static const int segments = 9;
     scene_clear(&interval);
@@ -250,7 +254,7 @@ static void make_cut_off(void) {
     interval.x1[2] += 0.1;
 }
 
-/* How many triangles are clean to a detector after it has checked the start of a step. */
+/* Returns how many triangles are clean after the detector has checked the start of a step. */
 static uint64_t clean_when_checked(cscd_detector *d, const double *x) {
     cscd_contacts found;
     cscd_intersections crossing;
@@ -260,7 +264,7 @@ static uint64_t clean_when_checked(cscd_detector *d, const double *x) {
     return cscd_detector_counters(d).clean;
 }
 
-/* A caller's word is not proof: a check takes it back, also where a line has handed it on. */
+/* A caller's promise is no proof: a check takes it back, even after a line search has passed it on. */
 static void a_word_stays_a_word(void **state) {
     (void)state;
     make_cut_off();
@@ -285,7 +289,7 @@ static void a_word_stays_a_word(void **state) {
 
 /* ---- together ------------------------------------------------------------------------------------------ */
 
-/* Two lines of one detector and steps of its own, in turn: each as if it were alone. */
+/* Two line searches and the steps of one detector take turns, and none notices the others. */
 static void lines_and_steps_take_turns(void **state) {
     (void)state;
     size_t bytes = sizeof interval.x0;

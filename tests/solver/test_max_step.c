@@ -1,4 +1,4 @@
-/* Steps that are certified free of contact: by brute force, and by marches of many steps. */
+/* Steps that are certified free of contact, by brute force and by marches of many steps. */
 #include "cscd/cscd.h"
 #include "tests/support/methods.h"
 #include "tests/support/sequences.h"
@@ -13,7 +13,7 @@ static scene interval; /* large; one test at a time */
 static sequence frames;
 static free_step_call call;
 
-/* What the detectors of a test are made with. */
+/* How the detectors of a test are made. */
 typedef struct setting {
     cscd_method method;
     cscd_mode mode;
@@ -34,7 +34,7 @@ static cscd_detector_options options_of(const setting *s) {
     return options;
 }
 
-/* A detector with the plan that its method wants. */
+/* A detector with the plan that its method needs. */
 typedef struct tested {
     rig r;
     cscd_plan *plan;
@@ -81,7 +81,8 @@ static bool is_culling(const setting *s) {
     return by_orientation && s->distance == 0.0;
 }
 
-/* From where the step has ended to x1: the detector knows the start, and finds what brute force finds. */
+/* Steps from the end of the certified step to x1: the detector knows the start, and finds the contacts
+ * that brute force finds. */
 static void check_next(const rig *r, const rig *reference, const setting *s, bool embedded) {
     cscd_contacts truth, found;
     assert_int_equal(cscd_detector_step(reference->detector, call.end, call.x1, &truth), CSCD_OK);
@@ -148,7 +149,7 @@ static void is_certified(void **state) {
 
 /* ---- marches ------------------------------------------------------------------------------------------- */
 
-/* Towards one end that cannot be reached, again and again, until things are a rounding apart. */
+/* Marches towards an end that cannot be reached until parts are a rounding error apart. */
 static void march_to(const rig *r, const rig *reference, const setting *s, uint32_t steps, step_tally *sum) {
     static double x[SCENE_VERTICES_MAX * 3];
     size_t bytes = interval.vertex_count * sizeof(double[3]);
@@ -167,7 +168,7 @@ static void march_to(const rig *r, const rig *reference, const setting *s, uint3
     }
 }
 
-/* Of closed surfaces that start embedded, or apart, and end in contact. */
+/* Returns whether closed surfaces start embedded, or apart, and end in contact. */
 static bool starts_well(const rig *reference) {
     cscd_contacts found;
     assert_int_equal(cscd_detector_step(reference->detector, interval.x0, interval.x0, &found), CSCD_OK);
@@ -204,8 +205,8 @@ static void never_crosses_when_pressed(void **state) {
     assert_true(sum.limited > 60 && sum.in_contact > 2);
 }
 
-/* To one pose after another, each no farther than is free: hundreds of steps without a crossing, and without
- * a check after the first. */
+/* Marches to one pose after another, each step no longer than is free: hundreds of steps without an
+ * intersection, and without a check after the first. */
 static void march_through(uint64_t seed, const setting *s, step_tally *sum) {
     static double x[SCENE_VERTICES_MAX * 3];
     sequence_make(seed % 4 == 0 ? SEQUENCE_SCENE : SEQUENCE_GRID, seed, 24, &frames);
@@ -251,7 +252,7 @@ static void never_crosses_on_the_way(void **state) {
 
 /* ---- what the caller says ------------------------------------------------------------------------------ */
 
-/* A spike that goes through the far wall. */
+/* Makes a spike that goes through the far wall. */
 static void make_limited(void) {
     for (uint64_t seed = 1;; seed++) {
         scene_make(SCENE_SPIKE, seed, &interval);

@@ -1,4 +1,4 @@
-/* Nearness at one moment: the pairs against brute force, their distances against long double. */
+/* Proximity at one moment: the pairs are compared with brute force, their distances with long double. */
 #include "cscd/cscd.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/ccd/feature_distance.h"
@@ -13,7 +13,7 @@
 
 static scene interval, still; /* large; one test at a time; still: at x0 throughout */
 
-/* The scenes are a few units large, their edges some tenths. */
+/* The scenes are a few units large, and their edges some tenths. */
 static const double distances[] = {1e-9, 1e-3, 0.03, 0.25};
 enum { DISTANCE_COUNT = sizeof distances / sizeof *distances };
 
@@ -60,7 +60,7 @@ static long double extent_of(const elementary_query *query) {
     return largest;
 }
 
-/* The same features nearer to the origin, without rounding: differences of what is near are exact. */
+/* Moves the features to the origin without rounding: differences of nearby coordinates are exact. */
 static void bring_home(elementary_query *query) {
     double origin[3];
     memcpy(origin, query->x0[0], sizeof origin);
@@ -70,7 +70,7 @@ static void bring_home(elementary_query *query) {
     }
 }
 
-/* The sum that the stencil stands for. */
+/* Compares the stencil with the sum that it stands for. */
 static void check_stencil(const rig *r, const cscd_proximity *p, const double *x, long double rounding) {
     cscd_stencil s = cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
     const double *first = x + (size_t)s.vertices[0] * 3;
@@ -88,7 +88,8 @@ static void check_stencil(const rig *r, const cscd_proximity *p, const double *x
         assert_true(fabsl(apart[k] - p->distance * p->normal[k]) <= 8.0L * rounding);
 }
 
-/* The normal is unit, or 0 where the features touch; the point is the middle of the points named. */
+/* Checks that the normal is a unit vector, or 0 where the features touch, and that the point is the middle
+ * of the named points. */
 static void check_frame(const rig *r, const cscd_proximity *p, const double *x, long double rounding) {
     cscd_stencil s = cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
     double length =
@@ -105,7 +106,7 @@ static void check_frame(const rig *r, const cscd_proximity *p, const double *x, 
     }
 }
 
-/* Returns by how much the features are nearer than the points named, relative to the extent. */
+/* Returns by how much the features are nearer than the named points, relative to the extent. */
 static long double check_proximity(const rig *r, const cscd_proximity *p, const double *x, double distance) {
     elementary_query query = query_of(r, p, x);
     bring_home(&query);
@@ -169,7 +170,7 @@ static void every_method_equals_brute_force(void **state) {
     oracle_free(&truth);
 }
 
-/* The longest find all pairs without a common vertex. */
+/* The largest distances find all pairs without a common vertex. */
 static void any_length_will_do(void **state) {
     (void)state;
     static const double lengths[] = {0x1p-300, 1e3, 0x1p300};
@@ -219,7 +220,7 @@ static void same_when_scaled(void **state) {
     }
 }
 
-/* A small shape a long way from the origin, where coordinates round to 1e-7. */
+/* A small shape lies so far from the origin that coordinates round to 1e-7. */
 static void same_as_brute_force_far_away(void **state) {
     (void)state;
     oracle_list truth = {0};
@@ -259,7 +260,7 @@ static void expect_same_state(const rig *r, const rig *other) {
                          cscd_detector_orientation(other->detector, t));
 }
 
-/* Between steps of one detector, not of the other. */
+/* Asks between the steps of one detector but not of the other, and compares their contacts. */
 static void steps_do_not_notice(void **state) {
     (void)state;
     static const cscd_method of_steps[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_ICCD,

@@ -1,4 +1,4 @@
-/* What solvers ask for when memory runs out, at every allocation, and that a steady state takes none. */
+/* Every allocation of the calls that solvers use fails once, and a steady state allocates nothing. */
 #include "cscd/cscd.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
@@ -30,7 +30,7 @@ static bool go_on(void *user, const char *stage, double fraction) {
     return true;
 }
 
-/* With a progress function, so that what a failed call has changed is put back. */
+/* Creates a detector with a progress function, so that a failed call restores what it has changed. */
 static void counted_create(counted *c, cscd_method method, uint32_t threads) {
     c->counter = counting_allocator_start();
     cscd_context_options context_options = cscd_context_defaults();
@@ -52,7 +52,7 @@ static void counted_destroy(counted *c) {
     assert_int_equal(c->counter.live, 0);
 }
 
-/* A spike that goes through the far wall. */
+/* Makes a spike that goes through the far wall. */
 static void make_limited(void) {
     for (uint64_t seed = 1;; seed++) {
         scene_make(SCENE_SPIKE, seed, &interval);
@@ -63,7 +63,7 @@ static void make_limited(void) {
     }
 }
 
-/* What was asked, and what came of it; untouched where the call fails. */
+/* The results of the calls; a call that fails leaves its part untouched. */
 typedef struct solver_answer {
     cscd_free_step step;
     double end[SCENE_VERTICES_MAX * 3];
@@ -84,7 +84,7 @@ static cscd_status ask_max_step(counted *c, solver_answer *out) {
     return cscd_detector_max_step(c->detector, interval.x0, interval.x1, out->end, &out->step);
 }
 
-/* The whole life of a line; a call that fails is made again at once, and must then succeed. */
+/* Runs the whole life of a line search. A call that fails is repeated at once, and must then succeed. */
 static cscd_status ask_line(counted *c, solver_answer *out) {
     cscd_line *line = NULL;
     cscd_proximities found = {NULL, 4711};
@@ -110,7 +110,7 @@ static cscd_status ask_line(counted *c, solver_answer *out) {
     return first == CSCD_OK ? status : first;
 }
 
-/* Each allocation fails once; the same question then has the same answer as ever. */
+/* Each allocation fails once; the repeated question then has the usual answer. */
 static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
     static solver_answer good, other;
     size_t failures = 0;
@@ -150,7 +150,7 @@ static void memory_may_run_out(void **state) {
     assert_true(failures > 100);
 }
 
-/* A failed step leaves what is known of the start: the next one checks it once, and no more. */
+/* A failed step keeps the known states of the start: the next step checks it once, and no more. */
 static void states_outlast_a_failure(void **state) {
     (void)state;
     static double end[SCENE_VERTICES_MAX * 3];
@@ -175,8 +175,8 @@ static void states_outlast_a_failure(void **state) {
     }
 }
 
-/* What is known of one moment is not taken for what is known of another one whose check has failed: a start
- * that crosses is never culled. */
+/* The states of one moment are not taken for those of another whose check has failed: a start with
+ * intersections is never culled. */
 static void a_failed_check_tells_nothing(void **state) {
     (void)state;
     make_limited();
@@ -204,7 +204,7 @@ static void a_failed_check_tells_nothing(void **state) {
     rig_destroy(&plain);
 }
 
-/* A round as a solver makes them. */
+/* Makes one round of calls as a solver does. */
 static void ask_all(counted *c, cscd_line *line, double *x) {
     cscd_free_step step;
     cscd_proximities found;
