@@ -1,5 +1,5 @@
-/* The contour test: simple is simple at every sampled moment, by a reference in long double, and plain
- * motions of plain polygons pass at any place and scale. */
+/* The contour test: a contour that it calls simple is simple at every sampled moment, by a reference in
+ * long double, and plain motions of plain polygons pass at any place and scale. */
 #include "runtime/baselines/iccd/contour.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
@@ -20,11 +20,11 @@ enum { CORNERS_MAX = 40, MOMENTS = 128 };
 typedef struct polygon {
     uint32_t count;
     double x0[CORNERS_MAX * 3], x1[CORNERS_MAX * 3];
-    double frame[3][3]; /* right, up, and the axis of projection */
+    double frame[3][3]; /* the directions to the right and up, and the axis of projection */
     float axis[3];
 } polygon;
 
-/* Any direction; the axis itself is of single precision. */
+/* Chooses any direction; the axis itself has single precision. */
 static void choose_axis(polygon *p, random_stream *random) {
     double length = 0.0, a[3];
     for (int k = 0; k < 3; k++) {
@@ -41,7 +41,7 @@ static void choose_axis(polygon *p, random_stream *random) {
     for (int k = 0; k < 3; k++) u[k] = n[(k + 1) % 3] * r[(k + 2) % 3] - n[(k + 2) % 3] * r[(k + 1) % 3];
 }
 
-/* One corner at one end, from plane coordinates and a height along the axis. */
+/* Places one vertex at one end, given its coordinates in the plane and its height along the axis. */
 static void place_vertex(const polygon *p, double *x, uint32_t corner, double right, double up,
                          double height) {
     for (int k = 0; k < 3; k++)
@@ -158,7 +158,7 @@ static polygon random_polygon(random_stream *random, motion kind) {
     return p;
 }
 
-/* Small integers, along z: corners on edges, folds and equal corners are common, and exact. */
+/* Small integers, projected along z: vertices on edges, folds and equal vertices are common, and exact. */
 static polygon grid_polygon(random_stream *random) {
     polygon p = {.count = 4 + stream_below(random, 4),
                  .frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
@@ -195,7 +195,8 @@ static void simple_is_simple_throughout(void **state) {
 
 /* ---- not needlessly pessimistic -------------------------------------------------------------------- */
 
-/* Convex or with long rays, turned by a little and moved far; scaled and moved together. */
+/* The polygons are convex or have long rays, turn by a little, move far, and are scaled and moved
+ * together. */
 static void plain_motions_pass(void **state) {
     static const double scales[] = {1.0, 0x1p-240, 0x1p240, 1e-6, 1e6};
     random_stream random = stream_start(77);
@@ -244,7 +245,8 @@ static void degenerate_contours_fail(void **state) {
     (void)state;
     polygon p = polygon_at_rest(square, 4);
     assert_true(stays_simple(&p, 0, false));
-    p = polygon_at_rest(crossed, 4); /* from the start, and as published it is taken not to be */
+    p = polygon_at_rest(crossed,
+                        4); /* not simple from the start, which the published test takes for granted */
     assert_false(stays_simple(&p, 0, false));
     assert_true(stays_simple(&p, 0, true));
     p = polygon_at_rest(folded, 4);
@@ -254,17 +256,17 @@ static void degenerate_contours_fail(void **state) {
     p = polygon_at_rest(touching, 5);
     assert_false(stays_simple(&p, 0, false));
     assert_false(stays_simple(&p, 0, true));
-    assert_true(stays_simple(&p, 5, true)); /* all of it inherited, as published */
+    assert_true(stays_simple(&p, 5, true)); /* as published, when all of it is inherited */
     p = polygon_at_rest(one_point, 4);
     assert_false(stays_simple(&p, 0, false));
-    p = polygon_at_rest(square, 4); /* at the very end, and a little less */
+    p = polygon_at_rest(square, 4); /* touches itself at the very end, or just before */
     place_vertex(&p, p.x1, 2, 1.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
     place_vertex(&p, p.x1, 2, 0.0, 0.0, 0.0);
     assert_false(stays_simple(&p, 0, false));
     place_vertex(&p, p.x1, 2, 1.0, 1e-9, 0.0);
     assert_true(stays_simple(&p, 0, false));
-    p = polygon_at_rest(square, 4); /* in between, all at once */
+    p = polygon_at_rest(square, 4); /* all vertices pass one point in between */
     for (uint32_t i = 0; i < 4; i++) place_vertex(&p, p.x1, i, -square[i][0], -square[i][1], 0.0);
     assert_false(stays_simple(&p, 0, false));
 }

@@ -1,4 +1,4 @@
-/* Method iccd on random intervals: the contacts of method none, bit for bit, in whatever way it is asked; as
+/* Method iccd finds the contacts of method none, bit for bit, on random intervals and with all options; as
  * published it loses some. */
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -15,7 +15,7 @@ enum { BRUTE_EVERY = 25, OPTIONS_EVERY = 5 };
 
 static scene interval; /* large; one test at a time */
 
-/* What a detector gave. */
+/* The result of a detector. */
 typedef struct iccd_outcome {
     rig objects;
     cscd_contacts contacts;
@@ -37,7 +37,7 @@ static void check_same(const cscd_contacts *found, const cscd_contacts *truth) {
         assert_memory_equal(found->items, truth->items, truth->count * sizeof *truth->items);
 }
 
-/* The list of the method is that of none. */
+/* Checks that the list of the method is that of none. */
 static iccd_outcome expect_same(cscd_detector_options options, cscd_method method, uint32_t threads,
                                 const cscd_contacts *truth) {
     iccd_outcome out = run_method(options, method, threads);
@@ -67,7 +67,7 @@ static void print_tally(const char *name, const iccd_tally *t) {
                   (unsigned long long)t->lost, (unsigned long long)t->intervals_published_loses);
 }
 
-/* Published lists are parts of the truth. Returns how many contacts are missing. */
+/* Checks that the published list is a part of the truth. Returns how many contacts are missing. */
 static uint64_t count_lost(const cscd_contacts *found, const cscd_contacts *truth) {
     size_t next = 0;
     for (size_t i = 0; i < truth->count && next < found->count; i++)
@@ -124,7 +124,8 @@ static bool ignore_some(void *user, uint32_t a, uint32_t b) {
     return (a * 2654435761u ^ b * 40503u) % 3 == 0;
 }
 
-/* Threads, mode earliest, pairs to leave out, and a distance, with which nothing is culled. */
+/* Several threads, mode earliest, and ignored pairs change no contact; with a separation nothing is
+ * culled. */
 static void options_change_nothing(void **state) {
     size_t kept = 0, near = 0;
     (void)state;
@@ -158,7 +159,8 @@ static void options_change_nothing(void **state) {
     assert_true(kept > 0 && near > 0);
 }
 
-/* One detector over a motion, there and back: patches are of the mesh, the rest is of each interval. */
+/* A detector follows a motion there and back. Patches belong to the mesh, and all else to one interval
+ * only. */
 static void steps_do_not_remember(void **state) {
     (void)state;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
@@ -180,14 +182,15 @@ static void steps_do_not_remember(void **state) {
     }
 }
 
-/* A power of two changes nothing where squares stay in range; beyond, nothing is sealed and nothing lost. */
+/* Scaling by a power of two changes nothing while squares stay in range; beyond that nothing is sealed and
+ * nothing lost. */
 static void scales_change_nothing(void **state) {
     static const double scales[] = {0x1p-230, 0x1p-100, 0x1p100, 0x1p240, 0x1p-280, 0x1p285};
     (void)state;
     for (uint32_t seed = 0; seed < SCENE_FAMILY_COUNT; seed++) {
         cscd_detector_options options = cscd_detector_defaults();
         scene_make((scene_family)seed, seed + 60000, &interval);
-        for (uint32_t i = 0; i < interval.vertex_count * 3; i++) { /* 0, or far from the least magnitude */
+        for (uint32_t i = 0; i < interval.vertex_count * 3; i++) { /* is 0, or far from the least magnitude */
             interval.x0[i] = (double)(float)interval.x0[i] + 0.0;
             interval.x1[i] = (double)(float)interval.x1[i] + 0.0;
             if (interval.x0[i] < 1e-3 && interval.x0[i] > -1e-3) interval.x0[i] = 0.0;

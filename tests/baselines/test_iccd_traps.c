@@ -1,5 +1,5 @@
-/* Method iccd where it is easily wrong: each scene breaks one condition of the theorem in docs/theory/iccd.md, and
- * has contacts that a test without that condition would lose. */
+/* Method iccd in cases that are easily wrong: each scene breaks one condition of the theorem in
+ * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -32,7 +32,7 @@ static void add_quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     add_triangle(a, c, d);
 }
 
-/* Contacts and counters of a method; s stays. */
+/* Contacts and counters of a method; the scene s stays. */
 typedef struct trap_outcome {
     rig objects;
     cscd_contacts contacts;
@@ -49,7 +49,7 @@ static trap_outcome run_method(cscd_method method) {
     return out;
 }
 
-/* There are contacts; iccd has them all; as published some or all are missing. */
+/* Method iccd must find all contacts; as published it loses some of them, or all. */
 typedef enum loss { LOSES_SOME, LOSES_ALL } loss;
 
 static cscd_counters expect_complete(loss lost) {
@@ -75,7 +75,8 @@ static cscd_counters expect_complete(loss lost) {
 
 /* ---- the contour is not simple at the start --------------------------------------------------------- */
 
-/* A strip along a spiral that climbs to 1 and ends at -1 times its heights. reach: of the middle line. */
+/* Makes a strip along a spiral that climbs to 1 and ends at -1 times its heights. reach: the radius of its
+ * middle line at an angle. */
 static void make_ramp(double turns, int steps, double climb, double half_width, double (*reach)(double)) {
     scene_clear(&s);
     for (int i = 0; i <= steps; i++) {
@@ -96,12 +97,12 @@ static double steady_motion(double angle) {
     return 1.0;
 }
 
-/* After a turn on the other side of 1; the strip lies over itself at two places only. */
+/* After a turn the strip is on the other side of 1, and lies over itself at two places only. */
 static double wandering_motion(double angle) {
     return 1.0 + 0.4 * cos(0.5 * angle + 0.3);
 }
 
-/* Turns lie over each other in the projection; they pass through each other when the ramp turns over. */
+/* The turns of a ramp overlap in the projection, and pass through each other when the ramp turns over. */
 static void spiral_ramps(void **state) {
     (void)state;
     make_ramp(2.4, 97, 0.01, 0.3, steady_motion);
@@ -112,7 +113,8 @@ static void spiral_ramps(void **state) {
     assert_true(expect_complete(LOSES_ALL).sealed > 0);
 }
 
-/* The fan of one vertex that goes around twice: a disk, all normals up, not one-to-one. */
+/* The fan of one vertex goes around twice: it is a disk, all normals point up, and the projection is not
+ * one-to-one. */
 static void fan_of_two_turns(void **state) {
     enum { BLADES = 17 };
     (void)state;
@@ -130,8 +132,8 @@ static void fan_of_two_turns(void **state) {
 
 /* ---- normals between the ends ---------------------------------------------------------------------- */
 
-/* All vertices meet in the centre half way; both ends' normals point up, the middle Bernstein vectors down.
- */
+/* All vertices are in the centre half way. The normals at both ends point up, the middle Bernstein vectors
+ * down. */
 static void sheet_after_half_a_turn(void **state) {
     (void)state;
     scene_clear(&s);
@@ -143,8 +145,8 @@ static void sheet_after_half_a_turn(void **state) {
     assert_int_equal(expect_complete(LOSES_SOME).sealed, 0);
 }
 
-/* A ring of the fixed frame's corners, smaller: stretched along x and turned back, at the end stretched along
- * y and turned on. */
+/* Adds a smaller ring of the frame's vertices. At the start it is stretched along x and turned back, at
+ * the end it is stretched along y and turned on. */
 static void add_ring(uint32_t corners, double size, double turn, double stretch) {
     for (uint32_t i = 0; i < corners; i++) {
         double x = size * cos(2.0 * PI * i / corners), y = size * sin(2.0 * PI * i / corners);
@@ -156,7 +158,7 @@ static void add_ring(uint32_t corners, double size, double turn, double stretch)
 }
 
 /* The innermost triangles turn by half a turn, and half way their map has a negative determinant: they are
- * upside down, though at both ends all triangles face up, and the contour never moves. */
+ * upside down, though all triangles face up at both ends and the contour never moves. */
 static void middle_turns_inside_a_frame(void **state) {
     enum { CORNERS = 12 };
     (void)state;
@@ -172,7 +174,7 @@ static void middle_turns_inside_a_frame(void **state) {
         add_quad(middle + i, outer + i, outer + next, middle + next);
     }
     const double *ends[2] = {s.x0, s.x1};
-    for (uint32_t t = 0; t < s.triangle_count * 2; t++) { /* all face up at both ends */
+    for (uint32_t t = 0; t < s.triangle_count * 2; t++) { /* all triangles face up at both ends */
         const uint32_t *c = s.triangles + (size_t)(t / 2) * 3;
         const double *x = ends[t % 2], *p = x + c[0] * 3, *q = x + c[1] * 3, *r = x + c[2] * 3;
         assert_true((q[0] - p[0]) * (r[1] - p[1]) > (q[1] - p[1]) * (r[0] - p[0]));
@@ -182,7 +184,7 @@ static void middle_turns_inside_a_frame(void **state) {
 
 /* ---- patches that are no disks --------------------------------------------------------------------- */
 
-/* Their contours never touch in the projection. */
+/* The contours of the squares never touch in the projection. */
 static void square_falls_through_another(void **state) {
     (void)state;
     scene_clear(&s);
@@ -195,7 +197,7 @@ static void square_falls_through_another(void **state) {
     expect_complete(LOSES_ALL);
 }
 
-/* One ring above another, along common outer and inner rims: a closed torus of which the lower half is turned
+/* Adds one ring above another with common outer and inner rims: a closed torus whose lower half is turned
  * over, so that all normals point up. The halves pass through each other. */
 static uint32_t add_double_ring(double x, uint32_t corners) {
     uint32_t first = s.vertex_count;
@@ -219,7 +221,8 @@ static uint32_t add_double_ring(double x, uint32_t corners) {
     return first;
 }
 
-/* A flat disk beside it: together V - E + F = 1, and edges of one triangle form one loop. */
+/* There is a flat disk beside the torus. Together they have V - E + F = 1, and the edges of one triangle
+ * form one loop. */
 static void disk_beside_a_closed_part(void **state) {
     (void)state;
     for (int side = -1; side <= 1; side += 2) {
@@ -230,11 +233,11 @@ static void disk_beside_a_closed_part(void **state) {
     }
 }
 
-/* Two sheets, the one above the other, that change places across a slit: a ring with two simple loops that
- * never touch in the projection and all normals up, twice above itself. */
+/* Two sheets, one above the other, change places across a slit. They form a ring with two simple loops
+ * that never touch in the projection, and all normals point up, but the ring lies twice above itself. */
 static void sheets_joined_through_a_slit(void **state) {
     enum { CELLS = 6, ROW = CELLS + 1, FIRST = 3 * ROW + 2, LAST = 3 * ROW + 4, MIDDLE = 3 * ROW + 3 };
-    const uint32_t other = ROW * ROW; /* the second sheet's vertices */
+    const uint32_t other = ROW * ROW; /* the first vertex of the second sheet */
     (void)state;
     scene_clear(&s);
     scene_add_sheet(&s, 2.0, 2.0, CELLS, CELLS);
@@ -259,7 +262,7 @@ static void sheets_joined_through_a_slit(void **state) {
     assert_true(expect_complete(LOSES_ALL).sealed > 0);
 }
 
-/* Two fans that hang together in one vertex slide over and through each other. */
+/* Two fans that share one vertex slide over and through each other. */
 static void fans_joined_in_a_vertex(void **state) {
     (void)state;
     scene_clear(&s);
@@ -277,7 +280,7 @@ static void fans_joined_in_a_vertex(void **state) {
     expect_complete(LOSES_SOME);
 }
 
-/* Closed, and as flat as can be: the upper side falls through the lower one. */
+/* The surfaces are closed and quite flat: the upper side falls through the lower one. */
 static void flat_closed_surfaces(void **state) {
     (void)state;
     for (int torus = 0; torus < 2; torus++) {

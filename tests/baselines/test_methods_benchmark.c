@@ -1,4 +1,4 @@
-/* The benchmark of all methods, on a small recording: its rows, its guarantees, its refusals. */
+/* The benchmark of all methods, on a small recording: its rows, its guarantees, and its error messages. */
 #include "models/shapes/catalogue.h"
 #include "src/io/mesh_file.h"
 #include "src/io/point_cache_write.h"
@@ -16,7 +16,7 @@ enum { FRAMES = 6 };
 
 static temp_folder folder;
 
-/* A dumbbell whose balls are bent into each other. */
+/* Writes a dumbbell whose balls are bent into each other. */
 static void write_recording(void) {
     body shape;
     io_error error;
@@ -104,11 +104,12 @@ static void what_is_wrong_is_said(void **state) {
     run = RUN_TOOL("tiny", "--data", folder.path, "--cache", folder.path, "--json", unwritable.text);
     assert_int_equal(run.code, 1);
     assert_non_null(strstr(run.error, unwritable.text));
-    assert_null(strstr(run.out, "tiny")); /* before anything is computed */
+    assert_null(strstr(run.out, "tiny")); /* refused before anything is computed */
     tool_run_free(&run);
 }
 
-/* A folder that is named must have recordings; without one, a scene that is not our own is nowhere. */
+/* A named folder must contain recordings; without a folder, scenes that the repository does not make
+ * cannot be found. */
 static void data_comes_from_the_environment(void **state) {
     (void)state;
     assert_int_equal(setenv("CSCD_DATA", folder.path, 1), 0);
@@ -141,7 +142,7 @@ static void wrong_arguments_are_named(void **state) {
     }
 }
 
-/* With one seed for all runs the mean of their pairs would be that of the first run. */
+/* If all runs had one seed, the mean of their pairs would be that of the first run. */
 static void kmeans_runs_have_seeds_of_their_own(void **state) {
     (void)state;
     temp_path path = temp_file_path(&folder, "seeds.json");

@@ -1,5 +1,5 @@
-/* Normal cones hold every normal of moving triangles, by a reference in long double; as published they do
- * not. */
+/* Normal cones contain every normal of moving triangles, by a reference in long double; as published they
+ * do not. */
 #include "runtime/baselines/iccd/normal_cone.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
@@ -19,7 +19,7 @@ static normal_cone cone_of(const moving_triangle *m) {
     return normal_cone_of(corners, m->x0, m->x1);
 }
 
-/* Up to a factor. */
+/* Computes the normal up to a factor. */
 static void normal_at(const moving_triangle *m, long double t, long double out[3]) {
     long double e[2][3];
     for (int i = 0; i < 2; i++) {
@@ -42,20 +42,21 @@ static long double angle_between(const float axis[3], const long double n[3]) {
     return atan2l(sqrtl(across), along);
 }
 
-/* By how much the normal that is farthest from the axis at some sampled moment leaves the cone; below 0: none
- * does. */
+/* Returns by how much the normal farthest from the axis, at any sampled moment, leaves the cone; below 0
+ * when none does. */
 static long double excess_angle(const normal_cone *cone, const moving_triangle *m) {
     long double most = -10.0L;
     for (int i = 0; i < MOMENTS; i++) {
         long double n[3];
         normal_at(m, (long double)i / (MOMENTS - 1), n);
         long double beyond = angle_between(cone->axis, n) - (long double)cone->angle;
-        if (!(beyond <= most)) most = beyond; /* also where it is not a number */
+        if (!(beyond <= most)) most = beyond; /* also when it is not a number */
     }
     return most;
 }
 
-/* At times a sliver, at times far from the origin; change: of a coordinate, of about 1. */
+/* Makes a triangle that may be a sliver or far from the origin. change: how far coordinates of about 1
+ * move. */
 static moving_triangle random_triangle(random_stream *random, double change) {
     moving_triangle m;
     double at = stream_below(random, 4) == 0 ? stream_between(random, -1e5, 1e5) : 0.0;
@@ -111,7 +112,7 @@ static void published_cones_lose_normals(void **state) {
     assert_true(lost > 200);
 }
 
-/* Of eight triangles in a tree, as the nodes of the hierarchy make them. */
+/* Unites the cones of eight triangles in a tree, as the nodes of the hierarchy do. */
 static void unions_hold_all_normals(void **state) {
     uint32_t exist = 0;
     long double most = -10.0L;
@@ -141,7 +142,7 @@ static void unions_hold_all_normals(void **state) {
     assert_true(4 * exist > TRIANGLES / 8 && most < 0.0L);
 }
 
-/* A triangle at rest whose normal is at an angle to z, in a direction. */
+/* Makes a triangle at rest whose normal has an angle to z in a direction. */
 static moving_triangle tilted_triangle(double angle, double direction) {
     double c = cos(direction), d = sin(direction), e = cos(angle), f = sin(angle);
     moving_triangle m = {{0, 0, 0, c * e, d * e, -f, -d, c, 0}, {0}};
@@ -149,8 +150,8 @@ static moving_triangle tilted_triangle(double angle, double direction) {
     return m;
 }
 
-/* Half the angle between two normals, up to a right angle and beyond: the bound on an angle from its chord.
- */
+/* Half the angle between two normals varies up to a right angle and beyond, where the bound on an angle
+ * from its chord matters. */
 static void opposite_normals_have_no_cone(void **state) {
     const double right = 1.57079632679489662;
     random_stream random = stream_start(4);

@@ -1,5 +1,5 @@
-/* Patches of all nodes of trees: contours, what the parent has of them, and which are disks, by a reference
- * that counts and walks. */
+/* The patches of all nodes of trees, compared with a reference that counts and walks: their contours,
+ * which edges the parent has too, and which patches are disks. */
 #include "runtime/baselines/iccd/patch.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/models/body_of.h"
@@ -17,7 +17,7 @@ enum { SCENES_PER_FAMILY = 20, BODY_TRIANGLES = 3000 };
 
 static scene s; /* large; one test at a time */
 
-/* A mesh, its tree of one region, and the patches of this. */
+/* A mesh, its tree of one region, and the tree's patches. */
 typedef struct patch_subject {
     cscd_context *context;
     cscd_mesh *mesh;
@@ -51,7 +51,8 @@ static void subject_destroy(patch_subject *f) {
 
 /* ---- the reference --------------------------------------------------------------------------------- */
 
-/* A patch by itself: its triangles, how many of these hold each edge, a union-find over its vertices. */
+/* The patch of one node: its triangles, how many of them have each edge, and a union-find over its
+ * vertices. */
 typedef struct reference_patches {
     const cscd_mesh *mesh;
     uint32_t *triangles, triangle_count;
@@ -73,7 +74,7 @@ static void collect_reference(const patch_tree *tree, uint32_t node, reference_p
     collect_reference(tree, n->right, r);
 }
 
-/* Vertices, edges and faces, V - E + F. */
+/* Counts vertices, edges and faces; returns V - E + F. */
 static int64_t euler_characteristic(reference_patches *r) {
     int64_t sum = r->triangle_count;
     for (uint32_t i = 0; i < r->triangle_count; i++) {
@@ -102,8 +103,8 @@ static bool is_connected(reference_patches *r) {
     return true;
 }
 
-/* Walks along edges of one triangle, each at most once; true when one closed walk that meets no vertex twice
- * uses them all. */
+/* Walks along edges of one triangle, each at most once. Returns true when one closed walk that visits no
+ * vertex twice uses them all. */
 static bool is_one_loop(const cscd_mesh *mesh, const uint32_t *edges, uint32_t count) {
     bool *used = calloc(count + 1, sizeof *used);
     assert_non_null(used);
@@ -140,7 +141,8 @@ static bool list_contains(const uint32_t *list, size_t count, uint32_t value) {
     return false;
 }
 
-/* The edges of an odd number of triangles, what the parent has too in front. */
+/* Checks that the contour is the edges with an odd number of triangles, first those that the parent has
+ * too. */
 static void check_contour(const patches *p, const reference_patches *r, uint32_t node, uint32_t parent) {
     const uint32_t *own = p->contour_edges + p->contour_offsets[node], *above = NULL;
     size_t size = p->contour_offsets[node + 1] - p->contour_offsets[node], above_size = 0;
@@ -241,8 +243,8 @@ static void disks_of_bodies(void **state) {
     }
 }
 
-/* Random positions: each tree cuts the mesh in patches of any shape, holes, corners that meet, loose parts.
- */
+/* Positions are random, so trees cut the mesh into patches of any shape: with holes, touching at vertices,
+ * or in loose parts. */
 static void check_shape(const shape *given, uint32_t seed) {
     double positions[3 * 400];
     assert_true(given->vertex_count <= 400);
@@ -266,7 +268,7 @@ static void patches_of_any_shape(void **state) {
         shape_add_tetrahedron(&pair, 3, 4, 5, 6);
         shape_add_quad(&pair, 7, 8, 9, 10);
         check_shape(&pair, seed);
-        shape fans = {0}; /* three triangles at an edge */
+        shape fans = {0}; /* three triangles share an edge */
         for (uint32_t i = 2; i < 5; i++) shape_add_triangle(&fans, 0, 1, i);
         check_shape(&fans, seed);
     }
@@ -303,7 +305,7 @@ static void roots_that_are_disks_and_not(void **state) {
     assert_false(root_is_disk(&cube));
     cube.triangle_count--;
     assert_true(root_is_disk(&cube));
-    /* One loop and V - E + F = 1, of a torus without a triangle and a closed cube beside it. */
+    /* A torus without one triangle and a closed cube beside it have one loop and V - E + F = 1. */
     shape_add_grid(&beside, 4, 5, true, true);
     beside.triangle_count--;
     uint32_t first = beside.triangle_count;

@@ -1,5 +1,5 @@
-/* The published culling loses first contacts, which the detector's own rules do not (test_culling.c), says so,
- * and culls nothing with a minimum separation. */
+/* The published culling loses first contacts, which the detector's own rules do not (test_culling.c),
+ * reports that it may, and culls nothing with a minimum separation. */
 #include "tests/support/culling/first_contacts.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"
@@ -49,7 +49,7 @@ static void first_contacts_are_lost(void **state) {
     assert_true(lost > 0);
 }
 
-/* Where nothing is culled every contact is found, which the guarantee says, too. */
+/* When nothing is culled every contact is found, and the guarantee says so. */
 static void nothing_is_culled_with_a_separation(void **state) {
     size_t contacts = 0;
     (void)state;
@@ -74,7 +74,7 @@ static void nothing_is_culled_with_a_separation(void **state) {
     assert_true(contacts > 1000);
 }
 
-/* What loses contacts certifies no step. */
+/* A method that loses contacts certifies no step. */
 static void no_step_is_certified(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD_PUBLISHED};
     (void)state;
@@ -91,7 +91,7 @@ static void no_step_is_certified(void **state) {
     }
 }
 
-/* So no test passes here because a build lacks them. */
+/* Without this, the tests here would pass in a build without baselines. */
 static void baselines_are_present(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_PUBLISHED, CSCD_METHOD_ICCD,
                                           CSCD_METHOD_ICCD_PUBLISHED};

@@ -1,4 +1,4 @@
-/* What `cscd replay` says about baselines: their columns, what they promise, the plan that they take. */
+/* How `cscd replay` reports on baselines: their columns, their guarantees, and the plan that they use. */
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -30,7 +30,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The summary of a replay by a method. */
+/* Returns the summary of a replay by a method. */
 static json_node *replay_by(const char *method) {
     const char *arguments[] = {"replay", model.text, cache.text,   "--quiet", "--method",
                                method,   "--json",   summary.text, NULL};
@@ -42,7 +42,7 @@ static const json_node *interval_at(const json_node *root, size_t k) {
     return json_node_item(json_node_member(root, "intervals"), k);
 }
 
-/* The guarantee of the one component in interval k. */
+/* Checks the guarantee of the only component in interval k. */
 static void expect_guarantee(const json_node *root, size_t k, const char *mode, const char *reason) {
     const json_node *list = json_node_member(interval_at(root, k), "guarantee");
     assert_int_equal(list->count, 1);
@@ -58,7 +58,7 @@ static int count_of(const char *text, const char *word) {
     return count;
 }
 
-/* It promises nothing, so what it loses is no reason for a warning. */
+/* The method promises nothing, so the contacts that it loses are no reason for a warning. */
 static void published_is_marked_as_such(void **state) {
     (void)state;
     tool_run run =
@@ -73,7 +73,8 @@ static void published_is_marked_as_such(void **state) {
     tool_run_free(&run);
 }
 
-/* It has contours instead of orientations, promises all contacts, and needs no proven start and no plan. */
+/* The method has contours instead of orientations, promises all contacts, and needs neither a proven start
+ * nor a plan. */
 static void iccd_has_a_column_for_contours(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("replay", model.text, cache.text, "--method", "iccd", "--json", summary.text);
@@ -82,7 +83,7 @@ static void iccd_has_a_column_for_contours(void **state) {
     assert_non_null(strstr(run.out, " contour "));
     assert_non_null(strstr(run.out, "plan: none"));
     assert_null(strstr(run.out, "may be missing"));
-    assert_int_equal(count_of(run.out, " X "), 4); /* orientation and proof, in both rows */
+    assert_int_equal(count_of(run.out, " X "), 4); /* for orientation and proof, in both rows */
     tool_run_free(&run);
     json_node *root = json_node_read_file(summary.text), *none = replay_by("none");
     const json_node *total = json_node_member(root, "summary");
@@ -115,7 +116,7 @@ static void iccd_as_published_is_marked_as_such(void **state) {
     json_node_free(root);
 }
 
-/* The contacts of a replay by two more arguments, as a CSV. */
+/* Returns the contacts of a replay with two more arguments, as CSV. */
 static char *contacts_by(const char *method, const char *option, const char *value) {
     const char *arguments[] = {"replay",   model.text, cache.text, "--quiet", "--contacts", csv.text,
                                "--method", method,     option,     value,     NULL};
