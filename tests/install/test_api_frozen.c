@@ -1,6 +1,6 @@
 /* Version 1 of the API keeps its numbers: values of enumerators, sizes of structs and places of their
- * members. A compiler that sees another value stops here; a change needs a new major version.
- * test_api_frozen_sensors.c has the sensors. */
+ * members. The file does not compile if one differs; a change needs a new major version. The sensors are
+ * in test_api_frozen_sensors.c. */
 #include "cscd/cscd.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
@@ -364,7 +364,8 @@ static void nothing_public_is_missing_here(void **state) {
                      " | sed -n '/^typedef enum cscd_/,/}/p' | grep -oE 'CSCD_[A-Z_0-9]+' | "
                      "while read -r name; do grep -q \"VALUE($name, \" tests/install/test_api_frozen*.c || "
                      "echo $name; done"));
-    /* Lines of TYPE or of TYPE, MEMBER; a pointer to a function is named in its first parentheses. */
+    /* Prints "TYPE" or "TYPE, MEMBER" on each line; a pointer to a function is named in its first
+     * parentheses. */
     expect_none(
         "structures and members",
         shell_output(

@@ -1,4 +1,4 @@
-/* The same as test_api_frozen.c for <cscd/sensors.h>, and its defaults, which are also frozen. */
+/* <cscd/sensors.h> keeps its numbers as in test_api_frozen.c, and its defaults, which are also frozen. */
 #include "cscd/cscd.h"
 #include "tests/support/test.h"
 

@@ -1,4 +1,5 @@
-/* make install, programs that use what it installs (pkg-config, CMake, moved trees), and make uninstall. */
+/* Tests make install, programs that use the installed files (pkg-config, CMake, moved trees), and make
+ * uninstall. */
 #include "cscd/cscd.h"
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
@@ -34,7 +35,7 @@ static void find_build(void) {
     snprintf(build.config, sizeof build.config, "%s", name);
 }
 
-/* Runs the target for the tree below `place`, independently of the make that may run this test. */
+/* Runs the target for the tree in `place`, independently of the make that may run this test. */
 static void run_make(const char *target, const char *place, const char *variables) {
     shell("env -u MAKEFLAGS -u MAKELEVEL -u MAKEOVERRIDES make -s %s BUILD_ROOT='%s' CONFIG=%s GSL=%d "
           "DESTDIR='%s' %s",
@@ -67,7 +68,7 @@ static int remove_all(void **state) {
     return 0;
 }
 
-/* Returns the output of both clients, with any library. */
+/* Returns the output of both clients, which must be the same. */
 static const char *clients_output(void) {
     static char text[256];
     snprintf(text, sizeof text, "cscd %s\nvf 4 0 at t = 0.667\n", cscd_version_string());
@@ -228,7 +229,7 @@ static void uninstall_leaves_nothing(void **state) {
     expect_output("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
 }
 
-/* Folders may have any names; files and empty folders that were there before stay. */
+/* Folders may have any names. Files and empty folders that were there before stay. */
 static void uninstall_leaves_what_others_made(void **state) {
     (void)state;
     char place[512];

@@ -1,4 +1,5 @@
-/* The man pages: no warnings, every option of the tool and every function of the library, and no others. */
+/* The man pages have no warnings, and name every option of the tool and every function of the library, and
+ * no others. */
 #include "tests/support/install/api_names.h"
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
@@ -6,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The text of cscd(1) without fonts, and a command's part of it. */
+/* Prints the text of cscd(1) without fonts, and a command's part of it. */
 #define PLAIN_PAGE "sed -e 's/\\\\f.//g' -e 's/\\\\-/-/g' docs/man/cscd.1"
 #define PART_OF    PLAIN_PAGE " | awk '/^\\.S[SH] / { in_part = $0 == \".SS cscd %s\" } in_part'"
-/* All names of options in a text, each once. */
+/* Prints all names of options in a text, each once. */
 #define NAMES "grep -oE '(^|[^-a-z])-(o\\b|-[a-z-]+)' | grep -oE -e '-.*' | LC_ALL=C sort -u"
 
 static int find_tool(void **state) {
@@ -51,7 +52,7 @@ static void options_are_those_of_the_tool(void **state) {
         const char *name = commands[i];
         expect_equal(name, shell_output(0, PART_OF " | " NAMES, name),
                      shell_output(0, "\"$CSCD_TOOL\" %s --help | " NAMES, name));
-        /* Options with their arguments, as --help lists them: two spaces end an option. */
+        /* Lists options with their arguments as --help does: two spaces end an option. */
         char *missing =
             shell_output(0,
                          "\"$CSCD_TOOL\" %s --help | sed -n 's/^  \\(-.*\\)/\\1/p' | sed 's/  .*//' | "

@@ -1,4 +1,5 @@
-/* tests/run.sh itself: what it counts as passed and as failed, and what it does with recordings to compare with. */
+/* Tests tests/run.sh itself: what it counts as passed and as failed, and how it treats recordings to
+ * compare with. */
 #include "tests/support/shell.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
@@ -21,7 +22,7 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-/* A program that prints a text and ends with a status. */
+/* Writes a program that prints a text and ends with a status. */
 static temp_path write_program(const char *name, const char *text, int status) {
     char script[512];
     int length = snprintf(script, sizeof script, "#!/bin/sh\necho '%s'\nexit %d\n", text, status);
@@ -30,7 +31,7 @@ static temp_path write_program(const char *name, const char *text, int status) {
     return path;
 }
 
-/* What the script prints for a program, with CSCD_DATA as it is set by `data`; it must end with `code`. */
+/* Returns what the script prints for a program, with CSCD_DATA set by `data`; it must end with `code`. */
 static char *run_script(int code, const char *data, const char *program) {
     return shell_output(code, "env -u CSCD_DATA %s BUILD='%s' tests/run.sh '%s'", data, folder.path, program);
 }
