@@ -245,8 +245,7 @@ static void degenerate_contours_fail(void **state) {
     (void)state;
     polygon p = polygon_at_rest(square, 4);
     assert_true(stays_simple(&p, 0, false));
-    p = polygon_at_rest(crossed,
-                        4); /* not simple from the start, which the published test takes for granted */
+    p = polygon_at_rest(crossed, 4); /* not simple at the start, which as published is not tested */
     assert_false(stays_simple(&p, 0, false));
     assert_true(stays_simple(&p, 0, true));
     p = polygon_at_rest(folded, 4);

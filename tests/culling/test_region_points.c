@@ -46,8 +46,7 @@ static void without_a_plan_points_are_means(void **state) {
         rig r = rig_create(&interval, 1, &options);
         rig_step(&r, &interval);
         cscd_intersections crossing;
-        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing),
-                         CSCD_OK); /* no trace left */
+        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK); /* no trace */
         uint32_t count = cscd_mesh_component_count(r.mesh);
         assert_int_equal(cscd_detector_region_count(r.detector), count);
         for (uint32_t c = 0; c < count; c++) {
