@@ -1,18 +1,22 @@
 /* A context for each level of vector instructions that this processor has. */
 #include "tests/support/levels.h"
+#include "src/core/processor.h"
 #include "tests/support/test.h"
 
 cscd_context *contexts[LEVEL_COUNT];
 
 int open_levels(void **state) {
+    const int count = (int)(processor_best_simd() - CSCD_SIMD_SCALAR) + 1;
     (void)state;
     for (int i = 0; i < LEVEL_COUNT; i++) {
         cscd_context_options options = cscd_context_defaults();
         options.simd = (cscd_simd)(CSCD_SIMD_SCALAR + i);
-        if (cscd_context_create(&options, &contexts[i]) != CSCD_OK) contexts[i] = NULL;
+        bool created = cscd_context_create(&options, &contexts[i]) == CSCD_OK;
+        if (created != (i < count)) return 1;
+        if (!created) contexts[i] = NULL;
         print_message("%s: %s\n", cscd_simd_name(options.simd), contexts[i] != NULL ? "compared" : "absent");
     }
-    return contexts[0] != NULL ? 0 : 1;
+    return 0;
 }
 
 int close_levels(void **state) {
