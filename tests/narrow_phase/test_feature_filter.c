@@ -168,6 +168,7 @@ static void keeps_what_may_touch_in_flight(void **state) {
 static void keeps_what_just_touches(void **state) {
     random_stream random = stream_start(55);
     (void)state;
+    kept_count = dropped_count = 0;
     for (uint32_t i = 0; i < 24; i++) {
         make_touching_pairs(&random, 100, i % 2 == 0 ? 2.0 : 300.0, &shape);
         open_levels(i / 2 % 4, 0.0);
@@ -181,6 +182,9 @@ static void keeps_what_just_touches(void **state) {
         for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
         close_levels();
     }
+    print_message("kept %llu, dropped %llu\n", (unsigned long long)kept_count,
+                  (unsigned long long)dropped_count);
+    assert_true(kept_count > 1000);
 }
 
 static void keeps_what_comes_within_the_distance(void **state) {
