@@ -1,4 +1,4 @@
-/* Certified motions: whatever a solver wants, there is no contact on the way, and nothing is changed
+/* Certified motions: whatever a solver asks for, there is no contact on the way, and nothing is changed
  * without need. */
 #include "models/cloth/cloth_scene.h"
 #include "models/cloth/garment.h"
@@ -101,7 +101,7 @@ static void free_motions_are_left_alone(void **state) {
     free_press(&p);
 }
 
-/* The sheet stops at the floor, not nearer than the separation, and keeps its motion along it. */
+/* The sheet stops at the floor, not nearer than the separation, and keeps its motion along the floor. */
 static void what_falls_stops_at_the_floor(void **state) {
     (void)state;
     press p = make_press(0.1, 1.0);
@@ -132,7 +132,7 @@ static void shaken_sheets_never_intersect(void **state) {
     }
 }
 
-/* The lid is to move through sheet and floor, and waits above the sheet. Then it moves up again, and
+/* The lid is asked to move through sheet and floor, and waits above the sheet. Then it moves up again, and
  * everything comes free. */
 static void obstacles_wait_for_what_they_press(void **state) {
     (void)state;
@@ -162,7 +162,7 @@ static void what_meets_itself_keeps_its_momentum(void **state) {
     press p = make_press(5.0, 5.0);
     double wanted[3] = {0.0}, got[3] = {0.0};
     for (uint32_t v = 0; v < p.floor; v++) {
-        double *x = p.x1 + v * 3; /* one half turns over onto the other, and through it */
+        double *x = p.x1 + v * 3; /* one half folds onto the other, and through it */
         if (x[0] > 0.1) x[2] += 0.4;
         if (x[0] > 0.3) x[0] -= 0.9, x[2] -= 0.8;
         x[1] += 0.5;

@@ -201,7 +201,7 @@ static void a_hanging_sheet_stretches_little(void **state) {
     body_free(&b);
 }
 
-/* Makes a pair of a vertex of mass 1 above a triangle that stays: vertex 0 over 1, 2, 3. */
+/* Makes a pair of a vertex of mass 1 above a fixed triangle: vertex 0 over 1, 2, 3. */
 static apart one_pair(apart_pair *pair) {
     *pair = (apart_pair){
         .stencil = {{0, 1, 2, 3}, {1.0, -0.5, -0.25, -0.25}}, .normal = {0.0, 0.0, 1.0}, .healing = 0.1};
@@ -232,7 +232,7 @@ static void what_approaches_is_stopped_at_the_thickness(void **state) {
     assert_true(fabs(x[2] - 0.062) < 1e-15 && previous[2] == 0.012);
 }
 
-/* Position and start move alike when a pair is too near. */
+/* When a pair is too near, position and previous position move alike. */
 static void what_is_too_near_parts_without_speed(void **state) {
     (void)state;
     double x[12], previous[12];

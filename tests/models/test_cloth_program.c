@@ -1,4 +1,4 @@
-/* The program `cloth`, as a user runs it. */
+/* Runs the program `cloth` as a user does. */
 #include "models/cloth/cloth_scene.h"
 #include "src/io/animation.h"
 #include "src/io/mesh_file.h"
@@ -14,7 +14,7 @@
 
 static temp_folder folder;
 
-/* Recorded once for all tests. */
+/* Records the scene once for all tests. */
 static int record_scene(void **state) {
     (void)state;
     folder = temp_folder_make();
@@ -33,7 +33,7 @@ static int remove_folder(void **state) {
     return 0;
 }
 
-/* Checks a model and its frames: as many as the scene has, of which the first is the model. */
+/* Checks a model and its frames. There are as many as the scene has, and the first is the model. */
 static void check_files(const char *obj, const char *pc2, uint32_t frame_count) {
     mesh_file mesh;
     animation *frames;

@@ -22,7 +22,7 @@ typedef struct cloth_trial {
     cscd_context *context;
     cloth_simulation run;
     uint32_t vertex_count, garment_count;
-    cscd_detector *judge, *brute; /* of the whole scene; both find all contacts */
+    cscd_detector *judge, *brute; /* detectors of the whole scene that find all contacts */
     double *before, *after;       /* rounded */
 } cloth_trial;
 
@@ -94,8 +94,8 @@ static void expect_embedded(cscd_detector *detector, const double *positions) {
     assert_int_equal(intersections.zero_area_triangles, 0);
 }
 
-/* Numbers of pairs nearer than 1.2 thicknesses: folds, whose sides were more than six spacings apart at
- * the start, and pairs of the garment with each obstacle. */
+/* Counts pairs nearer than 1.2 thicknesses: folds, whose sides were more than six spacings apart at the
+ * start, and pairs of the garment with each obstacle. */
 typedef struct meetings {
     size_t folds, obstacles[CLOTH_OBSTACLES_MAX];
 } meetings;
@@ -132,9 +132,9 @@ static double largest_motion(const cloth_trial *t) {
     return most;
 }
 
-/* Runs a scene: there is no contact from frame to frame, so no frame has intersections, and no obstacle
- * waits. *most_folds is the largest number in a frame. Returns true when that was the whole scene, which
- * ends nearly at rest. */
+/* Runs a scene and checks that there is no contact from frame to frame, that no frame has intersections,
+ * and that no obstacle waits. *most_folds is the largest number in a frame. Returns true when this was the
+ * whole scene, which ends nearly at rest. */
 static bool run_scene(cloth_trial *t, size_t *most_folds) {
     *most_folds = 0;
     uint32_t frame_count = t->run.scene->frame_count < FRAMES ? t->run.scene->frame_count : FRAMES;

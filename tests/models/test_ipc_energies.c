@@ -1,4 +1,5 @@
-/* The energies of the IPC solver against finite differences: barrier, mollifier, springs, near pairs. */
+/* The energies of the IPC solver, compared with finite differences: barrier, mollifier, springs, near
+ * pairs. */
 #include "models/common/vec3.h"
 #include "models/ipc/barrier.h"
 #include "models/ipc/contact_energy.h"
@@ -78,8 +79,8 @@ static double *moved_copy(const body *b, double scale, double noise, uint64_t se
     return out;
 }
 
-/* Each edge is a spring once, each vertex has a strut or more, all sorted. At rest there is no energy,
- * moved or not. */
+/* Each edge has one spring, each vertex one strut or more, and all are sorted. There is no energy at rest,
+ * wherever the body is. */
 static void springs_hold_the_body(void **state) {
     (void)state;
     static const body_kind kinds[] = {BODY_SPHERE, BODY_TORUS, BODY_PAWN};
@@ -138,8 +139,8 @@ static void springs_have_their_gradient(void **state) {
     body_free(&b);
 }
 
-/* One spring: when it is stretched, its Hessian is the derivative of the force; when it is compressed, the
- * part along it is left. */
+/* When a spring is stretched, its Hessian is the derivative of the force; when it is compressed, only the
+ * part along it is kept. */
 static void spring_hessians_are_semidefinite(void **state) {
     (void)state;
     ipc_spring spring = {0, 1, 1.0, 3.0};
@@ -174,7 +175,7 @@ static void spring_hessians_are_semidefinite(void **state) {
 
 /* ---- pairs that are near ------------------------------------------------------------------------------ */
 
-/* Two tetrahedra, edge over edge or tip over face, turned a little at random. */
+/* Two tetrahedra, edge over edge or vertex over face, turned a little at random. */
 static const uint32_t tetrahedra[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 4, 6, 5, 4, 5, 7, 5, 6, 7, 6, 4, 7};
 
 typedef struct near_fixture {
@@ -195,7 +196,7 @@ static near_fixture proximity_make(uint64_t seed, bool edges, double lean) {
     assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
     assert_int_equal(cscd_detector_create(f.mesh, NULL, NULL, &f.detector), CSCD_OK);
     for (int i = 0; i < 12; i++) f.x[i] = shape[i];
-    for (int v = 0; v < 4; v++) { /* turned over, the edge above along (cos, sin) of the lean */
+    for (int v = 0; v < 4; v++) { /* turned over; the upper edge lies along (cos, sin) of the lean */
         const double *p = shape + v * 3;
         double *q = f.x + 12 + v * 3;
         q[0] = p[0] * cos(lean) - p[1] * sin(lean) + (edges ? 0.1 : 0.6);
@@ -236,7 +237,7 @@ static void check_gradient(near_fixture *f, double tolerance) {
         assert_close((energies[1] - energies[0]) / (2.0 * h), gradient[i], tolerance);
         sum[i % 3] += gradient[i];
     }
-    for (int k = 0; k < 3; k++) assert_close(sum[k], 0.0, 1e-12); /* inner forces */
+    for (int k = 0; k < 3; k++) assert_close(sum[k], 0.0, 1e-12); /* they are inner forces */
     ipc_contacts_free(&contacts);
     ipc_contacts_free(&moved);
 }

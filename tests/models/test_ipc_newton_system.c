@@ -1,5 +1,5 @@
-/* The linear system of the IPC solver: its product against a matrix, its solution, and vertices with given
- * motions. */
+/* The linear system of the IPC solver: its product is compared with a matrix; then its solution, and
+ * vertices with prescribed motions. */
 #include "models/common/vec3.h"
 #include "models/ipc/newton_system.h"
 #include "models/shapes/catalogue.h"
@@ -72,8 +72,8 @@ static void free_system(system_fixture *f) {
     free(f->product);
 }
 
-/* Column by column, the matrix is symmetric and positive where vertices are free, and the preconditioner
- * has the inverses of the blocks on its diagonal. */
+/* Compares column by column: the matrix is symmetric and positive where vertices are free, and the
+ * preconditioner has the inverses of the blocks on its diagonal. */
 static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
     (void)state;
     system_fixture f = make_system(1);
@@ -119,7 +119,7 @@ static void product_is_that_of_a_symmetric_positive_matrix(void **state) {
     free_system(&f);
 }
 
-/* matrix * x = -gradient where vertices are free; the others moved as given. */
+/* The solution satisfies matrix * x = -gradient where vertices are free; the others move as prescribed. */
 static void solution_solves(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 10; seed++) {
@@ -139,7 +139,7 @@ static void solution_solves(void **state) {
     }
 }
 
-/* Every iterate leads down, however early the solver stops. */
+/* Every iterate is a descent direction, however early the solver stops. */
 static void every_iterate_leads_down(void **state) {
     (void)state;
     system_fixture f = make_system(5);

@@ -1,4 +1,4 @@
-/* The program `ipc`, as a user runs it: its list of scenes and its errors. */
+/* Runs the program `ipc` as a user does: its list of scenes and its errors. */
 #include "models/ipc/scenes.h"
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"

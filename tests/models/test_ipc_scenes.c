@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* RING_TRIANGLES: triangles of all rings; STRIDE: every so many time steps, the other detectors check the
- * lines. */
+/* RING_TRIANGLES is the number of triangles of all rings. The other detectors check the lines of every
+ * STRIDE-th time step. */
 #ifdef __SANITIZE_ADDRESS__
 enum { RING_TRIANGLES = 480, RING_STEPS = 60, STRIDE = 25, REPEATED = 12 };
 #else
@@ -41,7 +41,7 @@ static ipc_solver open_scene(const struct extent *e, cscd_context *context) {
     return p;
 }
 
-/* Detectors other than the solver's: without a line search, and one by brute force. */
+/* Detectors other than the solver's: one without a line search, and one by brute force. */
 typedef struct judges {
     cscd_detector *apart, *touching, *brute;
     uint32_t judged;
@@ -84,7 +84,8 @@ static void judge_interval(judges *j, const double *from, const double *to) {
     assert_int_equal(intersections.count, 0);
 }
 
-/* Checks that the solver's energy is that of its positions and of the pairs that are near there. */
+/* Checks that the solver's energy is that of its positions and of the pairs that are near at these
+ * positions. */
 static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     cscd_proximities near;
     ipc_contacts contacts = {0};
@@ -97,7 +98,7 @@ static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     ipc_contacts_free(&contacts);
 }
 
-/* Takes one time step and checks its lines. */
+/* Takes one time step and checks its line searches. */
 static void step_and_judge(ipc_solver *p, judges *j, double *from) {
     bool done = false;
     ipc_solver_begin_step(p);
@@ -149,7 +150,7 @@ static void links_bear_each_other(void **state) {
     double above[3], below[3], between[3];
     uint32_t count = cscd_mesh_object_count(p.mesh), loaded = 0;
     mean_of(&p, 0, above);
-    assert_true(fabs(above[0]) < 1e-6 && fabs(above[2]) < 1e-6); /* has not moved */
+    assert_true(fabs(above[0]) < 1e-6 && fabs(above[2]) < 1e-6); /* the first link has not moved */
     for (uint32_t i = 1; i < count; i++) {
         mean_of(&p, i, below);
         vec3_subtract(below, above, between);

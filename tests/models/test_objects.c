@@ -197,7 +197,7 @@ static void check_guarantees(const object_setting *s, unsigned obstacles) {
     }
 }
 
-/* The list equals that without obstacles, less the contacts between two of them. */
+/* The list equals the one without obstacles, minus the contacts between two of them. */
 static void obstacles_meet_only_others(void **state) {
     (void)state;
     static const cscd_method methods[] = {CSCD_METHOD_BRUTE, CSCD_METHOD_NONE, CSCD_METHOD_SINGLE,
@@ -220,7 +220,8 @@ static void obstacles_meet_only_others(void **state) {
     assert_true(contacts > 1000);
 }
 
-/* An obstacle's own pairs are not even looked at: a scene of nothing else costs no test of volumes. */
+/* Pairs within obstacles are skipped from the beginning: a scene of obstacles alone costs no test of
+ * volumes. */
 static void obstacles_cost_nothing(void **state) {
     (void)state;
     make_objects(3);
@@ -232,7 +233,8 @@ static void obstacles_cost_nothing(void **state) {
     tear_down(&s);
 }
 
-/* A plan by charge neither charges nor cuts an obstacle, and cuts other objects as it cuts them alone. */
+/* A plan by charge neither charges nor divides an obstacle, and divides other objects as it does without
+ * the obstacle. */
 static void obstacles_are_not_planned(void **state) {
     (void)state;
     for (int i = 0; i < OBJECTS; i++) scene_make(SCENE_BENT_CAPSULE, (uint64_t)i, &objects[i]);
@@ -269,7 +271,7 @@ static void obstacles_are_not_planned(void **state) {
 
 /* ---- layouts ------------------------------------------------------------------------------------------- */
 
-/* Rows of seven floats, unaligned; columns of doubles; packed doubles. */
+/* Positions come as rows of seven floats, unaligned, as columns of doubles, and as packed doubles. */
 static void positions_come_in_any_layout(void **state) {
     (void)state;
     make_objects(5);

@@ -1,4 +1,4 @@
-/* The program `record`, as a user runs it. */
+/* Runs the program `record` as a user does. */
 #include "models/softbody/recorder.h"
 #include "src/io/animation.h"
 #include "src/io/mesh_file.h"
@@ -22,7 +22,7 @@ static const char scene_name[] = "dumbbell-stairs-free";
 static temp_folder folder;
 static temp_path model, frames, scenery;
 
-/* Recorded once for all tests. */
+/* Records the scene once for all tests. */
 static int record_scene(void **state) {
     (void)state;
     folder = temp_folder_make();
@@ -166,7 +166,7 @@ static long size_of(const char *path) {
     return stat(path, &status) == 0 ? (long)status.st_size : 0;
 }
 
-/* Killed in the middle of its frames, it leaves a cache that no reader accepts. */
+/* When it is killed in the middle of its frames, it leaves a cache that no reader accepts. */
 static void what_is_cut_short_is_not_accepted(void **state) {
     (void)state;
     temp_folder cut = temp_folder_make();

@@ -1,4 +1,4 @@
-/* The whole of pawn-drop is what a recording must be: soft, of moderate speed, with contacts at times,
+/* The whole of pawn-drop is a good recording: soft, of moderate speed, with contacts at times, and
  * healing. */
 #include "models/common/motion.h"
 #include "models/softbody/recorder.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Sanitizers run only to the first contacts: the whole takes half a minute there. */
+/* Sanitizer builds run only to the first contacts, since the whole takes half a minute there. */
 #ifdef __SANITIZE_ADDRESS__
 enum { FRAMES = 40 };
 #else
@@ -47,7 +47,7 @@ static int record_pawn(void **state) {
     }
     recording_motion counts = m.totals;
     recording_motion_free(&m.totals);
-    m.totals = counts; /* its numbers only; its memory has been freed */
+    m.totals = counts; /* only the numbers remain valid; the memory has been freed */
     recorder_close(&r);
     return 0;
 }
@@ -93,7 +93,7 @@ static void intersections_heal(void **state) {
 #endif
 }
 
-/* Of the energy of its height it keeps that of a body on the ground, and never less. */
+/* The body never gains energy, loses a part of that of its height, and ends on the ground. */
 static void comes_down_on_the_ground(void **state) {
     (void)state;
     assert_true(m.most_energy <= m.first_energy * (1.0 + 1e-9));

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many frames of each scene are run, and how many of these a second time. The first contacts of a body
- * with itself come in frame 31 of pawn-drop, 30 of dumbbell-stairs, and 71 of figure-balls. */
+/* The number of frames of each scene that are run, and how many of these a second time. A body first
+ * touches itself in frame 31 of pawn-drop, 30 of dumbbell-stairs, and 71 of figure-balls. */
 static const struct extent {
     const char *name;
     uint32_t frames, repeated;
@@ -26,7 +26,7 @@ static const struct extent {
 
 enum { SCENE_COUNT = sizeof extents / sizeof *extents };
 
-/* 64-bit FNV-1a over the bytes of the positions. */
+/* Computes 64-bit FNV-1a over the bytes of the positions. */
 static uint64_t add_to_hash(uint64_t hash, const double *values, size_t count) {
     const unsigned char *bytes = (const unsigned char *)values;
     for (size_t i = 0; i < count * sizeof *values; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;

@@ -1,4 +1,4 @@
-/* The program `shape`, as a user runs it. */
+/* Runs the program `shape` as a user does. */
 #include "models/shapes/catalogue.h"
 #include "src/io/mesh_file.h"
 #include "tests/support/temp_file.h"
@@ -12,7 +12,7 @@
 
 static temp_folder folder;
 
-/* run_tool runs what CSCD_TOOL names. */
+/* Points CSCD_TOOL, which run_tool runs, at the program `shape`. */
 static int find_program(void **state) {
     (void)state;
     const char *models = getenv("CSCD_MODELS");
@@ -47,7 +47,7 @@ static void check_file(const char *path, body_kind kind, uint32_t triangle_count
     body_free(&b);
 }
 
-/* The file holds, to the last bit, what body_make makes. */
+/* The file contains, to the last bit, what body_make makes. */
 static void writes_what_was_asked_for(void **state) {
     (void)state;
     temp_path path = temp_file_path(&folder, "body.obj");

@@ -1,5 +1,5 @@
-/* The three bodies are cut into regions as expected by the procedure that a caller gets by default. The number of
- * regions hardly depends on that of the triangles, and the time grows with its cube: a few small counts do. */
+/* The regions of the three bodies are as expected with the default procedure. The number of regions hardly
+ * depends on that of the triangles, and the time grows with its cube, so a few small counts suffice. */
 #include "cscd/cscd.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/test.h"

@@ -1,4 +1,4 @@
-/* The tools that make bodies: edges of closed meshes flipped, split and collapsed; rings; remeshing. */
+/* The tools that make bodies: flips, splits and collapses of edges of closed meshes; rings; remeshing. */
 #include "models/shapes/remesh.h"
 #include "models/shapes/rings.h"
 #include "models/shapes/surface.h"
@@ -92,7 +92,7 @@ static void a_tetrahedron_stays(void **state) {
     body_free(&b);
 }
 
-/* Rings reach every even count, with open outlines and with closed ones. */
+/* Rings reach every even count, with open and with closed outlines. */
 static void rings_add_up(void **state) {
     (void)state;
     outline half = {.end = {0.0, -1.0}}, whole = {.closed = true, .end = {1.4, 0.0}};

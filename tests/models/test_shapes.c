@@ -1,5 +1,5 @@
-/* The bodies of models/shapes have exact counts and are closed, oriented, embedded, even and true to shape.
- */
+/* The bodies of models/shapes have exact counts, are closed, oriented and embedded, have triangles of
+ * similar size, and have the intended shape. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/test.h"
@@ -161,8 +161,8 @@ static void find_extent(const body *b, double low[3], double high[3]) {
     }
 }
 
-/* From a count to four and sixteen times as many, the volume converges to what it should be, and the body
- * stays in place. */
+/* When the count grows to four and sixteen times as many, the volume converges to the intended one, and
+ * the body stays in place. */
 static void refinement_keeps_the_shape(void **state) {
     (void)state;
     for (int i = 0; i < BODY_KIND_COUNT; i++) {

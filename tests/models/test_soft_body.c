@@ -165,7 +165,8 @@ static void damping_stills_vibrations(void **state) {
     assert_true(energies[1] < 0.1 * energies[0]);
 }
 
-/* Free fall is n small steps of gravity after velocity, a parabola with finer steps. */
+/* Free fall is the sum of n small steps of gravity after velocity, and approaches a parabola with finer
+ * steps. */
 static void free_fall_is_a_parabola(void **state) {
     (void)state;
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);
@@ -251,7 +252,7 @@ static void friction_is_coulombs(void **state) {
     body_free(&box);
 }
 
-/* A contact off centre, with friction: the ball gains what the body loses. */
+/* The contact is off centre and has friction: the ball gains what the body loses. */
 static void balls_and_bodies_share_their_momentum(void **state) {
     (void)state;
     soft_body b = soft_body_of(&sphere, 0.4, &rubber);

@@ -142,7 +142,7 @@ static void pairs_on_the_way_out_are_left(void **state) {
     free_parts(&flat);
 }
 
-/* The corner leaves through the lower side of the slab: it has been inside, so the response ignores it. */
+/* The corner leaves through the lower side of the slab. It was inside before, so the response ignores it. */
 static void pairs_from_the_inside_are_left(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -178,7 +178,7 @@ static void pairs_are_sorted_and_single(void **state) {
     free_parts(&p);
 }
 
-/* Parts that are near at rest are left to the lattice. */
+/* Pairs that are near at rest are left to the lattice. */
 static void near_pairs_are_ignored(void **state) {
     (void)state;
     two_parts p = make_flat();
@@ -221,7 +221,7 @@ static void healing_gives_no_velocity(void **state) {
     free_parts(&p);
 }
 
-/* Nothing is pushed above the gap. */
+/* Pairs farther apart than the gap are not pushed. */
 static void pairs_apart_are_left_alone(void **state) {
     (void)state;
     two_parts p = make_corner();
@@ -290,8 +290,8 @@ static void run_interval(two_parts *p, bool responds) {
     if (responds) self_contacts_add(&p->contacts, &found, p->start, p->soft.vertices);
 }
 
-/* The parts touch, hold each other off and part. Momentum is kept. Kinetic energy is never gained, but
- * pushing out deforms the parts, which costs a few per cent here. In the end there are no intersections. */
+/* The parts touch, hold each other off and part. Momentum is kept. Kinetic energy is never gained, but the
+ * push deforms the parts, which costs a few per cent here. In the end there are no intersections. */
 static void check_bounce(two_parts *p) {
     size_t most_pairs = 0;
     uint32_t crossing_at_end = 1;

@@ -50,7 +50,7 @@ static double determinant_of(double f[3][3]) {
     return vec3_dot(f[0], minors);
 }
 
-/* Returns the energy per volume of Macklin and Mueller, above that of the rest shape, from Young's modulus
+/* Returns the energy per volume by Macklin and Mueller, relative to the rest shape, from Young's modulus
  * and Poisson's ratio. */
 static double energy_density(double f[3][3]) {
     double shear = rubber.young / (2.0 * (1.0 + rubber.poisson));
@@ -73,7 +73,7 @@ static void rest_and_turned_shapes_have_no_energy(void **state) {
     }
 }
 
-/* Turning before or after the deformation does not matter: the material has no grain. */
+/* A rotation before or after the deformation changes nothing: the material has no grain. */
 static void energy_is_that_of_the_formula(void **state) {
     (void)state;
     double turn[3][3], shapes[4][3][3] = {{{1.0, 0.4, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
@@ -114,7 +114,7 @@ static void energy_grows_with_the_deformation(void **state) {
     }
 }
 
-/* Forces would move the nodes by a square of the step. Here they move by a fourth power, since the two
+/* Forces would move the nodes by the square of the step. Here they move by the fourth power, since the two
  * constraints, whose forces cancel at rest, are solved one after the other. */
 static void rest_shape_has_no_forces(void **state) {
     (void)state;

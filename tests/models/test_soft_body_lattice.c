@@ -78,7 +78,8 @@ static void cells_are_cubes_of_the_grid(void **state) {
     }
 }
 
-/* The cube from -1 to 1 has the cells -2 0 2 along each axis, then those from -1.25 to 1.25. */
+/* The cube from -1 to 1 has two cells along each axis, from -2 to 2; with the finer spacing it has five,
+ * from -1.25 to 1.25. */
 static void counts_are_those_of_a_cube(void **state) {
     (void)state;
     body cube = body_of(BODY_CUBE, body_least_count(BODY_CUBE));

@@ -87,7 +87,7 @@ static void mirror_images_are_no_motions(void **state) {
     affine_map(mirror, no_offset, screw[0], 40, mirrored[0]);
     assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
     assert_near(rigid_residual(mirrored[0], mirrored[0], 40), 0.0, 1e-6);
-    /* Nor is the inversion through the origin, which changes every sign. */
+    /* Neither is the inversion through the origin, which changes every sign. */
     double inverted[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     affine_map(inverted, no_offset, screw[0], 40, mirrored[0]);
     assert_true(rigid_residual(screw[0], mirrored[0], 40) > 0.1);
@@ -101,8 +101,8 @@ static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t
     return mesh;
 }
 
-/* The tip of a tetrahedron flies through another: contacts in intervals 3 and 5, intersections from frame
- * 4 on. */
+/* The tip of a tetrahedron flies through another one: contacts in intervals 3 and 5, intersections from
+ * frame 4 on. */
 static void counts_contacts_and_intersections(void **state) {
     (void)state;
     enum { FRAMES = 8 };

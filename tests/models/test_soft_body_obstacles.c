@@ -1,10 +1,10 @@
-/* Ground, stairs and balls: their heights, the ways out of them, and the motion of balls. */
+/* Ground, stairs and balls: their heights, the shortest ways out of them, and the motion of balls. */
 #include "models/common/vec3.h"
 #include "models/softbody/obstacles.h"
 #include "models/softbody/scenery.h"
 #include "tests/support/test.h"
 
-/* Tops at 1.5, 1 and 0.5, which end at x = 3, 5 and 7. */
+/* The tops of the stairs are at 1.5, 1 and 0.5, and end at x = 3, 5 and 7. */
 static const obstacles stairs = {.step_count = 3, .start = 1.0, .tread = 2.0, .riser = 0.5, .gravity = 10.0};
 static const double step = 1.0 / 800.0;
 
@@ -27,7 +27,7 @@ static void expect_way_out(const obstacles *o, double x, double z, double forwar
     assert_null(hit.pushed);
 }
 
-/* The way out leads upwards, or forwards through a riser when that is nearer; below the ground it always
+/* The way out leads upwards, or forwards through a riser when that is nearer. Below the ground it always
  * leads upwards. */
 static void way_out_is_the_nearer_one(void **state) {
     (void)state;
@@ -44,7 +44,7 @@ static void way_out_is_the_nearer_one(void **state) {
     expect_way_out(&stairs, 8.0, -0.1, 0.0, 0.1);
 }
 
-/* Between walls it leads back over the wall, or up where the point is deeper in the ground. */
+/* Between walls the way out leads back over the wall, or up where the point is deeper in the ground. */
 static void trays_have_walls(void **state) {
     (void)state;
     const obstacles o = {.tray = 2.0};
@@ -64,7 +64,7 @@ static void trays_have_walls(void **state) {
     assert_false(obstacles_hit_terrain(&o, (double[3]){1.9, -1.9, 0.1}, &hit));
 }
 
-/* After moving along the way out, a point is outside of everything, or on a surface. */
+/* After moving along the way out, a point is outside of all obstacles, or on a surface. */
 static void way_out_leads_out(void **state) {
     (void)state;
     uint32_t inside = 0, forwards = 0;
@@ -92,7 +92,7 @@ static void balls_push_from_their_centres(void **state) {
     o.balls[1].centre[0] = 5.0;
     assert_false(obstacles_hit_ball(&o, 0, (double[3]){0.0, 1.01, 0.0}, &hit));
     assert_false(obstacles_hit_ball(&o, 1, (double[3]){0.0, 0.3, 0.4}, &hit));
-    assert_false(obstacles_hit_ball(&o, 0, (double[3]){0.0, 0.0, 0.0}, &hit)); /* no way is the nearest */
+    assert_false(obstacles_hit_ball(&o, 0, (double[3]){0.0, 0.0, 0.0}, &hit)); /* all ways are equally long */
     assert_true(obstacles_hit_ball(&o, 0, (double[3]){0.0, 0.3, 0.4}, &hit));
     assert_true(fabs(hit.depth - 0.5) < 1e-15 && hit.pushed == &o.balls[0]);
     assert_true(hit.normal[0] == 0.0 && fabs(hit.normal[1] - 0.6) < 1e-15 &&
@@ -165,8 +165,7 @@ static void colliding_balls_keep_their_momentum(void **state) {
     assert_true(obstacles_energy(&o) < 0.99 * energy);
 }
 
-/* The scenery has a box for the ground and one for each step, as high as they are, then the balls, which
- * follow. */
+/* The scenery has boxes for the ground and for each step, as high as they are, followed by the balls. */
 static void scenery_shows_them(void **state) {
     (void)state;
     obstacles o = stairs;
