@@ -1,4 +1,5 @@
-/* The tool on a capsule whose ends touch in a known interval: a formula, brute force and all outputs agree. */
+/* The tool on a capsule whose ends touch in a known interval: a formula, brute force and all outputs
+ * agree. */
 #include "tests/support/models/model_program.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
@@ -13,9 +14,9 @@
 static temp_folder folder;
 static temp_path model, frames, csv, summary;
 static unsigned expected;   /* the interval of the first contact, as capsule_bend announces */
-static contact_rows rows;   /* of a replay of the whole */
-static json_node *json;     /* its summary */
-static unsigned printed[4]; /* its table: VF, EE, intervals with contact, intervals */
+static contact_rows rows;   /* contacts of a replay of the whole recording */
+static json_node *json;     /* the summary of that replay */
+static unsigned printed[4]; /* the table that it printed: VF, EE, intervals with contact, intervals */
 
 static void generate_capsule(void) {
     model_program_use("capsule_bend");
@@ -58,7 +59,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The ends touch where the generator's formula says, and between the ends. */
+/* The ends touch in the interval and at the place that the generator's formula gives. */
 static void first_contact_is_where_the_formula_says(void **state) {
     (void)state;
     assert_true(rows.count > 0);
@@ -67,7 +68,8 @@ static void first_contact_is_where_the_formula_says(void **state) {
     for (size_t i = 0; i < rows.count; i++) assert_true(rows.items[i].frame >= expected);
 }
 
-/* Over all pairs of features, in the first interval with contacts: the same list, number for number. */
+/* Brute force over all feature pairs of the first interval with contacts gives the same list, number for
+ * number. */
 static void brute_force_finds_the_same(void **state) {
     (void)state;
     temp_path brute_csv = temp_file_path(&folder, "brute.csv");
@@ -107,7 +109,7 @@ static void csv_json_and_table_agree(void **state) {
     assert_int_equal(printed[3], 59);
 }
 
-/* Frames up to the first contact are clean; in those after it the ends intersect. */
+/* Frames up to the first contact have no intersections; in those after it the ends intersect. */
 static void frames_cross_after_the_first_contact(void **state) {
     (void)state;
     const json_node *states = json_node_member(json, "frames");

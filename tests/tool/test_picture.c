@@ -13,7 +13,7 @@
 
 #include "tests/support/temp_file.h"
 
-/* Seen from azimuth 0 and elevation 0: x to the right, z up, y away from the eye. */
+/* A triangle seen from azimuth 0 and elevation 0: x points to the right, z up, y away from the eye. */
 static const double facing_positions[] = {-1, 0, -1, 1, 0, -1, 0, 0, 1};
 static const uint32_t facing_triangle[] = {0, 1, 2};
 static const uint8_t red[] = {220, 40, 30}, green[] = {30, 180, 60}, blue[] = {40, 60, 220};
@@ -100,9 +100,9 @@ static void camera_keeps_everything_within_the_margin(void **state) {
             low[i % 2] = fmin(low[i % 2], pixel[i % 2]);
             high[i % 2] = fmax(high[i % 2], pixel[i % 2]);
         }
-        const double least = 7.2 - 0.01, most = 7.2 + 0.01; /* 6 % of the height, rounding aside */
+        const double least = 7.2 - 0.01, most = 7.2 + 0.01; /* 6 % of the height, except for rounding */
         assert_true(low[0] > least && low[1] > least && high[0] < 160 - least && high[1] < 120 - least);
-        /* It fits tightly in one direction. */
+        /* The body fits tightly in one direction. */
         assert_true(low[0] < most || low[1] < most);
     }
 }

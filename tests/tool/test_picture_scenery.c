@@ -1,5 +1,5 @@
-/* Parts of strips and scenery: sheets of tiles, cameras for many frames, shadows, squares, the second mesh.
- */
+/* The parts of strips and scenery: sheets of tiles, cameras for many frames, shadows, squares, the second
+ * mesh. */
 #include "src/tool/picture/scene.h"
 #include "src/tool/picture/sheet.h"
 #include "tests/support/test.h"
@@ -39,7 +39,7 @@ static void sheet_places_tiles_row_by_row(void **state) {
     assert_int_equal(pixel_at(&sheet.image, 50, 15)[0], 255); /* no tile */
     assert_int_equal(pixel_at(&sheet.image, 20, 5)[0], 150);  /* a line */
     assert_int_equal(pixel_at(&sheet.image, 5, 10)[0], 150);
-    assert_int_equal(pixel_at(&sheet.image, 0, 5)[0], 10); /* none at the rim */
+    assert_int_equal(pixel_at(&sheet.image, 0, 5)[0], 10); /* no line at the rim */
     picture_image_free(&sheet.image);
 }
 
@@ -63,7 +63,7 @@ static void random_points(random_stream *random, double spread, double points[3 
     for (int i = 0; i < 3 * POINTS; i++) points[i] = middle[i % 3] + stream_between(random, -1.0, 1.0);
 }
 
-/* Five points of each frame frame all frames. */
+/* The camera is chosen from five points of each frame, and still shows all frames. */
 static void outermost_points_frame_a_motion(void **state) {
     (void)state;
     enum { frames = 7 };
@@ -104,7 +104,7 @@ static void unproject_undoes_project(void **state) {
     }
 }
 
-/* A box from (0, 0, 0) to (1, 1, 1), moved up. */
+/* Makes a box from (0, 0, 0) to (1, 1, 1), moved up. */
 static void make_box(double lifted, bool y_up, double positions[24]) {
     for (int corner = 0; corner < 8; corner++) {
         double x = corner & 1, across = corner >> 1 & 1, height = (corner >> 2) + lifted;
@@ -129,14 +129,14 @@ static void shadow_lies_below_and_softens(void **state) {
         make_box(0.0, y_up != 0, positions);
         assert_true(picture_shadow_create(positions, 8, box_triangles, 12, y_up != 0, &shadow, NULL));
         assert_true(shadow_of(&shadow, y_up, 0.5, 0.5, -0.001) > 0.9);
-        assert_true(shadow_of(&shadow, y_up, 0.5, 0.5, 0.5) > 0.9); /* within */
+        assert_true(shadow_of(&shadow, y_up, 0.5, 0.5, 0.5) > 0.9); /* inside the shadow */
         assert_true(shadow_of(&shadow, y_up, 0.5, 0.5, 1.1) == 0.0);
         assert_true(shadow_of(&shadow, y_up, 1.5, 0.5, -0.001) == 0.0);
         assert_true(shadow_of(&shadow, y_up, 1e300, -1e300, -0.001) == 0.0);
         double near_rim = shadow_of(&shadow, y_up, 1.05, 0.5, -0.001);
         double far_rim = shadow_of(&shadow, y_up, 1.05, 0.5, -1.0);
         assert_true(near_rim == 0.0 && far_rim > 0.05 && far_rim < 0.4);
-        double last = 1.0; /* it falls off without jumps */
+        double last = 1.0; /* the shadow fades without jumps */
         for (double x = 0.7; x < 1.3; x += 0.005) {
             double here = shadow_of(&shadow, y_up, x, 0.5, -0.6);
             assert_true(here < last + 0.03 && here > last - 0.3);
@@ -147,7 +147,7 @@ static void shadow_lies_below_and_softens(void **state) {
     }
 }
 
-/* A power of two, as large and as small as coordinates may be, changes nothing. */
+/* Scaling by a power of two, up to the limits of coordinates, changes nothing. */
 static void shadows_have_no_unit(void **state) {
     (void)state;
     const double scales[] = {1.0, 0x1p290, 0x1p-290};
@@ -216,8 +216,8 @@ static const uint8_t *pixel_of(const picture_image *image, const picture_scene *
     return pixel_at(image, at[0] / at[2], at[1] / at[2]);
 }
 
-/* The same picture to the last bit, from the largest coordinates to the smallest; with a caption beside it.
- */
+/* The picture is the same to the last bit from the largest coordinates to the smallest, also with a
+ * caption beside it. */
 static void pictures_have_no_unit(void **state) {
     (void)state;
     const double scales[] = {1.0, 0x1p-7, 0x1p280, 0x1p-290};
@@ -236,12 +236,12 @@ static void pictures_have_no_unit(void **state) {
         images[i] = render_scene(&scene, &options);
         assert_memory_equal(images[i].pixels, images[0].pixels, (size_t)4 * 200 * 150);
     }
-    assert_false(images[0].pixels[4 * (75 * 200 + 100)] == 255); /* and it is not empty */
+    assert_false(images[0].pixels[4 * (75 * 200 + 100)] == 255); /* the picture is not empty */
     for (int i = 0; i < 4; i++) picture_image_free(&images[i]);
 }
 
-/* A ground that passes below and behind the camera fills the picture, whichever way its triangles turn, and
- * moves nothing; it is darker below the body. */
+/* A ground that passes below and behind the camera fills the picture, whichever way its triangles turn,
+ * and moves nothing. It is darker below the body. */
 static void ground_is_drawn_around_the_body(void **state) {
     (void)state;
     const picture_mesh ground = {4, 2, ground_positions, ground_triangles},

@@ -33,7 +33,7 @@ static temp_path write_text(const char *name, const char *text) {
     return temp_file_write(&folder, name, text, strlen(text));
 }
 
-/* Exit 0, nothing on stderr, the text on stdout. */
+/* Expects exit code 0, nothing on stderr, and the text on stdout. */
 static void expect_out(const char *text, const char *const *arguments) {
     tool_run run = run_tool(arguments);
     assert_int_equal(run.code, 0);
@@ -153,7 +153,7 @@ static void names_the_bytes_of_a_truncated_cache(void **state) {
     free(bytes);
 }
 
-/* The outputs cannot be made: nothing is computed, nothing printed but the error. */
+/* When outputs cannot be created, nothing is computed and only the error is printed. */
 static void refuses_outputs_it_cannot_write(void **state) {
     (void)state;
     char nowhere[600];

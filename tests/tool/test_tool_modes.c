@@ -1,5 +1,5 @@
-/* Methods, modes and starts of a replay: the same contacts, or the first ones, and what is said about that.
- */
+/* Methods, modes and starts of a replay: the contacts are the same, or the first ones, and the outputs say
+ * which. */
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -33,7 +33,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The summary of a replay with more arguments. */
+/* Returns the summary of a replay with more arguments. */
 static json_node *replay_recording(const char *const *more) {
     const char *arguments[24] = {"replay",     model.text, cache.text, "--quiet",
                                  "--contacts", csv.text,   "--json",   summary.text};
@@ -48,7 +48,7 @@ static const json_node *interval_of(const json_node *root, size_t k) {
     return json_node_item(json_node_member(root, "intervals"), k);
 }
 
-/* The guarantee of the one component in interval k. */
+/* Checks the guarantee of the only component in interval k. */
 static void expect_guarantee(const json_node *root, size_t k, const char *mode, const char *reason) {
     const json_node *list = json_node_member(interval_of(root, k), "guarantee");
     assert_int_equal(list->count, 1);
@@ -89,7 +89,7 @@ static void methods_agree_in_mode_all(void **state) {
     free(expected);
 }
 
-/* Nothing is lost before the first contact, and that one is there at its time. */
+/* Nothing is lost before the first contact, which is there at its time. */
 static void earliest_finds_the_first_contact(void **state) {
     (void)state;
     static const char *const methods[] = {"charge", "single", "kmeans:4"};
@@ -132,7 +132,8 @@ static void counters_tell_that_culling_is_on(void **state) {
     json_node_free(single);
 }
 
-/* The frames are checked anyway; without that, the detector proves its first start and needs no more. */
+/* The tool checks the frames anyway; without that, the detector proves its first start and needs no
+ * further proof. */
 static void starts_are_proven_once(void **state) {
     (void)state;
     char before[16];
@@ -169,7 +170,7 @@ static void tables_have_a_column_for_orientation(void **state) {
     assert_int_equal(run.code, 0);
     assert_non_null(strstr(run.out, "mode earliest: in 1 of 15 intervals later contacts"));
     assert_non_null(strstr(run.out, "\nsingle "));
-    assert_int_equal(count_of(run.out, " X "), 2); /* the contour, in both rows */
+    assert_int_equal(count_of(run.out, " X "), 2); /* for the contour, in both rows */
     tool_run_free(&run);
     run = RUN_TOOL("replay", model.text, cache.text, "--method", "none");
     assert_int_equal(count_of(run.out, " X "), 6);

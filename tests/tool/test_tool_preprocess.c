@@ -1,4 +1,4 @@
-/* `cscd preprocess` from end to end, what is refused, and which plan a replay then takes. */
+/* `cscd preprocess` from end to end: what it writes, what it refuses, and which plan a replay then uses. */
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -35,7 +35,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* Each test begins without plans. */
+/* Removes all plans before each test. */
 static int remove_plans(void **state) {
     (void)state;
     unlink(plan.text);
@@ -47,7 +47,7 @@ static void expect_in(const char *text, const char *part) {
     if (strstr(text, part) == NULL) fail_msg("expected '%s' in: %s", part, text);
 }
 
-/* Runs, and finds the texts on the standard output. */
+/* Runs the tool, and expects the texts on the standard output. */
 static void expect_output(const char *const *texts, const char *const *arguments) {
     tool_run run = run_tool(arguments);
     if (run.code != 0 || run.error[0] != '\0') fail_msg("exit code %d, stderr: %s", run.code, run.error);
@@ -125,7 +125,7 @@ static void refuses_unfit_options(void **state) {
     assert_int_equal(access(plan.text, F_OK), -1);
 }
 
-/* A plan may replace a plan only. */
+/* A plan may replace only a plan. */
 static void overwrites_no_mesh(void **state) {
     (void)state;
     temp_path mesh = recorded_write_mesh(&folder, "mesh.ply", &spindle, 3);
@@ -157,7 +157,7 @@ static void says_how_much_memory_is_missing(void **state) {
 
 /* ---- which plan a replay takes --------------------------------------------------------------------- */
 
-/* Replays with more arguments; the plan of the summary, and what the table says about it. */
+/* Replays with more arguments, and checks the plan in the summary and what the table says about it. */
 static void expect_plan(const char *source, const char *method, int regions, const char *remark,
                         const char *const *more) {
     const char *arguments[16] = {"replay", model.text, cache.text, "--json", summary.text, "--frames", "0:2"};
@@ -216,8 +216,8 @@ static void takes_the_plan_that_it_is_given(void **state) {
                  recorded_write_mesh(&folder, "mesh.ply", &spindle, 0).text);
 }
 
-/* A plan that does not fit is left aside with a reason at the model's own place; given by name it is an
- * error. */
+/* A plan that does not fit is ignored, with a reason, when it lies beside the model; it is an error when
+ * it is named. */
 static void refuses_the_plan_of_another_mesh(void **state) {
     (void)state;
     recorded torus = recorded_torus(20, 10);

@@ -14,7 +14,7 @@ enum { FRAMES = 8, WIDTH = 160, HEIGHT = 120, LABEL_WIDTH = 60, LABEL_HEIGHT = 3
 static temp_folder folder;
 static temp_path model, cache, ground, ball, png;
 
-/* A level square far larger than the body, seen from above and from below. */
+/* A level square much larger than the body, seen from above and from below. */
 static const char ground_text[] = "v -900 -900 -1\nv 900 -900 -1\nv 900 900 -1\nv -900 900 -1\nf 1 2 3 4\n";
 
 static int make_files(void **state) {
@@ -37,7 +37,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The picture as RGB, to be freed. */
+/* Returns the picture as RGB; the caller frees it. */
 static unsigned char *read_png(uint32_t width, uint32_t height) {
     static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     size_t size;
@@ -56,7 +56,7 @@ static unsigned char *read_png(uint32_t width, uint32_t height) {
     return pixels;
 }
 
-/* Pixels of just this colour. */
+/* Counts the pixels of exactly this colour. */
 static size_t count_pixels(const unsigned char *pixels, size_t count, int r, int g, int b) {
     size_t found = 0;
     for (size_t i = 0; i < count; i++)
@@ -108,7 +108,7 @@ static void render_draws_a_plan(void **state) {
     EXPECT_TOOL(0, "render", model.text, "--colour", "region", "--plan", plan.text, "-o", png.text, "--size",
                 "320x240");
     unsigned char *single = read_png(320, 240);
-    assert_memory_not_equal(single, region, count * 3); /* the caption says by which method */
+    assert_memory_not_equal(single, region, count * 3); /* the caption names another method */
     EXPECT_TOOL(0, "render", model.text, cache.text, "--frame", "5", "--colour", "region", "-o", png.text);
     EXPECT_ERROR(1, TEXTS("two.ply", "of method single, expected charge"), "render", model.text, "--colour",
                  "charge", "--plan", plan.text, "-o", png.text);
@@ -126,7 +126,7 @@ static void render_refuses_frames_that_are_not_there(void **state) {
     EXPECT_TOOL(0, "render", model.text, cache.text, "-o", png.text, "--frame", "7");
 }
 
-/* One tile of a strip as RGB, to be freed. */
+/* Returns one tile of a strip as RGB; the caller frees it. */
 static unsigned char *tile_of(const unsigned char *sheet, uint32_t columns, uint32_t index) {
     unsigned char *tile = malloc((size_t)WIDTH * HEIGHT * 3);
     assert_non_null(tile);
@@ -137,7 +137,8 @@ static unsigned char *tile_of(const unsigned char *sheet, uint32_t columns, uint
     return tile;
 }
 
-/* Pixels that differ, the lines at the left and at the top aside: in the label's corner, and elsewhere. */
+/* Counts of different pixels in the label's corner and elsewhere, without the lines at the left and at the
+ * top. */
 typedef struct difference {
     size_t label, elsewhere;
 } difference;
@@ -181,7 +182,7 @@ static void strip_is_a_grid_of_tiles(void **state) {
         }
     }
     unsigned char *empty = tile_of(sheet, 3, 5);
-    assert_int_equal(coloured_pixels(empty, (size_t)WIDTH * HEIGHT), WIDTH + HEIGHT - 1); /* its lines */
+    assert_int_equal(coloured_pixels(empty, (size_t)WIDTH * HEIGHT), WIDTH + HEIGHT - 1); /* only the lines */
     free(empty);
     free(sheet);
     RENDER_TILES(model.text, cache.text, "--frames", "3:");
@@ -192,8 +193,8 @@ static void strip_is_a_grid_of_tiles(void **state) {
     free(read_png(400, 300));
 }
 
-/* The tetrahedron flies in a line, so its first and last places and those of all frames need the same camera:
- * the tiles are the same, bit for bit. Of the fourth frame alone, the camera is nearer. */
+/* The tetrahedron flies along a line, so all frames need the same camera as the first and the last
+ * position, and the tiles are the same, bit for bit. The camera for the fourth frame alone is nearer. */
 static void camera_holds_the_whole_motion(void **state) {
     (void)state;
     RENDER_TILES(model.text, cache.text, "--frames", "0:", "--columns", "4");
@@ -219,7 +220,8 @@ static void camera_holds_the_whole_motion(void **state) {
     free(last_end);
 }
 
-/* A torus that flies without turning looks the same in all tiles that follow it, but for its number. */
+/* A torus that flies without turning looks the same in all tiles that follow it, except for the label's
+ * number. */
 static void following_camera_keeps_the_body_in_the_middle(void **state) {
     (void)state;
     recorded torus = recorded_torus(12, 8);
@@ -253,7 +255,7 @@ static void following_camera_keeps_the_body_in_the_middle(void **state) {
     free(followed);
 }
 
-/* Interval 3 has a vertex-face contact; what would begin in the last frame has none. */
+/* Interval 3 has a vertex-face contact; the last frame begins no interval, so it has none. */
 static void strip_shows_contacts_where_they_begin(void **state) {
     (void)state;
     RENDER_TILES(model.text, cache.text, "--frames", "0:7", "--columns", "8", "--colour", "contacts");
@@ -291,7 +293,7 @@ static void strip_shows_a_plan(void **state) {
     for (int i = 0; i < 3; i++) free(sheets[i]);
 }
 
-/* The ground fills the background and leaves the body as and where it was, its smoothed rim aside. */
+/* The ground fills the background and leaves the body where it was, except for its smoothed rim. */
 static void scenery_leaves_the_framing_alone(void **state) {
     (void)state;
     const size_t count = (size_t)WIDTH * HEIGHT;
@@ -306,7 +308,7 @@ static void scenery_leaves_the_framing_alone(void **state) {
         kept += drawn && memcmp(alone + i * 3, with + i * 3, 3) == 0;
     }
     assert_true(body > 1500 && kept > body * 3 / 4);
-    assert_true(coloured_pixels(with, count) > count - 2000); /* the label */
+    assert_true(coloured_pixels(with, count) > count - 2000); /* all but the label */
     free(alone);
     free(with);
 }

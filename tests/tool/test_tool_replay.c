@@ -68,7 +68,7 @@ static void place_at(const recorded *r, uint32_t frame, uint32_t vertex, double 
     for (int k = 0; k < 3; k++) out[k] = (1.0 - t) * x0[k] + t * x1[k];
 }
 
-/* The points of the two features that u and v name at the TOI. */
+/* Computes the points of the two features that u and v name at the TOI. */
 static void named_points(const recorded *r, const contact_record *c, double a[3], double b[3]) {
     double p[4][3];
     bool vf = c->kind == CSCD_CONTACT_VF;
@@ -160,7 +160,7 @@ static double sum_of(const json_node *list, const char *key) {
     return sum;
 }
 
-/* All of "summary" and "provenance" that the documentation names. */
+/* Checks all of "summary" and "provenance" that the documentation names. */
 static void check_summary(const json_node *root, const contact_rows *rows) {
     const json_node *total = json_node_member(root, "summary"),
                     *intervals = json_node_member(root, "intervals");
@@ -225,7 +225,8 @@ static void json_csv_and_table_agree(void **state) {
     tool_run_free(&run);
 }
 
-/* The states of the intervals and, when crossing is given, of the frames ('0', '1', or 'n' for null). */
+/* Checks the states of the intervals and, when crossing is given, of the frames ('0', '1', or 'n' for
+ * null). */
 static void expect_states(const char *const *states, const char *crossing, const char *const *arguments) {
     run_tool_expect(0, arguments);
     json_node *root = json_node_read_file(summary.text);
@@ -275,7 +276,7 @@ static void fails_on_contact_when_asked(void **state) {
     EXPECT_TOOL(0, "replay", flight_model.text, flight_cache.text, "--fail-on-contact", "--frames", "0:3");
 }
 
-/* The bytes of the CSV of the fold with further arguments, to be freed. */
+/* Returns the bytes of the CSV of the fold with more arguments; the caller frees them. */
 static char *csv_of(const char *frames, const char *option, const char *value) {
     EXPECT_TOOL(0, "replay", fold_model.text, frames, "--contacts", csv.text, option, value);
     return read_whole_file(csv.text, NULL);
@@ -335,7 +336,7 @@ static void quiet_prints_nothing(void **state) {
     tool_run_free(&run);
 }
 
-/* Quotes, a backslash, a tab, characters beyond ASCII, and a byte that is no UTF-8. */
+/* The names have quotes, a backslash, a tab, characters beyond ASCII, and a byte that is not valid UTF-8. */
 static void odd_file_names_keep_the_json_valid(void **state) {
     (void)state;
     temp_path odd_model = recorded_write_mesh(&folder, "\"Mod\\ell\"\t\xc3\xa4\xe2\x82\xac.obj", &flight, 0);

@@ -1,4 +1,5 @@
-/* The tool's reports: what is in the page, what is refused, what is left when a report cannot be written. */
+/* The tool's reports: what the page contains, what is refused, and what remains when a report cannot be
+ * written. */
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -38,7 +39,7 @@ static bool file_exists(const char *path) {
     return lstat(path, &status) == 0;
 }
 
-/* The page's block of JSON. */
+/* Returns the page's block of JSON. */
 static json_node *read_page(const char *path) {
     static const char begin[] = "<script type=\"application/json\" id=\"cscd-report\">";
     char *text = read_whole_file(path, NULL), *block = strstr(text, begin);
@@ -57,7 +58,7 @@ static const json_node *first_summary(const json_node *root) {
     return json_node_member(json_node_item(json_node_member(root, "summaries"), 0), "summary");
 }
 
-/* Same kinds, names and values, in the same order. */
+/* Expects the same kinds, names and values in the same order. */
 static void expect_same(const json_node *a, const json_node *b) {
     assert_int_equal(a->kind, b->kind);
     assert_int_equal(a->count, b->count);
@@ -150,7 +151,7 @@ static void what_is_no_summary_is_named(void **state) {
     EXPECT_ERROR(1, TEXTS("nowhere.json", "No such file"), "report", "nowhere.json", "-o", page.text);
 }
 
-/* Writes a true summary with one part of it replaced. */
+/* Writes a correct summary with one part of it replaced. */
 static void a_changed_summary_is_refused(void **state) {
     (void)state;
     static const struct {
@@ -220,7 +221,7 @@ static void an_unwritable_report_loses_nothing_else(void **state) {
     remove(csv.text);
     EXPECT_ERROR(1, TEXTS("nowhere/page.html", "No such file"), "replay", model.text, cache.text,
                  "--contacts", csv.text, "--report", nowhere.text);
-    assert_false(file_exists(csv.text)); /* asked before anything is truncated */
+    assert_false(file_exists(csv.text)); /* refused before anything is truncated */
 }
 
 static bool is_link(const char *path) {
@@ -228,7 +229,7 @@ static bool is_link(const char *path) {
     return lstat(path, &status) == 0 && S_ISLNK(status.st_mode);
 }
 
-/* Links to no file yet stay links, and the outputs are where they lead. */
+/* Links to files that do not exist yet stay links, and the outputs are at their targets. */
 static void outputs_are_where_links_lead(void **state) {
     (void)state;
     static const char *const names[] = {"led.html", "led.json", "led.csv"};
@@ -251,7 +252,7 @@ static void outputs_are_where_links_lead(void **state) {
     json_node_free(json_node_read_file(targets[1].text));
 }
 
-/* The reader of a pipe gets the page whole: nothing opens and closes the pipe before. */
+/* The reader of a pipe gets the whole page: nothing opens and closes the pipe before. */
 static void a_pipe_gets_the_page(void **state) {
     (void)state;
     temp_path pipe = temp_file_path(&folder, "pipe.html");
@@ -331,7 +332,7 @@ static void an_interrupted_replay_reports_what_it_has(void **state) {
     json_node_free(root);
 }
 
-/* Names are text in the page, whatever is in them. */
+/* Names are text in the page, whatever they contain. */
 static void names_are_never_markup(void **state) {
     (void)state;
     recorded scene = recorded_tetrahedra(3);

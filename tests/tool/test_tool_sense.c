@@ -1,4 +1,4 @@
-/* `cscd sense`: warnings, what is compared with the detector, what is written, what is refused. */
+/* `cscd sense`: its warnings, the comparison with the detector, its outputs, and what it refuses. */
 #include "tests/support/test.h"
 #include "tests/support/tool/json_reader.h"
 #include "tests/support/tool/run_tool.h"
@@ -49,7 +49,7 @@ static size_t count_of(const char *text, const char *part) {
     return count;
 }
 
-/* The warnings of intervals 3 and 5, which the scene was built for. */
+/* The scene was built to have warnings in intervals 3 and 5. */
 static void confirms_the_contacts_and_no_others(void **state) {
     (void)state;
     EXPECT_TOOL(0, "sense", SENSE, "--csv", csv.text);
@@ -113,7 +113,7 @@ static void compares_with_the_detector(void **state) {
     tool_run_free(&run);
 }
 
-/* A distance that no two vertices come within. */
+/* No two vertices come within the chosen distance. */
 static void says_what_it_has_missed(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("sense", SENSE, "--compare", "--mu", "0.001", "--reff", "10");
@@ -150,7 +150,7 @@ static void same_bytes_for_any_number_of_threads(void **state) {
     }
 }
 
-/* Areas grow by 7.6. */
+/* Areas grow by a factor of 7.6. */
 static void renews_what_has_grown_and_says_so(void **state) {
     (void)state;
     tool_run run = RUN_TOOL("sense", growing_model.text, growing_cache.text, "--json", summary.text);

@@ -1,4 +1,4 @@
-/* `replay --min-separation`: what is reported, where it is written, what is refused. */
+/* `replay --min-separation`: which pairs are reported, where they are written, and what is refused. */
 #include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
@@ -37,7 +37,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The bytes of the CSV of the fold with further arguments, to be freed. */
+/* Returns the bytes of the CSV of the fold with more arguments; the caller frees them. */
 static char *csv_of(const char *distance, const char *option, const char *value) {
     EXPECT_TOOL(0, "replay", fold_model.text, fold_cache.text, "--contacts", csv.text, "--min-separation",
                 distance, option, value);
@@ -50,7 +50,7 @@ static size_t count_of(const char *text, const char *part) {
     return count;
 }
 
-/* The tip flies towards x = 0 at one unit a frame, 3.5 away in frame 0: 0.5 in frame 3. */
+/* The tip flies towards x = 0 by one unit per frame. It is 3.5 away in frame 0, and 0.5 in frame 3. */
 static void reports_what_comes_within(void **state) {
     (void)state;
     EXPECT_TOOL(0, "replay", flight_model.text, flight_cache.text, "--contacts", csv.text, "--min-separation",

@@ -1,4 +1,4 @@
-/* Replays that end early keep what they have; replays that last keep their memory. */
+/* Replays that end early keep what they have written; replays that last do not grow in memory. */
 #include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
@@ -57,7 +57,7 @@ static void expect_stopped(size_t interval_count, size_t frame_count, const char
     json_node_free(root);
 }
 
-/* The point cache of the scene with one coordinate replaced. */
+/* Writes the point cache of the scene with one coordinate replaced. */
 static temp_path write_spoilt_cache(const recorded *scene, uint32_t frame, uint32_t vertex, float value) {
     temp_path path = recorded_write_cache(&folder, "spoilt.pc2", scene);
     FILE *file = fopen(path.text, "r+b");
@@ -145,7 +145,7 @@ static void wait_for_contacts(void) {
     }
 }
 
-/* Brute force over a thousand features has far more intervals to do than it can before the signal. */
+/* Brute force over a thousand features has far more intervals to do than it can finish before the signal. */
 static void an_interrupt_keeps_what_is_written(void **state) {
     (void)state;
     static const int signals[] = {SIGINT, SIGTERM};
@@ -173,7 +173,7 @@ static void an_interrupt_keeps_what_is_written(void **state) {
     recorded_free(&scene);
 }
 
-/* A signal amid seconds of work stops it at once, and there is no plan, half or whole. */
+/* A signal during seconds of work stops it at once, and there is no plan, neither partial nor whole. */
 static void an_interrupted_preprocess_writes_nothing(void **state) {
     (void)state;
     recorded scene = recorded_fold(70, 70, 1);
@@ -191,7 +191,7 @@ static void an_interrupted_preprocess_writes_nothing(void **state) {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-/* The sanitizer keeps freed memory: there is nothing to measure, but the replays must run all the same. */
+/* The sanitizer keeps freed memory, so there is nothing to measure, but the replays must run all the same. */
 static void compare_peaks(const char *model, const char *short_cache, const char *long_cache) {
     EXPECT_TOOL(0, "replay", model, short_cache, "--frames", ":20");
     EXPECT_TOOL(0, "replay", model, long_cache, "--frames", "280:");
@@ -202,7 +202,8 @@ static int compare_longs(const void *left, const void *right) {
     return (l > r) - (l < r);
 }
 
-/* The peak at this rank among several runs: the system places memory a little differently each time. */
+/* Returns the peak at this rank among several runs: the system places memory a little differently each
+ * time. */
 static long peak_of_replays(const char *model, const char *cache, int count, int rank) {
     long peaks[8];
     for (int i = 0; i < count; i++) {
@@ -220,12 +221,12 @@ static void compare_peaks(const char *model, const char *short_cache, const char
     getrusage(RUSAGE_SELF, &own);
     long at_30 = peak_of_replays(model, short_cache, 3, 1), at_300 = peak_of_replays(model, long_cache, 2, 0);
     print_message("peak memory: %ld KiB for 30 frames, %ld KiB for 300\n", at_30, at_300);
-    assert_true(at_30 > own.ru_maxrss); /* else the measurement would show the test itself */
+    assert_true(at_30 > own.ru_maxrss); /* otherwise the measurement would show the test itself */
     assert_true((double)at_300 <= 1.02 * (double)at_30);
 }
 #endif
 
-/* Ten times the frames, at most 2 % more memory. */
+/* Ten times the frames need at most 2 % more memory. */
 static void memory_does_not_grow_with_the_frames(void **state) {
     (void)state;
     recorded scene = recorded_fold(70, 40, 16);

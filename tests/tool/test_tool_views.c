@@ -61,7 +61,7 @@ static void check_lists_crossing_frames(void **state) {
     tool_run_free(&run);
 }
 
-/* Each pair joins a triangle of the one tetrahedron to one of the other. */
+/* Checks that each pair joins a triangle of one tetrahedron to one of the other. */
 static void check_pairs(const json_node *pairs) {
     for (const json_node *pair = pairs->first; pair != NULL; pair = pair->next) {
         assert_int_equal(pair->count, 2);
@@ -107,7 +107,7 @@ static void check_keeps_what_precedes_a_bad_frame(void **state) {
     recorded_free(&other);
 }
 
-/* Everything that info prints about a mesh, on stdout and stderr. */
+/* Expects everything that info prints about a mesh, on stdout and stderr. */
 static void expect_info(const recorded *r, const char *out, const char *error) {
     temp_path path = recorded_write_mesh(&folder, "info.obj", r, 0);
     tool_run run = RUN_TOOL("info", path.text);

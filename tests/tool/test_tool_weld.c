@@ -1,4 +1,4 @@
-/* Welding split seams, and leaving pairs out, as the tool does it. */
+/* The tool welds split seams and ignores given pairs. */
 #include "tests/support/test.h"
 #include "tests/support/tool/contact_rows.h"
 #include "tests/support/tool/json_reader.h"
@@ -35,7 +35,7 @@ static int remove_files(void **state) {
     return 0;
 }
 
-/* The contacts of a replay with one more option and its value. */
+/* Returns the contacts of a replay with one more option and its value. */
 static contact_rows contacts_of(const temp_path *model, const char *frames, const char *option,
                                 const char *value) {
     EXPECT_TOOL(0, "replay", model->text, frames, "--contacts", csv.text, "--quiet", option, value);
@@ -52,7 +52,8 @@ static int compare_places(const void *left, const void *right) {
     return fabs(l->toi - r->toi) <= 1e-9 ? 0 : l->toi < r->toi ? -1 : 1;
 }
 
-/* The same kinds at the same times and places; vertices and the order of equals may differ. */
+/* Expects the same kinds at the same times and places; vertices and the order of equal contacts may
+ * differ. */
 static void assert_same_places(contact_rows *a, contact_rows *b) {
     assert_int_equal(a->count, b->count);
     qsort(a->items, a->count, sizeof *a->items, compare_places);
@@ -60,7 +61,7 @@ static void assert_same_places(contact_rows *a, contact_rows *b) {
     for (size_t i = 0; i < a->count; i++) assert_int_equal(compare_places(&a->items[i], &b->items[i]), 0);
 }
 
-/* Some triangle of the file holds these vertices. */
+/* Returns whether some triangle of the file has these vertices. */
 static bool in_a_triangle(const recorded *r, const uint32_t *vertices, int count) {
     for (uint32_t t = 0; t < r->triangle_count; t++) {
         const uint32_t *v = r->triangles + (size_t)t * 3;
@@ -136,7 +137,7 @@ static void suggests_welding_where_it_would_close_the_first_frame(void **state) 
     recorded_free(&apart);
 }
 
-/* Copies of one corner that lie a little apart are joined by a distance, not by equality. */
+/* Copies of one corner that lie a little apart are welded by a distance, not by equality. */
 static void welds_within_a_distance(void **state) {
     (void)state;
     recorded loose = recorded_cube(true);
@@ -177,7 +178,7 @@ static void vertices_that_part_are_an_error(void **state) {
     recorded_free(&parting);
 }
 
-/* A sliver is added to the file between its triangles, so that later ones shift. */
+/* A sliver is inserted between the triangles of the file, so that later ones get other numbers. */
 static void collapsed_triangles_are_dropped_and_counted(void **state) {
     (void)state;
     recorded sliver = recorded_cube(true);
@@ -251,7 +252,7 @@ static void names_the_line_of_a_bad_list(void **state) {
     }
 }
 
-/* Triangles of the file, whatever welding does to it. */
+/* The list means triangles of the file, whatever welding does to them. */
 static void a_list_means_the_triangles_of_the_file(void **state) {
     (void)state;
     contact_rows all = contacts_of(&split_model, split_cache.text, "--weld", "exact");
@@ -264,7 +265,7 @@ static void a_list_means_the_triangles_of_the_file(void **state) {
     contact_rows_free(&none);
 }
 
-/* Replays from a frame that intersects itself, without the pairs that intersect there. */
+/* Replays from a frame with intersections, and ignores the pairs that intersect there. */
 static void ignores_what_meets_at_rest(void **state) {
     (void)state;
     recorded flight = recorded_tetrahedra(8);
