@@ -1,5 +1,5 @@
-/* The scenarios of tests/report: reports of recordings, decoded by other code and used in a real browser, one
- * test each. */
+/* Runs the scenarios of tests/report: reports of recordings are decoded by other code and used in a real
+ * browser, one test each. */
 #include "tests/support/shell.h"
 #include "tests/support/temp_file.h"
 #include "tests/support/test.h"
@@ -13,16 +13,16 @@ enum { SCENARIOS_MAX = 200 };
 
 static const char runner[] = "/usr/bin/python3 tests/report/run.py";
 static temp_folder folder;
-static char *printed; /* by the run of all scenarios */
+static char *printed; /* the output of all scenarios */
 
-/* The folder of the build that the tool lies in. */
+/* Returns the length of the path of the tool's build folder. */
 static int build_length(void) {
     const char *tool = getenv("CSCD_TOOL");
     if (tool == NULL) fail_msg("CSCD_TOOL must name the built tool; run the tests through tests/run.sh");
     return (int)(strrchr(tool, '/') - tool);
 }
 
-/* One browser serves all scenarios, so they run before the tests, which tell how each ended. */
+/* One browser serves all scenarios, so they run before the tests, which report how each ended. */
 static int run_all(void **state) {
     (void)state;
     folder = temp_folder_make();

@@ -1,4 +1,4 @@
-/* The file of a report: whole or not there, an older one intact, links and pipes as one expects. */
+/* The file of a report is whole or absent; an older one stays intact, and links and pipes work. */
 #include "src/io/growable.h"
 #include "src/tool/report/replacing_file.h"
 #include "src/tool/report/template.h"
@@ -18,7 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* How many allocations still succeed; negative: all. */
+/* The number of allocations that still succeed; negative means all. */
 static int allocations_left = -1;
 
 /* Replaces the writer's own allocation. */
@@ -106,7 +106,7 @@ static rlim_t size_of_report(void) {
     return (rlim_t)status.st_size;
 }
 
-/* A full disk, as a device that is always full and as a limit to the size of files. */
+/* A full disk is simulated by a device that is always full and by a limit on the size of files. */
 static void a_full_disk_leaves_the_older_file(void **state) {
     (void)state;
     expect_failure("/dev/full", "cannot write: No space left");
@@ -144,7 +144,7 @@ static void permissions_are_as_ever(void **state) {
     remove(path.text);
 }
 
-/* Relative and absolute, to a file and to none: the link stays, the file it leads to is the report. */
+/* Links are relative and absolute, to a file and to none. The link stays, and its target is the report. */
 static void links_are_followed(void **state) {
     (void)state;
     temp_path link = temp_file_path(&folder, "link.html"), target = temp_file_path(&folder, "target.html");
@@ -160,7 +160,7 @@ static void links_are_followed(void **state) {
     }
 }
 
-/* A name as long as the system allows leaves no room for a longer one beside it. */
+/* A name as long as the system allows leaves no room for a longer name beside it. */
 static void long_names_are_fine(void **state) {
     (void)state;
     char name[256];

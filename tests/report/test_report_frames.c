@@ -1,4 +1,5 @@
-/* Frames of a report: what is decoded is near what was given, and the error stated is the error made. */
+/* The frames of a report: decoded positions are near the given ones, and the stated error is the error
+ * made. */
 #include "src/io/growable.h"
 #include "src/tool/report/frame_stream.h"
 #include "tests/support/random.h"
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many allocations still succeed; negative: all. */
+/* The number of allocations that still succeed; negative means all. */
 static int allocations_left = -1;
 
 /* Replaces the writer's own allocation. */
@@ -22,7 +23,7 @@ void *io_realloc(void *memory, size_t size) {
 
 enum { VERTICES = 50, FRAMES = 24, VALUES = VERTICES * 3 };
 
-/* A recording by rule. */
+/* A recording that a function computes. */
 typedef struct frame_motion {
     const char *name;
     void (*place)(uint32_t frame, double *positions);
@@ -30,13 +31,13 @@ typedef struct frame_motion {
     double scale;
 } frame_motion;
 
-/* The same body in every frame. */
+/* Computes a point of the body, which is the same in every frame. */
 static void body_point(uint32_t vertex, double out[3]) {
     random_seed(vertex + 1);
     for (int k = 0; k < 3; k++) out[k] = random_unit();
 }
 
-/* x of the body, times size, from centre. */
+/* Places the body: its coordinates times size, plus centre. */
 static void place_body(double *positions, const double size[3], const double centre[3]) {
     for (uint32_t v = 0; v < VERTICES; v++) {
         double point[3];
@@ -70,7 +71,7 @@ static void exploding_motion(uint32_t frame, double *positions) {
     place_vertices(positions, pow(10.0, frame), 3.0);
 }
 
-/* Grows slowly enough for the first grid, which becomes very fine for it. */
+/* The body grows so slowly at first that the first grid becomes very fine. */
 static void swelling_motion(uint32_t frame, double *positions) {
     place_vertices(positions, pow(1.7, frame), 0.0);
 }
@@ -110,7 +111,7 @@ static void jumping_motion(uint32_t frame, double *positions) {
     place_vertices(positions, 1.0, frame % 2 == 0 ? 16000.0 : -16000.0);
 }
 
-/* Motion beyond everything that a page can show; the stated error is still true. */
+/* The motion exceeds everything that a page can show; the stated error is still true. */
 static void bursting_motion(uint32_t frame, double *positions) {
     place_vertices(positions, frame < 5 ? 1.0 : frame % 2 == 0 ? 1e80 : 1e-60, 0.0);
     if (frame == 20) place_vertices(positions, 0.0, 1e80);
@@ -135,7 +136,7 @@ static const frame_motion motions[] = {
     {"jumping", jumping_motion, VERTICES, 2, 1.0},
 };
 
-/* The stream's bytes, as a page has them. */
+/* Returns the stream's bytes in the form in which a page has them. */
 static page_bytes bytes_of(frame_stream *stream) {
     char *text = NULL;
     size_t size;
@@ -148,7 +149,7 @@ static page_bytes bytes_of(frame_stream *stream) {
     return bytes;
 }
 
-/* The largest error of a coordinate, and the longest side. */
+/* Computes the largest error of a coordinate, and the longest side. */
 static void compare_positions(const double *shown, const double *given, const frame_motion *m, double *error,
                               double *side) {
     *error = *side = 0.0;
@@ -163,7 +164,7 @@ static void compare_positions(const double *shown, const double *given, const fr
     }
 }
 
-/* The error must stay below relative_max, a share of the longest side. */
+/* Checks that the error stays below relative_max, a share of the longest side. */
 static void check_motion(const frame_motion *m, double relative_max) {
     frame_stream stream;
     double given[VALUES], *shown;
@@ -220,7 +221,7 @@ static void still_frames_are_small(void **state) {
     frame_stream_free(&stream);
 }
 
-/* Arrays of every length modulo three, longer than a buffer. */
+/* Tests arrays of every length modulo three that are longer than a buffer. */
 static void bytes_come_back(void **state) {
     (void)state;
     for (size_t size = 0; size < 20000; size = size * 3 / 2 + 1) {

@@ -1,4 +1,4 @@
-/* The content of reports, read back: scene, plan and frames of every kind, and names that are markup. */
+/* The content of reports is read back: scene, plan and frames of every kind, and names that are markup. */
 #include "src/tool/report/template.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
@@ -30,7 +30,7 @@ static temp_path page_path(void) {
     return temp_file_path(&folder, "report.html");
 }
 
-/* Writes and reads back. */
+/* Writes a report and reads it back. */
 static page write_page(report *r, const report_summary *summaries, size_t count, const char *preprocess) {
     io_error error = {""};
     temp_path path = page_path();
@@ -97,7 +97,7 @@ static void expect_plan(const page *p, const report_rig *rig) {
     assert_true(json_node_item(capacitances, 0)->number == cscd_plan_capacitance(rig->plan, 0));
 }
 
-/* The rank of a charge, by counting how many of the component are less. */
+/* Computes the rank of each charge by counting how many of its component are smaller. */
 static void expect_ranks(const page *p, const report_rig *rig) {
     page_bytes bytes = page_array(p, "equalized");
     for (uint32_t t = 0; t < rig->shape.triangle_count; t++) {
@@ -141,7 +141,8 @@ static void scene_and_plan_come_back(void **state) {
     report_rig_destroy(&rig);
 }
 
-/* Coordinates out of the range of float32 reach the page in another unit, and lose no more than others. */
+/* Coordinates beyond the range of float32 reach the page in another unit, and lose no more precision than
+ * others. */
 static void huge_scenes_have_a_unit(void **state) {
     (void)state;
     static const double scales[] = {0x1p280, 0x1p-280};

@@ -1,5 +1,5 @@
 /* The parts of a replay that a report keeps: contacts, orientations, detector points, and every n-th frame
- * of long ones. */
+ * of long recordings. */
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
 #include "tests/support/test.h"
@@ -39,7 +39,7 @@ static report *create_report(const report_options *options) {
     return r;
 }
 
-/* The arrays that the page should have, from a replay of the test's own. */
+/* The arrays that the page should have, from a separate replay. */
 typedef struct expected {
     uint32_t count, interval[CONTACTS_MAX], vertices[CONTACTS_MAX][4];
     uint8_t kind[CONTACTS_MAX];
@@ -150,7 +150,7 @@ static void expect_contacts(const page *p) {
     expect_bytes(p, "contact_point", found.point, found.count * sizeof *found.point);
 }
 
-/* A second detector finds the same: the first's state must not matter to it. */
+/* Replays with a second detector and expects the same: the first one's state must not matter. */
 static void check_replay(recorded shape, recorded again, cscd_method method) {
     report_rig rig = report_rig_create(shape, method), own = report_rig_create(again, method);
     report_options options = report_rig_options(&rig);
@@ -179,14 +179,14 @@ static void contacts_and_orientations_come_back(void **state) {
 
 /* ---- of long and large ones only a part -------------------------------------------------------------- */
 
-/* A list of the JSON with these numbers. */
+/* Expects a list of the JSON to have these numbers. */
 static void expect_list(const json_node *list, const uint32_t *numbers, size_t count) {
     assert_int_equal(list->count, count);
     for (size_t i = 0; i < count; i++) assert_true(json_node_item(list, i)->number == numbers[i]);
 }
 
-/* Eight vertices in more than half a million frames: every fifth is kept; the replay is interrupted after
- * frame 112. */
+/* The recording has eight vertices in more than half a million frames. Every fifth is kept, and the replay
+ * is interrupted after frame 112. */
 static void of_long_recordings_few_frames_are_kept(void **state) {
     (void)state;
     static const uint32_t kept[] = {100, 105, 110, 112};
@@ -208,7 +208,7 @@ static void of_long_recordings_few_frames_are_kept(void **state) {
         assert_true(difference < 1e-3 && difference > -1e-3);
     }
     assert_int_equal(orientation.size, 3 * 2);     /* of the intervals 100, 105, 110 */
-    assert_false(page_has(&p, "detector_points")); /* two million times two */
+    assert_false(page_has(&p, "detector_points")); /* they would be two million times two */
     free(shown);
     free(frames.data);
     free(orientation.data);
@@ -216,7 +216,7 @@ static void of_long_recordings_few_frames_are_kept(void **state) {
     report_rig_destroy(&rig);
 }
 
-/* The surroundings count, too: with this many vertices there is room for the ends only. */
+/* The surroundings count, too: with this many vertices there is room only for the first and last frame. */
 static void moving_scenery_takes_room(void **state) {
     (void)state;
     static const uint32_t triangle[] = {0, 1, 2};
@@ -256,7 +256,7 @@ static void scenery_comes_back(void **state) {
         expect_bytes(&p, "scenery_triangles", triangle, sizeof triangle);
         page_bytes frames = page_array(&p, "scenery_frames");
         double *shown = page_frames(frames, 3, count, NULL);
-        assert_memory_equal(shown, positions, count * sizeof *positions); /* of powers of two: exact */
+        assert_memory_equal(shown, positions, count * sizeof *positions); /* exact: powers of two */
         free(shown);
         free(frames.data);
         page_free(&p);
@@ -264,7 +264,7 @@ static void scenery_comes_back(void **state) {
     }
 }
 
-/* Gives vertices numbers of a file, which here are made up. */
+/* Gives vertices their numbers in the file, which are made up here. */
 static void number_vertices(void *user, const cscd_contact *contact, uint32_t vertices[4]) {
     for (uint32_t i = 0; i < 4; i++) vertices[i] = *(const uint32_t *)user + contact->a + i;
 }
@@ -272,8 +272,8 @@ static void number_vertices(void *user, const cscd_contact *contact, uint32_t ve
 /* Made-up contacts, because their number alone decides how many are kept. */
 enum { INTERVALS = 30, MANY = 5000, SHARE = REPORT_CONTACTS_MAX / INTERVALS };
 
-/* The first three intervals have none; the next have what these leave, and the last no less than their share.
- */
+/* The first three intervals have no contacts. The next may use what these leave, and the last still has
+ * its share. */
 static uint32_t found_in(uint32_t interval) {
     return interval < 3 ? 0 : MANY;
 }
@@ -321,7 +321,7 @@ static void of_many_contacts_each_interval_keeps_its_share(void **state) {
     assert_true(json_node_number(contacts, "kept") == REPORT_CONTACTS_MAX && count == REPORT_CONTACTS_MAX);
     assert_true(json_node_number(contacts, "interval_limit") == REPORT_INTERVAL_CONTACTS_MAX);
     assert_true(json_node_number(contacts, "limit") == REPORT_CONTACTS_MAX);
-    assert_int_equal(*(const uint32_t *)(const void *)heats.data, (INTERVALS - 3) * MANY); /* of the face 0 */
+    assert_int_equal(*(const uint32_t *)(const void *)heats.data, (INTERVALS - 3) * MANY); /* for face 0 */
     page_bytes all[] = {intervals, times, numbers, heats};
     for (size_t a = 0; a < sizeof all / sizeof *all; a++) free(all[a].data);
     assert_false(page_has(&p, "orientation") || page_has(&p, "detector_points"));
