@@ -137,7 +137,10 @@ static bool run_frames(const caller_kind *kind, caller *c, const uint64_t *calls
         if (!kind->advance(c, error)) return false;
         s->total[i] = timer_now_ms() - begin;
         s->detect[i] = c->detect_ms - detect_before;
-        *(i == 0 ? &s->first_calls : &s->calls[(uint64_t)i * PARTS / s->count]) += *calls - calls_before;
+        if (i == 0)
+            s->first_calls += *calls - calls_before;
+        else
+            s->calls[(uint64_t)i * PARTS / s->count] += *calls - calls_before;
     }
     terminal_progress_end(&shown);
     return true;

@@ -130,7 +130,10 @@ static double contact_frame(void) {
         double frame = 0.5 * (before + after), theta = bend_angle(frame);
         double d = 0.5 * rise * theta / (2.0 * pi), delta = 1.0 - sqrt(1.0 - d * d);
         bool apart = theta - 2.0 * theta / length * delta < 2.0 * pi;
-        *(apart ? &before : &after) = frame;
+        if (apart)
+            before = frame;
+        else
+            after = frame;
     }
     return after;
 }

@@ -77,8 +77,11 @@ static void apportion_vertices(ring *rings, uint32_t count, uint32_t total) {
         if (round == 0 && sum < total) {
             high *= 2.0;
             round = -1;
-        } else if (round > 0)
-            *(sum < total ? &low : &high) = scale;
+        } else if (round > 0 && sum < total) {
+            low = scale;
+        } else if (round > 0) {
+            high = scale;
+        }
     }
     uint32_t given = 0;
     ring **order = body_allocate(count, sizeof *order);

@@ -163,7 +163,8 @@ static bool check_complete(header_parser *parser) {
         const ply_element *element = (const ply_element *)header->elements.data + i;
         if (element->kind == PLY_OTHER) continue;
         bool is_vertex = element->kind == PLY_VERTEX;
-        *(is_vertex ? &has_vertex : &has_face) = true;
+        has_vertex = has_vertex || is_vertex;
+        has_face = has_face || !is_vertex;
         for (int role = is_vertex ? PLY_X : PLY_CORNERS; role <= (is_vertex ? PLY_Z : PLY_CORNERS); role++) {
             if (has_role(header, element, (ply_role)role)) continue;
             return file_reader_fail_here(parser->reader, "element '%s' lacks the property '%s'",
