@@ -3,7 +3,7 @@
 
 #include "runtime/culling/culling_rules.h"
 
-/* What the published rules do otherwise than ours; a benchmark switches single ones on. */
+/* The differences between the published rules and ours; a benchmark switches single ones on. */
 enum {
     PUBLISHED_UNPROVEN = 1,        /* culls also where the start is not known to be embedded */
     PUBLISHED_STILL = 2,           /* the detector point stays where it is at the start */
@@ -12,7 +12,7 @@ enum {
     PUBLISHED_ALL = 15
 };
 
-/* The rules of a set of these; without PUBLISHED_UNPROVEN only embedded components are culled. */
+/* Returns the rules for a set of these. Without PUBLISHED_UNPROVEN only embedded components are culled. */
 culling_rules published_rules(int set);
 
 extern const culling_rules published_culling; /* the rules of PUBLISHED_ALL */

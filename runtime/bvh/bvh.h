@@ -28,22 +28,22 @@ typedef struct bvh_leaf {
     uint32_t triangles[LANES]; /* UINT32_MAX: empty */
 } bvh_leaf;
 
-/* Sets of lanes, of a leaf's triangles or of a block's children. */
+/* Sets of lanes: of the triangles of a leaf, or of the children of a block. */
 typedef struct lane_flags {
-    uint8_t used;        /* hold triangles; a prefix */
-    uint8_t plus, minus; /* all their triangles are PLUS, or all MINUS */
+    uint8_t used;        /* lanes that hold triangles; a prefix of all lanes */
+    uint8_t plus, minus; /* lanes whose triangles are all PLUS, or all MINUS */
     uint8_t
-        newly_kept; /* hold triangles that have lost their orientation since the last pass, or unproven ones */
+        newly_kept; /* lanes with unproven triangles or some that have lost their orientation since the last pass */
 } lane_flags;
 
 /* Child i of a block is first_children + i on the level below: a leaf on level 0, a tree on the tree level. */
 typedef struct bvh_level {
     uint32_t block_count;
     uint32_t *first_children;
-    float *bounds; /* per block and axis 8 lows and 8 highs; of empty lanes the lows are above the highs */
+    float *bounds; /* per block and axis 8 lows and 8 highs; in empty lanes the low is above the high */
     lane_flags *flags;
 
-    /* Byte i of a block: its children that are to be compared with child i, itself among them; NULL: all are. */
+    /* Byte i of a block: the children that child i is compared with, itself included. NULL: with all of them. */
     uint64_t *self_pairs;
 
     /* The children of each block that hold obstacles only, which are not compared with each other; NULL: none do. */
@@ -54,17 +54,17 @@ typedef struct bvh_level {
  * and multiplies by the BVH's scale. */
 typedef struct bvh_tree {
     uint32_t region;
-    bool skip_adjacent; /* pairs of its triangles that share a vertex are not looked for */
+    bool skip_adjacent; /* the traversal leaves out pairs of its triangles that share a vertex */
     uint32_t first_leaf, leaf_count, first_record, record_count;
     uint32_t first_blocks[TREE_LEVEL_MAX]; /* per level below the tree level */
     double origin[2][3];
     float reach;           /* no scaled coordinate in the interval has a larger magnitude */
-    float slack[2];        /* bounds are rounded outward by so much along axes, and along diagonals */
+    float slack[2];        /* how far bounds are rounded outward: along axes, and along diagonals */
     float detector[2][3];  /* its detector point in its frame */
     double weighted[2][3]; /* the mean of its records by their weights, at the start and at the end */
 } bvh_tree;
 
-/* Records begin to end - 1 of a tree, which one thread copies in at a time. */
+/* Records begin to end - 1 of a tree. One thread copies in one chunk at a time. */
 typedef struct record_chunk {
     uint32_t tree, begin, end;
     copied copied;
@@ -79,17 +79,17 @@ typedef struct bvh {
     bvh_leaf *leaves;
     lane_flags *leaf_flags;             /* of triangles */
     lane_flags *flags_before;           /* the leaf_flags before the last bvh_mark_newly_kept */
-    uint64_t *leaf_self_pairs;          /* as in a level, of triangles; NULL: all */
+    uint64_t *leaf_self_pairs;          /* like self_pairs of a level, but of triangles; NULL: all */
     uint32_t *block_trees, *leaf_trees; /* the tree of each block of level 0, and of each leaf */
     uint32_t *record_vertices;          /* the mesh's vertex of a record */
-    float *record_weights;              /* in the detector point */
+    float *record_weights;              /* per record, its weight in the detector point */
     record_chunk *chunks;               /* in the order of the trees */
     uint32_t chunk_count;
     float (*records)[8]; /* x y z . at the start, x y z . at the end, scaled, in the tree's frame */
     bvh_level levels[BVH_LEVEL_MAX];
     int tree_level, level_count;
     double scale;
-    uint32_t *slots; /* where a triangle is: 8 * leaf + lane */
+    uint32_t *slots; /* per triangle, where it is: 8 * leaf + lane */
 } bvh;
 
 /* Triangles in regions 0 to count - 1, none of them empty, and none in two components unless joined on purpose by a
@@ -113,44 +113,44 @@ static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
     return f->leaves[slot / LANES].triangles[slot % LANES];
 }
 
-/* Moves frames, records and bounds to the interval from x0 to x1, or to a moment if both are the same array. All flags
- * are cleared, and no pair is hidden. The volumes are widened by so much that those of triangles that come within
- * distance of each other overlap. */
+/* Moves frames, records and bounds to the interval from x0 to x1, or to a moment if both are the same array. Clears
+ * all flags and shows all hidden pairs. Volumes are widened so far that those of two triangles overlap when the
+ * triangles come within distance of each other. */
 void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
 
-/* The first fault of the structure as a sentence, or NULL. After a build: lanes fill prefixes, blocks of a tree and
- * level lie together, slots and leaves are inverse. After a refit, bounds also hold what is below. Takes linear time;
- * asserts call it in debug and sanitizer builds. */
+/* Returns the first fault of the structure as a sentence, or NULL. After a build it checks that lanes fill prefixes,
+ * that the blocks of one tree and level lie together, and that slots and leaves are inverse. After a refit it also
+ * checks that bounds hold the bounds below them. Takes linear time; asserts call it in debug and sanitizer builds. */
 const char *bvh_validate(const bvh *f, bool refitted);
 
 /* Returns a fault as a sentence, or NULL: a tree whose first triangle belongs to a culled component must hold triangles
  * of that component only. Takes linear time; an assert of bvh_orient calls it. */
 const char *bvh_validate_culled(const bvh *f, const bool *culled);
 
-/* Shows all pairs that are hidden, where there is room for hidden pairs. */
+/* Shows all hidden pairs again. Without room for hidden pairs there are none, and it does nothing. */
 void bvh_show_all(bvh *f);
 
-/* Makes room for hidden pairs, of which there are none yet. False: no memory. */
+/* Makes room for hidden pairs. None is hidden yet. False: no memory. */
 bool bvh_allow_hiding(bvh *f);
 
 static inline bool bvh_can_hide(const bvh *f) {
     return f->leaf_self_pairs != NULL;
 }
 
-/* Leaves out the pairs of adjacent triangles of these components; NULL: of none. */
+/* Makes the traversal leave out pairs of adjacent triangles in the given components; NULL: in none. */
 void bvh_skip_adjacent(bvh *f, const bool *components);
 
 /* Orientation of a triangle as seen from a detector point d during a whole interval. PLUS (MINUS) certifies that
  * (p0 - d) . n > 0 (< 0) at every moment, with n = (p1 - p0) x (p2 - p0); ZERO is everything else. */
 enum { ORIENTATION_PLUS = 1, ORIENTATION_MINUS = 2, ORIENTATION_ZERO = 3 };
 
-/* May two triangles of one region with these orientations, or any of two sets of triangles, be the first to touch? Not
- * if all are PLUS, and not if all are MINUS (docs/theory/culling.md). */
+/* Can two triangles of one region with these orientations, or any two from two sets of triangles, be the first to
+ * touch? They cannot if all are PLUS, nor if all are MINUS (docs/theory/culling.md). */
 static inline bool orientations_may_touch(uint8_t a, uint8_t b) {
     return (a | b) == ORIENTATION_ZERO;
 }
 
-/* Which triangles are oriented, and from where. */
+/* Says which triangles are oriented, and from which points. */
 typedef struct orientation_query {
     const bool *culled;                  /* per component: only triangles of these are oriented */
     const bool *clean;                   /* per triangle: all others are ZERO; NULL: all are clean */
@@ -158,15 +158,15 @@ typedef struct orientation_query {
     bool still;                          /* detector points stay where they are at the start */
 } orientation_query;
 
-/* Where the detector points are at both ends of the last interval, per region, up to rounding. */
+/* Writes where the detector point of each region is at both ends of the last interval, up to rounding. */
 void bvh_detector_points(const bvh *f, const orientation_query *view, double (*points)[2][3]);
 
 /* Sets the detector points and the flags of the last interval. Writes the orientations of the triangles that are
  * oriented, per triangle of the mesh. */
 void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations);
 
-/* Sets the flags of leaves and blocks by orientations per triangle, those before and those now. Newly kept are
- * triangles that had an orientation and have none now. */
+/* Sets the flags of leaves and blocks from the orientations of the triangles before and now. A triangle is newly
+ * kept if it had an orientation and has none now. */
 void bvh_mark_newly_kept(bvh *f, const uint8_t *before, const uint8_t *now);
 
 /* Marks these triangles as newly kept, and clears all other flags. */

@@ -7,7 +7,7 @@
 
 enum { CHUNK_RECORDS = 1024 };
 
-/* Items that are ordered so that neighbours are near each other: the triangles of a region, or regions. */
+/* Items to be ordered so that neighbours are near each other: the triangles of a region, or regions. */
 typedef struct ordering {
     uint32_t *items;
     float (*centres)[3]; /* indexed by what items holds */
@@ -19,7 +19,7 @@ typedef struct builder {
     bvh_regions given;
     ordering triangles, regions;
     uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
-    uint32_t *record_of;      /* per vertex: its last record; of an earlier tree if below the tree's first */
+    uint32_t *record_of;      /* per vertex: its last record; in an earlier tree if below the tree's first */
 } builder;
 
 /* ---- order --------------------------------------------------------------------------------------------- */
@@ -64,7 +64,7 @@ static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end
             if (i >= j) break;
             swap_items(items, i++, j--);
         }
-        /* If i and j end on one item, it is the pivot, and in its place. */
+        /* If i and j end on the same item, this is the pivot and already in its place. */
         if (i == j && nth == i) return;
         if (nth < i)
             end = i;
@@ -73,8 +73,8 @@ static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end
     }
 }
 
-/* The number of items in the first half of a run: the largest power of two below count. So runs of 8^k items begin at
- * multiples of 8^k, and all runs at multiples of their size. */
+/* Returns the number of items in the first half of a run: the largest power of two below count. So runs of 8^k items
+ * begin at multiples of 8^k, and all runs at multiples of their size. */
 static uint32_t first_share(uint32_t count) {
     uint32_t share = 1;
     while (share < count - share) share *= 2;
@@ -101,7 +101,8 @@ static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
     }
 }
 
-/* Centres of triangles, and of regions as the mean of these: relative to the first corner, scaled to floats. */
+/* Computes the centres of triangles, and those of regions as the means of these, relative to the first corner and
+ * scaled to floats. */
 static void find_centres(builder *b, const double *positions, double scale) {
     const cscd_mesh *mesh = b->mesh;
     const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
@@ -212,7 +213,7 @@ static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, 
     return at;
 }
 
-/* The number of levels of the largest tree, at least one. */
+/* Returns the number of levels of the largest tree, at least one. */
 static int height_of(const bvh *f) {
     int height = 1;
     for (uint32_t p = 0; p < f->tree_count; p++) {
@@ -223,8 +224,8 @@ static int height_of(const bvh *f) {
     return height;
 }
 
-/* Adds the blocks of one level of all trees. counts: the number of children of each tree there, and on return that of its
- * blocks. */
+/* Adds the blocks of one level of all trees. On entry counts holds the number of children of each tree on this
+ * level, on return the number of its blocks. */
 static bool add_tree_level(bvh *f, int level, uint32_t *counts) {
     uint32_t total = 0, at = 0, child = 0;
     for (uint32_t p = 0; p < f->tree_count; p++) total += blocks_over(counts[p]);
@@ -324,7 +325,7 @@ static bool allocate_bvh(const builder *b, bvh *f) {
            f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
-/* The power of two that brings the extent of the positions near 1. */
+/* Returns the power of two that brings the extent of the positions near 1. */
 static double scale_for(const cscd_mesh *mesh, const double *positions) {
     const uint32_t *corners = mesh->triangles[0];
     const double *origin = positions + (size_t)corners[0] * 3;

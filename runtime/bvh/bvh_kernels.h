@@ -9,13 +9,13 @@ struct bvh_tree;
 struct traversal;
 struct traversal_lane;
 
-/* What is known of the records that were copied: the largest magnitude of a coordinate, and the weighted sums of those at
+/* Summary of the copied records: the largest magnitude of a coordinate, and the weighted sums of the coordinates at
  * the start and at the end. */
 typedef struct copied {
     double reach, weighted[2][3];
 } copied;
 
-/* Extents along the axes, added up. */
+/* Sums of extents along the axes, over all leaves and over all triangles. */
 typedef struct extents {
     double leaves, triangles;
 } extents;
@@ -28,11 +28,11 @@ typedef struct bvh_kernels {
     /* Computes the bounds of the children of blocks begin to end - 1 of any level but the tree level. */
     void (*refit)(const struct bvh *f, int level, uint32_t begin, uint32_t end);
 
-    /* The extents of all leaves, and of all triangles, at the start. */
+    /* Sums the extents of all leaves, and those of all triangles, at the start. */
     extents (*extents_at_start)(const struct bvh *f);
 
-    /* Writes the flags of leaves begin to end - 1 of a tree, and the orientations of their triangles. clean: per
-     * triangle of the mesh; all others are ZERO; NULL: all are clean. */
+    /* Writes the flags of leaves begin to end - 1 of a tree, and the orientations of their triangles. clean has an
+     * element per triangle of the mesh, and triangles that are not clean become ZERO; NULL: all are clean. */
     void (*orient)(const struct bvh *f, const struct bvh_tree *tree, uint32_t begin, uint32_t end,
                    const bool *clean, uint8_t *orientations);
 

@@ -1,4 +1,4 @@
-/* The kernels of the BVH under the names that they have on the level that is compiled. */
+/* Declares the kernels of the BVH under the names that they have on the level that is being compiled. */
 #pragma once
 
 #include "runtime/bvh/bvh_kernels.h"

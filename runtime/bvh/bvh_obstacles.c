@@ -1,7 +1,7 @@
-/* Marks trees of obstacles, and blocks of such trees: they are not compared with each other. */
+/* Marks trees of obstacles, and blocks of such trees, which are not compared with each other. */
 #include "runtime/bvh/bvh.h"
 
-/* A tree holds obstacles only, or none at all. */
+/* Tells by one triangle: a tree holds obstacles only, or none at all. */
 static bool tree_is_obstacle(const bvh *f, uint32_t tree) {
     return triangle_of_obstacle(f->mesh, f->leaves[f->trees[tree].first_leaf].triangles[0]);
 }

@@ -1,4 +1,4 @@
-/* Flags of leaves and blocks: their orientations, and what is newly kept. */
+/* Sets the flags of leaves and blocks: their orientations, and which triangles are newly kept. */
 #include "runtime/bvh/bvh.h"
 
 #include <assert.h>

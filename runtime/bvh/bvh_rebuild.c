@@ -5,15 +5,15 @@
 
 enum { MEASURE_EVERY = 16, USELESS_MAX = 4 };
 
-/* A spread that has grown by more than the one factor asks for a rebuild, and a rebuild that shrinks it by more than
- * the other was of use. */
+/* A spread that has grown by more than the factor `decayed` calls for a rebuild. A rebuild was of use if it has
+ * shrunk the spread by more than the factor `of_use`. */
 static const double decayed = 1.25, of_use = 1.1;
 
 static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bvh *out) {
     return bvh_build(r->mesh, r->regions, positions, r->axis_count, out);
 }
 
-/* How far blocks of trees extend, as a multiple of their trees; 0 where there is one block only. */
+/* Returns how far blocks of trees extend, as a multiple of the extent of their trees; 0 if there is only one block. */
 static double spread_of_trees(const bvh *f) {
     const bvh_level *level = &f->levels[f->tree_level];
     const size_t stride = (size_t)f->axis_count * 2 * LANES;
@@ -51,7 +51,7 @@ static bool replace_trees(bvh_rebuild *r, bvh *f, const double *positions) {
     return true;
 }
 
-/* The first volumes are those of a step, so that the first spread is compared with others like it. */
+/* The first volumes are widened as for a step, so that the first spread can be compared with later ones. */
 static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
                                   double step_distance) {
     if (f->mesh == NULL) {

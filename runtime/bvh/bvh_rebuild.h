@@ -3,19 +3,20 @@
 
 #include "runtime/bvh/bvh.h"
 
-/* How far leaves extend, as a multiple of their triangles, and blocks of trees, as a multiple of their trees. */
+/* The extent of leaves as a multiple of that of their triangles, and the extent of blocks of trees as a multiple of
+ * that of their trees. */
 typedef struct bvh_spread {
     double leaves, trees;
 } bvh_spread;
 
-/* What trees are built from, and how they have fared since. */
+/* The input that trees are built from, and how loose they have become since. */
 typedef struct bvh_rebuild {
     const cscd_mesh *mesh;
     bvh_regions regions;
     int axis_count;
 
     bvh_spread spread_when_built;
-    uint32_t intervals_unmeasured; /* since the spread was measured last */
+    uint32_t intervals_unmeasured; /* intervals since the spread was last measured */
     uint32_t useless_rebuilds;     /* in a row, at most 4: each doubles the time to the next measurement */
     bool rebuilt;                  /* by the last call of bvh_rebuild_move */
 } bvh_rebuild;
@@ -30,7 +31,7 @@ typedef struct bvh_rebuild {
 cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
                              double step_distance);
 
-/* Refits the trees, which are built if there are none, to a moment. Nothing is measured, because only intervals count.
- */
+/* Refits the trees to a moment, and builds them first if there are none. It measures nothing, because only intervals
+ * count. */
 cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, double distance,
                                 double step_distance);

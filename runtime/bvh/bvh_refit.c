@@ -5,11 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-/* Task sizes of a few microseconds each. Blocks of level 0 cost most. Levels of fewer than SHARED_BLOCKS_MIN blocks run on
- * one thread. */
+/* Tasks take a few microseconds each. Blocks of level 0 cost most. Levels of fewer than SHARED_BLOCKS_MIN blocks run
+ * on one thread. */
 enum { SAMPLE_COUNT = 64, SHARED_BLOCKS_MIN = 64, LOW_BLOCKS_PER_TASK = 8, HIGH_BLOCKS_PER_TASK = 128 };
 
-/* For reaches between these no product of the kernels over- or underflows. */
+/* No product of the kernels overflows or underflows while the reach lies between these two. */
 static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
 
 typedef struct moving {
@@ -21,8 +21,8 @@ typedef struct moving {
 
 /* ---- frames and records -------------------------------------------------------------------------------- */
 
-/* The origins are the means of a few vertices, because any points serve. The difference of the two origins is the common
- * displacement of the tree, which is thereby taken out of all its volumes. */
+/* The origins are the means of a few vertices, since any points will do. The difference of the two origins is the
+ * common displacement of the tree, which is thereby taken out of all its volumes. */
 static void place_frame(const bvh *f, bvh_tree *tree, const moving *m) {
     uint32_t step = tree->record_count / SAMPLE_COUNT + 1, count = 0;
     double sums[2][3] = {{0.0}};
@@ -57,15 +57,18 @@ static double copy_records(moving *now) {
     return reach;
 }
 
-/* A float not below x. */
+/* Returns a float that is not below x. */
 static float float_above(double x) {
     return (float)(x + x * 0x1p-23 + 0x1p-120);
 }
 
-/* With u = 2^-24 and M the reach, records are off by u M, and rounding a bound outward rounds it once more:
- * 2.1 u M along axes. Along diagonals it is 3 u M, 5 u M for two additions of sums up to 2 M and 3 M, and
- * 3 u M: 11.1 u M. 4 u M and 16 u M are taken. Volumes that are each widened by half a distance d, along
- * diagonals by sqrt 3 / 2 of it, overlap where features come within d. */
+/* Chooses the slack. With u = 2^-24 and M the reach, records are off by u M, and rounding a bound outward rounds it
+ * once more.
+ * - Along axes a bound is off by at most 2.1 u M; the code takes 4 u M.
+ * - Along diagonals the records contribute 3 u M, two additions of sums up to 2 M and 3 M contribute 5 u M, and
+ *   rounding the bound contributes 3 u M, together at most 11.1 u M; the code takes 16 u M.
+ * Volumes are each widened by half a distance d, along diagonals by sqrt 3 / 2 of it, so they overlap where features
+ * come within d. */
 static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
     tree->reach = float_above(sum->reach);
     tree->slack[0] = float_above(sum->reach * 0x1p-22 + 0.5 * distance);
@@ -73,7 +76,7 @@ static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
     memcpy(tree->weighted, sum->weighted, sizeof tree->weighted);
 }
 
-/* Chunks stand in the order of trees. */
+/* Chunks are sorted by tree. */
 static void finish_trees(const bvh *f, double distance) {
     for (uint32_t i = 0, at = 0; i < f->tree_count; i++) {
         copied sum = {0};
@@ -122,8 +125,8 @@ static void refit_level(moving *now) {
     parallel_run(f->mesh->context->threads, tasks, refit_task, now);
 }
 
-/* A tree's volume over the interval in the frame of another one, rounded outward by 2^-20 of what is added.
- */
+/* Writes a tree's volume over the interval in the frame of another tree, rounded outward by 2^-20 of what is
+ * added. */
 static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, const bvh_tree *frame,
                        float *bounds) {
     double from[2][3], size = 4.0 * (double)tree->reach;
@@ -151,7 +154,7 @@ static void place_nothing(const bvh *f, float *bounds) {
     }
 }
 
-/* The tree level: each tree has one block on the level below, of its own number. */
+/* Computes the bounds on the tree level. Block i of the level below is the only block there of tree i. */
 static void place_trees(const bvh *f) {
     const bvh_level *level = &f->levels[f->tree_level];
     size_t stride = (size_t)f->axis_count * 2 * LANES;

@@ -5,7 +5,7 @@
 
 /* ---- order ------------------------------------------------------------------------------------------- */
 
-/* Some lanes, and none after an empty one. */
+/* Is at least one lane used, and none after an empty one? */
 static bool is_prefix(uint32_t used) {
     return used != 0 && (used & (used + 1)) == 0;
 }
@@ -51,7 +51,7 @@ static const char *check_trees(const bvh *f) {
     return triangles == f->mesh->triangle_count ? NULL : "the leaves do not hold every triangle once";
 }
 
-/* The children of the blocks of a level follow each other, without a gap, up to count. */
+/* Checks that the children of the blocks of a level follow each other without a gap, up to count. */
 static const char *check_children(const bvh_level *level, uint32_t count) {
     uint32_t child = 0;
     for (uint32_t block = 0; block < level->block_count; block++) {
@@ -62,7 +62,7 @@ static const char *check_children(const bvh_level *level, uint32_t count) {
     return child == count ? NULL : "a level has not every child once";
 }
 
-/* The blocks of a tree on a level lie together, and hold what the tree has on the level below. */
+/* Checks that the blocks of a tree on a level lie together and hold what the tree has on the level below. */
 static const char *check_tree_blocks(const bvh *f, int index) {
     const bvh_level *level = &f->levels[index];
     for (uint32_t i = 0; i < f->tree_count; i++) {
@@ -127,7 +127,7 @@ static bounds_range range_of_block(const bvh *f, int level, uint32_t block, int 
     return range;
 }
 
-/* A tree's range in the frame of the first tree, over the interval. */
+/* Returns a tree's range over the interval, in the frame of the first tree. */
 static bounds_range range_of_tree(const bvh *f, uint32_t index, int axis) {
     const bvh_tree *tree = &f->trees[index], *frame = &f->trees[0];
     bounds_range own = range_of_block(f, f->tree_level - 1, index, axis), moved = {INFINITY, -INFINITY};

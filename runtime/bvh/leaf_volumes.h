@@ -4,7 +4,7 @@
 #include "runtime/bvh/bvh.h"
 #include "src/core/simd_lanes.h"
 
-/* By corner, end of the interval and axis, a lane per triangle. */
+/* Indexed by corner, end of the interval and axis, with a lane per triangle. */
 typedef f32x8 leaf_corners[3][2][3];
 
 static inline void load_corners(const bvh *f, const bvh_leaf *l, leaf_corners out) {
@@ -19,13 +19,13 @@ static inline void load_corners(const bvh *f, const bvh_leaf *l, leaf_corners ou
     }
 }
 
-/* Volumes of the triangles: at the start and at the end along x, y, z, x+y+z, x+y-z, x-y+z, -x+y+z; over
- * the interval, low and high, along x, y, z. All rounded outward. */
+/* Volumes of the triangles: at the start and at the end along x, y, z, x+y+z, x+y-z, x-y+z, -x+y+z; over the
+ * interval, low and high, along x, y, z. All of them are rounded outward. */
 typedef struct leaf_volumes {
     f32x8 low[2][KDOP_AXES], high[2][KDOP_AXES], swept[BOX_AXES][2];
 } leaf_volumes;
 
-/* The directions of kdop_axes beyond those of boxes. */
+/* Computes the coordinates along the directions of kdop_axes that boxes do not have. */
 static inline void diagonals_of(const f32x8 p[3], f32x8 out[KDOP_AXES - BOX_AXES]) {
     f32x8 sum = p[0] + p[1], difference = p[0] - p[1];
     out[0] = sum + p[2];
@@ -42,7 +42,7 @@ static inline void enclose_corners(const f32x8 *a, const f32x8 *b, const f32x8 *
     }
 }
 
-/* slack: along axes, and along diagonals. */
+/* slack[0] is for axes, slack[1] for diagonals. */
 static inline void volumes_of(leaf_corners corners, const float slack[2], leaf_volumes *v) {
     for (int e = 0; e < 2; e++) {
         f32x8 diagonals[3][KDOP_AXES - BOX_AXES];

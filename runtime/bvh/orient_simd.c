@@ -1,18 +1,21 @@
 /* Orientations of triangles over an interval, eight at a time.
  *
- * s(t) = c . (a x b), with a = p1 - p0, b = p2 - p0 and c = p0 - d moving linearly, is a cubic in t; its
- * Bernstein coefficients are compared with a bound on their error, the middle two times 3.
+ * s(t) = c . (a x b), with a = p1 - p0, b = p2 - p0 and c = p0 - d moving linearly, is a cubic in t. Its Bernstein
+ * coefficients, the middle two times 3, are compared with a bound on their error.
  *
- * With u = 2^-24 and M the tree's reach, a coordinate of a record is off by at most u M (1 + 2^-20); d is
- * what it is by definition. So components of a and b are off by 2.01 u M + u |a|, those of c by 1.01 u M + u
- * |c|. Let A, B and C be the largest magnitudes of computed components over both ends, A, B <= 2 M. A
- * coefficient (times 3 for the middle ones, which are sums of three determinants) is at most a sum of 18
- * products, each at most A B C. Inputs off by u(2.01 M + A) and so on change a product by at most u (2.01 M B
- * C + 2.01 M A C + 1.01 M A B + 3 A B C) and terms of u^2, less than one in 2^20 of that; its two
- * multiplications and at most 6 additions add 8.01 u A B C. With C <= M' = M + |d|: 18 products stay below
- * u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B), computed with room in
- * 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B); nothing of this underflows by more than
- * the 2^-100 that is added. */
+ * Let u = 2^-24, M the tree's reach and M' = M + |d|.
+ * - A coordinate of a record is off by at most u M (1 + 2^-20). d is exact by definition.
+ * - So components of a and b are off by 2.01 u M + u |a| and 2.01 u M + u |b|, those of c by 1.01 u M + u |c|.
+ * - Let A, B and C be the largest magnitudes of computed components over both ends. Then A, B <= 2 M and C <= M'.
+ * - A coefficient (times 3 for the middle ones, which are sums of three determinants) is at most a sum of 18 products,
+ *   each at most A B C.
+ * - Inputs off by u (2.01 M + A) and so on change a product by at most
+ *   u (2.01 M B C + 2.01 M A C + 1.01 M A B + 3 A B C) and terms of u^2, less than one in 2^20 of that.
+ * - The two multiplications of a product and at most 6 additions add 8.01 u A B C.
+ * - So the errors of 18 products stay below
+ *   u (36.2 M (A + B) C + 18.2 M A B + 198.2 A B C) <= u M' (37 (A + B) C + 217 A B).
+ * The code takes 2^-18 M' (C (A + B) + 4 A B) = u M' (64 (A + B) C + 256 A B), which leaves room. Nothing of this
+ * underflows by more than the 2^-100 that is added. */
 #include "runtime/bvh/bvh_kernels_simd.h"
 
 #include "runtime/bvh/leaf_volumes.h"
@@ -73,7 +76,7 @@ static uint32_t clean_lanes(const bvh_leaf *l, uint32_t used, const bool *clean)
 _Static_assert((ORIENTATION_ZERO ^ 2) == ORIENTATION_PLUS && (ORIENTATION_ZERO ^ 1) == ORIENTATION_MINUS,
                "written without branches below");
 
-/* Lanes that are not used are after those that are, and repeat the first triangle. */
+/* Unused lanes follow the used ones, and repeat the first triangle. */
 static void store_orientations(const bvh_leaf *l, uint32_t used, uint32_t plus, uint32_t minus,
                                uint8_t *orientations) {
     for (int lane = LANES - 1; lane >= 0; lane--) {

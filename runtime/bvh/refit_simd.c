@@ -4,7 +4,7 @@
 #include "runtime/bvh/leaf_volumes.h"
 #include "src/core/simd_lanes.h"
 
-/* Least and greatest of a leaf's records, lane by lane. */
+/* Finds the least and greatest coordinates of a leaf's records, lane by lane. */
 static void enclose_records(const bvh *f, const bvh_leaf *l, f32x8 *low, f32x8 *high) {
     f32x8 least = f32x8_load(f->records[l->corners[0][0]]), greatest = least;
     for (int i = 0; i < 3; i++) {
@@ -18,7 +18,7 @@ static void enclose_records(const bvh *f, const bvh_leaf *l, f32x8 *low, f32x8 *
     *high = greatest;
 }
 
-/* Rows of eight leaves become bounds of a block along x, y, z. */
+/* Turns the rows of eight leaves into the bounds of a block along x, y, z. */
 static void store_boxes(f32x8 low[8], f32x8 high[8], float slack, float *bounds) {
     f32x8_transpose(low);
     f32x8_transpose(high);
@@ -28,7 +28,7 @@ static void store_boxes(f32x8 low[8], f32x8 high[8], float slack, float *bounds)
     }
 }
 
-/* Bounds of one child along the diagonals. */
+/* Stores the bounds of one child along the diagonals. */
 static void store_diagonals(leaf_corners corners, const float slack[2], int lane, float *bounds) {
     leaf_volumes v;
     volumes_of(corners, slack, &v);
@@ -38,7 +38,7 @@ static void store_diagonals(leaf_corners corners, const float slack[2], int lane
     }
 }
 
-/* A block of level 0. */
+/* Computes the bounds of a block of level 0. */
 static void enclose_leaves(const bvh *f, uint32_t block) {
     const bvh_tree *tree = &f->trees[f->block_trees[block]];
     const bvh_level *level = &f->levels[0];
@@ -64,7 +64,7 @@ static void enclose_leaves(const bvh *f, uint32_t block) {
     store_boxes(low, high, tree->slack[0], bounds);
 }
 
-/* A block of a higher level. */
+/* Computes the bounds of a block of a higher level. */
 static void enclose_blocks(const bvh *f, int index, uint32_t block) {
     const bvh_level *level = &f->levels[index], *below = level - 1;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
@@ -98,8 +98,8 @@ void SIMD_NAME(refit)(const bvh *f, int level, uint32_t begin, uint32_t end) {
     }
 }
 
-/* Empty lanes repeat the first triangle, so they do not extend the leaf; they count as triangles, the same
- * ones every time. */
+/* Empty lanes repeat the first triangle, so they do not extend the leaf. They count as triangles, but always the
+ * same ones, so spreads can be compared. */
 extents SIMD_NAME(extents_at_start)(const bvh *f) {
     extents sum = {0.0, 0.0};
     for (uint32_t i = 0; i < f->leaf_count; i++) {

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* Shares are block pairs, if possible at least SHARES_PER_LANE per lane. A BVH of fewer than SHARED_LEAVES_MIN leaves is
- * not worth a second thread. */
+/* Shares are block pairs; if possible, there are at least SHARES_PER_LANE per lane. A BVH of fewer than
+ * SHARED_LEAVES_MIN leaves is not worth a second thread. */
 enum { STACK_START = 1024, SHARES_PER_LANE = 128, SHARED_LEAVES_MIN = 96, VISITS_AT_ONCE = 16 };
 
 static bool create_lane(cscd_context *context, traversal_lane *lane) {

@@ -5,48 +5,48 @@
 
 #include <stdatomic.h>
 
-/* A potentially colliding pair of different triangles, by their slots. */
+/* A potentially colliding pair of different triangles, given by their slots. */
 typedef struct triangle_pair {
     uint32_t a, b;
 } triangle_pair;
 
-/* Two blocks of one level whose children are still to be compared, or one block and itself. Below the tree level, tree_a
- * and tree_b are the trees that the blocks belong to. */
+/* Two blocks of one level whose children are still to be compared, or one block and itself. Below the tree level,
+ * tree_a and tree_b are the trees that the blocks belong to. */
 typedef struct block_pair {
     uint32_t a, b, tree_a, tree_b;
     int32_t level;
 } block_pair;
 
-/* Which pairs of triangles, of those whose volumes overlap, a pass looks for. */
+/* Selects the pairs that a pass looks for, among the triangle pairs whose volumes overlap. */
 typedef enum traversal_pass {
     TRAVERSAL_KEPT,       /* all that the flags keep and that are not hidden */
     TRAVERSAL_NEWLY_KEPT, /* those that the flags keep now and did not keep before */
     TRAVERSAL_UNPROVEN    /* those of two unproven triangles */
 } traversal_pass;
 
-/* Volumes of the triangles of leaves that were visited lately; a leaf that is visited again after it has made room for
- * another one is computed again. The volumes are leaf_volumes of the kernels, of which only the size is known here. */
+/* Keeps the volumes of the triangles of leaves that were visited lately. A leaf that has been replaced by another
+ * one is computed again at its next visit. The volumes are the kernels' leaf_volumes; only their size is known here. */
 enum { LEAF_CACHE_SIZE = 128, LEAF_VOLUME_FLOATS = (4 * KDOP_AXES + 2 * BOX_AXES) * LANES };
 
 typedef struct leaf_cache {
-    uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is there; 0: none */
+    uint32_t tags[LEAF_CACHE_SIZE]; /* 1 + the leaf that is stored there; 0: none */
     float (*volumes)[LEAF_VOLUME_FLOATS];
 } leaf_cache;
 
-/* What one thread works on: its share of the open block pairs and its batch of results. */
+/* The work of one thread: its share of the open block pairs, and its batch of results. */
 typedef struct traversal_lane {
     _Alignas(CACHE_LINE_SIZE) block_pair *stack;
     size_t stack_count, stack_capacity;
     triangle_pair *pairs;
     uint32_t pair_count;
-    uint64_t boxes_tested, adjacent; /* pairs left out as adjacent, whose volumes overlap, too */
+    uint64_t boxes_tested, adjacent; /* adjacent: pairs with overlapping volumes that were left out */
     uint64_t pairs_found;            /* by the caller */
-    double search_ms, consume_ms;    /* of filling batches since the begin, and, by the caller, of the rest */
+    double search_ms, consume_ms;    /* time of filling batches since the begin; of the rest, by the caller */
     leaf_cache cache;
     bool out_of_memory;
 } traversal_lane;
 
-/* A visit adds no more: pairs of 64 leaf pairs; 64 pairs of children and 8 children with themselves. */
+/* The most that one visit adds: the pairs of 64 leaf pairs, and 64 pairs of children and 8 children with themselves. */
 enum { TRAVERSAL_PAIRS_PER_VISIT = 64 * 64, TRAVERSAL_PUSHES_PER_VISIT = 72 };
 enum { TRAVERSAL_BATCH_SIZE = 4 * TRAVERSAL_PAIRS_PER_VISIT, TRAVERSAL_BATCH_ENOUGH = 1024 };
 
@@ -56,9 +56,10 @@ typedef struct traversal {
     traversal_pass pass;
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
-    uint32_t busy_lanes; /* the first so many share this traversal; 1: it is too small to be shared */
+    uint32_t
+        busy_lanes; /* the first busy_lanes lanes share this traversal; 1: it is too small to be shared */
 
-    /* Open block pairs that no lane has taken yet: from next_share on. */
+    /* Open block pairs. Those from next_share on have not been taken by a lane yet. */
     block_pair *shares;
     uint32_t share_count;
     atomic_uint next_share;
@@ -68,23 +69,23 @@ typedef struct traversal {
 cscd_status traversal_create(cscd_context *context, traversal *out);
 void traversal_destroy(traversal *t);
 
-/* Starts a pass at the root of f, which is up to date. */
+/* Starts a pass at the root of f, which must be up to date. */
 void traversal_begin(traversal *t, const bvh *f, traversal_pass pass);
 
-/* Fills the lane's batch with some pairs that no lane has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more. Each lane
- * runs on one thread at a time, independently of the others. False: the batch is empty, and nothing is left but what
- * other lanes are working on, or the call is cancelled. The union of all batches, and the sum of boxes_tested, are the
- * same for any lane count. */
+/* Fills the lane's batch with some pairs that no lane has found yet, usually TRAVERSAL_BATCH_ENOUGH or a few more.
+ * Each lane runs on one thread at a time, independently of the others. False: the batch is empty, because only pairs
+ * that other lanes work on are left, or because the call is cancelled. The union of all batches, and the sum of
+ * boxes_tested, are the same for any lane count. */
 bool traversal_fill(traversal *t, uint32_t lane);
 
 /* OUT_OF_MEMORY: a stack could not grow, and pairs are missing. */
 cscd_status traversal_status(const traversal *t);
 
-/* Fills the batches of all lanes at once, as full as they get. *more is false when every batch is empty. Between two rounds
- * the caller consumes the batches. */
+/* Fills the batches of all lanes at once, as full as they get. *more is false when every batch is empty. Between two
+ * rounds the caller consumes the batches. */
 cscd_status traversal_round(traversal *t, bool *more);
 
-/* The share of the block pairs that lanes have taken; 0 as long as it is not known. */
+/* Returns the share of the block pairs that lanes have taken; 0 as long as it is not known. */
 double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);

@@ -1,12 +1,12 @@
 /* The visit of a pair of blocks: eight children are compared with eight.
  *
  *     block a        block b          visit_blocks(a, b), for each used lane i of a:
- *     +-+-+-+-+      +-+-+-+-+          lanes = lanes_to_compare(i)       by flags: orientation, obstacles, hidden pairs
- *     |0|1|2|.|      |0|1|2|.|          lanes &= ~lanes_apart(a[i], b)    eight volumes of b in one comparison
+ *     +-+-+-+-+      +-+-+-+-+          lanes = lanes_to_compare(i)     by flags: orientation, obstacles, hidden pairs
+ *     |0|1|2|.|      |0|1|2|.|          lanes &= ~lanes_apart(a[i], b)  eight volumes of b in one comparison
  *     +-+-+-+-+      +-+-+-+-+          visit_children(a[i], lanes of b)
- *        |  .         .  |                on a higher level: the pair (a[i], b[j]) goes on the stack, to be visited later
+ *        |  .         .  |                on a higher level: the pair (a[i], b[j]) goes on the stack for later
  *        |    .     .    |                on level 0: two leaves are compared at once, triangle i with eight triangles,
- *     +-+-+-+-+ .. +-+-+-+-+              by their boxes, then by their diagonals; what is left are pairs of the batch
+ *     +-+-+-+-+ .. +-+-+-+-+              by their boxes, then by their diagonals; the pairs left go to the batch
  *     |       |    |       |
  *
  * A block that is visited with itself compares lane i with the lanes after i, and its children with themselves. Blocks
@@ -15,14 +15,14 @@
 
 #include "runtime/bvh/leaf_volumes.h"
 
-/* Where tree b lies relative to tree a: per axis at both ends of the interval, rounded by at most slack, and between low
- * and high throughout. Volumes of a, moved back by as much, are compared with those of b. */
+/* The place of tree b relative to tree a: per axis at both ends of the interval, off by at most slack, and between
+ * low and high throughout. Volumes of a are moved back by as much and then compared with those of b. */
 typedef struct displacement {
     float at[2][KDOP_AXES], slack, low[KDOP_AXES], high[KDOP_AXES];
 } displacement;
 
-/* Differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and so is moving a volume;
- * slack for all of it, along diagonals three times, is 2^-20 of all lengths involved. */
+/* Rounding: differences of origins are off by 2^-52 of these, floats by 2^-24 of the sums, and a moved volume by as
+ * much. The slack that covers all of it, three times over along diagonals, is 2^-20 of all lengths involved. */
 static displacement displacement_between(const bvh *f, const bvh_tree *a, const bvh_tree *b) {
     displacement out;
     double start[3], end[3], size = (double)a->reach + (double)b->reach;
@@ -46,7 +46,7 @@ static displacement displacement_between(const bvh *f, const bvh_tree *a, const 
     return out;
 }
 
-/* The lanes of b whose volumes over the interval do not overlap that of lane i of a. */
+/* Returns the lanes of b whose volumes over the interval do not overlap that of lane i of a. */
 static inline uint32_t lanes_apart(const float *a, const float *b, int i, int axis_count,
                                    const displacement *d) {
     uint32_t lanes = 0;
@@ -62,8 +62,8 @@ static inline uint32_t lanes_apart(const float *a, const float *b, int i, int ax
     return lanes;
 }
 
-/* The lanes of b that lie on one side of lane i of a at both ends, along one of the axes from first on. They do so
- * throughout the interval, because points move linearly. */
+/* Returns the lanes of b that lie on one side of lane i of a at both ends, along one of the axes from first on. They
+ * do so throughout the interval, because points move linearly. */
 static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *b, int i, int first,
                                      int axis_end, const displacement *d) {
     uint32_t lanes = 0;
@@ -86,7 +86,7 @@ static inline uint32_t apart_at_ends(const leaf_volumes *a, const leaf_volumes *
 /* A pair of blocks or of leaves whose lanes are compared. */
 typedef struct lane_comparison {
     lane_flags a, b;
-    lane_flags before_a, before_b; /* of leaves, in the pass NEWLY_KEPT */
+    lane_flags before_a, before_b; /* flags of leaves before, in the pass NEWLY_KEPT */
     uint64_t self_pairs;
     uint32_t obstacles_a, obstacles_b; /* lanes that hold obstacles only */
     bool itself, one_tree, leaves;
@@ -97,7 +97,7 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
     return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
 }
 
-/* The lanes of b that are to be compared with lane i of a. */
+/* Returns the lanes of b that are to be compared with lane i of a. */
 static inline uint32_t lanes_to_compare(const lane_comparison *c, int i) {
     uint32_t lanes = c->b.used;
     if ((c->obstacles_a >> i & 1) != 0) lanes &= ~c->obstacles_b;
@@ -131,7 +131,7 @@ static const leaf_volumes *leaf_volumes_of(const bvh *f, leaf_cache *cache, uint
     return out;
 }
 
-/* The triangles of a leaf whose boxes overlap lane i of the bounds of a block. */
+/* Returns the triangles of a leaf whose boxes overlap lane i of the bounds of a block. */
 static inline uint32_t near_lane(const leaf_volumes *volumes, const float *bounds, int i,
                                  const displacement *d) {
     return ~lanes_apart(bounds, (const float *)volumes->swept, i, BOX_AXES, d) & ALL_LANES;
@@ -147,10 +147,10 @@ static inline void add_pairs(traversal_lane *lane, uint32_t slot, uint32_t first
 typedef struct leaf_pair {
     uint32_t a, b;
     const leaf_volumes *volumes_a, *volumes_b;
-    uint32_t rows, columns; /* lanes worth a look */
+    uint32_t rows, columns; /* the lanes of a and of b that are compared */
 } leaf_pair;
 
-/* The given lanes of b without those whose triangles share a vertex with triangle i of a. */
+/* Returns the given lanes of b, without those whose triangles share a vertex with triangle i of a. */
 static inline uint32_t lanes_without_shared_vertex(const bvh *f, const leaf_pair *pair, int i, uint32_t lanes,
                                                    bool one_tree) {
     const bvh_leaf *a = &f->leaves[pair->a], *b = &f->leaves[pair->b];
@@ -211,7 +211,8 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
     const bvh *f = t->bvh;
     const bvh_level *level = &f->levels[at->level];
     uint32_t child_a = level->first_children[at->a] + (uint32_t)i, first_b = level->first_children[at->b];
-    bool skip_adjacent = f->trees[at->tree_a].skip_adjacent; /* tree b is of the component, or not adjacent */
+    /* Tree b belongs to the same component, or no triangle of it is adjacent to one of tree a. */
+    bool skip_adjacent = f->trees[at->tree_a].skip_adjacent;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     for (; lanes != 0; lanes &= lanes - 1) {
         int j = __builtin_ctz(lanes);
@@ -235,7 +236,7 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
             if (pair.columns == 0) continue;
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
-        if (d == NULL) /* compiled apart, for it is most of the work */
+        if (d == NULL) /* compiled separately, because it is most of the work */
             compare_leaves(t, lane, &pair, skip_adjacent, true, NULL);
         else
             compare_leaves(t, lane, &pair, skip_adjacent, false, d);

@@ -12,14 +12,14 @@ typedef struct culling {
     double *triangle_weights;        /* as in the plan */
     double (*detector_offsets)[3];   /* as in the plan */
     double (*detector_points)[2][3]; /* per region, at the start and at the end of the interval */
-    uint8_t *facing;                 /* orientations in the interval; ZERO where a triangle was not clean */
-    uint8_t *orientations; /* the same, but ZERO also where contacts have tainted a triangle since */
+    uint8_t *facing;       /* orientations in the interval; ZERO for triangles that were not clean */
+    uint8_t *orientations; /* the same, but also ZERO for triangles that contacts have tainted since */
     uint8_t *earlier;      /* the orientations of the last pass */
-    uint64_t plus, minus;  /* how many are facing PLUS and MINUS */
+    uint64_t plus, minus;  /* how many triangles face PLUS, and MINUS */
 } culling;
 
-/* What the detector needs of a plan, copied; without one, a region per component and the mean of its
- * triangles for a detector point. Nothing is culled yet. */
+/* Copies what the detector needs from a plan. Without a plan, each component is one region, and the mean of its
+ * triangles is its detector point. Nothing is culled yet. */
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);
 void culling_destroy(culling *c);
 
@@ -29,7 +29,7 @@ void culling_join_components(culling *c);
 /* Takes the orientations over from facing, which has been filled in, and counts them. */
 void culling_begin(culling *c);
 
-/* Ends a pass: all pairs of triangles that the orientations keep have been tested. */
+/* Ends a pass, after all pairs of triangles that the orientations keep have been tested. */
 void culling_pass_done(culling *c);
 
 /* Keeps all pairs of this triangle from now on. False: they were kept already. */
@@ -48,7 +48,7 @@ static inline bool culling_keeps(const culling *c, uint32_t a, uint32_t b) {
            orientations_may_touch(c->orientations[a], c->orientations[b]);
 }
 
-/* Was it kept in the last pass? */
+/* Did the orientations of the last pass keep this pair? */
 static inline bool culling_kept(const culling *c, uint32_t a, uint32_t b) {
     return c->triangle_regions[a] != c->triangle_regions[b] ||
            orientations_may_touch(c->earlier[a], c->earlier[b]);

@@ -1,10 +1,10 @@
-/* How a method leaves pairs of triangles out of a step. */
+/* The rules by which a method leaves pairs of triangles out of a step. */
 #pragma once
 
 #include "runtime/bvh/bvh.h"
 
-/* With none of these every pair is tested, and by_orientation alone loses no contact. Each of the others comes from
- * the literature and may lose contacts. */
+/* With none of these rules every pair is tested, and by_orientation alone loses no contact. Each of the others comes
+ * from the literature and may lose contacts. */
 typedef struct culling_rules {
     bool by_orientation;        /* pairs of triangles of one region are culled by their orientation */
     bool assumes_clean;         /* every triangle counts as clean at the start; nothing is proven */
@@ -12,7 +12,7 @@ typedef struct culling_rules {
     bool still_points;          /* detector points stay where they are at the start */
     bool fixed_representatives; /* the first triangle at a feature tests it, whatever the orientations */
     bool skips_adjacent;        /* triangles that share a vertex are not tested, and orphan pairs neither */
-    bool joins_components;      /* all components are one region, and all obstacles are another */
+    bool joins_components;      /* all components form one region, and all obstacles another */
 } culling_rules;
 
 /* A stage between refit and orientation: it hides pairs of triangles in the BVH that, by its own test, do not touch in

@@ -1,4 +1,4 @@
-/* What is known of the triangles at the start of an interval: which are clean, and at which positions. */
+/* Knowledge about the triangles at the start of an interval: which are clean, and at which positions. */
 #include "runtime/culling/start_state.h"
 
 #include <assert.h>
@@ -32,7 +32,7 @@ void start_states_destroy(start_states *s) {
 
 /* ---- the positions seen last ------------------------------------------------------------------------- */
 
-/* All tasks of a comparison with x, or of a copy of x. */
+/* Data that the tasks of a comparison with x, or of a copy of x, share. */
 typedef struct position_work {
     start_states *s;
     const double *x;
@@ -115,7 +115,7 @@ static void count_run(component_start *start, const uint8_t *states, uint32_t co
     start->clean += clean;
 }
 
-/* Counts runs of triangles of one component, because most triangles follow one of their own component. */
+/* Counts run by run, because most triangles follow one of their own component. */
 void start_states_count(start_states *s) {
     const uint32_t *components = s->mesh->triangle_components;
     uint32_t count = s->mesh->triangle_count;
@@ -213,7 +213,7 @@ static void gather_patches(start_states *s) {
     }
 }
 
-/* Where the largest patch has more triangles than were clean, it becomes the clean one instead of these. */
+/* In each component whose largest patch has more triangles than were clean, makes this patch clean instead of those. */
 static void choose_patches(start_states *s) {
     for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
         uint32_t component = s->mesh->triangle_components[t];
@@ -229,10 +229,10 @@ static void choose_patches(start_states *s) {
     }
 }
 
-/* Free triangles become clean where they are connected, over edges and through free triangles, to clean ones.
- * Where less than half of a component is clean then, and its largest patch of other free triangles is larger,
- * that patch becomes the clean one instead. All triangles of a component without crossing and unknown ones are
- * clean. Takes linear time. */
+/* Free triangles become clean where they are connected, over edges and through free triangles, to clean ones. If
+ * less than half of a component is clean then, and its largest patch of other free triangles is larger than its
+ * clean part, that patch becomes clean instead. If a component has no crossing and no unknown triangles, all its
+ * triangles become clean. Takes linear time. */
 static void find_clean_patches(start_states *s) {
     bool all_mostly_clean = true;
     settle_embedded(s);

@@ -1,11 +1,11 @@
-/* What is known of the triangles at the start of an interval: which are clean, and at which positions. */
+/* Knowledge about the triangles at the start of an interval: which are clean, and at which positions. */
 #pragma once
 
 #include "src/mesh/mesh.h"
 
 /* The state of a triangle at one moment. A free triangle has an area, and no triangle of its component intersects
- * it, except for its neighbours in the features that they share. Clean are those free triangles of a component that,
- * as far as is proven, have one winding number in common on their outer sides (docs/theory/culling.md). A
+ * it, except for its neighbours in the features that they share. The clean triangles of a component are free ones
+ * that, as far as is proven, have one winding number in common on their outer sides (docs/theory/culling.md). A
  * component is embedded when all its triangles are clean. */
 typedef enum triangle_state {
     TRIANGLE_UNKNOWN,
@@ -14,13 +14,13 @@ typedef enum triangle_state {
     TRIANGLE_CLEAN
 } triangle_state;
 
-/* What is known of one component at the start of the interval, and how long its next check waits. */
+/* Knowledge about one component at the start of the interval, and how long its next check waits. */
 typedef struct component_start {
     uint32_t unknown, crossing, clean; /* numbers of triangles in these states */
-    uint32_t waiting, backoff;         /* intervals: until the next check, and between the last two */
+    uint32_t waiting, backoff;         /* in intervals: until the next check, and between the last two */
 } component_start;
 
-/* A run of start_states.queue: free triangles that are connected over edges. */
+/* A run of start_states.queue that holds free triangles connected over edges. */
 typedef struct free_patch {
     uint32_t begin, count;
 } free_patch;
@@ -33,14 +33,14 @@ typedef struct start_states {
     bool known;          /* positions have been seen */
     bool vouched;        /* some triangles are clean only because the caller says so */
     uint8_t *triangles;  /* the triangle_state of each */
-    component_start *of; /* per component; its numbers of triangles are right if counted is set */
-    bool counted;        /* by start_states_count, since states changed last */
+    component_start *of; /* per component; its numbers of triangles are valid if counted is set */
+    bool counted;        /* start_states_count was called after the last change of states */
     uint8_t *saved;      /* the states when start_states_save was called */
     bool *clean;         /* per triangle: the outcome of start_states_clean */
     uint32_t *queue;     /* scratch, per triangle */
     free_patch *largest; /* scratch, per component */
     bool *component_scratch;
-    double share_worth_it; /* with a smaller share of clean triangles neither culling nor a check pays */
+    double share_worth_it; /* below this share of clean triangles neither culling nor a check pays */
 } start_states;
 
 /* Do so many clean triangles of a component suffice for culling to pay? With fewer, the pairs of all other triangles,
@@ -52,45 +52,46 @@ static inline bool start_states_pay(const start_states *s, uint32_t clean, uint3
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);
 
-/* Is x, bit for bit, where the vertices were seen last? */
+/* Are the positions x, bit for bit, those that were seen last? */
 bool start_states_hold(start_states *s, const double *x);
 
-/* Begins an interval at x, which is not where the vertices were seen last: triangles of components with vertices that
- * have moved become UNKNOWN. */
+/* Begins an interval at positions x that differ from those seen last. All triangles of a component become UNKNOWN if
+ * one of its vertices has moved. */
 void start_states_begin(start_states *s, const double *x);
 
-/* Marks the triangles that a static check has to compare with one another, and returns how many they are: those not
- * known to be free, of closed manifold components that hold unknown ones and need not wait. Components that wait do so
- * for one interval less from now on. After a check that leaves too little of a component clean (start_states_pay), its
- * next one waits for 1 interval, then for 2, 4, 8 and always 16. Where nothing is marked, unproven is not written. */
+/* Marks the triangles that a static check has to compare with one another, and returns their number. These are the
+ * triangles not known to be free, in closed manifold components that have unknown triangles and need not wait.
+ * Components that wait do so for one interval less from now on. After a check that leaves too little of a component
+ * clean (start_states_pay), its next check waits for 1 interval, then for 2, 4, 8 and from then on always 16. If the
+ * number is 0, unproven is not written. */
 uint32_t start_states_mark_unproven(start_states *s, bool *unproven);
 
-/* The unproven triangles were compared with one another; crossing marks those that intersect another one of them, or
- * have no area. */
+/* Takes over the outcome of a static check of the unproven triangles; crossing marks those that intersect another
+ * one of them or have no area. */
 void start_states_checked(start_states *s, const bool *unproven, const bool *crossing);
 
-/* Makes all triangles clean, because the caller says that all components are embedded, except in components of which a
- * check of these positions found the contrary. */
+/* Makes all triangles clean, because the caller vouches that all components are embedded, except in components that
+ * a check of these positions found not to be embedded. */
 void start_states_vouch(start_states *s);
 
 /* Fills in the numbers of triangles per component. */
 void start_states_count(start_states *s);
 
-/* Which triangles are clean; valid until the next call. */
+/* Returns which triangles are clean; the array is valid until the next call. */
 const bool *start_states_clean(const start_states *s);
 
-/* A feature of the triangle, or of one that shares the feature, is in contact with its own component. */
+/* Records that a feature of the triangle is in contact with the triangle's own component. */
 static inline void start_states_taint(start_states *s, uint32_t triangle) {
     s->triangles[triangle] = TRIANGLE_UNKNOWN;
     s->counted = false;
 }
 
-/* Ends the interval at x, after all triangles in contact were tainted. Those that were free or clean and not tainted
- * still are; but all triangles of components whose contacts are incomplete become UNKNOWN. */
+/* Ends the interval at x, after all triangles in contact were tainted. Triangles that were free or clean and have
+ * not been tainted stay so, except in components whose contacts are incomplete, where all triangles become UNKNOWN. */
 void start_states_end(start_states *s, const double *x, const bool *incomplete);
 
-/* For an interval whose end the vertices may not reach: save before its contacts are looked at, and restore if the
- * vertices do not go there. Then what the contacts have tainted is as before. */
+/* For an interval whose end the vertices may not reach: save before its contacts taint triangles, and restore if the
+ * vertices do not go there. Restoring takes back what the contacts have tainted. */
 void start_states_save(start_states *s);
 void start_states_restore(start_states *s);
 

@@ -1,4 +1,4 @@
-/* What the contacts found so far say about triangles: those in contact with their own component are tainted. */
+/* Applies the contacts found so far: taints the triangles that are in contact with their own component. */
 #include "runtime/culling/tainting.h"
 
 /* Returns 1 if the triangle's pairs are newly kept, 0 if not. */
@@ -25,7 +25,7 @@ static uint32_t taint_edge(const tainting *t, uint32_t edge) {
     return taint_star(t, mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge));
 }
 
-/* The component that both features belong to; UINT32_MAX if these are two. */
+/* Returns the component that both features belong to; UINT32_MAX if they belong to different ones. */
 static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *contact) {
     bool vf = contact->kind == CSCD_CONTACT_VF;
     uint32_t first = vf ? mesh->vertex_stars[mesh->vertex_star_offsets[contact->a]]

@@ -38,7 +38,7 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     return CSCD_OK;
 }
 
-/* The states and the positions that they are of go together, so they are written when nothing can fail any more. */
+/* States and positions belong together, so both are written once nothing can fail any more. */
 static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
     cscd_status status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, 0.0, d->limit.distance);
     if (status == CSCD_OK)

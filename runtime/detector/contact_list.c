@@ -1,4 +1,4 @@
-/* The contacts of all lanes as one sorted list. */
+/* Gathers the contacts of all lanes into one sorted list. */
 #include "runtime/detector/contact_list.h"
 
 #include "src/core/sort.h"
@@ -6,7 +6,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* Every lane has room for so many contacts, or for all, and for twice its share of more. */
+/* Up to this number, every lane gets room for all contacts; beyond it, for this number and twice its
+ * share of all. */
 enum { CONTACTS_FOR_ALL = 4096 };
 
 /* One thread copies so many contacts at a time. */
@@ -14,8 +15,8 @@ enum { CONTACTS_PER_COPY = 4096 };
 
 /* ---- gathering ------------------------------------------------------------------------------------- */
 
-/* How many contacts each lane finds differs from run to run. Without this a lane might have to grow in an interval like
- * those before. found: the contacts of all lanes together. */
+/* The number of contacts that a lane finds differs from run to run, so without this a lane might have to grow in an
+ * interval that is like the ones before. found: the contacts of all lanes together. */
 static cscd_status reserve_lanes(search_space *s, size_t found) {
     uint32_t lanes = s->traversal.busy_lanes;
     size_t wanted = lanes > 1 && found > CONTACTS_FOR_ALL ? 2 * found / lanes + CONTACTS_FOR_ALL : found;
@@ -56,16 +57,16 @@ cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t ite
 
 /* ---- sorting --------------------------------------------------------------------------------------- */
 
-/* Non-negative numbers are in the order of their bits. */
+/* Non-negative numbers have the same order as their bits. */
 static uint64_t bits_of(double toi) {
     uint64_t bits;
-    double positive = toi + 0.0; /* not -0 */
+    double positive = toi + 0.0; /* turns -0 into 0 */
     assert(toi >= 0.0);
     memcpy(&bits, &positive, sizeof bits);
     return bits;
 }
 
-/* The order of contacts at the same time. */
+/* Orders contacts that have the same time. */
 static int compare_names(const void *left, const void *right) {
     const cscd_contact *l = ((const contact_key *)left)->contact, *r = ((const contact_key *)right)->contact;
     if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
@@ -73,7 +74,7 @@ static int compare_names(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-/* By (toi, kind, a, b). */
+/* Sorts by (toi, kind, a, b). */
 static void sort_contacts(contact_key *keys, contact_key *spare, size_t count) {
     sort_by_number(keys, spare, count, sizeof *keys);
     for (size_t begin = 0, end; begin < count; begin = end) {

@@ -1,4 +1,4 @@
-/* The contacts of all lanes as one sorted list. */
+/* Gathers the contacts of all lanes into one sorted list. */
 #pragma once
 
 #include "runtime/detector/result_buffer.h"
@@ -16,7 +16,7 @@ typedef struct contact_key {
 cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t item_size, result_buffer *buffer,
                                 size_t *count);
 
-/* The contacts that the caller does not ignore, sorted by (toi, kind, a, b). Adds to counters what the lanes have counted
- * and what is in the list. */
+/* Lists the contacts that the caller does not ignore, sorted by (toi, kind, a, b). Adds the numbers that the lanes
+ * have counted, and the length of the list, to the counters. */
 cscd_status contact_list_collect(search_space *s, const exclusions *e, result_buffer *buffer,
                                  cscd_counters *counters, cscd_contacts *out);

@@ -26,7 +26,7 @@ static cscd_status check_separation(cscd_context *context, const cscd_detector_o
     return CSCD_OK;
 }
 
-/* The default tolerance filled in. */
+/* Returns the separation of the options, with the default tolerance filled in. */
 static separation limit_of(const cscd_detector_options *options) {
     double distance = options->min_separation;
     return (separation){distance, options->tolerance > 0.0 ? options->tolerance : 1e-6 * distance};

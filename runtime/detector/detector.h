@@ -47,11 +47,13 @@ struct cscd_detector {
     cscd_counters counters;
 };
 
-/* A call begins that can be cancelled or fail. Its positions are checked, and the states are those of its start. */
+/* Begins a call that can be cancelled or fail. Its positions have been checked, and the states are those of its
+ * start. */
 void detector_begin_call(cscd_detector *d);
 
-/* Ends the call with a status that is no success, and with its sentence. The detector is as it was before, for a
- * repetition; but IN_CONTACT is an answer, of which nothing is taken back and which has its sentence already. */
+/* Ends the call with a status other than CSCD_OK and with the sentence of that status. The detector is put back to
+ * what it was before, so that the call can be repeated. IN_CONTACT, however, is an answer: nothing is taken back,
+ * and it already has its sentence. */
 cscd_status detector_fail_call(cscd_detector *d, cscd_status status);
 
 /* With a minimum separation no pair is culled. */

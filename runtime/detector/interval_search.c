@@ -77,7 +77,8 @@ static void test_orphan_pairs(void *data, uint32_t index) {
     narrow_phase_finish(&search->interval, lane);
 }
 
-/* culled: these components aside; NULL: none aside. */
+/* Skips pairs of adjacent triangles everywhere except in culled components (NULL: there are none), or
+ * nowhere. */
 static void skip_adjacent_pairs(search_space *space, bool everywhere, const bool *culled) {
     for (uint32_t c = 0; c < space->mesh->component_count; c++)
         space->skipped[c] = everywhere && (culled == NULL || !culled[c]);

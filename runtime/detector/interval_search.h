@@ -10,16 +10,16 @@ typedef struct interval_search {
     cscd_counters counters;
 } interval_search;
 
-/* The search from x0 to x1, with nothing in the lanes. */
+/* Begins the search from x0 to x1, with nothing in the lanes. */
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,
                                       separation limit);
 
 /* Tests the pairs of one pass of the traversal. CANCELLED, here and below: not all of them are tested. */
 cscd_status interval_search_traverse(interval_search *search, traversal_pass pass);
 
-/* Tests all pairs but those that culling keeps apart. In components that are not culled every pair of triangles is
- * reached. So those that share a vertex, which are most of all pairs, are skipped there: other pairs test their features,
- * and orphan pairs are tested apart. */
+/* Tests all pairs except those that culling leaves out. In components that are not culled the traversal reaches
+ * every pair of triangles, so there it skips those that share a vertex, which are most of all pairs: other pairs
+ * test their features, and orphan pairs are tested separately. */
 cscd_status interval_search_everything(interval_search *search);
 
 /* Skips the pairs of adjacent triangles of all components, or of none. */

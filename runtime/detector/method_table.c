@@ -1,5 +1,5 @@
-/* How each method goes through the pipeline. Baselines are in runtime/baselines: without that folder and the lines between
- * the marks here, the detector has all methods but them. */
+/* Says how each method goes through the pipeline. Baselines are in runtime/baselines: without that folder and the
+ * lines between the marks here, the detector has all other methods. */
 #include "runtime/detector/method_table.h"
 
 /* baselines: begin */

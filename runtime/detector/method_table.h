@@ -1,4 +1,4 @@
-/* How each method goes through the pipeline. */
+/* Says how each method goes through the pipeline. */
 #pragma once
 
 #include "runtime/culling/culling_rules.h"
@@ -9,5 +9,5 @@ typedef struct method_stages {
     bool brute_force;           /* tests every pair of features, without trees */
 } method_stages;
 
-/* For every method that there is. */
+/* Returns the row of a method; every method has one. */
 const method_stages *method_stages_of(cscd_method method);

@@ -1,9 +1,10 @@
 /* Snapshot of what a call that is cancelled or fails must restore.
  *
- * Such a call has found some contacts and tainted triangles, whose states are those of the start until the call succeeds;
- * a check that was left records nothing. So the states say at most too little, and the next call is as sound as ever. But
- * it might do more, or report other contacts in mode EARLIEST, than it would without the failure: that is why they are put
- * back. Trees that the call has rebuilt stay: the repetition finds them as good as new. */
+ * Such a call may have found contacts and tainted triangles. States are those of its start until it succeeds, and an
+ * unfinished check records nothing. So the states never promise too much, and the next call would be sound without a
+ * rollback. But it might do more work, or report other contacts in mode EARLIEST, than it would have done without
+ * the failure. That is why the states are put back. Trees that the call has rebuilt stay, because they serve the
+ * repetition as well. */
 #pragma once
 
 #include "runtime/bvh/bvh_rebuild.h"
@@ -16,8 +17,8 @@ typedef struct rollback {
     uint32_t intervals_unmeasured;
 } rollback;
 
-/* Takes no memory, and restores nothing, in a context without a progress function: there a call fails for want of memory
- * only. On failure the caller frees what there is. */
+/* In a context without a progress function, where a call fails only because memory runs out, it takes no memory, and
+ * nothing is restored. On failure the caller frees what was allocated. */
 cscd_status rollback_create(const cscd_mesh *mesh, rollback *out);
 void rollback_free(cscd_context *context, rollback *r);
 

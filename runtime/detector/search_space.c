@@ -1,4 +1,5 @@
-/* What the searches of a detector work with, from one to the next: trees, lanes, and which triangle pair tests what. */
+/* The data that the searches of a detector work with and keep: trees, lanes, and which triangle pair tests which
+ * features. */
 #include "runtime/detector/search_space.h"
 
 cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {

@@ -1,4 +1,5 @@
-/* What the searches of a detector work with, from one to the next: trees, lanes, and which triangle pair tests what. */
+/* The data that the searches of a detector work with and keep: trees, lanes, and which triangle pair tests which
+ * features. */
 #pragma once
 
 #include "runtime/bvh/traversal.h"
@@ -9,7 +10,7 @@
 typedef struct search_space {
     cscd_context *context;
     const cscd_mesh *mesh;
-    bvh bvh; /* of the current interval or moment; whoever begins a search has moved it there */
+    bvh bvh; /* refitted to the current interval or moment before a search begins */
     traversal traversal;
     contact_lane *lanes; /* one per lane of the traversal */
     representatives representatives;

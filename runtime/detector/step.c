@@ -34,11 +34,11 @@ static void begin_interval(step_work *work) {
 
 /* ---- start states, refit --------------------------------------------------------------------------- */
 
-/* More unproven triangles than one in so many are worth volumes of the start alone; fewer are compared by the volumes
- * of the interval, which are needed anyway. */
+/* If more than one triangle in this many is unproven, the trees are refitted to the start alone; fewer triangles are
+ * compared with the volumes of the interval, which are needed anyway. */
 enum { UNPROVEN_SHARE = 16 };
 
-/* Finds out which unproven triangles are clean, by the volumes that the trees have. */
+/* Finds out which unproven triangles are clean, with the volumes that the trees have now. */
 static cscd_status check_start(step_work *work) {
     cscd_detector *d = work->detector;
     progress_stage(&d->context->progress, "start", 0.0, 0.3);
@@ -110,8 +110,8 @@ static bool is_culled(const cscd_detector *d, uint32_t clean, uint32_t triangle_
     return start_states_pay(&d->starts, clean, triangle_count);
 }
 
-/* Culls closed components of which nearly all triangles are clean. Of those that are not all clean, all contacts are
- * wanted in either mode. */
+/* Culls closed components in which nearly all triangles are clean. In either mode, those in which not all are clean
+ * want all their contacts. */
 static cscd_status choose_culled(step_work *work) {
     cscd_detector *d = work->detector;
     if (detector_hides_pairs(d)) return CSCD_OK; /* instead of culling */
@@ -166,8 +166,8 @@ static cscd_status traverse_pairs(step_work *work) {
     return interval_search_traverse(&work->search, TRAVERSAL_KEPT);
 }
 
-/* Looks at the contacts that the lanes have gained since the last look; returns how many triangles these have tainted
- * whose pairs were culled. */
+/* Taints triangles by the contacts that the lanes have gained since the last call. Returns how many tainted
+ * triangles had culled pairs. */
 static uint32_t taint_by_contacts(const step_work *work) {
     cscd_detector *d = work->detector;
     const tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
@@ -181,8 +181,8 @@ static uint32_t taint_by_contacts(const step_work *work) {
     return newly_kept;
 }
 
-/* Tests the pairs that contacts have uncovered until these bring no more contacts. Then all contacts of the components
- * that want them all are found (docs/theory/culling.md). */
+/* Tests the pairs that contacts have uncovered until they bring no more contacts. Then every component that wants
+ * all its contacts has them (docs/theory/culling.md). */
 static cscd_status close_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     if (!work->any_culled || d->traits->loses_contacts) return CSCD_OK;
@@ -221,7 +221,7 @@ static cscd_status collect_contacts(step_work *work) {
 static step_stage *const stages_by_trees[] = {
     prove_starts,           /* which triangles are clean at the start? */
     refit_trees,            /* bounding volumes over the interval */
-    prove_remaining_starts, /* by these volumes, where few are to be checked */
+    prove_remaining_starts, /* with these volumes, if only few are to be checked */
     hide_pairs,             /* pairs that a baseline's own test proves to stay apart */
     choose_culled,          /* components whose pairs are culled by orientation */
     orient_triangles,       /* from which side does each detector point see its triangles? */
@@ -240,7 +240,7 @@ static cscd_status run_stages(step_stage *const *stages, step_work *work) {
 
 /* ---- guarantees ------------------------------------------------------------------------------------ */
 
-/* The reason for a component of a method that culls. */
+/* Returns the reason in a component's guarantee, for a method that culls. */
 static cscd_reason culling_reason(const step_work *work, uint32_t component, bool embedded) {
     const cscd_detector *d = work->detector;
     if (!d->mesh->components[component].closed_manifold) return CSCD_REASON_SURFACE;
@@ -283,7 +283,7 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
 
 void step_take(cscd_detector *d, const double *end) {
     if (!detector_culls(d)) {
-        start_states_forget(&d->starts); /* contacts have not tainted it */
+        start_states_forget(&d->starts); /* contacts have tainted nothing */
         return;
     }
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
@@ -297,8 +297,8 @@ void step_withdraw(cscd_detector *d) {
     if (detector_culls(d)) start_states_restore(&d->starts);
 }
 
-/* The positions that were seen last have been checked then. From here on the states are those of the start; without
- * culling they matter only if a static check has left some. */
+/* The positions that were seen last were checked at that time. From here on the states are those of the start;
+ * without culling they matter only if a static check has left some. */
 cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
                                  const char *start_name, const char *end_name) {
     uint32_t vertices = d->mesh->vertex_count;

@@ -5,13 +5,13 @@
 #include "src/core/kernels.h"
 
 typedef struct intersection_kernels {
-    /* Of pairs of different triangles, in place and in any order, keeps those that may intersect (see
-     * src/mesh/triangle_intersection.h) at positions, which are as positions_check wants them; returns how
-     * many. */
+    /* Removes from a list of pairs of different triangles, in place and without keeping their order, those that
+     * certainly do not intersect (see src/mesh/triangle_intersection.h) at positions that positions_check has
+     * accepted. Returns how many are left. */
     uint32_t (*reject_disjoint)(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
                                 uint32_t count);
 
-    /* Of triangles, in place, keeps those that may be without area. */
+    /* Removes from a list of triangles, in place, those that certainly have an area. Returns how many are left. */
     uint32_t (*reject_with_area)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,
                                  uint32_t count);
 } intersection_kernels;

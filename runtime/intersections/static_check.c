@@ -1,4 +1,4 @@
-/* All pairs of triangles that intersect at one moment, by exact predicates. */
+/* Finds all pairs of triangles that intersect at one moment, by exact predicates. */
 #include "runtime/intersections/static_check.h"
 
 #include "runtime/intersections/intersection_kernels.h"
@@ -30,7 +30,7 @@ void static_check_destroy(static_check *c) {
 
 /* ---- one check ------------------------------------------------------------------------------------------ */
 
-/* What the threads of a check share. */
+/* Data that the threads of a check share. */
 typedef struct check_work {
     static_check *check;
     traversal *traversal;
@@ -58,7 +58,7 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
     lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
 }
 
-/* Turns a batch of slots into one of triangles, without the pairs that do not count. */
+/* Replaces the slots of a batch by triangles, and drops the pairs that do not count. */
 static void name_triangles(const check_work *work, traversal_lane *batch) {
     const uint32_t *components = work->check->mesh->triangle_components;
     uint32_t kept = 0;
@@ -147,7 +147,7 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
             if (check->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
         }
     }
-    return context_progress_status(context); /* before anybody believes that nothing more was found */
+    return context_progress_status(context); /* before the caller believes that nothing more was found */
 }
 
 static void mark_crossing(static_check *c) {

@@ -1,9 +1,9 @@
-/* All pairs of triangles that intersect at one moment, by exact predicates. */
+/* Finds all pairs of triangles that intersect at one moment, by exact predicates. */
 #pragma once
 
 #include "runtime/bvh/traversal.h"
 
-/* What one thread finds. */
+/* The findings of one thread. */
 typedef struct intersection_lane {
     _Alignas(CACHE_LINE_SIZE) cscd_intersection *items;
     size_t count, capacity;
@@ -15,10 +15,9 @@ typedef struct intersection_lane {
 typedef struct static_check {
     const cscd_mesh *mesh;
     bool *unproven; /* per triangle: is it compared with the others? */
-    bool *
-        crossing; /* per triangle: it intersects another one of its component, or has no area; only of unproven ones */
+    bool *crossing; /* per unproven triangle: it intersects another one of its component, or has no area */
     intersection_lane
-        *lanes; /* one per lane of the traversal; pairs that the caller ignores are among theirs */
+        *lanes; /* one per lane of the traversal; their pairs include those that the caller ignores */
     uint32_t lane_count;
 } static_check;
 
@@ -27,8 +26,8 @@ cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, stat
 void static_check_destroy(static_check *c);
 
 /* Compares the triangles that are marked as unproven with one another, each with those of its own component. The
- * volumes of the trees contain the triangles at positions: they are of that moment, or of an interval that it is part
- * of. CANCELLED, here and below: not all pairs have been compared. */
+ * volumes of the trees must contain the triangles at positions, so they belong to that moment or to an interval that
+ * contains it. CANCELLED, here and below: not all pairs have been compared. */
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions);
 
 /* Compares all triangles with one another, and marks them all as unproven. */

@@ -1,25 +1,25 @@
-/* Rejects pairs of triangles that certainly do not intersect, and triangles that certainly have an area. Pairs are sorted
- * by the number of vertices that they share, and tested as many at a time as a register of doubles holds. */
+/* Rejects pairs of triangles that certainly do not intersect, and triangles that certainly have an area. Pairs are
+ * sorted by the number of vertices that they share, and tested as many at a time as a register of doubles holds. */
 #include "runtime/intersections/intersection_kernels.h"
 #include "runtime/intersections/triangle_intersection_simd.h"
 
 enum { PAIRS_AT_ONCE = 256, LIST_SIZE = PAIRS_AT_ONCE + LANES };
 
-/* Pairs that share the same number of vertices. shared: bit i is set if corner i of a is shared, bit 3 + i if corner i of
- * b is. */
+/* Pairs that share the same number of vertices. shared: bit i is set if corner i of a is shared, bit 3 + i if corner
+ * i of b is. */
 typedef struct pair_list {
     triangle_pair pairs[LIST_SIZE];
     uint8_t shared[LIST_SIZE];
     uint32_t count;
 } pair_list;
 
-/* For each set of shared corners their number, and the corners in their cyclic order, starting at the only one that is
+/* For each set of shared corners: their number, and all corners in cyclic order, starting at the only corner that is
  * shared, or at the only one that is not. */
 static const uint8_t sizes[8] = {0, 1, 1, 2, 1, 2, 2, 3};
 static const uint8_t turned[8][3] = {{0, 1, 2}, {0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                      {2, 0, 1}, {1, 2, 0}, {0, 1, 2}, {0, 1, 2}};
 
-/* The shared corners of eight pairs, as in a pair_list. */
+/* Finds the shared corners of eight pairs, in the form of a pair_list. */
 static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pair *pairs,
                                int32_t shared[LANES]) {
     int32_t vertices[6][LANES];
@@ -32,7 +32,7 @@ static inline void find_shared(const uint32_t (*triangles)[3], const triangle_pa
     }
     memcpy(a, vertices, sizeof a);
     memcpy(b, vertices + 3, sizeof b);
-    /* A comparison is -1 where it is true. */
+    /* A true comparison is -1. */
     for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[0] == b[i]) | (a[1] == b[i]) | (a[2] == b[i]));
     for (int i = 2; i >= 0; i--) sets = sets + sets - ((a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]));
     memcpy(shared, &sets, sizeof sets);

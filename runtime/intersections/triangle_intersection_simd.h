@@ -1,8 +1,9 @@
-/* Pairs of triangles that certainly do not intersect, features that share a vertex aside, by signs of determinants.
+/* Recognises pairs of triangles that certainly do not intersect, features that share a vertex aside, by signs of
+ * determinants.
  *
- * docs/theory/static-check.md proves what signs are certain and what follows from them; functions cite its lemmas.
- * Coordinates are 0 or of a magnitude in [2^-300, 2^300]. src/mesh/triangle_intersection.c decides the pairs that are
- * left undecided here. */
+ * docs/theory/static-check.md proves which signs are certain and what follows from them; the functions cite its
+ * lemmas. Coordinates are 0 or of a magnitude in [2^-300, 2^300]. src/mesh/triangle_intersection.c decides the pairs
+ * that are left undecided here. */
 #pragma once
 
 #include "src/core/simd.h"
@@ -41,13 +42,13 @@ static inline f64w dot_x8(const vector_x8 a, const vector_x8 b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The sign of (u x v) . w (Lemma 6). */
+/* Returns the sign of (u x v) . w (Lemma 6). */
 static inline sign_x8 side_of(const normal_x8 *uv, const vector_x8 w) {
     vector_x8 size = {f64w_abs(w[0]), f64w_abs(w[1]), f64w_abs(w[2])};
     return sign_beyond(dot_x8(uv->n, w), f64w_all(0x1p-50) * dot_x8(uv->size, size));
 }
 
-/* The sign of a component of u x v (Lemma 6). */
+/* Returns the sign of a component of u x v (Lemma 6). */
 static inline sign_x8 turn_of(const normal_x8 *uv, int axis) {
     return sign_beyond(uv->n[axis], f64w_all(0x1p-51) * uv->size[axis]);
 }
@@ -70,7 +71,7 @@ static inline uint32_t same_sign_of_three(const sign_x8 s[3]) {
     return (s[0].plus & s[1].plus & s[2].plus) | (s[0].minus & s[1].minus & s[2].minus);
 }
 
-/* Lanes in which two of three signs are certainly different, and neither of these two is zero. */
+/* Returns the lanes in which two of three signs are certainly different, and neither of these two is zero. */
 static inline uint32_t mixed_signs(sign_x8 a, sign_x8 b, sign_x8 c) {
     return (a.plus | b.plus | c.plus) & (a.minus | b.minus | c.minus);
 }
@@ -94,7 +95,8 @@ static inline uint32_t sharing_edge_undecided(const vector_x8 corners[6]) {
     return ALL_WIDTH & ~apart;
 }
 
-/* The vectors that span the two cones. corners: those of the one triangle, then of the other, the shared one first. */
+/* Computes the vectors that span the two cones. corners: those of the one triangle, then of the other, the shared
+ * one first. */
 static inline void cones_of(const vector_x8 corners[6], vector_x8 cones[2][2]) {
     for (int i = 0; i < 4; i++) from_to(corners[0], corners[i < 2 ? 1 + i : 2 + i], cones[i / 2][i % 2]);
 }
@@ -182,7 +184,7 @@ static inline void edges_of(const vector_x8 corners[3], vector_x8 out[3]) {
     for (int i = 0; i < 3; i++) from_to(corners[i], corners[(i + 1) % 3], out[i]);
 }
 
-/* On which side of the face's plane each corner lies. */
+/* Finds on which side of the face's plane each corner lies. */
 static inline void sides_of(const vector_x8 face[3], const vector_x8 corners[3], sign_x8 out[3]) {
     vector_x8 u, v;
     normal_x8 normal;
@@ -235,7 +237,8 @@ static inline uint32_t disjoint_undecided_by_edges(const vector_x8 corners[6]) {
     return ALL_WIDTH & ~miss;
 }
 
-/* Lanes in which the line of an edge of a has b strictly on one side, and the third corner of a on the other. */
+/* Returns the lanes in which the line of an edge of a has b strictly on one side, and the third corner of a on the
+ * other. */
 static inline uint32_t parted_by_edge_of(const vector_x8 a[3], const vector_x8 b[3], int axis) {
     vector_x8 edges[3];
     uint32_t apart = 0;

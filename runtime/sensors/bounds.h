@@ -3,8 +3,8 @@
 
 #include "src/mesh/partition.h"
 
-/* A ball about one of a cell's vertices, which moves linearly: it holds the cell's triangles at any moment.
- * */
+/* A ball about one of a cell's vertices, which moves linearly: it holds the cell's triangles at any
+ * moment. */
 typedef struct cell_ball {
     double start[3], end[3];
     double radius; /* rounded up */
@@ -43,7 +43,7 @@ void sensor_bounds_update(sensor_bounds *bounds, const cscd_partition *partition
 bool sensor_bounds_apart(const sensor_bounds *bounds, const cscd_partition *partition, uint32_t part_a,
                          uint32_t part_b);
 
-/* The same question to the swept boxes of the parts, which have an update of their own. */
+/* Asks the same of the swept boxes of the parts, which are updated separately. */
 void sensor_bounds_update_boxes(sensor_bounds *bounds, const cscd_partition *partition, const double *start,
                                 const double *end);
 bool sensor_bounds_boxes_apart(const sensor_bounds *bounds, uint32_t part_a, uint32_t part_b);

@@ -9,8 +9,8 @@ uint32_t particle_group(const cscd_partition *partition, uint32_t part, bool by_
     return by_parts ? part : object;
 }
 
-/* The mean is summed from differences to the first vertex, so that it keeps its digits far from the origin.
- * */
+/* The mean is summed from differences to the first vertex, so that it keeps its digits far from the
+ * origin. */
 static uint32_t middle_of(const uint32_t *vertices, uint32_t count, const double *x) {
     const double *first = x + (size_t)vertices[0] * 3;
     double mean[3] = {0.0, 0.0, 0.0}, least = INFINITY;

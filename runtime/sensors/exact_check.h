@@ -1,5 +1,5 @@
-/* The exact check of particle sensors: do the areas of the cells of two parts touch, and when do they first?
- * */
+/* The exact check of particle sensors: do the areas of the cells of two parts touch, and when do they
+ * first? */
 #pragma once
 
 #include "runtime/narrow_phase/narrow_phase.h"

@@ -1,5 +1,5 @@
-/* A hashed uniform grid that finds particles by their places; every round builds it again by counting sort.
- * */
+/* A hashed uniform grid that finds particles by their places; every round builds it again by counting
+ * sort. */
 #include "runtime/sensors/particle_grid.h"
 
 #include "src/core/vec3.h"

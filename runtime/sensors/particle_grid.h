@@ -1,5 +1,5 @@
-/* A hashed uniform grid that finds particles by their places; every round builds it again by counting sort.
- * */
+/* A hashed uniform grid that finds particles by their places; every round builds it again by counting
+ * sort. */
 #pragma once
 
 #include "src/core/context.h"
@@ -11,8 +11,8 @@ typedef struct grid_entry {
 } grid_entry;
 
 /* Cells that differ in x only lie in consecutive buckets, so the 27 cells around a point are 9 short runs of
- * memory. Different cells may share a bucket: entries say in which row they are, and distances tell the rest.
- */
+ * memory. Different cells may share a bucket: entries say in which row they are, and distances tell the
+ * rest. */
 typedef struct particle_grid {
     double origin[3], cells_per_length;
     uint32_t mask;     /* buckets - 1 */

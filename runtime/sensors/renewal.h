@@ -5,7 +5,7 @@
 
 /* The measures of a part, when its cells were made or now. */
 typedef struct part_measures {
-    double area, estimate; /* of its largest cell, each */
+    double area, estimate; /* each is that of its largest cell */
     double edge_squared;   /* the squared length of the longest edge at its vertices */
     double concave;        /* the share of concave edges in the length of its inner edges */
 } part_measures;

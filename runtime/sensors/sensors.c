@@ -135,7 +135,8 @@ void cscd_sensors_destroy(cscd_sensors *s) {
 
 /* ---- one interval ------------------------------------------------------------------------------------- */
 
-/* A step that fails puts its particles back to the vertices of before, so that a repetition does the same. */
+/* A step that fails puts its particles back to their previous vertices, so that a repetition does the
+ * same. */
 static cscd_status remember_vertices(cscd_sensors *s) {
     uint32_t count = s->particles.count;
     if (count > s->before_capacity) {
@@ -263,7 +264,7 @@ cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
     return sensors->renewals[part];
 }
 
-/* After a renewal the balls belong to cells of before. Boxes are asked first: they separate more pairs, and
+/* After a renewal the balls still belong to the previous cells. Boxes are asked first: they separate more pairs, and
  * answer at once. */
 bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
     const cscd_partition *partition = sensors->partition;

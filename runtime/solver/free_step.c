@@ -71,13 +71,13 @@ static cscd_status check_start(cscd_detector *d, trial *t) {
     return fail_in_contact(d, &t->first);
 }
 
-/* The share of a step that is tried next when a contact was found at this time of it. */
+/* Returns the share of a step that is tried next, after a contact was found at this time of the step. */
 static double cut_for(const cscd_detector *d, double time) {
     return d->options.step_factor * (time > 0.0 ? time : about_0);
 }
 
-/* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own, or
- * the time is 0, steps shrink ever faster. */
+/* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own,
+ * or the time is 0, steps shrink ever faster. */
 static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *length) {
     cscd_status status = CSCD_OK;
     double shrink = 0.25;
@@ -106,7 +106,8 @@ cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double lo
         step.limit = t.first;
         step.limit.toi *= longest;
         double cut = longest * cut_for(d, 0.0);
-        if (t.first.toi > 0.0) cut = d->options.step_factor * step.limit.toi; /* not more by rounding */
+        if (t.first.toi > 0.0)
+            cut = d->options.step_factor * step.limit.toi; /* rounding must not make it larger */
         step.length = max_of(cut, shortest);
         status = shorten_step(d, &t, reached, &step.length);
     }

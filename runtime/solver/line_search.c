@@ -56,9 +56,11 @@ void cscd_line_destroy(cscd_line *line) {
 
 /* ---- begin --------------------------------------------------------------------------------------------- */
 
-/* Positions on the line are rounded: by 2^-52 for the difference, which may be twice the largest coordinate
- * C, by as much for the product, by 2^-53 C for the sum, together below 2^-50 C for each coordinate, or, at
- * 0, 2^-300; so two points are off by less than 2^-48 C from each other's distance. */
+/* Bounds the rounding of positions on the line, where C is the largest coordinate.
+ * - The difference, which may be 2 C, is off by 2^-52 C, and the product by as much.
+ * - The sum is off by 2^-53 C.
+ * - Together this is below 2^-50 C for each coordinate or, at 0, 2^-300.
+ * So the distance of two points is off by less than 2^-48 C. */
 static double rounding_on(const cscd_line *line) {
     size_t count = (size_t)line->detector->mesh->vertex_count * 3;
     double largest = 0.0;
@@ -67,7 +69,8 @@ static double rounding_on(const cscd_line *line) {
     return largest * 0x1p-48 + 0x1p-297;
 }
 
-/* What the detector knows of triangles at x0 it will know of them where a step of the line ends. */
+/* Remembers what the detector knows of the triangles at x0, because it will hold where a step of the
+ * line ends. */
 static void remember_states(cscd_line *line) {
     start_states *s = &line->detector->starts;
     line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
@@ -191,7 +194,8 @@ static void carry_states_over(cscd_line *line) {
     start_states_end(&d->starts, line->reached, d->incomplete);
 }
 
-/* cscd_detector_set_separation may have been called since the line began. */
+/* Do the candidates still cover the separation? cscd_detector_set_separation may have been called since the line
+ * began. */
 static cscd_status check_covered(const cscd_line *line) {
     double distance = line->detector->limit.distance;
     if (distance <= line->covered) return CSCD_OK;

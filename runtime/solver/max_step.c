@@ -47,7 +47,7 @@ static void add_counters(cscd_counters *sum, const cscd_counters *more) {
 
 _Static_assert(sizeof(cscd_counters) == 19 * sizeof(uint64_t), "add_counters adds every counter");
 
-/* The vertices did not go to the end of the try before, which is withdrawn first. */
+/* Withdraws the previous try first, because the vertices did not go to its end. */
 static cscd_status try_motion(void *of, const double *from, const double *to, cscd_contacts *out) {
     tries *t = of;
     step_outcome found;

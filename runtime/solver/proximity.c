@@ -20,8 +20,8 @@ cscd_status proximity_check_distance(cscd_context *context, double distance) {
                         "distance is %g, expected a length from 2^-300 to 2^300", distance);
 }
 
-/* The distance between the two points that u and v name, summed from differences of coordinates, so that it is as exact as
- * these are. */
+/* Returns the distance between the two points that u and v name, summed from differences of coordinates, so that it
+ * is as exact as these are. */
 static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
     cscd_stencil s = cscd_mesh_stencil(mesh, at->kind, at->a, at->b, at->u, at->v);
     int base = at->kind == CSCD_CONTACT_VF ? 1 : 2;

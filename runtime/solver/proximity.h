@@ -4,7 +4,7 @@
 #include "runtime/detector/detector.h"
 #include "runtime/detector/interval_search.h"
 
-/* INVALID_ARGUMENT, with a sentence, unless this is a distance that can be asked for. */
+/* Returns INVALID_ARGUMENT, with a sentence, unless this is a distance that can be asked for. */
 cscd_status proximity_check_distance(cscd_context *context, double distance);
 
 /* Pairs within the distance are reported; pairs between it and the tolerance beyond it may be. */
@@ -13,5 +13,5 @@ separation proximity_limit(double distance);
 /* Begins a search of the moment with that limit. */
 interval_search proximity_search(cscd_detector *d, const double *positions, double distance);
 
-/* What the search has found, in the detector's memory, sorted by (kind, a, b). */
+/* Lists what the search has found, in the detector's memory, sorted by (kind, a, b). */
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out);

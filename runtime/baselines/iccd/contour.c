@@ -160,8 +160,8 @@ static bool boxes_overlap(const double low_a[2], const double high_a[2], const d
     return low_a[0] <= high_b[0] && low_b[0] <= high_a[0] && low_a[1] <= high_b[1] && low_b[1] <= high_a[1];
 }
 
-/* Planar edges without a common vertex. Whether they cross changes only when an end of one comes to lie on
- * the other; at the start they do not where both ends of one are on the same side of the other. */
+/* Do two planar edges without a common vertex stay apart? Whether they cross changes only when an end of one comes
+ * to lie on the other. At the start they do not cross if both ends of one are on the same side of the other. */
 static bool stay_apart(const plane *p, contour_edge *e, contour_edge *f, bool published) {
     int sides[4];
     if (!vertex_stays_off(p, e->a, f, &sides[0]) || !vertex_stays_off(p, e->b, f, &sides[1]) ||
@@ -172,8 +172,7 @@ static bool stay_apart(const plane *p, contour_edge *e, contour_edge *f, bool pu
 }
 
 /* Edges with a common vertex need no test of their own: where they fold onto each other, the other end of the
- * shorter one lies on the longer one, and there begins an edge that has no vertex in common with the longer.
- */
+ * shorter one lies on the longer one, and the edge that begins there has no vertex in common with the longer one. */
 bool contour_stays_simple(const contour_query *query, contour_edge *scratch) {
     const cscd_mesh *mesh = query->mesh;
     uint32_t count = query->edge_count;

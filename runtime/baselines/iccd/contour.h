@@ -19,11 +19,11 @@ typedef struct contour_query {
     uint32_t edge_count;
     const double *x0, *x1;
     const float *axis; /* along which the contour is projected, of about unit length */
-    uint32_t skipped;  /* pairs of the first so many edges are taken to be tested already */
+    uint32_t skipped;  /* pairs among the first `skipped` edges count as tested already */
     bool published;    /* only motions are tested, not the start */
 } contour_query;
 
-/* Certified, for edges that form one loop: true only if no two touch in the projection at any moment of the
- * interval, but for the common vertices of neighbours. Of a loop of three edges it looks at nothing; that one
- * is simple as long as its projection has an area. scratch: room for edge_count edges. */
+/* Certified for edges that form one loop: true only if no two of them touch in the projection at any moment of the
+ * interval, except neighbours at their common vertices. For a loop of three edges it tests nothing, because such a
+ * loop is simple as long as its projection has an area. scratch: room for edge_count edges. */
 bool contour_stays_simple(const contour_query *query, contour_edge *scratch);

@@ -14,7 +14,8 @@ static void destroy_patches(cscd_context *context, void *state) {
     context_free(context, state);
 }
 
-/* Patches belong to one BVH: another one, which trees that have decayed give way to, has no room yet for hidden pairs. */
+/* Patches belong to one BVH. When decayed trees have been replaced by another BVH, that one has no room for hidden
+ * pairs yet. */
 static cscd_status follow_bvh(patches *p, bvh *f) {
     if (p->tree.node_count > 0 && bvh_can_hide(f)) return CSCD_OK;
     patches_free(f->mesh->context, p);

@@ -10,8 +10,8 @@ static const normal_cone none = {{0.0f, 0.0f, 0.0f}, INFINITY};
 /* An upper bound on what rounding in single precision adds to an angle, per operation on cones. */
 static const float slack = 4e-6f;
 
-/* At least the angle between two unit vectors up to a right angle, INFINITY beyond. With the chord c it is
- * 2 asin(c / 2) = c + c^3 / 24 + ...; the quotient of the rest by c^3 grows to 0.055361 at c = sqrt 2. */
+/* Returns an upper bound of the angle between two unit vectors up to a right angle, INFINITY beyond. With the chord
+ * c it is 2 asin(c / 2) = c + c^3 / 24 + ...; the quotient of the rest by c^3 grows to 0.055361 at c = sqrt 2. */
 static float angle_between(const float a[3], const float b[3]) {
     float squared = 0.0f;
     for (int k = 0; k < 3; k++) squared += (a[k] - b[k]) * (a[k] - b[k]);
@@ -48,8 +48,8 @@ static double add_cross(const double a[3], const double b[3], double sum[3]) {
     return sqrt(vec3_dot(a, a) * vec3_dot(b, b));
 }
 
-/* The direction of a vector that is off by 2^-48 size at most; false where that turns it by 4e-7 or more, or
- * its squares leave the range of doubles. */
+/* Computes the direction of a vector that is off by 2^-48 size at most. False if that turns it by 4e-7 or more, or
+ * if its squares leave the range of doubles. */
 static bool direction_of(const double normal[3], double size, float out[3]) {
     double length = sqrt(vec3_dot(normal, normal));
     if (!(length > 1e-8 * size && length > 1e-150 && length < 1e150)) return false;

@@ -1,11 +1,12 @@
-/* Patches of the tree's nodes: their contours, once; cones and contour tests, per interval. */
+/* Patches of the tree's nodes: makes their contours once, and tests cones and contours in every interval. */
 #include "runtime/baselines/iccd/patch.h"
 
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
-/* A subtree of 2^SMALL_HEIGHT triangles at most is one thread's; nodes above it are tested level by level. */
+/* One thread tests a whole subtree of at most 2^SMALL_HEIGHT triangles; nodes above are tested level
+ * by level. */
 enum { SMALL_HEIGHT = 6 };
 
 /* Lists of edge numbers, one per node, while they are made: the last node's first. */
@@ -77,8 +78,8 @@ typedef struct vertex_visit {
     uint32_t seen, degree, neighbours[2];
 } vertex_visit;
 
-/* For triangles of one oriented manifold component: a disk has one loop through all edges of its contour, and the Euler
- * characteristic of a disk. Leaves are the patch's triangles. */
+/* Is a patch of one oriented manifold component a disk? It is if one loop runs through all edges of its contour and
+ * its Euler characteristic is that of a disk. Leaves are the patch's triangles. */
 static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t size, const patch_node *first,
                     const patch_node *end, vertex_visit *visits, uint32_t stamp) {
     uint32_t vertices = 0, triangles = 0, component = UINT32_MAX;
@@ -114,7 +115,8 @@ static bool is_disk(const cscd_mesh *mesh, const uint32_t *contour, uint32_t siz
     return length == size;
 }
 
-/* Only patches of oriented manifolds are disks. Within one component a patch of one loop has no closed part beside it. */
+/* Only patches of oriented manifolds are disks. Within one component a patch of one loop has no closed part
+ * beside it. */
 static void find_disks(patches *p, const cscd_mesh *mesh, const patch_tree *tree, const contour_lists *l,
                        vertex_visit *visits) {
     uint32_t *ends = p->stack; /* one past the last node of each subtree */
@@ -232,8 +234,8 @@ void patches_free(cscd_context *context, patches *p) {
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
-/* Nodes are decided from the roots down, each by itself once its parent has not passed: so threads take large
- * nodes of one wave, the children of those before, and then small subtrees, in any order. */
+/* Nodes are decided from the roots down, each by itself once its parent has not passed. So threads take the large
+ * nodes wave by wave, each wave the children of the one before, and then the small subtrees, in any order. */
 typedef struct sealing {
     patches *p;
     const cscd_mesh *mesh;
@@ -318,7 +320,7 @@ static void decide_small(void *data, uint32_t lane) {
     }
 }
 
-/* The large nodes of a wave stand in the stack after those of the wave before. */
+/* In the stack, the large nodes of a wave follow those of the wave before. */
 static void append_large(patches *p, uint32_t node, uint32_t *end) {
     if (p->tree.nodes[node].height > SMALL_HEIGHT) p->stack[(*end)++] = node;
 }

@@ -3,7 +3,8 @@
 
 enum { LEAF_HEIGHT = 3, HEIGHT_PER_LEVEL = 3, DEPTH_MAX = 64 };
 
-/* Slots [0, count) of a tree from `first` on, in 2^height of them; parent: whose right child it is. */
+/* A node still to be built, which covers the 2^height slots of a tree from `first` on. It is the right child of
+ * parent. */
 typedef struct pending_node {
     uint32_t first, height, parent;
 } pending_node;
