@@ -1,4 +1,4 @@
-/* Nanoseconds per pair of triangles for the feature_filter, and per pair of features for signs and roots: on each
+/* Nanoseconds per pair of triangles for the feature filter, and per pair of features for signs and roots: on each
  * level of vector instructions, and one by one. */
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/detector/detector.h"
@@ -74,9 +74,8 @@ static uint32_t triangle_chunk(const interval_recording *r, size_t i) {
     return (uint32_t)(r->triangles.count - i < TRIANGLE_CHUNK ? r->triangles.count - i : TRIANGLE_CHUNK);
 }
 
-/* As a step does where nothing is culled, except for orphan pairs. Takes the pairs out of the queue before it is
- * full.
- */
+/* Records pairs as a step does when nothing is culled, but without orphan pairs. Takes the pairs out of the queue
+ * before it is full. */
 static bool record_pairs(interval_recording *r) {
     traversal *t = &r->detector->space.traversal;
     bool good = true, more = true;
@@ -133,7 +132,7 @@ static void close_recording(interval_recording *r) {
 
 /* ---- in batches -------------------------------------------------------------------------------------- */
 
-/* Representatives, feature_filter, queue; what is in the queue then is dropped. */
+/* Runs representatives, feature filter and queue, and drops what is then in the queue. */
 static void feature_filter(interval_recording *r, cscd_contact_kind kind) {
     (void)kind;
     for (size_t i = 0; i < r->triangles.count; i += TRIANGLE_CHUNK) {
@@ -188,7 +187,7 @@ static double processor_ns(void) {
     return (double)now.tv_sec * 1e9 + (double)now.tv_nsec;
 }
 
-/* Per each of count pairs. */
+/* Returns the least time in ns for each of count pairs. */
 static double time_pairs(interval_recording *r, cscd_contact_kind kind, size_t count,
                          void (*decide)(interval_recording *, cscd_contact_kind)) {
     double least = 1e300;

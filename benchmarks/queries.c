@@ -96,12 +96,13 @@ typedef struct query_result {
     size_t levels[ELEMENTARY_LEVEL_COUNT]; /* how many queries each level decided */
     double *microseconds;                  /* per query alone, sorted */
     double mean;
-    double sum[2]; /* of the times, of queries that miss and of those that hit */
+    double sum[2]; /* sums of times: of queries that miss, and of those that hit */
     size_t hits;
     double batch; /* microseconds of all queries in batches */
 } query_result;
 
-/* The least of a few repeats; short queries are called several times in each, for the clock's sake. */
+/* Returns the least time of a few repeats. Short queries are called several times in each, because the clock is
+ * coarse. */
 static double time_query(int level, cscd_contact_kind kind, size_t i) {
     double least = 1e300;
     int calls = CALLS_PER_REPEAT;

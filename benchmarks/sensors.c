@@ -65,7 +65,7 @@ static void print_trial(const char *scene, const char *method, const sensor_tria
     fflush(stdout);
 }
 
-/* The mean over some seeds, and how many of them have missed something. */
+/* Shows the mean over some seeds, and how many of them have missed something. */
 static bool run_random(const recording_data *r, const sensor_truth *truth, const sensor_rules *rule,
                        io_error *error) {
     sensor_trial sum = {0};
@@ -101,8 +101,7 @@ static bool run_scene(const recording_data *r, io_error *error) {
     return good;
 }
 
-/* ---- how far they feel, and how many ----------------------------------------------------------------------
- */
+/* ---- how far they feel, and how many ------------------------------------------------------------------ */
 
 static const sensor_rules sweep[] = {
     {.name = "default"},
@@ -128,7 +127,7 @@ enum { SWEEP = sizeof sweep / sizeof *sweep };
 
 static sensor_trial swept[SWEEP];
 
-/* Adds up; a scene of many objects is shown by itself, too. */
+/* Adds to the sums over all scenes; a scene of many objects is also shown by itself. */
 static bool run_sweep(const recording_data *r, io_error *error) {
     sensor_truth truth;
     if (!sensor_truth_find(r, &truth, error)) return false;
@@ -144,8 +143,7 @@ static bool run_sweep(const recording_data *r, io_error *error) {
     return good;
 }
 
-/* ---- the certified mode ----------------------------------------------------------------------------------
- */
+/* ---- the certified mode ------------------------------------------------------------------------------- */
 
 static bool run_certified(const recording_data *r, io_error *error) {
     for (int plan = 0; plan < 2; plan++) {
@@ -158,8 +156,7 @@ static bool run_certified(const recording_data *r, io_error *error) {
     return true;
 }
 
-/* ---- the program -----------------------------------------------------------------------------------------
- */
+/* ---- the program -------------------------------------------------------------------------------------- */
 
 static bool for_scenes(const char *folder, const char *const *names, size_t count,
                        bool (*run)(const recording_data *, io_error *), io_error *error) {

@@ -1,5 +1,5 @@
-/* Records soft bodies that fall, bend and run into themselves: a model, its frames, and what they fall onto.
- */
+/* Records soft bodies that fall, bend and run into themselves: a model, its frames, and what they fall
+ * onto. */
 #include "models/common/motion.h"
 #include "models/common/recording_files.h"
 #include "models/common/scene_program.h"

@@ -1,5 +1,5 @@
-/* The loops of benchmarks/machine, compiled once per instruction set and without the compiler's own vectors.
- */
+/* The loops of benchmarks/machine, compiled once per instruction set and without the compiler's own
+ * vectors. */
 #include "benchmarks/lib/machine_kernels.h"
 
 #include "src/core/simd.h"

@@ -54,7 +54,7 @@ const uint64_t *pair_batches_decided(const pair_batches *b) {
 
 /* ---- order and sizes ------------------------------------------------------------------------------------- */
 
-/* A linear congruence, of which the high bits are used (Knuth, MMIX). */
+/* Uses the high bits of a linear congruence (Knuth, MMIX). */
 static size_t random_below(pair_batches *b, size_t bound) {
     b->random = b->random * 6364136223846793005u + 1442695040888963407u;
     return (size_t)((b->random >> 33) % bound);
@@ -113,7 +113,7 @@ static uint64_t decided_pairs(const contact_lane *lane) {
     return sum;
 }
 
-/* What is wrong with a level's lane, alone and beside the lowest level's; NULL: nothing. */
+/* Returns what is wrong with a level's lane, by itself or compared with the lowest level's; NULL: nothing. */
 static const char *find_problem(const contact_lane *first, const contact_lane *lane, size_t count) {
     if (lane->out_of_memory) return "memory ran out";
     if (decided_pairs(lane) != count) return "the queue lost pairs, or decided some twice";

@@ -38,15 +38,17 @@ const cscd_contact *pair_batches_decide(pair_batches *b, const feature_source *s
                                         const uint32_t (*pairs)[2], size_t count, size_t *contact_count,
                                         const char **problem);
 
-/* The same for queries that have no mesh, whose answers come in their order. False: see *problem. */
+/* Does the same for queries, which have no mesh; the answers come in the order of the queries. False:
+ * see *problem. */
 bool pair_batches_decide_queries(pair_batches *b, cscd_contact_kind kind, const elementary_query *queries,
                                  size_t count, query_answer *answers, const char **problem);
 
-/* For timing: makes queries i to be pairs i in their order, and decides pairs begin to end - 1 on one level in one
- * batch; the lane is emptied before. */
+/* For timing: turns query i into pair i, and decides pairs begin to end - 1 on one level in one batch, after
+ * emptying the lane. */
 bool pair_batches_load(pair_batches *b, cscd_contact_kind kind, const elementary_query *queries,
                        size_t count);
 void pair_batches_run(pair_batches *b, int level, cscd_contact_kind kind, size_t begin, size_t end);
 
-/* How many pairs each elementary level decided in the last call, on the lowest level of vector instructions. */
+/* Returns how many pairs each elementary level decided in the last call, on the lowest level of vector
+ * instructions. */
 const uint64_t *pair_batches_decided(const pair_batches *b);

@@ -20,7 +20,8 @@ static bool read_integer(char **text, mpz_ptr out) {
     return read;
 }
 
-/* numerator / denominator as a double; false when it is none. mpq_get_d truncates, so the way back tells. */
+/* Reads numerator / denominator as a double; false when it is none. mpq_get_d truncates, so converting back shows
+ * it. */
 static bool read_coordinate(char **text, mpq_t value, mpq_t back, double *out) {
     if (!read_integer(text, mpq_numref(value)) || !read_integer(text, mpq_denref(value))) return false;
     if (mpz_sgn(mpq_denref(value)) == 0) return false;

@@ -11,7 +11,7 @@
 
 enum { INTERVALS = 21, SIDE_MAX = 7 };
 
-/* Spheres in a row, or in a cube, each of which swings about its place, so that neighbours nearly touch. */
+/* Places spheres in a row or in a cube. Each swings about its place, so that neighbours nearly touch. */
 static void place_spheres(const body *ball, uint32_t side[3], body *out) {
     for (uint32_t i = 0; i < side[0]; i++)
         for (uint32_t j = 0; j < side[1]; j++)

@@ -3,5 +3,5 @@
 
 #include "src/io/io_error.h"
 
-/* Two tables on the standard output. */
+/* Prints two tables on the standard output. */
 bool sensor_cost_print(io_error *error);

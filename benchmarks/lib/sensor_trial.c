@@ -24,8 +24,7 @@ double sensor_median(double *values, uint32_t count) {
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* ---- the truth -------------------------------------------------------------------------------------------
- */
+/* ---- the truth ---------------------------------------------------------------------------------------- */
 
 static bool find_intervals(const recording_data *r, cscd_detector *detector, const object_map *map,
                            sensor_truth *truth, double *ms, io_error *error) {
@@ -76,8 +75,7 @@ void sensor_truth_free(sensor_truth *truth) {
     *truth = (sensor_truth){0};
 }
 
-/* ---- sensors ---------------------------------------------------------------------------------------------
- */
+/* ---- sensors ------------------------------------------------------------------------------------------ */
 
 static double mean_edge(const recording_data *r) {
     const double *x = recording_data_frame(r, 0);
@@ -92,7 +90,7 @@ static double mean_edge(const recording_data *r) {
     return sum / cscd_mesh_edge_count(r->mesh);
 }
 
-/* With a given mu particles feel each other as far as by default, whatever that mu is. */
+/* With a given mu, particles still feel each other as far as they do by default. */
 static bool make_sensors(const recording_data *r, const sensor_rules *rules, cscd_partition **partition,
                          cscd_sensors **sensors, io_error *error) {
     const cscd_plan *plan = rules->plan ? r->charge : NULL;
@@ -128,7 +126,7 @@ static bool renew_due(const recording_data *r, cscd_partition *partition, const 
     return true;
 }
 
-/* Measures of the first frame. */
+/* Returns the largest diameter of a cell in the first frame. */
 static double largest_cell(const recording_data *r, const cscd_partition *partition) {
     const double *x = recording_data_frame(r, 0);
     double largest = 0.0;
@@ -217,8 +215,7 @@ void sensor_trial_add(sensor_trial *sum, const sensor_trial *one) {
     sum->trees_ms = one->trees_ms;
 }
 
-/* ---- the certified mode ----------------------------------------------------------------------------------
- */
+/* ---- the certified mode ------------------------------------------------------------------------------- */
 
 typedef bool (*apart_question)(const cscd_sensors *s, uint32_t a, uint32_t b);
 
@@ -230,7 +227,7 @@ static bool boxes_apart(const cscd_sensors *s, uint32_t a, uint32_t b) {
     return sensor_bounds_boxes_apart(&s->bounds, a, b);
 }
 
-/* The answers for all watched pairs, in their order; how many there are. */
+/* Writes the answers for all watched pairs, in their order, and returns how many there are. */
 static uint32_t ask_all(const cscd_sensors *s, apart_question ask, bool *answers) {
     uint32_t count = 0;
     for (uint32_t a = 0; a < s->partition->part_count; a++)

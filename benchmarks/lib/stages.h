@@ -5,14 +5,14 @@
 #include "cscd/cscd.h"
 #include "src/tool/common/stages.h"
 
-/* The columns of the tables: the stages of a step, in the order of timing_rows; then what of the total belongs to no
- * stage, as checks of the input; then the total. */
+/* The columns of the tables: the stages of a step, in the order of timing_rows; then the part of the total that
+ * belongs to no stage, such as checks of the input; then the total. */
 enum { STAGE_OTHER = TIMING_STAGES, STAGE_TOTAL, STAGE_COUNT };
 
 /* "update", "travers", ..., "other", "total". */
 const char *stage_name(int stage);
 
-/* The column of that name, which there must be. */
+/* Returns the column of that name, which must exist. */
 int stage_named(const char *name);
 
 enum { SAMPLES_MAX = 64 };

@@ -39,9 +39,9 @@ typedef struct safe_motion {
     const uint32_t *seams; /* pairs of vertices that move as one */
     uint32_t seam_count;
     uint32_t vertex_count;
-    safe_motion_stop *stops; /* of the motion in work */
+    safe_motion_stop *stops; /* of the current motion */
     size_t stop_count, stop_capacity;
-    uint32_t *parents;       /* zones of the motion in work, as a forest of vertices */
+    uint32_t *parents;       /* zones of the current motion, as a forest of vertices */
     safe_motion_zone *zones; /* indexed by the vertices that name them */
     double (*told)[4];       /* per vertex: sum and number of the motions of obstacles in contact */
     safe_motion_counts counts;

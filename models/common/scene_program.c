@@ -1,5 +1,5 @@
-/* A program that simulates scenes and writes a recording of each: its arguments, its help, its exit status.
- */
+/* A program that simulates scenes and writes a recording of each: its arguments, its help, its exit
+ * status. */
 #include "models/common/scene_program.h"
 
 #include <errno.h>

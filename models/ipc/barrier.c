@@ -1,5 +1,5 @@
-/* The barrier of incremental potential contact: an energy that rises without bound as a distance goes to 0.
- */
+/* The barrier of incremental potential contact: an energy that rises without bound as a distance goes to
+ * 0. */
 #include "models/ipc/barrier.h"
 
 #include <math.h>

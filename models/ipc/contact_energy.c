@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 /* Edges count as nearly parallel when the squared sine between them, taken with their rest lengths, is
- * below. */
+ * below this. */
 static const double parallel_share = 1e-3;
 
 static double squared_length(const double *positions, const uint32_t edge[2]) {

@@ -36,7 +36,7 @@ typedef struct ipc_solver {
     ipc_springs springs;
     ipc_system system;
 
-    /* Of the time step in work. */
+    /* The time step in progress: */
     double *before, *predicted; /* start of the step; its end without inner forces */
     double *gradient, *direction;
     double *end, *trial;                   /* end of the line; the verified point on it */

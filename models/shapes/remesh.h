@@ -8,5 +8,5 @@
  * or far too small. */
 bool body_remesh(body *b, const implicit *surface, uint32_t triangle_count);
 
-/* Nets, then body_remesh. */
+/* Makes nets and then remeshes them with body_remesh. */
 bool body_add_even_implicit(body *b, const implicit *surface, uint32_t triangle_count);

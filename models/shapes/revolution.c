@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A foot with a rounded rim, a waist, a collar below the head, the head. */
+/* The outline is a foot with a rounded rim, a waist, a collar below the head, and the head. */
 void add_pawn(body *b, uint32_t triangle_count) {
     outline o = {0};
     outline_arc(&o, 0.88, 0.12, 0.12, -90.0, 0.0);

@@ -21,7 +21,7 @@ static void revolve_point(double radius, double height, double angle, double poi
     point[2] = height;
 }
 
-/* The distance between rings: a triangle's height, if triangles are equilateral and rings have `total`
+/* Returns the distance between rings: a triangle's height, if triangles are equilateral and rings have `total`
  * vertices in all. */
 static double ring_distance(const outline *o, uint32_t total) {
     double sum = 0.0, point[2];
@@ -33,8 +33,8 @@ static double ring_distance(const outline *o, uint32_t total) {
     return rise * sqrt(area / (rise * total));
 }
 
-/* Rings as evenly as it goes with one at each corner of the outline, none at poles; returns how many. Only
- * counts them where rings is NULL. */
+/* Places rings as evenly as possible, with one at each corner of the outline and none at poles, and returns their
+ * number. With rings NULL it only counts them. */
 static uint32_t place_rings(const outline *o, double distance, ring *rings) {
     uint32_t piece = 0, count = 0;
     double before = 0.0;
@@ -66,7 +66,7 @@ static int by_remainder(const void *a, const void *b) {
     return x > y ? -1 : x < y ? 1 : (r > s) - (r < s);
 }
 
-/* In proportion to the radii, by largest remainders. */
+/* Distributes the vertices in proportion to the radii, by largest remainders. */
 static void apportion_vertices(ring *rings, uint32_t count, uint32_t total) {
     double low = 0.0, high = 1.0, sum = 0.0;
     assert(total >= SIZE_LEAST * count);
@@ -113,7 +113,7 @@ static uint32_t ring_vertex(const ring *r, uint32_t i) {
     return r->first + (i + r->shift) % r->size;
 }
 
-/* Two rings of any two sizes: always on along the one whose next edge has its middle first. */
+/* Joins two rings of any sizes, always stepping on along the one whose next edge has its middle first. */
 static void stitch_rings(body *b, const ring *low, const ring *high) {
     uint32_t i = 0, j = 0;
     while (i < low->size || j < high->size) {
@@ -128,7 +128,7 @@ static void stitch_rings(body *b, const ring *low, const ring *high) {
     }
 }
 
-/* From the last ring to the first, which starts at that one of its corners that fits. */
+/* Joins the last ring to the first, which starts at the corner that fits. */
 static void stitch_around(body *b, const ring *last, ring first) {
     double offset = (last->turn - first.turn) * first.size;
     uint32_t steps = (uint32_t)floor(offset + 0.5);

@@ -4,7 +4,8 @@
 #include "models/shapes/body.h"
 #include "models/shapes/outline.h"
 
-/* Where the point at (radius, height), turned by `angle` radians about the axis, goes; NULL: about z. */
+/* Writes where the point at (radius, height), turned by `angle` radians about the axis, goes. NULL:
+ * the axis is z. */
 typedef void rings_place(double radius, double height, double angle, double point[3]);
 
 /* Adds the outline revolved, with exactly triangle_count triangles: an even number, at least 2 * 3 for each

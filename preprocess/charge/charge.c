@@ -19,8 +19,8 @@ typedef struct workspace {
 /* The charge's share of cscd_plan_create, by estimate; the regions take the rest. */
 static const double part_of_call = 0.95;
 
-/* The number of triangles of a component that are charged. Obstacles are not charged, since they are not cut.
- * */
+/* The number of triangles of a component that are charged. Obstacles are not charged, since they are not
+ * cut. */
 static uint32_t charged_triangles(const cscd_mesh *mesh, uint32_t component) {
     return component_is_obstacle(mesh, component) ? 0 : mesh->components[component].triangle_count;
 }
@@ -34,8 +34,8 @@ static uint32_t largest_component(const cscd_mesh *mesh) {
     return largest;
 }
 
-/* Points the arrays into memory and returns their size; with memory NULL it only counts. SIZE_MAX: too many.
- */
+/* Points the arrays into memory and returns their size; with memory NULL it only counts. SIZE_MAX: too
+ * many. */
 static size_t lay_out(workspace *work, const cscd_mesh *mesh, char *memory) {
     size_t t = mesh->triangle_count, c = mesh->component_count;
     size_t lists_size = t * (sizeof *work->density + sizeof *work->triangles) +

@@ -4,8 +4,8 @@
  * right is brought up to date: rows swapped, solved with the panel's triangle, and less the product of the
  * panel's lower part with what came out. That is a task for each panel to come, and panels depend on nothing
  * but the size, so the factors are the same whoever runs the tasks. The next panel's task factors it at once:
- * nobody else touches it, and the others need not wait for it. Between two rounds the solve can be cancelled.
- */
+ * nobody else touches it, and the others need not wait for it. Between two rounds the solve can be
+ * cancelled. */
 #include "preprocess/charge/dense_solve.h"
 
 #include <cblas.h>

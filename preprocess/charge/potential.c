@@ -6,8 +6,8 @@
  *     integral = sum of t ln((R+ + l+) / (R- + l-))  -  |d| Omega.
  *
  * The six arcs of eq. 3.17 add up to the solid angle Omega, which one arc gives (van Oosterom and Strackee
- * 1983). This file's loops are straight-line code for the vectoriser; it is compiled without errno and traps.
- */
+ * 1983). This file's loops are straight-line code for the vectoriser; it is compiled without errno and
+ * traps. */
 #include "preprocess/charge/potential.h"
 
 #include "src/core/vec3.h"

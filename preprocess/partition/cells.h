@@ -5,8 +5,8 @@
 #include "preprocess/regions/connect.h"
 #include "src/mesh/partition.h"
 
-/* Makes cells and keeps them until they are all written to the partition, so that it is never half renewed.
- * */
+/* Makes cells and keeps them until they are all written to the partition, so that it is never half
+ * renewed. */
 typedef struct cell_maker {
     cscd_partition *partition;
     const double *positions;

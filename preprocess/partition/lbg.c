@@ -211,8 +211,8 @@ static uint32_t largest_distortion(const lbg *l, uint32_t code_count) {
     return largest;
 }
 
-/* Fills an empty code with half of the code of largest distortion. Returns false when no code can be split.
- * */
+/* Fills an empty code with half of the code of largest distortion. Returns false when no code can be
+ * split. */
 static bool fill_code(const lbg *l, uint32_t empty, uint32_t code_count) {
     for (;;) {
         uint32_t largest = largest_distortion(l, code_count);

@@ -3,8 +3,8 @@
 
 #include "preprocess/regions/dual_graph.h"
 
-/* Cluster i is triangles[offsets[i] .. offsets[i + 1]); clusters are in the order of their first triangles.
- */
+/* Cluster i is triangles[offsets[i] .. offsets[i + 1]); clusters are in the order of their first
+ * triangles. */
 typedef struct clusters {
     uint32_t count;
     uint32_t *offsets, *triangles;

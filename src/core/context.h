@@ -40,12 +40,13 @@ static inline void context_free_all(cscd_context *context, array_list list) {
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The sentence for every allocation that failed. */
+/* Sets the sentence of a failed allocation, and returns CSCD_OUT_OF_MEMORY. */
 cscd_status context_out_of_memory(cscd_context *context);
 
-/* CSCD_OK, or CSCD_CANCELLED with its sentence. Results of tasks count only after this has returned CSCD_OK.
- * */
+/* Returns CSCD_OK, or CSCD_CANCELLED with its sentence. Results of tasks count only after this has
+ * returned CSCD_OK. */
 cscd_status context_progress_status(cscd_context *context);
 
-/* The sentence for a status that has none yet: CSCD_CANCELLED, or a failed allocation. */
+/* Sets the sentence of a status that has none yet, CSCD_CANCELLED or a failed allocation, and returns
+ * the status. */
 cscd_status context_explain(cscd_context *context, cscd_status status);

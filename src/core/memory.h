@@ -13,7 +13,7 @@ typedef struct host_memory {
     size_t bytes; /* in use, headers included */
 } host_memory;
 
-/* The allocator of a host that brings none. */
+/* The allocator for a host that has none of its own. */
 cscd_allocator memory_system_allocator(void);
 
 /* Returns false when the system refuses a lock. */

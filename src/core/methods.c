@@ -1,4 +1,4 @@
-/* What is known of each method without running it. */
+/* Facts about each method that are known without running it. */
 #include "src/core/methods.h"
 
 #include <string.h>

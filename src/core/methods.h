@@ -1,4 +1,4 @@
-/* What is known of each method without running it. */
+/* Facts about each method that are known without running it. */
 #pragma once
 
 #include "cscd/cscd.h"

@@ -14,8 +14,8 @@
 enum { LOOKS_AT_ONCE = 32 };
 static const double patience_ms = 0.05;
 
-/* The gate: above the flags the number of the work on offer, below them how many helpers are inside. Helpers
- * enter only while it is open: the caller never waits for one that has not come by the time all is done. */
+/* The gate: above the flags it holds the number of the work on offer, below them the number of helpers inside.
+ * Helpers enter only while it is open, so the caller never waits for one that has not come by the time all is done. */
 #define GATE_INSIDE  ((uint64_t)0xffff)
 #define GATE_AWAITED ((uint64_t)1 << 30) /* the caller sleeps until nobody is inside */
 #define GATE_OPEN    ((uint64_t)1 << 31)
@@ -118,8 +118,8 @@ static bool enter_soon(parallel *threads, uint32_t *seen) {
     return false;
 }
 
-/* Either the caller sees a sleeper after it has opened the gate (or told all to quit), or the sleeper sees
- * what the caller did. */
+/* Either the caller sees the sleeper after it has opened the gate (or told all to quit), or the sleeper sees what
+ * the caller did. */
 static void sleep_until_called(parallel *threads, uint32_t seen) {
     pthread_mutex_lock(&threads->lock);
     uint64_t calls = threads->calls;

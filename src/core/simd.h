@@ -104,7 +104,7 @@ static inline f64x8 f64x8_abs(f64x8 v) {
     return (f64x8)((i64x8)v & INT64_MAX);
 }
 
-/* Rounded to nearest. */
+/* Rounds to nearest. */
 static inline f32x8 f32x8_from(f64x8 v) {
     return __builtin_convertvector(v, f32x8);
 }
@@ -117,7 +117,7 @@ static inline f64x8 f64x8_from(f32x8 v) {
 
 #if SIMD_LEVEL != SIMD_SCALAR
 
-/* b where one of them is not a number, in all of these. */
+/* All of these give b if one of the two is NaN. */
 static inline f32x8 f32x8_min(f32x8 a, f32x8 b) {
     return _mm256_min_ps(a, b);
 }
@@ -217,7 +217,7 @@ static inline uint32_t f64x8_below(f64x8 a, f64x8 b) {
 
 /* ---- points ------------------------------------------------------------------------------------------ */
 
-/* x, y, z and anything: reads three doubles. */
+/* Loads x, y, z and an arbitrary fourth value; reads only three doubles. */
 static inline f64x4 f64x4_load_point(const double *from) {
 #if SIMD_LEVEL == SIMD_SCALAR
     return (f64x4){from[0], from[1], from[2], 0.0};
@@ -226,7 +226,7 @@ static inline f64x4 f64x4_load_point(const double *from) {
 #endif
 }
 
-/* Coordinate k of eight points of positions (packed x, y, z) in out[k]. */
+/* Loads eight points of positions (packed x, y, z); out[k] holds their coordinates k. */
 static inline void f64x8_load_points(const double *positions, const uint32_t indices[8], f64x8 out[3]) {
     f64x8 points[4], pairs[4];
     for (int i = 0; i < 4; i++) {
@@ -245,7 +245,7 @@ static inline void f64x8_load_points(const double *positions, const uint32_t ind
 
 /* ---- as many doubles as the processor takes at once ---------------------------------------------------- */
 
-/* For loops whose lanes do not depend on each other, so that their number changes no result. */
+/* These serve loops whose lanes do not depend on each other, so that their number changes no result. */
 #if SIMD_LEVEL == SIMD_AVX512
 enum { WIDTH = 8 };
 #elif SIMD_LEVEL == SIMD_AVX2
@@ -275,7 +275,7 @@ static inline uint32_t f64w_at_most(f64w a, f64w b) {
     return _cvtmask8_u32(_mm512_cmp_pd_mask(a, b, _CMP_LE_OQ));
 }
 
-/* a where lanes has the bit, else b. */
+/* Takes a in the lanes whose bit is set, and b in the others. */
 static inline f64w f64w_select(uint32_t lanes, f64w a, f64w b) {
     return _mm512_mask_blend_pd(_cvtu32_mask8(lanes), b, a);
 }
@@ -288,7 +288,7 @@ static inline f64w f64w_sqrt(f64w v) {
     return _mm512_sqrt_pd(v);
 }
 
-/* Coordinate k of WIDTH points of positions (packed x, y, z) in out[k]. */
+/* Loads WIDTH points of positions (packed x, y, z); out[k] holds their coordinates k. */
 static inline void f64w_load_points(const double *positions, const uint32_t indices[WIDTH], f64w out[3]) {
     f64x8_load_points(positions, indices, out);
 }

@@ -18,7 +18,7 @@ static inline float f32x8_greatest(f32x8 v) {
     return v[0];
 }
 
-/* Rows become columns. */
+/* Turns rows into columns. */
 static inline void f32x8_transpose(f32x8 r[8]) {
     f32x8 pairs[8], quads[8];
     for (int i = 0; i < 8; i += 2) {

@@ -55,7 +55,7 @@ static int compare_numbers(const void *left, const void *right) {
     return l < r ? -1 : l > r;
 }
 
-/* Returns whether anything was moved: not where all have the same digit. */
+/* Returns whether anything was moved; nothing is if all items have the same digit. */
 static inline bool sort_by_digit(const char *from, char *to, size_t count, size_t size, int shift) {
     size_t places[DIGITS] = {0}, place = 0;
     for (size_t i = 0; i < count; i++) places[number_of(from + i * size) >> shift & (DIGITS - 1)]++;
@@ -80,7 +80,7 @@ void sort_by_number(void *items, void *scratch, size_t count, size_t size) {
     }
     for (int shift = 0; shift < NUMBER_BITS; shift += DIGIT_BITS) {
         bool moved = size == 8 ? sort_by_digit(from, to, count, 8, shift)
-                               : sort_by_digit(from, to, count, 16, shift); /* compiled apart */
+                               : sort_by_digit(from, to, count, 16, shift); /* compiled separately */
         if (!moved) continue;
         char *swapped = from;
         from = to;

@@ -58,7 +58,7 @@ static const char *name_at(const char *const *names, size_t count, size_t i) {
     return i < count ? names[i] : "unknown";
 }
 
-/* count if there is none of that name. */
+/* Returns count if no name is equal. */
 static size_t find_name(const char *const *names, size_t count, const char *name) {
     size_t i = 0;
     while (name != NULL && i < count && strcmp(names[i], name) != 0) i++;

@@ -1,5 +1,5 @@
-/* Vectors of three doubles. Every sum is formed from left to right, x + y + z: results depend on that order.
- * */
+/* Vectors of three doubles. Every sum is formed from left to right, x + y + z: results depend on that
+ * order. */
 #pragma once
 
 #include "src/core/floating.h"

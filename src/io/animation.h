@@ -9,9 +9,9 @@
 
 typedef struct animation animation;
 
-/* paths: one .pc2 or .mdd file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a
- * frame. Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once.
- * vertex_count is what every frame must have. On false *out is untouched. */
+/* paths: one .pc2 or .mdd file; one printf pattern (f_%04d.obj); one folder; or a list of mesh files, one a frame.
+ * Only headers (and, of a folder, names) are read here; the size of a point cache is checked at once. Every frame
+ * must have vertex_count vertices. On false *out is untouched. */
 bool animation_open(const char *const *paths, size_t path_count, uint32_t vertex_count, animation **out,
                     io_error *error);
 void animation_close(animation *animation);

@@ -20,11 +20,11 @@ typedef struct contact_file contact_file;
 /* Does the extension say a format that contact_file_open knows? */
 bool contact_file_names_format(const char *path);
 
-/* The format follows from the extension: .csv or .jsonl. with_bounded: each row says it, else none has room
- * for it. On false *out is untouched. */
+/* The format follows from the extension: .csv or .jsonl. with_bounded: each row says whether its contact is bounded;
+ * else no row has a place for it. On false *out is untouched. */
 bool contact_file_open(const char *path, bool with_bounded, contact_file **out, io_error *error);
 bool contact_file_write(contact_file *file, const contact_record *record, io_error *error);
-/* Everything written so far reaches the system. */
+/* Passes everything written so far to the system. */
 bool contact_file_flush(contact_file *file, io_error *error);
 /* False when the rest could not be written. NULL does nothing and is fine. */
 bool contact_file_close(contact_file *file, io_error *error);

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A longer path would leave no room for what is wrong: its end is shown. */
+/* A longer path would leave no room for what is wrong, so only its end is shown. */
 enum { SHOWN_PATH_LENGTH = 500, MESSAGE_SIZE = sizeof((io_error *)0)->text };
 
 static size_t write_path(char *message, const char *path) {
@@ -84,7 +84,7 @@ static bool read_file(file_reader *reader, FILE *file) {
     if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode)) {
         return file_reader_fail(reader, "is a device, expected a file");
     }
-    /* One more than the file holds, so that the first read already meets its end, and the 0. */
+    /* One byte more than the file holds, so that the first read already meets its end, and one for the 0. */
     uintmax_t expected_size = (uintmax_t)(status.st_size > 0 ? status.st_size : 4096) + 2;
     growable bytes = growable_of(1);
     bool done = read_all(reader, file, expected_size > SIZE_MAX ? SIZE_MAX : (size_t)expected_size, &bytes);

@@ -9,7 +9,7 @@
 typedef struct file_reader {
     const char *path; /* the caller's, alive as long as the reader */
     io_error *error;
-    char *bytes; /* size of them and a 0 behind the last */
+    char *bytes; /* `size` bytes, and a 0 behind the last */
     size_t size;
     size_t at;          /* the next byte to read */
     size_t line;        /* the line of `at`, from 1 */
@@ -23,8 +23,8 @@ typedef struct file_reader {
 bool file_reader_open(file_reader *reader, const char *path, io_error *error);
 void file_reader_close(file_reader *reader);
 
-/* Leave "path: message", or "path:line N: message" / "path: byte N: message" with the place where the reader
- * is, in reader->error: always one line, and always false. */
+/* Write "path: message", or "path:line N: message" / "path: byte N: message" with the place where the reader is, to
+ * reader->error. The message is always one line; the result is always false. */
 bool file_reader_fail(file_reader *reader, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool file_reader_fail_here(file_reader *reader, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

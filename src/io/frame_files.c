@@ -36,7 +36,7 @@ static frame_files *create_files(const char *source, uint32_t vertex_count, io_e
     return files;
 }
 
-/* Whatever comes after the names are known; closes files if it fails. */
+/* Does everything that follows once the names are known; closes files if it fails. */
 static bool finish_files(frame_files *files, const char *source, frame_files **out, io_error *error) {
     size_t longest = 0;
     for (size_t i = 0; i < frame_names_count(&files->list); i++) {
@@ -158,7 +158,7 @@ static bool copy_positions(const frame_files *files, uint32_t frame, const mesh_
     return true;
 }
 
-/* Other faces than in the frames before mean, most likely, another order of the vertices. */
+/* If the faces differ from those of earlier frames, the vertices most likely have another order. */
 static bool same_faces(frame_files *files, uint32_t frame, const mesh_file *mesh, io_error *error) {
     const unsigned char *bytes = (const unsigned char *)mesh->triangles;
     const size_t size = (size_t)mesh->triangle_count * 3 * sizeof *mesh->triangles;

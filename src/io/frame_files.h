@@ -9,12 +9,13 @@
 
 typedef struct frame_files frame_files;
 
-/* Only names are looked at; on false *out is untouched. frame_pattern.h and frame_folder.h say what belongs
- * to a sequence and in which order. */
+/* Looks at names only. On false *out is untouched. frame_pattern.h and frame_folder.h say what belongs to a sequence
+ * and in which order. */
 bool frame_files_open_pattern(const char *pattern, uint32_t vertex_count, frame_files **out, io_error *error);
 bool frame_files_open_folder(const char *folder, uint32_t vertex_count, frame_files **out, io_error *error);
 
-/* Taken as they are, percent signs included, in the order given; each must be a file that exists. */
+/* Takes the paths as they are, percent signs included, in the order given; each must be a file that
+ * exists. */
 bool frame_files_open_list(const char *const *paths, size_t path_count, uint32_t vertex_count,
                            frame_files **out, io_error *error);
 void frame_files_close(frame_files *files);

@@ -54,7 +54,8 @@ static bool check_extensions(const char *folder, const frame_names *list, io_err
     return true;
 }
 
-/* All against the first: each differs from it in one number, always the same one, and no two are equal. */
+/* Compares all names with the first: each must differ from it in one number, always the same one, and no two may be
+ * equal. */
 static bool check_series(const char *folder, const frame_names *list, io_error *error) {
     size_t series_number = 0;
     for (size_t i = 1; i < frame_names_count(list); i++) {

@@ -11,8 +11,8 @@
 
 enum { WIDTH_LIMIT = 32 };
 
-/* The pattern without its conversion and with "%%" undone: folder, what comes before the number, what after.
- */
+/* The pattern without its conversion and with "%%" undone: the folder, the text before the number, and the text
+ * after it. */
 typedef struct frame_pattern {
     char *text;
     size_t name_start, number_start; /* positions in text; the suffix starts where the number does */
@@ -91,7 +91,7 @@ static bool keep_match(const char *name, const void *context) {
     return matches_name(context, name, &number);
 }
 
-/* The names ascend by number: the same text surrounds the number in all of them. */
+/* The names ascend by number, because the same text surrounds the number in all of them. */
 static bool check_gaps(const frame_pattern *pattern, const frame_names *list, io_error *error) {
     uint32_t first, number;
     matches_name(pattern, frame_names_at(list, 0), &first);

@@ -1,4 +1,4 @@
-/* Writes JSON as it goes: commas, nesting and escapes are seen to here. */
+/* Writes JSON as it goes, and takes care of commas, nesting and escapes. */
 #include "src/io/json.h"
 
 #include <assert.h>

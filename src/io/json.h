@@ -1,4 +1,4 @@
-/* Writes JSON as it goes: commas, nesting and escapes are seen to here. */
+/* Writes JSON as it goes, and takes care of commas, nesting and escapes. */
 #pragma once
 
 #include <stdbool.h>
@@ -10,7 +10,7 @@ enum { JSON_DEPTH_MAX = 16 };
 typedef struct json {
     FILE *file;
     int depth;
-    bool has_items[JSON_DEPTH_MAX]; /* something precedes in this object or array */
+    bool has_items[JSON_DEPTH_MAX]; /* this object or array already has an item */
     bool break_line;                /* before the next value */
 } json;
 
@@ -23,11 +23,11 @@ void json_end_array(json *out);
 /* Invalid UTF-8 bytes (file names) are written as U+FFFD. */
 void json_string(json *out, const char *key, const char *value);
 void json_integer(json *out, const char *key, uint64_t value);
-/* 17 significant digits: the same double comes back. NaN and infinity become null. */
+/* Writes 17 significant digits, so that the same double comes back. NaN and infinity become null. */
 void json_number(json *out, const char *key, double value);
 void json_boolean(json *out, const char *key, bool value);
 void json_null(json *out, const char *key);
-/* A value that is JSON already. */
+/* Writes a value that is JSON already. */
 void json_verbatim(json *out, const char *key, const char *text);
-/* The next value starts on a new line, for people. */
+/* Starts the next value on a new line, for human readers. */
 void json_break_line(json *out);

@@ -18,7 +18,7 @@ typedef struct mesh_builder {
     growable positions;  /* of double[3] */
     growable triangles;  /* of uint32_t[3] */
     uint32_t first_corner, last_corner;
-    size_t corner_count; /* of the face in hand */
+    size_t corner_count; /* of the current face */
 } mesh_builder;
 
 mesh_builder mesh_builder_of(file_reader *reader, uint32_t index_base);
@@ -27,7 +27,7 @@ void mesh_builder_free(mesh_builder *builder);
 /* On false the reader's error is set, as in all below. */
 bool mesh_builder_add_vertex(mesh_builder *builder, const double position[3]);
 
-/* A face is begun, given its corners (0-based, in range or checked later) and ended. */
+/* Begin a face, add its corners (0-based, in range or checked later), and end it. */
 void mesh_builder_begin_face(mesh_builder *builder);
 bool mesh_builder_add_corner(mesh_builder *builder, uint32_t vertex);
 bool mesh_builder_end_face(mesh_builder *builder);

@@ -62,7 +62,7 @@ static bool print_obj(FILE *file, const mesh_file *mesh) {
     return fflush(file) == 0;
 }
 
-/* A device or a pipe that could not take the mesh stays. */
+/* A device or a pipe that could not take the mesh is not removed. */
 static void remove_regular_file(const char *path) {
     struct stat status;
     if (lstat(path, &status) == 0 && S_ISREG(status.st_mode)) remove(path);

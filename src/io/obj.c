@@ -27,7 +27,7 @@ static bool read_vertex(obj_parser *obj) {
     return mesh_builder_add_vertex(&obj->builder, position);
 }
 
-/* a, a/b, a//c or a/b/c: index becomes a. */
+/* Reads a, a/b, a//c or a/b/c; index becomes a. */
 static bool parse_corner(text_token token, int64_t *index) {
     size_t at = text_parse_integer_prefix(token, index);
     if (at == 0) return false;

@@ -67,7 +67,7 @@ static bool check_count(file_reader *reader, const char *what, int64_t count) {
                                  count, MESH_COUNT_LIMIT);
 }
 
-/* Vertices, faces and, where it is given, edges, which nobody needs. */
+/* Reads the counts of vertices and faces and, if it is given, that of edges, which is not needed. */
 static bool read_counts(file_reader *reader, off_counts *counts) {
     text_seek_token(reader);
     if (!text_integer(reader, "the number of vertices", &counts->vertices) ||

@@ -3,8 +3,8 @@
 
 #include <stdbool.h>
 
-/* extension: with its dot; upper and lower case are the same. A name that is nothing but it does not count.
- */
+/* extension: with its dot; upper and lower case are the same. A name that consists of the extension alone does not
+ * count. */
 bool path_has_extension(const char *path, const char *extension);
 
 /* Returns the part after the last '/'. */

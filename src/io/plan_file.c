@@ -32,8 +32,8 @@ typedef struct plan_reader {
     uint32_t region_count;
     double *positions, *points, *charges, *capacitances;
     uint32_t *regions;
-    uint32_t differing;  /* the first triangle that the mesh has otherwise, or UINT32_MAX, */
-    uint32_t corners[3]; /* and those of the file */
+    uint32_t differing;  /* the first triangle that differs from the mesh's, or UINT32_MAX */
+    uint32_t corners[3]; /* its corners in the file */
 } plan_reader;
 
 /* ---- comments of the header ------------------------------------------------------------------------ */
@@ -70,7 +70,7 @@ static bool read_comment(plan_reader *p, file_reader *reader, comment_kind kind)
     return fits || file_reader_fail_here(reader, "found '%s', expected %s", text_show(value).text, expected);
 }
 
-/* "comment cscd NAME" at the start of a line: which one it is; COMMENT_COUNT: another line. */
+/* Returns which "comment cscd NAME" the line begins with; COMMENT_COUNT: it is another line. */
 static comment_kind comment_of_line(file_reader *reader) {
     static const char *const names[] = {"plan", "method", "mesh"};
     text_token token;
@@ -203,7 +203,7 @@ static bool read_region(plan_reader *p, const ply_property *property) {
     return true;
 }
 
-/* The corners are the mesh's: the first triangle that differs is kept for the message. */
+/* Compares the corners with the mesh's, and keeps the first triangle that differs for the message. */
 static bool compare_corners(plan_reader *p, const ply_property *property) {
     int64_t length;
     if (!ply_data_length(&p->data, property, &length)) return false;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* One vertex, face, region or component. */
+/* The bytes of one vertex, face, region or component. */
 typedef struct file_row {
     unsigned char bytes[96];
     size_t size;

@@ -9,7 +9,7 @@
 typedef struct ply_parser {
     ply_data data;
     mesh_builder builder;
-    double position[3]; /* of the vertex in hand */
+    double position[3]; /* of the current vertex */
 } ply_parser;
 
 bool ply_recognise(const file_reader *reader) {

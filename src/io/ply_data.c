@@ -99,7 +99,7 @@ bool ply_data_length(ply_data *data, const ply_property *property, int64_t *leng
     return true;
 }
 
-/* Values that nobody needs are not looked at. */
+/* Skips values that are not needed, without checking them. */
 static bool skip_values(ply_data *data, const ply_property *property, int64_t count) {
     file_reader *reader = data->reader;
     if (data->header.encoding == PLY_ASCII) {
@@ -121,7 +121,7 @@ bool ply_data_skip(ply_data *data, const ply_property *property) {
     return skip_values(data, property, length);
 }
 
-/* One vertex, face or other: in text, one line. */
+/* Reads one vertex, face or other element; in text it is one line. */
 static bool read_row(ply_data *data, const ply_visitor *visitor) {
     bool is_text = data->header.encoding == PLY_ASCII;
     size_t start = data->reader->at;

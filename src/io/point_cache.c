@@ -48,7 +48,8 @@ static float load_float(const unsigned char *bytes, bool big_endian) {
     return value;
 }
 
-/* How many of the bytes at offset there are, fewer than size only at the end of the file; -1 with errno. */
+/* Reads the bytes at offset. Returns how many there are, fewer than size only at the end of the file;
+ * -1 with errno. */
 static int64_t read_at(int file, unsigned char *bytes, size_t size, int64_t offset) {
     size_t done = 0;
     while (done < size) {
@@ -201,7 +202,7 @@ uint32_t point_cache_frame_count(const point_cache *cache) {
     return cache->frame_count;
 }
 
-/* The values from byte offset on, which begin with vertex first. */
+/* Decodes the values from byte `offset` on, which begin with vertex `first`. */
 static bool decode_chunk(const point_cache *cache, uint32_t frame, uint32_t first, uint32_t count,
                          int64_t offset, double *positions, io_error *error) {
     for (size_t i = 0; i < (size_t)count * 3; i++) {

@@ -23,8 +23,8 @@ typedef struct point_cache point_cache;
 /* Whether path is to be read as a point cache: it begins like a PC2 file, or ends in .pc2 or .mdd. */
 bool point_cache_recognise(const char *path);
 
-/* Checks the header and the file's size against it; vertex_count is at least 1. On false *out is untouched.
- */
+/* Checks the header and the file's size against it; vertex_count is at least 1. On false *out is
+ * untouched. */
 bool point_cache_open(const char *path, uint32_t vertex_count, point_cache **out, io_error *error);
 void point_cache_close(point_cache *cache);
 

@@ -118,7 +118,7 @@ static bool write_frame(point_cache_writer *writer, const double *positions, io_
     const size_t count = (size_t)writer->vertex_count * 3;
     size_t used = 0;
     for (size_t i = 0; i < count; i++) {
-        if (!(fabs(positions[i]) <= (double)FLT_MAX)) /* not a number compares false */
+        if (!(fabs(positions[i]) <= (double)FLT_MAX)) /* comparing NaN gives false */
             return io_fail(
                 error, "%s: frame %" PRIu32 ", vertex %zu, %c is %g, expected a number that fits in float32",
                 writer->path, writer->written_count, i / 3, "xyz"[i % 3], positions[i]);

@@ -12,8 +12,8 @@ static bool is_line_end(char c) {
     return c == '\n' || c == '\r';
 }
 
-/* Lines end with LF, CR LF or, on old machines, CR alone. The 0 behind the bytes makes at + 1 safe to read.
- */
+/* Lines end with LF, CR LF or, on old machines, CR alone. The 0 behind the bytes makes at + 1 safe to
+ * read. */
 static size_t line_end_size(const file_reader *reader, size_t at) {
     if (!is_line_end(reader->bytes[at])) return 0;
     return reader->bytes[at] == '\r' && reader->bytes[at + 1] == '\n' ? 2 : 1;

@@ -18,27 +18,27 @@ typedef struct text_shown {
     char text[48];
 } text_shown;
 
-/* The next token of the line; false at the line's end, which is not passed. */
+/* Finds the next token of the line; false at the line's end, which is not passed. */
 bool text_next_token(file_reader *reader, text_token *token);
 
-/* To the start of the next line, whatever the rest of this one holds. */
+/* Moves to the start of the next line, whatever the rest of this one holds. */
 void text_skip_line(file_reader *reader);
 
-/* To the next token, over blank lines and comments; false when the file ends. */
+/* Moves to the next token, over blank lines and comments; false when the file ends. */
 bool text_seek_token(file_reader *reader);
 
 /* Take the line's next token as a number. On false the error names the token and what was expected. */
 bool text_number(file_reader *reader, const char *expected, double *value);
 bool text_integer(file_reader *reader, const char *expected, int64_t *value);
 
-/* The line must end here. */
+/* Checks that the line ends here. */
 bool text_expect_line_end(file_reader *reader);
 
-/* The whole token is a number, a double rounded to nearest; infinities and NaN are let through. */
+/* Reads the whole token as a number, rounded to the nearest double; infinities and NaN are let through. */
 bool text_parse_number(text_token token, double *value);
-/* The whole token is a decimal integer of at most 18 digits. */
+/* Reads the whole token as a decimal integer of at most 18 digits. */
 bool text_parse_integer(text_token token, int64_t *value);
-/* The same, of a beginning: returns its length, 0 when the token does not begin with an integer. */
+/* Reads such an integer at the beginning of the token; returns its length, 0 when there is none. */
 size_t text_parse_integer_prefix(text_token token, int64_t *value);
 
 bool text_equals(text_token token, const char *word);

@@ -42,7 +42,8 @@ static double distance_between(const double *a, const double *b) {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* The smallest group of one cell whose first vertex is within epsilon of p, or best if that is smaller. */
+/* Returns the smallest group of one cell whose first vertex is within epsilon of p, or best if that is
+ * smaller. */
 static uint32_t nearest_group(const cell_table *table, const double *positions, const double *p, cell c,
                               const weld *w, uint32_t best) {
     for (uint32_t i = table->first[bucket_of(table, c)]; i != 0; i = table->next[i - 1]) {

@@ -167,8 +167,8 @@ cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc
     return create_mesh(context, objects, object_count, out);
 }
 
-/* The arrays are allocated one stage after the other, since the size of one follows from what another holds.
- * */
+/* The arrays are allocated one stage after the other, since the size of one follows from what another
+ * holds. */
 static array_list mesh_arrays(cscd_mesh *mesh) {
     return (array_list){{ARRAY(mesh->triangles, 0), ARRAY(mesh->edges, 0), ARRAY(mesh->triangle_edges, 0),
                          ARRAY(mesh->vertex_star_offsets, 0), ARRAY(mesh->vertex_stars, 0),

@@ -1,5 +1,5 @@
-/* The partition of vertices into cells, in which particles walk: preprocessing makes it, the sensors use it.
- * */
+/* The partition of vertices into cells, in which particles walk: preprocessing makes it, the sensors use
+ * it. */
 #pragma once
 
 #include "src/mesh/mesh.h"

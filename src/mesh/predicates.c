@@ -186,8 +186,8 @@ static int orient3d_exact(const double a[3], const double b[3], const double c[3
 
 /* The filter: left and right carry two differences and a product each, three roundings, at most
  * (1 + e)^3 - 1 < 3e + 4e^2 of the exact magnitude; the last subtraction cannot change the sign. The
- * magnitude is itself computed too small by 4 roundings at most: 3e (1 + 6e) < 4e = 2^-51 bounds the error.
- */
+ * magnitude is itself computed too small by 4 roundings at most: 3e (1 + 6e) < 4e = 2^-51 bounds the
+ * error. */
 int orient2d(double ax, double ay, double bx, double by, double cx, double cy) {
     double left = (bx - ax) * (cy - ay);
     double right = (by - ay) * (cx - ax);

@@ -37,8 +37,8 @@ void picture_colour_map(double value, uint8_t rgb[3]) {
         rgb[i] = (uint8_t)(viridis[lower][i] * (1.0 - share) + viridis[lower + 1][i] * share + 0.5);
 }
 
-/* The colours of Okabe and Ito (2008), told apart with any colour vision; then the same lighter, and darker.
- */
+/* The colours of Okabe and Ito (2008), told apart with any colour vision; then the same lighter, and
+ * darker. */
 void picture_colour_category(uint32_t index, uint8_t rgb[3]) {
     static const uint8_t hues[7][3] = {{86, 180, 233}, {230, 159, 0}, {0, 158, 115},  {213, 94, 0},
                                        {240, 228, 66}, {0, 114, 178}, {204, 121, 167}};

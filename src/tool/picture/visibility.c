@@ -126,8 +126,8 @@ static void draw_samples(picture_visibility *visibility, const picture_edges *ed
             if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) continue;
             double exact = (e0 + e1 + e2) / edges->volume;
             if (exact > box->limit) continue;
-            /* Rounding throws the depth of a triangle seen nearly edge-on far off; it lies within its bounds.
-             */
+            /* Rounding throws the depth of a triangle seen nearly edge-on far off; it lies within its
+             * bounds. */
             float near = (float)fmin(fmax(exact, box->inverse_depth[0]), box->inverse_depth[1]);
             if (near <= inverse_depth[column]) continue;
             inverse_depth[column] = near;

@@ -34,8 +34,8 @@ bool picture_visibility_create(uint32_t width, uint32_t height, uint32_t samples
                                io_error *error);
 void picture_visibility_free(picture_visibility *visibility);
 
-/* Draws triangles, the first of which is known as `first_number`; at equal depth the one drawn first stays.
- */
+/* Draws triangles, the first of which is known as `first_number`; at equal depth the one drawn first
+ * stays. */
 void picture_visibility_draw(picture_visibility *visibility, const double *projected,
                              const uint32_t *triangles, uint32_t triangle_count, uint32_t first_number,
                              double near_depth);

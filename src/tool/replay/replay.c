@@ -155,7 +155,7 @@ static void alarm_contradiction(replay *r, const interval_result *result) {
     bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
-    if (method_facts_of(r->plan.method)->loses_contacts) return; /* as is known of them */
+    if (method_facts_of(r->plan.method)->loses_contacts) return; /* which such a method may have */
     warn("interval %u starts free of intersections and ends with one, but no contact was found: a "
          "contact was lost, please report this recording",
          result->frame);

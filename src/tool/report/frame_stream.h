@@ -19,10 +19,9 @@ typedef struct frame_stream {
     int32_t *values, *previous; /* vertex_count each of x, y, z */
     uint32_t *residuals;
     uint8_t *plane;
-    /* The largest error of a coordinate as the page shows it, in units of the positions given, and by the
-     * longest side of its frame's box. The latter is below 2^-15, but for frames that page_coordinate limits
-     * (1 for one of no size), and such that float32 cannot tell from a point: of 2^-125 of the page's unit.
-     */
+    /* The largest error of a coordinate as the page shows it, in units of the positions given, and by the longest
+     * side of its frame's box. The latter is below 2^-15, except for frames that page_coordinate limits (1 for one
+     * of no size) and for frames that float32 cannot tell from a point, because they are 2^-125 of the page's unit. */
     double max_error, relative_error;
 } frame_stream;
 

@@ -1,5 +1,5 @@
-/* Coordinates as the page has them: in its unit, and within what float32 and a graphics card can work with.
- */
+/* Coordinates as the page has them: in its unit, and within what float32 and a graphics card can work
+ * with. */
 #pragma once
 
 #include <math.h>
