@@ -1,4 +1,4 @@
-/* An allocator that counts, and that can be told to fail. */
+/* An allocator that counts its calls and can be told to fail. */
 #pragma once
 
 #include "cscd/cscd.h"

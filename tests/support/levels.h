@@ -5,9 +5,9 @@
 
 enum { LEVEL_COUNT = CSCD_SIMD_AVX512 };
 
-/* One context per level, from SCALAR on; NULL: the processor lacks this level. */
+/* There is one context per level, from SCALAR on; NULL when the processor lacks the level. */
 extern cscd_context *contexts[LEVEL_COUNT];
 
-/* Set-up and tear-down of a test program. */
+/* The set-up and tear-down of a test program. */
 int open_levels(void **state);
 int close_levels(void **state);

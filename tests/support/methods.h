@@ -3,6 +3,7 @@
 
 #include "cscd/cscd.h"
 
-/* The method itself, or NONE in a build without baselines where it is one of them. Fails the test if a build lacks a
- * method that it should have, or has one that it should lack, or refuses one without the sentence that says why. */
+/* Returns the method itself, or NONE in a build without baselines when it is one of them. Fails the test
+ * if a build lacks a method that it should have, or has one that it should lack, or refuses one without
+ * the sentence that says why. */
 cscd_method method_or_none(cscd_method method);

@@ -1,4 +1,4 @@
-/* Brute force over features: what every method must equal. */
+/* Brute force over features, which every method must equal. */
 #include "tests/support/oracle.h"
 
 #include "tests/support/ccd/queue_test.h"
@@ -47,10 +47,10 @@ static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
     return query;
 }
 
-/* Pairs of features of one kind that wait for their test. */
+/* Feature pairs of one kind that wait for their test. */
 typedef struct waiting_pairs {
     const scene *scene;
-    const separation *limit; /* NULL: contacts */
+    const separation *limit; /* NULL for contacts */
     cscd_contact_kind kind;
     edge *edges;
     uint32_t (*pairs)[2];

@@ -1,4 +1,4 @@
-/* Brute force over features: what every method must equal. */
+/* Brute force over features, which every method must equal. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -22,7 +22,7 @@ typedef struct oracle_list {
  * public API says, but by separate code. */
 void oracle_find(const scene *s, oracle_list *out);
 
-/* The same with the test of minimum separation. */
+/* Finds the same with the test of minimum separation. */
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out);
 
 void oracle_free(oracle_list *list);

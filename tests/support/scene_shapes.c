@@ -1,4 +1,4 @@
-/* The shapes that scenes consist of. */
+/* The shapes of which scenes consist. */
 #include "tests/support/scenes.h"
 
 #include <assert.h>
@@ -84,7 +84,7 @@ void scene_add_torus(scene *s, const double centre[3], double major, double mino
         for (uint32_t j = 0; j < n; j++) {
             double across = 2.0 * PI * j / n, reach = major + minor * cos(across);
             double p[3] = {reach * cos(around), reach * sin(around), minor * sin(across)};
-            if (standing) /* a rotation, so the orientation stays */
+            if (standing) /* a rotation, so the orientation does not change */
                 add_vertex(s, centre[0] + p[0], centre[1] - p[2], centre[2] + p[1]);
             else
                 add_vertex(s, centre[0] + p[0], centre[1] + p[1], centre[2] + p[2]);

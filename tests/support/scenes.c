@@ -96,7 +96,7 @@ static void make_squashed_torus(scene *s, random_stream *random) {
     deform_scene(s, squash_axes, start, end);
 }
 
-/* Rolls the x axis to a spiral whose radius grows by a[1] a turn. */
+/* Rolls the x axis to a spiral whose radius grows by a[1] per turn. */
 static void roll_sheet(const double rest[3], const double *a, double out[3]) {
     double angle = rest[0] * a[0], radius = 1.0 / a[0] + a[1] * angle;
     out[0] = radius * sin(angle);
@@ -181,7 +181,7 @@ static void make_bow_tie(scene *s, random_stream *random) {
     scene_add_sphere(s, (double[3]){0, 0, 1.0}, 1.0, 5, 8);
     uint32_t first = s->vertex_count, first_triangle = s->triangle_count;
     scene_add_sphere(s, (double[3]){0, 0, -1.0}, 1.0, 5, 8);
-    /* The top pole of the second becomes the bottom pole of the first. */
+    /* The top pole of the second sphere becomes the bottom pole of the first. */
     for (uint32_t i = first_triangle * 3; i < s->triangle_count * 3; i++) {
         if (s->triangles[i] == s->vertex_count - 1) s->triangles[i] = 0;
     }

@@ -1,4 +1,4 @@
-/* Meshes and random intervals that the suites share. */
+/* Meshes and random intervals that all tests share. */
 #pragma once
 
 #include <stdbool.h>
@@ -15,7 +15,7 @@ typedef struct scene {
 
 /* Each family yields intervals with contacts as well as without. */
 typedef enum scene_family {
-    SCENE_NOISY_SPHERE,   /* a sphere with waves that change */
+    SCENE_NOISY_SPHERE,   /* a sphere with changing waves */
     SCENE_BENT_CAPSULE,   /* bends until it touches itself */
     SCENE_SQUASHED_TORUS, /* is pressed flat */
     SCENE_FOLDED_SHEET,   /* open; rolls up */
@@ -25,18 +25,18 @@ typedef enum scene_family {
     SCENE_SPIKE,          /* one vertex is pulled, at times through the far wall */
     SCENE_BOW_TIE,        /* two cones that share their tip bend towards each other */
     SCENE_SOUP,           /* random triangles, any topology */
-    SCENE_GRID,           /* small integer coordinates: touching, coplanar, coincident, all common */
+    SCENE_GRID,           /* small integer coordinates: touching, coplanar and coincident features */
     SCENE_FAR_AWAY,       /* a bent capsule far from the origin, flying */
     SCENE_FAMILY_COUNT
 } scene_family;
 
 const char *scene_family_name(scene_family family);
 
-/* Makes a scene; the same seed gives the same scene. jitter: brings it into generic position, moving
- * vertices by up to a few per cent of an edge (SCENE_GRID has none). */
+/* Makes a scene; the same seed gives the same scene. jitter: brings the scene into generic position by
+ * moving vertices by up to a few per cent of an edge (SCENE_GRID has none). */
 void scene_make(scene_family family, uint64_t seed, scene *out);
 
-/* Building blocks, which replace the mesh of the scene by one shape or add a shape to it. They set x0, and
+/* These building blocks replace the mesh of the scene by one shape or add a shape to it. They set x0, and
  * x1 = x0. */
 void scene_clear(scene *s);
 void scene_add_sphere(scene *s, const double centre[3], double radius, int rings, int segments);

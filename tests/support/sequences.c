@@ -1,4 +1,4 @@
-/* Random recordings whose meshes pass into themselves, lie still, come out, and pass in again. */
+/* Random recordings whose meshes pass into themselves, rest, come out, and pass in again. */
 #include "tests/support/sequences.h"
 
 #include "tests/support/random_stream.h"
@@ -54,7 +54,7 @@ static void make_scene(sequence *q, random_stream *random) {
             q->frames[f][i] = q->shape.x0[i] + at * (q->shape.x1[i] - q->shape.x0[i]) + step;
         }
         for (int i = 0; i < DENTS; i++) press_dent(&q->shape, &dents[i], q->frames[f]);
-        if (stream_below(random, 8) == 0) continue; /* the mesh lies still, or almost */
+        if (stream_below(random, 8) == 0) continue; /* the mesh rests, or almost */
         at += stream_between(random, -0.5, 0.5);
         if (at > 2.0 || at < -1.0) at = 0.5;
         noise = stream_below(random, 3) == 0 ? stream_between(random, 0.0, 0.03) : 0.0;
@@ -114,7 +114,7 @@ static void add_grid_shape(scene *s, random_stream *random) {
     for (uint32_t i = first * 3; i < s->vertex_count * 3; i++) s->x0[i] = round(s->x0[i]);
 }
 
-/* Moves some vertices on the grid and a few back home; at times all go home. */
+/* Moves some vertices on the grid and returns a few to their places; at times all return. */
 static void move_on_grid(sequence *q, const double *from, double *to, random_stream *random) {
     uint32_t vertex_count = q->shape.vertex_count, movers = stream_below(random, 5),
              reach = 1 + stream_below(random, 5);

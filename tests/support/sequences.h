@@ -1,4 +1,4 @@
-/* Random recordings whose meshes pass into themselves, lie still, come out, and pass in again. */
+/* Random recordings whose meshes pass into themselves, rest, come out, and pass in again. */
 #pragma once
 
 #include "tests/support/scenes.h"

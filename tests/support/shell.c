@@ -1,4 +1,4 @@
-/* Shell commands in tests: their output and their exit codes. */
+/* Runs shell commands, and returns their output or checks their exit codes. */
 #include "tests/support/shell.h"
 #include "tests/support/test.h"
 
@@ -8,7 +8,7 @@
 
 enum { COMMAND_MAX = 8192 };
 
-/* Returns all that the pipe gives, to be freed. */
+/* Reads all of the pipe; the caller frees the text. */
 static char *read_all(FILE *pipe) {
     size_t size = 0, capacity = 4096;
     char *text = malloc(capacity);

@@ -1,4 +1,5 @@
-/* Runs every call of the API that takes long, one after the other, and computes a digest of each result. */
+/* Runs every call of the API that may take long, one after the other, and computes a digest of each
+ * result. */
 #include "tests/support/workload.h"
 
 #include "src/core/methods.h"
@@ -32,15 +33,15 @@ typedef struct workload_state {
     workload_result result;
 } workload_state;
 
-/* FNV-1a */
+/* Adds the bytes to the digest by FNV-1a. */
 static void add_digest(workload_state *r, const void *data, size_t size) {
     const unsigned char *bytes = data;
     uint64_t *hash = &r->result.digests[r->result.call_count];
     for (size_t i = 0; i < size; i++) *hash = (*hash ^ bytes[i]) * 0x100000001b3u;
 }
 
-/* Adds the counters except the number of rebuilds: a call that failed may have rebuilt trees already,
- * which are there when it is repeated. */
+/* Adds the counters except the number of rebuilds: a failed call may have rebuilt trees already, so that
+ * its repetition does not. */
 static void digest_counters(workload_state *r) {
     cscd_counters counters = cscd_detector_counters(r->detector);
     r->result.rebuilds += counters.rebuilds;
@@ -117,7 +118,7 @@ static void max_step(workload_state *r, const double *x0, const double *x1) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     cscd_free_step found = {.length = 0.0};
     cscd_status status;
-    if (method_traits_of(r->w->options.method)->loses_contacts) return; /* it refuses to certify */
+    if (method_traits_of(r->w->options.method)->loses_contacts) return; /* it refuses to certify steps */
     do {
         status = cscd_detector_max_step(r->detector, x0, x1, end, &found);
     } while (call_again(r, status));
@@ -139,7 +140,7 @@ static void begin_line(workload_state *r, const double *x0, const double *x1) {
     end_call(r, status);
 }
 
-/* Asks for two lengths and two moments on the line that was begun last. */
+/* Asks for two lengths and two moments on the line search that was begun last. */
 static void ask_line(workload_state *r) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     for (int i = 0; i < 2; i++) {

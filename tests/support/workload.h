@@ -1,4 +1,5 @@
-/* Runs every call of the API that takes long, one after the other, and computes a digest of each result. */
+/* Runs every call of the API that may take long, one after the other, and computes a digest of each
+ * result. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -25,7 +26,7 @@ typedef struct workload_result {
     uint64_t contacts, rebuilds, culled; /* sums over all steps */
 } workload_result;
 
-/* Makes a plan and a detector; then, over the intervals of the sequence, takes steps and now and then a
- * static check, proximity queries, the longest step, and lines. It asserts nothing, so that any thread may
- * run it. */
+/* Makes a plan and a detector; then, over the intervals of the sequence, takes steps and now and then runs
+ * a static check, proximity queries, the longest step, and line searches. It asserts nothing, so that any
+ * thread may run it. */
 workload_result workload_run(cscd_context *context, const workload *w);

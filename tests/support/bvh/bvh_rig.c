@@ -1,4 +1,4 @@
-/* A BVH over a scene's mesh, for tests; anything that fails there fails the test. */
+/* A BVH over a scene's mesh; any failure to make it fails the test. */
 #include "tests/support/bvh/bvh_rig.h"
 #include "src/core/processor.h"
 #include "tests/support/test.h"

@@ -5,10 +5,10 @@
 
 enum { DIRECTION_COUNT = 7 };
 
-/* x, y, z, x+y+z, x+y-z, x-y+z, -x+y+z */
+/* The directions are x, y, z, x+y+z, x+y-z, x-y+z, -x+y+z. */
 extern const int directions[DIRECTION_COUNT][3];
 
-/* A point, an edge, a face, by its vertices. */
+/* The vertices of a point, an edge or a face. */
 typedef struct point_set {
     const uint32_t *vertices;
     int count;
@@ -21,13 +21,13 @@ typedef struct gap_motion {
 
 long double along_direction(const long double p[3], int direction);
 
-/* Over all directions and their opposites the largest of the smaller of the gaps at both ends, as a length:
- * where it is positive, all points of a and b stay farther apart than that throughout. Or, where it is more
- * than enough, another that is. */
+/* Returns a length: the largest, over all directions and their opposites, of the smaller of the gaps at
+ * both ends. When it is positive, all points of a and b stay farther apart than that throughout. The
+ * search ends early with any length above `enough`. */
 long double direction_gap(gap_motion m, point_set a, point_set b, long double enough);
 
-/* The same along x, y and z alone. */
+/* Returns the same length for x, y and z alone. */
 long double axis_gap(gap_motion m, point_set a, point_set b, long double enough);
 
-/* The largest magnitude of a coordinate relative to that of the vertex 0 at the start. */
+/* Returns the largest magnitude of a coordinate relative to that of vertex 0 at the start. */
 double motion_extent(gap_motion m, uint32_t vertex_count);

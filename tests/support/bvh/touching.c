@@ -16,7 +16,7 @@ static long double gap_along(const double *below, const double *above, int direc
     return lowest - highest;
 }
 
-/* Moves the triangle above along one axis until it touches. */
+/* Moves the upper triangle along one axis until it touches the lower one. */
 static void let_touch(const double *below, double *above, int direction) {
     int axis = direction < 3 ? direction : 0;
     double sign = directions[direction][axis], more = 0x1p-53;

@@ -4,6 +4,7 @@
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
 
-/* Triangles 2 i and 2 i + 1: the least of one is the greatest of the other along a direction, at both ends,
- * or, where that is no double, a few units in the last place less. Each has vertices of its own. */
+/* Makes pairs of triangles 2 i and 2 i + 1 with vertices of their own. At both ends the least of one is
+ * the greatest of the other along a direction; when that is no double, it is a few units in the last place
+ * less. */
 void make_touching_pairs(random_stream *random, uint32_t pair_count, double spread, scene *out);

@@ -1,4 +1,4 @@
-/* The names of the functions that the public headers declare. */
+/* Lists the names of the functions that the public headers declare. */
 #include "tests/support/install/api_names.h"
 
 #include "tests/support/shell.h"

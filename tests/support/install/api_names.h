@@ -1,4 +1,4 @@
-/* The names of the functions that the public headers declare. */
+/* Lists the names of the functions that the public headers declare. */
 #pragma once
 
 /* Returns the functions of one header of include/cscd/, or of all ("*.h"), sorted and one per line. The

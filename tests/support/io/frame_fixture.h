@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The folder of a test's files; the two functions are its cmocka set-up and tear-down. */
+/* The folder of a test's files. The two functions are the set-up and tear-down of the cmocka group. */
 extern temp_folder frame_fixture_folder;
 int frame_fixture_make_folder(void **state);
 int frame_fixture_remove_folder(void **state);
@@ -20,35 +20,35 @@ typedef struct frame_fixture_bytes {
     size_t size;
 } frame_fixture_bytes;
 
-/* Four bytes at offset, which may be the end; they fail the test where there is no room. */
+/* Writes four bytes at offset, which may be the end. The test fails when there is no room. */
 void frame_fixture_put_int(frame_fixture_bytes *bytes, size_t offset, int32_t value, bool big_endian);
 void frame_fixture_put_float(frame_fixture_bytes *bytes, size_t offset, float value, bool big_endian);
 
-/* The coordinate that every fixture holds at (frame, vertex, axis); exact in float32. */
+/* Returns the coordinate that every fixture has at (frame, vertex, axis); it is exact in float32. */
 double frame_fixture_value(uint32_t frame, uint32_t vertex, uint32_t axis);
 
-/* Whole files of those coordinates. */
+/* Makes whole files of those coordinates. */
 frame_fixture_bytes frame_fixture_pc2(uint32_t vertex_count, uint32_t frame_count);
 frame_fixture_bytes frame_fixture_mdd(uint32_t vertex_count, uint32_t frame_count);
 
 temp_path frame_fixture_write(const temp_folder *folder, const char *name, const frame_fixture_bytes *bytes);
 
-/* The frame as a mesh file with one triangle, in the format that the name's extension says. */
+/* Writes the frame as a mesh file with one triangle, in the format that the name's extension chooses. */
 temp_path frame_fixture_write_mesh(const temp_folder *folder, const char *name, uint32_t vertex_count,
                                    uint32_t frame);
 
-/* Opens what must open, one path. */
+/* Opens one path; the test fails when it cannot be opened. */
 animation *frame_fixture_open(const char *path, uint32_t vertex_count);
 
-/* Reads a frame that must be readable and compares every coordinate, exactly, with that of frame `expected`.
- */
+/* Reads a frame and compares every coordinate exactly with that of frame `expected`. The test fails when
+ * the frame cannot be read. */
 void frame_fixture_check(animation *opened, uint32_t vertex_count, uint32_t frame, uint32_t expected);
 
-/* The error is one line and holds every one of the parts (up to NULL). */
+/* Checks that the error is one line that contains every one of the parts, a list up to NULL. */
 void frame_fixture_check_error(const io_error *error, ...);
 
-/* Opening the one path fails and leaves the output alone; the error is put in *error. */
+/* Expects that opening the path fails and leaves the output unchanged; fills in *error. */
 void frame_fixture_open_fails(const char *path, uint32_t vertex_count, io_error *error);
 
-/* Reading the frame fails; the error is put in *error. */
+/* Expects that reading the frame fails; fills in *error. */
 void frame_fixture_read_fails(animation *opened, uint32_t vertex_count, uint32_t frame, io_error *error);

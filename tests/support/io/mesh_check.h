@@ -8,12 +8,12 @@
 #include <stdint.h>
 
 typedef struct file_bytes {
-    const char *name; /* of the file, with its extension */
+    const char *name; /* the file's name with its extension */
     const void *bytes;
     size_t size;
 } file_bytes;
 
-/* A file from a string literal, which may hold zeros. */
+/* Makes a file of a string literal, which may contain zeros. */
 #define FILE_OF(name, literal)                                                                               \
     (file_bytes) {                                                                                           \
         (name), (literal), sizeof(literal) - 1                                                               \
@@ -22,19 +22,18 @@ typedef struct file_bytes {
 /* Writes the file to a temporary folder, reads it and removes both. */
 bool mesh_check_read(file_bytes file, mesh_file *mesh, io_error *error);
 
-/* The file reads, and holds exactly these arrays, bit for bit. */
+/* Checks that the file is read, and has exactly these arrays, bit for bit. */
 void mesh_check_equal(file_bytes file, uint32_t vertex_count, const double *positions,
                       uint32_t triangle_count, const uint32_t *triangles);
-/* The same of a square: 0 0 0, 1 0 0, 1 1 0, 0 1 0 with the triangles 0 1 2 and 0 2 3. */
+/* Checks the same for a square: 0 0 0, 1 0 0, 1 1 0, 0 1 0 with the triangles 0 1 2 and 0 2 3. */
 void mesh_check_square(file_bytes file);
 
-/* The file is refused in one line that holds the file's name followed by `place` (":line 3: ", ": byte 7: "
- * or
- * ": ") and the two texts; the mesh is untouched. */
+/* Checks that the file is refused in one line that contains the file's name followed by `place` (":line 3:
+ * ", ": byte 7: " or ": ") and the two texts, and that the mesh is unchanged. */
 void mesh_check_error(file_bytes file, const char *place, const char *found, const char *expected);
 
-/* The file is refused with a message, or gives a mesh whose numbers are all in range. */
+/* Checks that the file is refused with a message, or gives a mesh whose numbers are all in range. */
 void mesh_check_survives(file_bytes file);
-/* The same of the file cut after every byte, with every bit flipped, and with every byte doubled and dropped.
- */
+/* Checks the same for the file cut after every byte, with every bit flipped, and with every byte doubled
+ * and dropped. */
 void mesh_check_damage(file_bytes file);

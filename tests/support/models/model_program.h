@@ -1,7 +1,7 @@
 /* Chooses the program that run_tool runs: the tool, or one of models/. */
 #pragma once
 
-/* From now on run_tool runs models/NAME, or the tool again when name is NULL. Fails the test without the
+/* Makes run_tool run models/NAME, or the tool again when name is NULL. Fails the test without the
  * variables that tests/run.sh sets. */
 void model_program_use(const char *name);
 

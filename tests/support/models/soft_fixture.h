@@ -14,13 +14,13 @@ void rotation_matrix(const double axis[3], double angle, double out[3][3]);
 /* Makes a box of twelve triangles; the bits of its corners' numbers are x, y, z. */
 body box_body(const double low[3], const double high[3]);
 
-/* The height of bodies at rest, from which they do not reach the ground within a test. */
+/* Bodies at rest are this high, so that they do not reach the ground within a test. */
 extern const double soft_fixture_height;
 soft_body soft_body_of(const body *b, double spacing, const material *m);
 void soft_body_lift(soft_body *b, double height);
 
 typedef struct soft_momentum {
-    double mass, centre[3], linear[3], angular[3]; /* angular: about the centre */
+    double mass, centre[3], linear[3], angular[3]; /* angular is relative to the centre */
 } soft_momentum;
 
 soft_momentum soft_momentum_of(const soft_body *b);

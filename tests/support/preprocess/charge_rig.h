@@ -10,13 +10,13 @@ typedef struct charge_rig {
     double *density, *capacitance; /* all -1 at first */
 } charge_rig;
 
-/* allocator NULL: the default */
+/* allocator: NULL for the default. */
 charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cscd_allocator *allocator);
 
 /* Makes a rig and solves for its charges; any failure fails the test. */
 charge_rig charge_rig_solve(const conductor *s, uint32_t thread_count);
 
-/* Returns whether density and capacitance are all -1 still. */
+/* Returns whether density and capacitance are still all -1. */
 bool charge_rig_untouched(const charge_rig *r);
 
 void charge_rig_destroy(charge_rig *r);

@@ -30,7 +30,7 @@ void conductor_free(conductor *s) {
     *s = (conductor){0, 0, NULL, NULL};
 }
 
-/* The vertex that the finer conductor has in the middle of the edge from a to b: edges are sorted. */
+/* Returns the vertex that the finer conductor has in the middle of the edge from a to b: edges are sorted. */
 static uint32_t middle_of(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     uint32_t low = 0, high = cscd_mesh_edge_count(mesh);
     uint32_t wanted[2] = {a < b ? a : b, a < b ? b : a};

@@ -3,23 +3,24 @@
 
 #include <stdint.h>
 
-/* Owned by the caller: conductor_free. */
+/* The caller releases it by conductor_free. */
 typedef struct conductor {
     uint32_t vertex_count, triangle_count;
     double *positions;   /* vertex_count * 3 */
     uint32_t *triangles; /* triangle_count * 3 */
 } conductor;
 
-/* An icosahedron whose triangles are split in four, level times, with all vertices on the unit sphere. */
+/* Makes an icosahedron whose triangles are split in four, level times, with all vertices on the unit
+ * sphere. */
 conductor conductor_sphere(int level);
 
-/* The unit cube [0,1]^3 with 12 * 4^level triangles. */
+/* Makes the unit cube [0,1]^3 with 12 * 4^level triangles. */
 conductor conductor_cube(int level);
 
-/* Four triangles. */
+/* Makes a tetrahedron of four triangles. */
 conductor conductor_tetrahedron(void);
 
-/* Every position p becomes scale * p + offset, coordinate by coordinate. */
+/* Turns every position p into scale * p + offset, coordinate by coordinate. */
 void conductor_transform(conductor *s, const double scale[3], const double offset[3]);
 
 /* Moves a unit cube's vertices towards its edges, where the density is infinite: x = (1 - cos(pi x)) / 2. */

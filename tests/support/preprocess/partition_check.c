@@ -43,7 +43,7 @@ static void check_parts(const cscd_partition *partition) {
     assert_int_equal(next, cscd_partition_cell_count(partition));
 }
 
-/* Counts the cell's vertices that neighbours connect with its first one. */
+/* Counts the cell's vertices that are connected to its first one by neighbours. */
 static uint32_t count_reached(const cscd_partition *partition, uint32_t cell, bool *seen, uint32_t *stack) {
     uint32_t top = 0, count = 0;
     stack[top++] = partition->cell_vertices[partition->cell_offsets[cell]];
@@ -84,7 +84,7 @@ static void check_cells(const cscd_partition *partition) {
     free(seen);
 }
 
-/* Every edge within a cell is in the lists of both its ends. */
+/* Checks that every edge within a cell is in the lists of both its ends. */
 static void check_neighbours(const cscd_partition *partition) {
     uint32_t inner = 0;
     for (uint32_t e = 0; e < partition->mesh->edge_count; e++) {

@@ -1,4 +1,4 @@
-/* Asserts what holds for every division into regions. */
+/* Asserts the invariants of every division into regions. */
 #include "tests/support/preprocess/region_check.h"
 #include "preprocess/regions/dual_graph.h"
 #include "tests/support/test.h"

@@ -4,7 +4,7 @@
 #include "preprocess/regions/visibility.h"
 #include "src/mesh/surface.h"
 
-/* points has a detector point per region. */
+/* `points` has one detector point per region. */
 static inline double visible_share(const cscd_mesh *mesh, const double *positions, const uint32_t *regions,
                                    const double *points) {
     double visible = 0.0, whole = 0.0;

@@ -154,7 +154,7 @@ static void take_body(cursor *c, uint32_t vertex_count, uint32_t *values) {
     c->at += planes * count;
 }
 
-/* Positions as the page keeps them: float32 from the middle. */
+/* Restores positions that the page keeps as float32 relative to the middle. */
 static void restore_positions(const uint32_t *values, uint32_t vertex_count, const double *origin,
                               double step, double *out) {
     for (size_t k = 0; k < 3; k++) {

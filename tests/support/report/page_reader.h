@@ -5,29 +5,29 @@
 
 #include <stdint.h>
 
-/* To be freed: free(data). */
+/* The caller frees `data`. */
 typedef struct page_bytes {
     uint8_t *data;
     size_t size;
 } page_bytes;
 
-/* Base64 of a zlib stream; anything wrong with either fails the test, as all of these do. */
+/* Unpacks base64 of a zlib stream. This and the functions below fail the test when anything is wrong. */
 page_bytes page_unpack(const char *base64, size_t length);
 
 typedef struct page {
     char *text; /* the whole file */
     json_node *json;
-    const json_node *scene; /* of the JSON, which may be null */
+    const json_node *scene; /* a part of the JSON, which may be null */
 } page;
 
 page page_read(const char *path);
 void page_free(page *p);
 
-/* The array's block. Every array that scene.arrays lists has one with as many values of its type, and no
- * other block is there: page_read checks it. */
+/* Returns whether the page has the array's block. page_read checks that every array in scene.arrays has a
+ * block with as many values of its type, and that there is no other block. */
 bool page_has(const page *p, const char *name);
 page_bytes page_array(const page *p, const char *name);
 
-/* Positions as the page shows them: frame_count * vertex_count * 3, to be freed. key_count: how many of the
- * records begin a grid; NULL: not asked for. */
+/* Returns the positions as the page shows them: frame_count * vertex_count * 3, which the caller frees.
+ * key_count: how many of the records begin a grid; it may be NULL. */
 double *page_frames(page_bytes records, uint32_t vertex_count, uint32_t frame_count, uint32_t *key_count);

@@ -22,5 +22,5 @@ report_options report_rig_options(const report_rig *rig);
 /* Begins the report and adds every interval; false if the report has failed. */
 bool report_rig_replay(const report_rig *rig, report *r, io_error *error);
 
-/* The report of the whole replay, with one summary, at path; false where that failed. */
+/* Writes the report of the whole replay, with one summary, to path; false if that failed. */
 bool report_rig_write(const report_rig *rig, const char *path, io_error *error);

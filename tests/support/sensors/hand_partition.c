@@ -1,4 +1,4 @@
-/* Partitions put together by hand: any triangles to any parts, cells about random vertices. */
+/* Partitions made by hand: triangles may be in any part, and cells lie about random vertices. */
 #include "tests/support/sensors/hand_partition.h"
 
 #include "src/core/vec3.h"
@@ -57,7 +57,7 @@ static double squared_distance(const double *positions, uint32_t a, uint32_t b) 
     return vec3_dot(offset, offset);
 }
 
-/* Gives each vertex of the part to the nearest of the centres, of equally near ones to the first. */
+/* Gives each vertex of the part to the nearest of the centres, or to the first of equally near ones. */
 static void make_cells(cscd_partition *p, const double *positions, uint32_t part, uint32_t cells_max) {
     const uint32_t *vertices = p->part_vertices + p->part_vertex_offsets[part];
     uint32_t count = p->part_vertex_offsets[part + 1] - p->part_vertex_offsets[part], made = 0;

@@ -1,11 +1,12 @@
-/* Partitions put together by hand: any triangles to any parts, cells about random vertices. */
+/* Partitions made by hand: triangles may be in any part, and cells lie about random vertices. */
 #pragma once
 
 #include "src/mesh/partition.h"
 
-/* A part's vertices are those whose first triangle is the part's; so a part may have triangles, but no
- * vertices and no cells. Each goes to the nearest of up to cells_max random ones (tests/support/random.h).
- * All parts are of different objects. Generation 1. triangle_parts NULL: the components. */
+/* Makes a partition of generation 1 whose parts all belong to different objects. A part has the vertices
+ * whose first triangle it has, so a part with triangles may have no vertices and no cells. Each vertex
+ * goes to the nearest of up to cells_max random centres (tests/support/random.h). triangle_parts: NULL for
+ * the components. */
 cscd_partition *hand_partition_create(const cscd_mesh *mesh, const double *positions,
                                       const uint32_t *triangle_parts, uint32_t part_count,
                                       uint32_t cells_max);

@@ -1,5 +1,4 @@
-/* A context, a mesh, a plan, a partition and sensors for a scene; anything that fails there fails the test.
- */
+/* A context, a mesh, a plan, a partition and sensors for a scene; any failure to make them fails the test. */
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 

@@ -1,5 +1,4 @@
-/* A context, a mesh, a plan, a partition and sensors for a scene; anything that fails there fails the test.
- */
+/* A context, a mesh, a plan, a partition and sensors for a scene; any failure to make them fails the test. */
 #pragma once
 
 #include "cscd/cscd.h"
@@ -7,7 +6,7 @@
 #include "tests/support/scenes.h"
 
 typedef struct sensor_setup {
-    uint32_t regions;                        /* of a plan by k-means; 0: no plan */
+    uint32_t regions;                        /* regions of a plan by k-means; 0: no plan */
     const cscd_partition_options *partition; /* NULL: the defaults */
     const cscd_sensor_options *sensors;
 } sensor_setup;
@@ -20,15 +19,15 @@ typedef struct sensor_rig {
     cscd_sensors *sensors;
 } sensor_rig;
 
-/* Cells are made at x0. setup NULL: all defaults */
+/* Makes a rig with cells at x0. setup: NULL for all defaults. */
 sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup);
 void sensor_rig_destroy(sensor_rig *r);
 cscd_warnings sensor_rig_step(const sensor_rig *r, const double *start, const double *end);
 
-/* The first warning of two objects, NULL if there is none; object_a < object_b. */
+/* Returns the first warning of two objects, or NULL if there is none; object_a < object_b. */
 const cscd_warning *find_warning(const cscd_warnings *warnings, uint32_t object_a, uint32_t object_b);
 
-/* The warning with the earliest contact of two objects, NULL if there is none. */
+/* Returns the warning with the earliest contact of two objects, or NULL if there is none. */
 const cscd_warning *find_contact(const cscd_warnings *warnings, uint32_t object_a, uint32_t object_b);
 
 /* Adds a closed tube along a path in a plane z = const: rings of `segments` vertices around its points, and a

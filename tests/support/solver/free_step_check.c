@@ -1,11 +1,11 @@
-/* Checks by brute force all that a step certified free of contact promises. */
+/* Checks by brute force everything that a step certified free of contact promises. */
 #include "tests/support/solver/free_step_check.h"
 #include "tests/support/test.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Times are early by less than this, each by an amount of its own. */
+/* Times are early by less than this, each by a different amount. */
 static const double early = 1e-9;
 
 static const double untouched = -4711.0;
@@ -56,7 +56,7 @@ static void check_refused(const rig *reference, const cscd_context *called, cons
     assert_non_null(strstr(cscd_context_detail(called), "at the start"));
 }
 
-/* The limit is a first contact of the motion that was asked for, on the scale of the line. */
+/* Checks that the limit is a first contact of the requested motion, on the scale of the line. */
 static void check_limit(const free_step_call *call, cscd_contacts truth) {
     const cscd_contact *limit = &call->step.limit;
     bool listed = false;
@@ -70,8 +70,8 @@ static void check_limit(const free_step_call *call, cscd_contacts truth) {
     if (limit->toi > early) assert_true(call->step.length <= call->step_factor * limit->toi);
 }
 
-/* Without a contact on the way the step is limited only if the end lies within min_separation, and then by
- * the end. */
+/* Without a contact on the way the step may be limited only if its end lies within min_separation, and
+ * then by the end. */
 static void check_unlimited(const rig *reference, const free_step_call *call) {
     static double end[SCENE_VERTICES_MAX * 3];
     free_step_positions(reference, call->x0, call->x1, call->longest, end);

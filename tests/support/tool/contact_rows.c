@@ -20,7 +20,7 @@ static void add_row(contact_rows *rows, const contact_record *record) {
     rows->items[rows->count++] = *record;
 }
 
-/* Splits at commas, in place; the test fails unless there are as many fields as the header has. */
+/* Splits at commas, in place. The test fails unless there are as many fields as the header has. */
 static void split_line(char *line, char *fields[FIELDS]) {
     int count = 0;
     for (char *at = line; at != NULL; count++) {
@@ -56,7 +56,7 @@ static contact_record row_of(char *fields[FIELDS]) {
         .frame = index_of(fields[0]), .kind = kind_of(fields[1]), .toi = number_of(fields[2])};
     bool vf = r.kind == CSCD_CONTACT_VF;
     r.a[0] = index_of(fields[3]);
-    assert_true(!vf || *fields[4] == '\0'); /* a1 of a vertex, b2 of an edge: empty */
+    assert_true(!vf || *fields[4] == '\0'); /* a1 of a vertex and b2 of an edge are empty */
     assert_true(vf || *fields[7] == '\0');
     if (!vf) r.a[1] = index_of(fields[4]);
     for (int i = 0; i < (vf ? 3 : 2); i++) r.b[i] = index_of(fields[5 + i]);
@@ -67,11 +67,11 @@ static contact_record row_of(char *fields[FIELDS]) {
     return r;
 }
 
-/* The next whole line, its end cut off; NULL at the end of the text. */
+/* Returns the next whole line without its end, or NULL at the end of the text. */
 static char *next_line(char **text) {
     char *line = *text, *end = strchr(line, '\n');
     if (*line == '\0') return NULL;
-    assert_non_null(end); /* no half lines */
+    assert_non_null(end); /* every line must be whole */
     *end = '\0';
     *text = end + 1;
     return line;

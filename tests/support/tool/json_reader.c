@@ -9,7 +9,7 @@
 
 enum { DEPTH_MAX = 64 };
 
-/* The text ends with a zero behind size. */
+/* The text has a zero byte after its `size` bytes. */
 typedef struct reader {
     const char *at, *end;
     int depth;

@@ -20,7 +20,7 @@ static const char *tool_path(void) {
     return path;
 }
 
-/* An open file without a name. */
+/* Opens a file without a name. */
 static int open_capture(void) {
     FILE *file = tmpfile();
     assert_non_null(file);

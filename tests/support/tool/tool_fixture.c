@@ -39,7 +39,8 @@ const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vert
     return position_at(r, frame, vertex);
 }
 
-/* Volatile: gcc 12 drops neighbouring (double)(float) conversions where it joins them into vectors. */
+/* `volatile` is needed because gcc 12 drops neighbouring (double)(float) conversions when it joins them
+ * into vectors. */
 static double to_float32(double x) {
     volatile float rounded = (float)x;
     return (double)rounded;
@@ -52,8 +53,8 @@ static void put_position(const recorded *r, uint32_t frame, uint32_t vertex, dou
     p[2] = to_float32(z);
 }
 
-/* The four outward triangles of a tetrahedron whose first three vertices are counter-clockwise from outside.
- */
+/* Adds the four outward triangles of a tetrahedron whose first three vertices are counter-clockwise from
+ * outside. */
 static void add_tetrahedron(const recorded *r, uint32_t triangle, const uint32_t v[4]) {
     static const int corners[12] = {0, 1, 2, 1, 0, 3, 2, 1, 3, 0, 2, 3};
     for (int i = 0; i < 12; i++) r->triangles[(size_t)triangle * 3 + (size_t)i] = v[corners[i]];
@@ -78,7 +79,7 @@ recorded recorded_tetrahedra(uint32_t frame_count) {
     return r;
 }
 
-/* A grid of quads, each two triangles. closed: its ends are joined both ways. */
+/* Adds a grid of quads, each two triangles. closed: its ends are joined both ways. */
 static void add_grid(const recorded *r, uint32_t columns, uint32_t rows, bool closed) {
     uint32_t *t = r->triangles, across = closed ? columns : columns + 1, along = closed ? rows : rows + 1;
     for (uint32_t j = 0; j < rows; j++) {
@@ -114,7 +115,7 @@ recorded recorded_fold(uint32_t columns, uint32_t rows, uint32_t frame_count) {
     return r;
 }
 
-/* Corner c of a cube (bits x, y, z), turned generically about its centre. */
+/* Computes corner c of a cube (bits x, y, z), turned generically about its centre. */
 static void cube_corner(uint32_t c, double out[3]) {
     double p[3] = {c & 1 ? 1.0 : -1.0, c & 2 ? 1.0 : -1.0, c & 4 ? 1.0 : -1.0};
     static const double angles[3] = {0.71, 0.43, 0.29};
@@ -127,7 +128,7 @@ static void cube_corner(uint32_t c, double out[3]) {
     memcpy(out, p, sizeof p);
 }
 
-/* Corners of each side of a cube, counter-clockwise from outside. */
+/* The corners of each side of a cube, counter-clockwise from outside. */
 static const uint32_t cube_sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
@@ -176,7 +177,7 @@ recorded recorded_torus(uint32_t rings, uint32_t segments) {
     return r;
 }
 
-/* The tips are the last two vertices. */
+/* Adds a spindle whose tips are the last two vertices. */
 static void add_spindle(const recorded *r, uint32_t rings, uint32_t segments) {
     uint32_t *t = r->triangles, first = rings * segments, last = first + 1;
     for (uint32_t i = 0; i < segments; i++) {
@@ -190,8 +191,8 @@ static void add_spindle(const recorded *r, uint32_t rings, uint32_t segments) {
     }
 }
 
-/* s runs along the spindle from -6 to 6, w around it; bent by the angle in the xy plane, and a little out of
- * it. */
+/* Places a vertex of the spindle: s runs along it from -6 to 6, w around it. The spindle is bent by the
+ * angle in the xy plane, and a little out of it. */
 static void put_spindle(const recorded *r, uint32_t frame, uint32_t vertex, double s, double w,
                         double angle) {
     double radius = 12.0 / angle, turned = s / radius, thick = sqrt(fmax(0.0, 1.0 - s * s / 36.0));
@@ -245,7 +246,7 @@ temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const
     return path;
 }
 
-/* 0 1 2 3 2 1 0 1 ... for four frames */
+/* Returns 0 1 2 3 2 1 0 1 ... for four frames. */
 static uint32_t cycle_frame(uint32_t k, uint32_t frame_count) {
     if (frame_count == 1) return 0;
     uint32_t period = 2 * (frame_count - 1), place = k % period;
@@ -271,7 +272,7 @@ temp_path recorded_write_cache(const temp_folder *folder, const char *name, cons
     return recorded_write_cycle(folder, name, r, r->frame_count);
 }
 
-/* The pattern's %04d, or the like, is replaced here: the compiler could not check a format from outside. */
+/* The pattern's %04d is replaced here, since the compiler cannot check a format that is not a literal. */
 temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r) {
     const char *conversion = strchr(pattern, '%');
     require_done(conversion != NULL && strchr(conversion, 'd') != NULL, "a pattern needs its %0Nd");

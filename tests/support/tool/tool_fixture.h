@@ -24,12 +24,12 @@ recorded recorded_tetrahedra(uint32_t frame_count);
  * 200 degrees, so that it passes through the left half in the last third of the frames. */
 recorded recorded_fold(uint32_t columns, uint32_t rows, uint32_t frame_count);
 
-/* A turned cube flies into the tip of a tetrahedron, and on, in three frames. Clean: 8 + 4 vertices. Split:
- * 24 + 4, each side of the cube with its own four vertices, as exporters write it. The triangles come in the
- * same order. */
+/* A turned cube flies in three frames into the tip of a tetrahedron, and on. Clean, it has 8 vertices
+ * beside the 4 of the tetrahedron. Split, it has 24: each side has its own four vertices, as exporters
+ * write them. The triangles come in the same order. */
 recorded recorded_cube(bool split);
 
-/* Two quads of a bow-tie: two closed tetrahedra that share one vertex (0). One frame. */
+/* Two quads form a bow-tie: two closed tetrahedra that share one vertex (0). One frame. */
 recorded recorded_bow_tie(void);
 
 /* A closed torus of rings by segments quads. One frame. */
@@ -43,16 +43,16 @@ void recorded_free(recorded *r);
 
 const double *recorded_position(const recorded *r, uint32_t frame, uint32_t vertex);
 
-/* One frame as a mesh file: .obj or .ply (ascii), by the name's extension. */
+/* Writes one frame as a mesh file: .obj or .ply (ascii), by the name's extension. */
 temp_path recorded_write_mesh(const temp_folder *folder, const char *name, const recorded *r, uint32_t frame);
 
-/* All frames as a point cache: .pc2 or .mdd. */
+/* Writes all frames as a point cache: .pc2 or .mdd. */
 temp_path recorded_write_cache(const temp_folder *folder, const char *name, const recorded *r);
 
-/* frame_count frames as a point cache: those of the recording forwards, backwards, forwards, ... */
+/* Writes frame_count frames as a point cache: those of the recording forwards, backwards, forwards, ... */
 temp_path recorded_write_cycle(const temp_folder *folder, const char *name, const recorded *r,
                                uint32_t frame_count);
 
-/* Frame k as the file whose name the pattern (f_%04d.obj) gives for k; returns the pattern with its folder.
- */
+/* Writes frame k as the file whose name the pattern (f_%04d.obj) gives for k; returns the pattern with its
+ * folder. */
 temp_path recorded_write_sequence(const temp_folder *folder, const char *pattern, const recorded *r);
