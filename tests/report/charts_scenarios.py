@@ -1,9 +1,9 @@
-"""The charts are drawn, in time with the scrubber: a click in them moves it."""
+"""The charts are drawn in time with the scrubber, and a click in them moves it."""
 from controls_scenarios import busiest, open_pawn
 from page import expect, expect_equal
 
 CHARTS = ("Milliseconds per stage", "Contacts per interval", "Pairs per interval (#PCPs)")
-# Beside the plot: the axis on the left, a margin on the right, in pixels.
+# The axis to the left of the plot, and a margin to its right, in pixels.
 LEFT, RIGHT = 52, 12
 
 

@@ -16,7 +16,7 @@ MARK_KEYS = {"c": "contacts", "t": "trail", "x": "through", "d": "points", "r": 
 LANDMARKS = ("Playback", "Colour and marks", "Contacts of this interval", "Charts", "Timings", "Intervals", "Regions",
              "Provenance", "Licences")
 TABS_MOST = 250
-# Where the view is not what is looked at: a window of half the pixels, which are drawn by software.
+# A window of half the pixels, which are drawn by software, for scenarios that do not look at the view.
 SMALL = {"width": 1000, "height": 560}
 
 
@@ -30,7 +30,7 @@ def frames_with_contacts(made):
 
 
 def busiest(made):
-    """The interval with most contacts, the first of equals."""
+    """Returns the interval with most contacts, or the first of several."""
     return max(made.summary()["intervals"], key=lambda interval: interval["vf"] + interval["ee"])["frame"]
 
 
@@ -73,7 +73,7 @@ def buttons_step_and_jump(context):
 
 
 def state_in_words(interval):
-    """The page's word for the state that the summary gives an interval."""
+    """Returns the page's word for the state that the summary gives an interval."""
     return "intersecting" if interval["state"] == "penetrating" else interval["state"]
 
 
@@ -211,7 +211,7 @@ def help_opens_and_closes(context):
 
 
 def names_by_tab(page):
-    """The names that Tab leads to, from the top of the page to its end or to where it began."""
+    """Returns the names that Tab leads to, from the top of the page to its end or to where it began."""
     page.script("document.activeElement.blur(); window.scrollTo(0, 0);")
     names = []
     for _ in range(TABS_MOST):
@@ -226,7 +226,7 @@ def names_by_tab(page):
 
 
 def tab_reaches_every_control(context):
-    """Of a group of radios Tab reaches the chosen one, and arrows lead on from there."""
+    """Tab reaches the chosen one of a group of radios, and arrows lead on from there."""
     made, page = open_pawn(context)
     page.go_to(busiest(made))
     names = names_by_tab(page)

@@ -1,4 +1,4 @@
-"""What a report of a recording holds is what the recording is and what the same run wrote elsewhere."""
+"""A report contains the data of its recording, and of what the same run wrote elsewhere."""
 import os
 
 import recording_file
@@ -99,7 +99,7 @@ def orientations_count_as_in_the_summary(context):
 
 
 def check_ranks(charge, equalized):
-    """0 for the least charge, 1 for the most, in order. Charges that float32 rounds to one number may differ in rank."""
+    """0 is the least charge, 1 the most, in order. Charges that float32 rounds to one number may differ in rank."""
     order = sorted(range(len(charge)), key=lambda t: charge[t])
     for t, next_one in zip(order, order[1:]):
         expect(equalized[t] < equalized[next_one] or charge[t] == charge[next_one],
@@ -108,7 +108,7 @@ def check_ranks(charge, equalized):
 
 
 def regions_and_charges_fit_the_plan(context):
-    """The plan in the page is the one that the summary tells of; the points move with the body."""
+    """The plan in the page is the one that the summary names, and the points move with the body."""
     made = context.material.replay("pawn-drop")
     report = Report(made.page)
     arrays, regions = report.arrays, report.scene["plan"]["regions"]

@@ -1,11 +1,11 @@
-"""Reports that are unlike others: nothing in them, hostile names, parts of recordings, 100,000 triangles."""
+"""Unusual reports: empty ones, hostile names, parts of recordings, 100,000 triangles."""
 from material import HOSTILE, LARGE_TRIANGLES
 from page import expect, expect_equal
 from report_file import Report
 
 
 def names_are_text(context):
-    """A file's name may hold markup, quotes and lines; the page shows it and does nothing else with it."""
+    """A file's name may contain markup, quotes and lines; the page shows it and does nothing else with it."""
     made, page = context.material.tetrahedra(HOSTILE.replace("/", ":")), context.page
     page.open(made.page)
     expect_equal(Report(made.page).document["title"], made.name, "title in the data")
@@ -65,7 +65,7 @@ def y_may_point_up(context):
 
 
 def damaged_pages_say_so(context):
-    """A page that was cut, or whose data were changed, tells which part cannot be read."""
+    """A page that was cut, or whose data were changed, says which part cannot be read."""
     made, page = context.material.tetrahedra("damaged"), context.page
     with open(made.page, encoding="utf-8") as file:
         text = file.read()

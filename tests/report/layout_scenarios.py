@@ -1,9 +1,9 @@
-"""Narrow windows, fine screens, light and dark: the page fits and can be read."""
+"""The page fits and can be read in narrow windows, on fine screens, in light and dark."""
 from controls_scenarios import BUTTONS, busiest, open_pawn
 from page import HEIGHT, WIDTH, expect, expect_equal
 
 LEAST_CONTRAST = 4.5
-# Colours of text and of what is behind it, as numbers: the first ground that is not transparent.
+# Returns the colours of text and of its background (the first that is not transparent) as numbers.
 CONTRASTS = """
 const numbers = (text) => (text.match(/[\\d.]+/g) ?? []).map(Number);
 const linear = (c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4);
@@ -30,7 +30,7 @@ return {page: document.documentElement.scrollWidth, wide,
 """
 
 
-# Boxes with more in them than they show, and nothing that takes the focus.
+# Finds boxes whose content does not fit, in which nothing takes the focus.
 UNREACHABLE = """
 return [...document.querySelectorAll('.scroll')].filter((e) => e.scrollWidth > e.clientWidth + 1 && e.tabIndex < 0 &&
   !e.querySelector('button, a, input')).map((e) => e.firstElementChild.getAttribute('aria-label'));

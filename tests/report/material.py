@@ -8,7 +8,7 @@ from array import array
 import recording_file
 
 RECORDINGS = ("pawn-drop", "dumbbell-stairs", "figure-balls")
-# Names a careless page or file would stumble over; ' and a newline are no better.
+# Names that a careless page or file would not survive; ' and a newline are no better.
 HOSTILE = "<img src=x onerror=document.title='owned'>&amp;\"'\n</script><b>.obj"
 LARGE_FRAMES, LARGE_TRIANGLES = 161, 100000
 
@@ -31,7 +31,7 @@ class Made:
 
 
 class Material:
-    """What scenarios share; everything lies in one folder."""
+    """Files that scenarios share, all in one folder."""
 
     def __init__(self, folder, build):
         self.folder, self.build, self.made, self.recording = folder, build, {}, {}
@@ -53,7 +53,7 @@ class Material:
             self.recording[name] = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def recorded(self, name):
-        """The files of a scene, once its program has ended."""
+        """Returns the files of a scene, once its program has ended."""
         process = self.recording.pop(name, None)
         if process is not None:
             error = process.communicate()[1]
@@ -69,7 +69,7 @@ class Material:
         return self.made[name]
 
     def replay(self, name):
-        """The report of one of the recordings, with its scenery, its summary and its contacts, of one run."""
+        """Returns the report of one of the recordings, with its scenery, its summary and its contacts, from one run."""
         return self.once(name, self._replay)
 
     def _replay(self, name):
@@ -85,7 +85,7 @@ class Material:
                  made.page, "--quiet", *options)
 
     def preprocess(self):
-        """The report of the regions of the dumbbell."""
+        """Returns the report of the regions of the dumbbell."""
         return self.once("preprocess", self._preprocess)
 
     def _preprocess(self, name):
@@ -95,7 +95,7 @@ class Material:
         return made
 
     def comparison(self):
-        """The report of two methods on the dumbbell, and their summaries' files."""
+        """Returns the report of two methods on the dumbbell, and the files of their summaries."""
         return self.once("comparison", self._comparison)
 
     def _comparison(self, name):
@@ -110,7 +110,7 @@ class Material:
         return made
 
     def tetrahedra(self, name="tetrahedra", *options):
-        """Ten frames in which one tetrahedron flies through another; `name` may be anything that a file may be called."""
+        """Makes ten frames in which one tetrahedron flies through another; `name` may be any file name."""
         return self.once(name, lambda _: self._tetrahedra(name, options))
 
     def _tetrahedra(self, name, options):
@@ -128,7 +128,7 @@ class Material:
         return made
 
     def large(self):
-        """A torus of 100,000 triangles that is bent to and fro: too large for all frames to be in the page."""
+        """Makes a torus of 100,000 triangles that is bent to and fro: not all of its frames fit in the page."""
         return self.once("large", self._large)
 
     def _large(self, name):
@@ -143,7 +143,7 @@ class Material:
 
 
 def bent(positions, bend):
-    """Sheared by the square of x, and longer."""
+    """Shears the body by the square of x, and lengthens it."""
     values = array("f")
     for x, y, z in positions:
         values.extend((x * (1.0 + bend), y, z + bend * x * x * math.copysign(1.0, x)))

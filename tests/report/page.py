@@ -1,4 +1,4 @@
-"""A real browser for the tests of reports: elements by role and name from its accessibility tree, clicks, keys, logs."""
+"""A real browser for the tests of reports: finds elements by role and name, clicks, presses keys, reads logs."""
 import json
 import os
 import time
@@ -9,12 +9,12 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
 WIDTH, HEIGHT = 1280, 800
-# Drawing by software: the same on every machine. The sandbox is off because containers refuse it; the pages are ours.
+# Drawing by software gives the same on every machine. The sandbox is off because containers refuse it; the pages are ours.
 ARGUMENTS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
              "--disable-dev-shm-usage", "--no-first-run", "--disable-extensions", "--disable-background-networking",
              "--disable-component-update", "--force-color-profile=srgb", f"--window-size={WIDTH},{HEIGHT}"]
 BAD_LEVELS = {"WARNING", "SEVERE"}
-# What a table says: a cell that spans rows is in each of them, and hidden rows are left out.
+# Reads a table: a cell that spans rows counts in each of them, and hidden rows are left out.
 CELLS = """
 const contentOf = (cell) => {
   const exact = cell.dataset.value;
@@ -41,7 +41,7 @@ const cellsOf = (table) => {
 
 
 class Failure(AssertionError):
-    """What a scenario found wrong."""
+    """A fault that a scenario found."""
 
 
 def expect(condition, text):
@@ -54,7 +54,7 @@ def expect_equal(found, expected, what):
 
 
 class Page:
-    """One browser; opens report after report."""
+    """One browser that opens report after report."""
 
     def __init__(self):
         options = webdriver.ChromeOptions()
@@ -71,7 +71,7 @@ class Page:
         self.driver.quit()
 
     def command(self, name, **arguments):
-        """A command of the browser's own protocol."""
+        """Sends a command of the browser's own protocol."""
         return self.driver.execute_cdp_cmd(name, arguments)
 
     # Opening
@@ -81,11 +81,11 @@ class Page:
                      mobile=False)
 
     def prefer(self, theme):
-        """What the system says about light and dark."""
+        """Tells the page whether the system prefers light or dark."""
         self.command("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
 
     def open(self, path, width=WIDTH, height=HEIGHT, ratio=1, theme="light", whole=True):
-        """Opens a report and waits until it is drawn; one that is not whole, until it has given up."""
+        """Opens a report and waits until it is drawn, or, for an incomplete one, until it has given up."""
         if self.path is not None:
             self.check_quiet()
         self.path = os.path.abspath(path)
@@ -102,23 +102,23 @@ class Page:
         self.settle()
 
     def forget(self):
-        """What the page logged was to be expected."""
+        """Skips the check of the log, whose content was expected."""
         self.path = None
 
     def settle(self):
-        """Two pictures later whatever was asked for is drawn."""
+        """Waits for two pictures, after which everything requested is drawn."""
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()));")
 
     def rest(self):
-        """Until the view is drawn as finely as the screen is; in motion it may be coarser."""
+        """Waits until the view is drawn as finely as the screen is; in motion it may be coarser."""
         canvas = self.element("image", "3D view")
         finest = "return arguments[0].width >= Math.floor(arguments[0].clientWidth * devicePixelRatio);"
         self.wait(lambda: self.script(finest, canvas), "the view stays coarse")
         self.settle()
 
     def wait(self, condition, text, seconds=10.0):
-        """Until condition() is true; it is asked often."""
+        """Waits until condition() is true, and calls it often."""
         end = time.monotonic() + seconds
         while not condition():
             expect(time.monotonic() < end, f"not within {seconds:g} s: {text}")
@@ -130,7 +130,7 @@ class Page:
         return self.driver.get_log(kind)
 
     def check_quiet(self):
-        """No warning or error on the console, and nothing was fetched but the page."""
+        """Checks that the console has no warning or error, and that nothing was fetched but the page."""
         bad = [entry["message"] for entry in self.take_log("browser") if entry["level"] in BAD_LEVELS]
         expect(not bad, "console: " + "; ".join(bad))
         fetched = []
@@ -147,7 +147,7 @@ class Page:
         return self.driver.execute_script(text, *arguments)
 
     def nodes(self, role, name=None):
-        """Nodes of the accessibility tree, in the order of the page."""
+        """Returns the nodes of the accessibility tree, in the order of the page."""
         document = self.command("DOM.getDocument", depth=0)["root"]["nodeId"]
         arguments = {"nodeId": document, "role": role}
         if name is not None:
@@ -156,7 +156,7 @@ class Page:
         return [node for node in found if not node.get("ignored")]
 
     def element(self, role, name):
-        """The one element of that role and name."""
+        """Returns the one element of that role and name."""
         nodes = self.nodes(role, name)
         expect(len(nodes) == 1, f"{len(nodes)} elements of role {role} are called {name!r}")
         return self.of_node(nodes[0])
@@ -171,7 +171,7 @@ class Page:
         return len(self.nodes(role, name)) > 0
 
     def state(self, key=None):
-        """The page's own state, or one part of it."""
+        """Returns the page's own state, or one part of it."""
         return self.script("const state = window.cscd.store.get(); return arguments[0] ? state[arguments[0]] : state;",
                            key)
 
@@ -189,7 +189,7 @@ class Page:
         return element
 
     def click_at(self, element, x, y):
-        """A click at a fraction of the element's width and height."""
+        """Clicks at a fraction of the element's width and height."""
         self.script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'});", element)
         self.settle()
         size = element.rect
@@ -199,7 +199,7 @@ class Page:
         self.settle()
 
     def press(self, *keys):
-        """Keys to whatever has the focus; a tuple is a key with those before it held."""
+        """Sends keys to the element that has the focus; a tuple is a key after those that are held down with it."""
         for key in keys:
             actions = ActionChains(self.driver)
             *held, last = key if isinstance(key, tuple) else (key, )
@@ -223,14 +223,14 @@ class Page:
         expect_equal(self.element("checkbox", name).is_selected(), wanted, f"box {name}")
 
     def go_to(self, time_of_recording):
-        """Shows a moment at once; for scenarios that are not about the controls."""
+        """Shows a moment at once, for scenarios that are not about the controls."""
         self.script("window.cscd.store.set({playing: false, time: arguments[0]});", time_of_recording)
         self.settle()
 
     # Reading
 
     def open_ms(self):
-        """From the start of the navigation to the first picture."""
+        """Returns the time from the start of the navigation to the first picture."""
         return self.script("return performance.getEntriesByName('cscd-open')[0]?.startTime ?? -1;")
 
     def status(self):
@@ -239,14 +239,14 @@ class Page:
         return self.of_node(nodes[0]).text
 
     def table(self, name):
-        """The rows of a table, the header first: of each cell its text, or the exact number that it carries."""
+        """Returns the rows of a table, the header first: the text of each cell, or its exact number if it has one."""
         return self.script(CELLS + "return cellsOf(arguments[0]);", self.element("table", name))
 
     def markers(self):
         return self.script("return window.cscd.markers();")
 
     def view_box(self):
-        """Left, top, width, height of the 3D view in pixels of the page."""
+        """Returns left, top, width and height of the 3D view in pixels of the page."""
         box = self.script("const r = arguments[0].getBoundingClientRect(); return [r.left, r.top, r.width, r.height];",
                           self.element("image", "3D view"))
         return tuple(box)

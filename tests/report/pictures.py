@@ -1,4 +1,4 @@
-"""Pictures of the page as the screen would show them: taken by the browser, compared in it, saved for people to look at."""
+"""Pictures of the page as the screen would show it, which the browser takes and compares; some are saved."""
 import base64
 import os
 
@@ -14,7 +14,7 @@ createImageBitmap(new Blob([bytes], {type: 'image/png'})).then((bitmap) => {
   done([bitmap.width, bitmap.height]);
 });
 """
-# Pixels of which a channel differs by more than `least`, in all and within `radius` of each place.
+# Counts the pixels of which a channel differs by more than `least`, in all and within `radius` of each place.
 DIFFERENCE = """
 const [one, other, least, places, radius] = arguments;
 const a = window.testPictures[one], b = window.testPictures[other];
@@ -30,7 +30,7 @@ for (let i = 0; i < a.data.length; i += 4) {
 }
 return {all, near, pixels: a.width * a.height};
 """
-# How many pixels are near a colour: in the whole picture, or within `radius` of each place.
+# Counts the pixels that are near a colour, in the whole picture or within `radius` of each place.
 COUNT = """
 const [name, colour, tolerance, places, radius] = arguments;
 const a = window.testPictures[name];
@@ -55,7 +55,7 @@ return seen.size;
 
 
 class Pictures:
-    """Pictures of one browser; `folder` keeps those that are saved."""
+    """The pictures of one browser; `folder` keeps those that are saved."""
 
     def __init__(self, page, folder):
         self.page, self.folder, self.number = page, folder, 0
@@ -78,26 +78,26 @@ class Pictures:
         return str(self.number)
 
     def difference(self, one, other, places=(), radius=8.0, least=6):
-        """Changed pixels in all, and within the radius of each place (in pixels of the view)."""
+        """Returns the number of changed pixels in all, and within the radius of each place (in pixels of the view)."""
         found = self.page.script(DIFFERENCE, one, other, least, [list(place) for place in places], radius)
         if found is None:
             raise AssertionError("the pictures are not of one size")
         return found
 
     def expect_back(self, start, what):
-        """The view becomes as it was in the picture `start`, to the last pixel."""
+        """Waits until the view is as in the picture `start`, to the last pixel."""
         self.page.wait(lambda: self.difference(start, self.view(), least=0)["all"] == 0, f"the view as before {what}", 4.0)
 
     def count(self, picture, colour, tolerance=40):
-        """Pixels of the colour."""
+        """Returns the number of pixels of the colour."""
         return self.page.script(COUNT, picture, list(colour), tolerance, None, 0)
 
     def count_near(self, picture, colour, places, radius=6.0, tolerance=40):
-        """Pixels of the colour in a square about each place."""
+        """Returns the number of pixels of the colour in a square about each place."""
         return self.page.script(COUNT, picture, list(colour), tolerance, [list(place) for place in places], radius)
 
     def colours(self, picture):
-        """How many colours, of 32 steps a channel."""
+        """Returns how many colours there are, of 32 steps per channel."""
         return self.page.script(COLOURS, picture)
 
     def _capture(self, clip=None):

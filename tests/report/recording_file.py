@@ -6,7 +6,7 @@ from itertools import chain
 
 
 def read_obj(path):
-    """Positions [(x, y, z)] and triangles [(a, b, c)] from 0."""
+    """Returns positions [(x, y, z)] and triangles [(a, b, c)], counted from 0."""
     positions, triangles = [], []
     with open(path, encoding="utf-8") as file:
         for line in file:
@@ -25,7 +25,7 @@ def write_obj(path, positions, triangles):
 
 
 def read_pc2(path):
-    """Every frame as [x of all vertices, y of all, z of all]."""
+    """Returns every frame as [x of all vertices, y of all, z of all]."""
     with open(path, "rb") as file:
         signature, version, count, start, rate, samples = struct.unpack("<12siiffi", file.read(32))
         if signature != b"POINTCACHE2\0" or version != 1:
@@ -37,7 +37,7 @@ def read_pc2(path):
 
 
 def write_pc2(path, frames):
-    """Each frame is an array('f') of x y z, x y z, ...; frames may be a generator's list."""
+    """Writes frames, each an array('f') of x y z, x y z, ...; `frames` may be a generator."""
     with open(path, "wb") as file:
         file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(frames[0]) // 3, 0.0, 1.0, len(frames)))
         for frame in frames:
@@ -45,12 +45,12 @@ def write_pc2(path, frames):
 
 
 def flat(positions):
-    """[(x, y, z)] as an array('f') of x y z, x y z, ..."""
+    """Returns [(x, y, z)] as an array('f') of x y z, x y z, ..."""
     return array("f", chain.from_iterable(positions))
 
 
 def read_contacts(path):
-    """The rows of the CSV: (interval, kind, vertices, toi, point); VF: the vertex, then the face."""
+    """Returns the rows of the CSV: (interval, kind, vertices, toi, point). A VF row has the vertex before the face."""
     with open(path, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     contacts = []
@@ -62,7 +62,7 @@ def read_contacts(path):
 
 
 def heat(triangles, contacts):
-    """How many contacts each triangle takes part in: the face itself, and whatever holds the vertex or an edge."""
+    """Returns how many contacts each triangle takes part in: as the face, or as a triangle around the vertex or an edge."""
     around = {}
     for t, corners in enumerate(triangles):
         for corner in corners:

@@ -12,7 +12,7 @@ BLOCK = re.compile(rb'<script type="application/([a-z-]+)" id="cscd-(report|arra
 
 
 class Report:
-    """What a page of the tool holds: `document` is its JSON, `arrays` are the numbers by name."""
+    """The content of a page of the tool: `document` is its JSON, `arrays` are the numbers by name."""
 
     def __init__(self, path):
         with open(path, "rb") as file:
@@ -36,14 +36,14 @@ class Report:
         return self.document["summaries"][0]["summary"]
 
     def contacts(self):
-        """The contacts in order: (interval, "vf" or "ee", vertices, toi, point)."""
+        """Returns the contacts in order: (interval, "vf" or "ee", vertices, toi, point)."""
         a = self.arrays
         return [(a["contact_interval"][i], "ee" if a["contact_kind"][i] else "vf",
                  tuple(a["contact_vertices"][4 * i:4 * i + 4]), a["contact_toi"][i],
                  tuple(a["contact_point"][3 * i:3 * i + 3])) for i in range(len(a["contact_interval"]))]
 
     def orientations(self):
-        """For every interval that has them: (interval, orientation of each triangle: 0 S0, 1 S+, 2 S-)."""
+        """Returns (interval, orientation of each triangle: 0 S0, 1 S+, 2 S-) for every interval that has them."""
         scene, packed = self.scene, self.arrays["orientation"]
         size = (scene["triangles"] + 3) // 4
         kept = [frame for frame in scene["frames"] if frame < scene["last"]]
@@ -56,12 +56,12 @@ class Report:
             yield interval, [now[t // 4] >> 2 * (t % 4) & 3 for t in range(scene["triangles"])]
 
     def frames(self, name="frames", vertices=None):
-        """The positions that the page shows in each kept frame: [x of all vertices, y of all, z of all]."""
+        """Returns the positions that the page shows in each kept frame: [x of all vertices, y of all, z of all]."""
         return list(shown_frames(self.arrays[name].tobytes(), vertices or self.scene["vertices"]))
 
 
 def unpack(text, entry):
-    """The numbers of a block."""
+    """Returns the numbers of a block."""
     data = zlib.decompress(base64.b64decode(text.strip(), validate=True))
     values = array(FORMATS[entry["type"]])
     values.frombytes(data)
@@ -71,12 +71,12 @@ def unpack(text, entry):
 
 
 def wrap(value):
-    """As a signed number of 32 bits."""
+    """Returns the value as a signed number of 32 bits."""
     return (value + 0x80000000 & 0xFFFFFFFF) - 0x80000000
 
 
 def read_body(data, at, count):
-    """The differences d from the prediction, per axis, and where the next record begins."""
+    """Returns the differences d from the prediction, per axis, and where the next record begins."""
     width = data[at]
     if not 1 <= width <= 4:
         raise ValueError(f"{width} bytes a value")
@@ -107,7 +107,7 @@ def shown_frames(data, count):
 
 
 def shown_axis(origin, step, q):
-    """Positions along one axis as the page draws them: float32 about the middle of the body."""
+    """Returns positions along one axis as the page draws them: float32 relative to the middle of the body."""
     low, high = origin + step * min(q), origin + step * max(q)
     middle = 0.5 * (low + high)
     local = array("f", [origin + step * value - middle for value in q])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs the scenarios of the report's page in one browser. For each, OUT/NAME.log holds what went wrong; empty: nothing.
+"""Runs the scenarios of the report's page in one browser. OUT/NAME.log has the faults of each, or is empty.
 
 usage: BUILD=build/release run.py --list | OUT [NAME...]
 
@@ -31,7 +31,7 @@ SCENARIOS = {scenario.__name__: scenario for module in MODULES for scenario in m
 
 
 class Context:
-    """What a scenario works with; the browser starts when first used."""
+    """The objects that a scenario works with; the browser starts when it is first used."""
 
     def __init__(self, folder, build):
         self.material = Material(folder, build)
@@ -51,7 +51,7 @@ class Context:
         return self._pictures
 
     def check_quiet(self):
-        """Of the page that is open: no complaint on the console, nothing fetched."""
+        """Checks the open page: no complaint on the console, nothing fetched."""
         if self._page is not None and self._page.path is not None:
             self._page.check_quiet()
             self._page.forget()
@@ -62,14 +62,14 @@ class Context:
 
 
 def told(error):
-    """What went wrong and, below this program, where. Browsers' errors end in addresses that say nothing."""
+    """Returns the fault and where in this program it was found. Browsers' errors end in addresses that say nothing."""
     where = [f"  {frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}: {frame.line}\n"
              for frame in traceback.extract_tb(error.__traceback__)[1:]]
     return f"{type(error).__name__}: {str(error).split('Stacktrace:')[0].strip()}\n" + "".join(where)
 
 
 def run(scenario, context, log_path):
-    """The seconds it took; the log is written whole, at the end."""
+    """Runs a scenario and writes its log as a whole, at the end. Returns whether nothing went wrong."""
     start = time.monotonic()
     text = ""
     for step in (lambda: scenario(context), context.check_quiet):

@@ -1,4 +1,4 @@
-"""How long opening takes and how many frames are drawn a second: printed, not judged; only that both happen at all."""
+"""Measures the time to open and the frames drawn a second. The numbers are printed, not judged."""
 import os
 import time
 
@@ -9,7 +9,7 @@ SECONDS = 1.0
 
 
 def frames_drawn_per_second(page, seconds=SECONDS):
-    """While it plays, over and over."""
+    """Counts frames while the report plays, over and over."""
     page.script("window.cscd.store.set({loop: true, playing: true});")
     time.sleep(0.3)
     drawn, start = page.script("return [window.cscd.viewer.framesDrawn, performance.now()];")
@@ -20,7 +20,7 @@ def frames_drawn_per_second(page, seconds=SECONDS):
 
 
 def measure(page, path):
-    """Opening in ms, from the start of the navigation to the first picture; frames drawn a second; size in bytes."""
+    """Returns the time from navigation to first picture in ms, the frames drawn a second, and the size in bytes."""
     page.open(path)
     return page.open_ms(), frames_drawn_per_second(page), os.path.getsize(path)
 

@@ -13,7 +13,7 @@ INTERVAL_COLUMNS = {"VF": "vf", "EE": "ee", "#PCPs": "pcp", "tests": "tests"}
 
 
 def column(header, name):
-    """The column whose title begins so; a unit may follow."""
+    """Returns the column whose title begins with `name`; a unit may follow."""
     found = [k for k, title in enumerate(header) if str(title).lower().startswith(name.lower())]
     expect(found, f"no column {name} in {header}")
     return found[0]
@@ -45,7 +45,7 @@ def check_interval(header, row, interval):
 
 
 def shown_intervals(page):
-    """The rows that are in the document, by frame; the table brings others when it is scrolled."""
+    """Returns the rows that are in the document, by frame; the table brings others when it is scrolled."""
     rows = page.script(CELLS + "return [...arguments[0].tBodies[0].rows].filter((row) => row.dataset.frame !== undefined)"
                        ".map((row) => [Number(row.dataset.frame), [...row.cells].map(contentOf)]);",
                        page.element("table", "Intervals"))
@@ -53,7 +53,7 @@ def shown_intervals(page):
 
 
 def scroll_intervals(page, part):
-    """Scrolls whatever the table lies in, to a part of its height."""
+    """Scrolls the box in which the table lies to a part of its height."""
     page.script(
         "let box = arguments[0]; while (box && box.scrollHeight <= box.clientHeight + 1) box = box.parentElement;"
         "if (box) box.scrollTop = arguments[1] * box.scrollHeight;", page.element("table", "Intervals"), part)

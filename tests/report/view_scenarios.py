@@ -1,4 +1,4 @@
-"""What the 3D view draws: the body, each contact where it is, every colour and mark, in pixels of the screen."""
+"""The 3D view draws the body, each contact at its place, every colour and mark, in pixels of the screen."""
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.keys import Keys
@@ -13,7 +13,7 @@ TRAIL = 8
 
 
 def bare(page):
-    """Nothing but the plain body."""
+    """Switches off everything but the plain body."""
     page.script("window.cscd.store.set({playing: false, colour: 'plain', contacts: false, trail: false, through: false,"
                 " points: false, cuts: false, edges: false, scenery: false, selected: null, triangle: null});")
     page.settle()
@@ -29,7 +29,7 @@ def at_most_contacts(context, name="pawn-drop"):
 
 
 def in_view(page, markers):
-    """Those of the markers that the window shows."""
+    """Returns the markers that the window shows."""
     _, _, width, height = page.view_box()
     return [marker for marker in markers if 0 <= marker["screen"][0] <= width and 0 <= marker["screen"][1] <= height]
 
@@ -39,7 +39,7 @@ def same_place(a, b):
 
 
 def check_markers(page, contacts, interval):
-    """One marker for each contact of the interval, at its point."""
+    """There is one marker for each contact of the interval, at its point."""
     expected = sorted((kind, point) for frame, kind, _, _, point in contacts if frame == interval)
     markers = [marker for marker in page.markers() if marker["interval"] == interval]
     found = sorted((marker["kind"], tuple(marker["position"])) for marker in markers)
@@ -64,7 +64,7 @@ def contacts_are_where_the_csv_has_them(context):
 
 
 def contacts_in_sight_are_drawn(context):
-    """Without those behind the surface there are fewer pixels, but some."""
+    """Without the markers behind the surface there are fewer pixels, but some."""
     made, page = at_most_contacts(context)
     without = context.pictures.view()
     page.set_box("Contacts", True)
@@ -178,7 +178,7 @@ def keys_turn_the_camera(context):
 
 
 def a_click_picks_contacts_and_triangles(context):
-    """A click on a marker selects the contact, one on the bare body a triangle, one beside it nothing."""
+    """A click on a marker selects the contact, a click on the bare body a triangle, and a click beside it nothing."""
     _, page = at_most_contacts(context)
     canvas = page.element("image", "3D view")
     _, _, width, height = page.view_box()
