@@ -14,12 +14,9 @@ enum { FRAMES_MAX = 1024, QUICK_FRAMES = 24, PARTS = 3 };
 static const char help[] =
     "usage: callers [options]\n"
     "\n"
-    "The solvers of models/ simulate their scenes, nothing is written. Per frame: the time within cscd and "
-    "all\n"
-    "of it, the median and the 99th percentile over the frames, and the share of cscd in the sum. Calls of "
-    "the\n"
-    "allocator by cscd: in the first frame, which builds trees, in the rest of the first third of the "
-    "frames,\n"
+    "The solvers of models/ simulate their scenes, nothing is written. Per frame: the time within cscd and all\n"
+    "of it, the median and the 99th percentile over the frames, and the share of cscd in the sum. Calls of the\n"
+    "allocator by cscd: in the first frame, which builds trees, in the rest of the first third of the frames,\n"
     "in the second and in the last third. --sizes and the other options on bodies mean nothing here.\n"
     "\n";
 

@@ -11,8 +11,7 @@
 static const char help[] =
     "usage: culling MODEL FRAMES [METHOD...]\n"
     "\n"
-    "Replays the recording once per method, one thread: none, single, kmeans:K, charge, published; default "
-    "none,\n"
+    "Replays the recording once per method, one thread: none, single, kmeans:K, charge, published; default none,\n"
     "single, kmeans:4, charge. Mode all; earliest after a '+'. Means per interval, proven: the mesh's only\n"
     "component, or all of them, began embedded for certain.\n";
 

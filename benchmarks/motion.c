@@ -14,12 +14,10 @@ static const double lengths[LENGTH_COUNT] = {0.0, 1.0, 10.0, 100.0};
 static const char help[] =
     "usage: motion [options]\n"
     "\n"
-    "Every interval is measured four times: as it is, and with everything moved along x by 1, 10 and 100 "
-    "body\n"
+    "Every interval is measured four times: as it is, and with everything moved along x by 1, 10 and 100 body\n"
     "lengths from its start to its end, on and on; a body length is the greatest extent rounded down to a\n"
     "power of two, so all sums are exact and the contacts are the same. Cost: median over that without\n"
-    "motion. Differing: share of the contacts (kind, a, b) that one of both lists has and the other has "
-    "not.\n"
+    "motion. Differing: share of the contacts (kind, a, b) that one of both lists has and the other has not.\n"
     "\n";
 
 typedef struct contact_pairs {

@@ -14,8 +14,7 @@ static const char help[] =
     "usage: narrow_phase START END\n"
     "\n"
     "Records the pairs of triangles of the mesh START (OBJ, PLY, OFF) whose volumes overlap on the way to\n"
-    "END, the same mesh at other positions, and all pairs of features that their feature_filter leaves, and "
-    "times\n"
+    "END, the same mesh at other positions, and all pairs of features that their feature_filter leaves, and times\n"
     "the narrow phase on them (one thread's processor time, least of 5).\n";
 
 /* The features of so many pairs of triangles never fill the queue. */

@@ -16,14 +16,10 @@ static const char models[] = "build/models";
 static const char help[] =
     "usage: proximity [options]\n"
     "\n"
-    "What cscd_detector_near, a step with min_separation, cscd_detector_max_step and a cscd_line take, in "
-    "plain\n"
-    "steps of method none, mode all: intervals of recordings (build/models, recorded if missing) and of "
-    "cloth.\n"
-    "Each interval's least of some repetitions, fewer of what takes seconds; an interval that max_step "
-    "refuses\n"
-    "for its start counts in no ratio of max_step and line. Lengths are in mean edges of the first frame, up "
-    "to\n"
+    "What cscd_detector_near, a step with min_separation, cscd_detector_max_step and a cscd_line take, in plain\n"
+    "steps of method none, mode all: intervals of recordings (build/models, recorded if missing) and of cloth.\n"
+    "Each interval's least of some repetitions, fewer of what takes seconds; an interval that max_step refuses\n"
+    "for its start counts in no ratio of max_step and line. Lengths are in mean edges of the first frame, up to\n"
     "the first at which ten pairs per triangle are near. --intervals: of each recording (default 10, behind\n"
     "frame 80). --sizes, --body, --volume and --shuffled mean nothing here.\n"
     "\n";

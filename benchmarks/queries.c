@@ -11,14 +11,11 @@
 static const char help[] =
     "usage: queries [--kind vf|ee] [--json] FILES...\n"
     "\n"
-    "Runs the elementary tests on query sets with exact truth (CSV, 8 rows a query: x, y, z as numerator "
-    "and\n"
+    "Runs the elementary tests on query sets with exact truth (CSV, 8 rows a query: x, y, z as numerator and\n"
     "denominator, then the truth). The kind follows from 'vertex-face' or 'edge-edge' in the path, or from "
     "--kind.\n"
-    "All queries of a kind go through the feature queue together, in random order and in batches of random "
-    "sizes,\n"
-    "on every instruction set of this processor, and then each one alone: all answers must be the same bits. "
-    "Times\n"
+    "All queries of a kind go through the feature queue together, in random order and in batches of random sizes,\n"
+    "on every instruction set of this processor, and then each one alone: all answers must be the same bits. Times\n"
     "are those of the highest instruction set, of a query alone ('us batch': in batches of 496).\n";
 
 enum { REPEATS = 3, CALLS_PER_REPEAT = 16, TIMED_BATCH = 496 };

@@ -11,10 +11,8 @@
 static const char help[] =
     "usage: sensors [--folder FOLDER] [--only rules|reach|certified|cost] [SCENE...]\n"
     "\n"
-    "Recall and precision are of pairs of objects and intervals: those with a warning against those in which "
-    "the\n"
-    "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: "
-    "recordings\n"
+    "Recall and precision are of pairs of objects and intervals: those with a warning against those in which the\n"
+    "detector finds a contact. Times are medians, ms a step; the detector is method none. Scenes: recordings\n"
     "NAME.obj and NAME.pc2 in FOLDER (default build/models, by make models); a plan by charge is made where\n"
     "NAME.plan.ply is missing. Cost, by size and by number of objects, has bodies of its own.\n";
 
@@ -176,11 +174,11 @@ static void print_heads(table t) {
                "particles", "touching", "missed", "false", "recall", "precision", "confirmed", "rounds",
                "cyc %", "ms", "of trees");
     if (t == TABLE_REACH)
-        printf("\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of "
-               "their "
-               "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
-               "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed",
-               "vertices M", "pairs M", "ms");
+        printf(
+            "\nhow far particles feel, and how many they are: cells, no plan; all scenes (ms: the sum of their "
+            "medians)\n  %-21s %-18s %8s %7s %8s %7s %9s %9s %10s %10s %9s\n",
+            "scene", "rule", "touching", "missed", "false", "recall", "precision", "confirmed", "vertices M",
+            "pairs M", "ms");
     if (t == TABLE_CERTIFIED)
         printf(
             "\ncertified apart, %% of watched pairs of parts in all intervals: balls about particles, about "

@@ -11,13 +11,10 @@ enum { REPEATS = 9, STEADY_STEPS = 4, INTERVAL_COUNT = STEADY_STEPS + 1 };
 static const char help[] =
     "usage: topology [options]\n"
     "\n"
-    "What a solver pays when triangles are torn, cut or remeshed: everything but the context is destroyed "
-    "and\n"
-    "made anew. Milliseconds, each the least of some repetitions; in brackets steady steps, of the same "
-    "row.\n"
+    "What a solver pays when triangles are torn, cut or remeshed: everything but the context is destroyed and\n"
+    "made again. Milliseconds, each the least of some repetitions; in brackets steady steps, of the same row.\n"
     "Methods none and single need no plan; parts: four regions carried over by cscd_plan_create_from_parts;\n"
-    "vouched: single, and no proof of the start. Its proof is a part of the first step, and where there is "
-    "one\n"
+    "vouched: single, and no proof of the start. Its proof is a part of the first step, and where there is one\n"
     "it builds the trees. Mode all; the body deforms and never touches itself.\n"
     "--intervals: the repetitions (default 9, with --quick 5).\n"
     "\n";
@@ -121,7 +118,7 @@ static cscd_status repeat_once(subject_set *s, double least[PART_COUNT]) {
 /* ---- rows -------------------------------------------------------------------------------------------- */
 
 static void print_row(const subject_set *s, const char *plan, const double ms[PART_COUNT]) {
-    double anew = ms[PART_MESH] + ms[PART_PLAN] + ms[PART_DETECTOR] + ms[PART_FIRST];
+    double change = ms[PART_MESH] + ms[PART_PLAN] + ms[PART_DETECTOR] + ms[PART_FIRST];
     printf("  %9u %-7s", s->body->triangle_count, plan);
     for (int i = 0; i < PART_COUNT; i++) {
         if (i == PART_STEADY)
@@ -129,7 +126,7 @@ static void print_row(const subject_set *s, const char *plan, const double ms[PA
         else
             printf(" %9.3f (%5.1f)", ms[i], ms[i] / ms[PART_STEADY]);
     }
-    printf(" %9.1f\n", anew / ms[PART_STEADY]);
+    printf(" %9.1f\n", change / ms[PART_STEADY]);
     fflush(stdout);
 }
 
@@ -227,10 +224,10 @@ static bool run_sizes(const bench_options *o, json *out, io_error *error) {
     printf("%s, %u thread%s, simd %s; ms, in brackets steady steps\n  %9s %-7s", body_kind_name(o->kind),
            o->thread_count, o->thread_count == 1 ? "" : "s", cscd_simd_name(o->simd), "triangles", "method");
     for (int i = 0; i < PART_COUNT; i++) printf(i == PART_STEADY ? " %12s" : " %17s", part_names[i]);
-    printf(" %9s\n", "anew");
+    printf(" %9s\n", "change");
     bool good = true;
     for (uint32_t i = 0; good && i < o->size_count; i++) good = run_size(o, o->sizes[i], out, error);
-    if (good) printf("  anew: mesh, plan, detector and first step together, in steady steps\n");
+    if (good) printf("  change: mesh, plan, detector and first step together, in steady steps\n");
     return good;
 }
 

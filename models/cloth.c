@@ -69,12 +69,11 @@ static void print_summary(const cloth_simulation *c, uint64_t late_allocations) 
         "  near: %.0f pairs a frame; %llu of %u motions were cut, for %llu contacts, in up to %llu rounds\n",
         (double)t->near_pairs / frames, (unsigned long long)t->motion.cut, t->frames,
         (unsigned long long)t->motion.contacts, (unsigned long long)t->most_rounds);
-    printf("  %llu motions began pressed together; %llu were shortened as a whole, obstacles waited %.2f "
-           "frames\n",
-           (unsigned long long)t->motion.tight, (unsigned long long)t->motion.fallbacks, t->waited);
     printf(
-        "  %.2f ms a frame: solver %.2f, near %.2f, %.1f detector steps %.2f; %llu allocations in the last "
-        "half\n",
+        "  %llu motions began pressed together; %llu were shortened as a whole, obstacles waited %.2f frames\n",
+        (unsigned long long)t->motion.tight, (unsigned long long)t->motion.fallbacks, t->waited);
+    printf(
+        "  %.2f ms a frame: solver %.2f, near %.2f, %.1f detector steps %.2f; %llu allocations in the last half\n",
         t->total_ms / frames, (t->total_ms - t->near_ms - t->step_ms) / frames, t->near_ms / frames,
         (double)t->motion.steps / frames, t->step_ms / frames, (unsigned long long)late_allocations);
 }

@@ -26,9 +26,9 @@ static void print_summary(const ipc_solver *p, const recording_motion *m) {
     printf("%s: %s\n", scene->name, scene->text);
     printf("  %u frames of %u triangles, %g s each; %u springs\n", m->frame_count, p->shape.triangle_count,
            scene->step_seconds * scene->steps, p->springs.count);
-    printf("  a time step: %.1f Newton iterations (%u steps stopped at the bound), %.2f of them with "
-           "obstacles\n",
-           mean_of(s->newton, s->steps), s->unfinished, mean_of(s->driven, s->steps));
+    printf(
+        "  a time step: %.1f Newton iterations (%u steps stopped at the bound), %.2f of them with obstacles\n",
+        mean_of(s->newton, s->steps), s->unfinished, mean_of(s->driven, s->steps));
     printf(
         "  a Newton iteration: %.0f conjugate gradients, %.0f candidates, %.2f trials of %.0f near pairs\n",
         mean_of(s->conjugate_gradients, s->newton), mean_of(s->candidates, s->newton),

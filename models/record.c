@@ -101,8 +101,7 @@ int main(int argument_count, char **arguments) {
         .help =
             "usage: record SCENE... FOLDER\n"
             "\n"
-            "Simulates soft bodies and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the "
-            "body\n"
+            "Simulates soft bodies and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the body\n"
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
             "`all` stands for all scenes:\n"
             "\n",

@@ -43,8 +43,7 @@ static const option_row rows[] = {
 static const option_table table = {
     "check", "MODEL [FRAMES...] [options]",
     "Finds the pairs of triangles that intersect or touch at each frame, features that share a vertex aside. "
-    "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without "
-    "them "
+    "Exact: the answer is that of the given coordinates, without rounding. FRAMES as for replay; without them "
     "MODEL itself is checked.",
     rows, sizeof rows / sizeof *rows};
 

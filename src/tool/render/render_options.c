@@ -25,8 +25,7 @@ static const option_row rows[] = {
     {"follow", NULL, read_flag, offsetof(render_options, follow),
      "move the camera with the body, which stays in the middle of its tile"},
     {"scenery", "MODEL", read_text, offsetof(render_options, scenery_path),
-     "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never "
-     "tested"},
+     "another mesh beside the body (ground, stairs, a ball): only drawn, where it is in view, and never tested"},
     {"scenery-frames", "FRAMES", read_text, offsetof(render_options, scenery_frames_path),
      "how it moves: a point cache or a pattern, of as many frames, or of one"},
     {"colour", "plain", read_colour, offsetof(render_options, colouring), "one colour (default)"},

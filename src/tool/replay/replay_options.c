@@ -61,8 +61,7 @@ static const option_row rows[] = {
      "how it is known that a start is free of intersections: by the static check (default), because you say "
      "so, not at all"},
     {"min-separation", "D", read_length, offsetof(replay_options, min_separation),
-     "a contact is coming within D, a length in the files' unit (default 0: features touch); the static "
-     "check "
+     "a contact is coming within D, a length in the files' unit (default 0: features touch); the static check "
      "stays one of intersections and touching"},
     {"no-check", NULL, read_flag, offsetof(replay_options, no_check),
      "skip the static check of every frame; how intervals start is then unknown"},

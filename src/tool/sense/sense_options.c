@@ -44,8 +44,7 @@ static const option_row rows[] = {
      "with random: on each object (default 5)"},
     {"seed", "N", read_unsigned, offsetof(sense_options, sensors.seed), "with random: default 1"},
     {"plan", "PLAN.ply|none", read_plan, 0,
-     "whose regions are the parts of concave objects (default as for replay); none: every component is one "
-     "part"},
+     "whose regions are the parts of concave objects (default as for replay); none: every component is one part"},
     {"within", NULL, read_flag, offsetof(sense_options, partition.within),
      "with cells: parts of one object are watched for each other, too"},
     {"no-exact", NULL, read_no_exact, offsetof(sense_options, sensors.exact),
@@ -74,8 +73,7 @@ static const option_row rows[] = {
 
 static const option_table table = {
     "sense", "MODEL FRAMES... [options]",
-    "Watches every pair of objects (components of MODEL) with particles that walk on their surfaces, and "
-    "warns "
+    "Watches every pair of objects (components of MODEL) with particles that walk on their surfaces, and warns "
     "where two come near: an early warning, which can miss contacts. FRAMES as for replay.",
     rows, sizeof rows / sizeof *rows};
 
