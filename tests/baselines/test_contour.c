@@ -193,7 +193,7 @@ static void simple_is_simple_throughout(void **state) {
     }
 }
 
-/* ---- not needlessly pessimistic -------------------------------------------------------------------- */
+/* ---- motions that must pass ------------------------------------------------------------------------ */
 
 /* The polygons are convex or have long rays, turn by a little, move far, and are scaled and moved
  * together. */
@@ -224,7 +224,7 @@ static void plain_motions_pass(void **state) {
     }
 }
 
-/* ---- what each condition is for -------------------------------------------------------------------- */
+/* ---- the conditions one by one --------------------------------------------------------------------- */
 
 static polygon polygon_at_rest(const double (*corners)[2], uint32_t count) {
     polygon p = {.count = count,

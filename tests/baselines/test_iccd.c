@@ -117,7 +117,7 @@ static void contacts_equal_those_of_none(void **state) {
     assert_true(10 * sum.pairs < 9 * sum.pairs_without);
 }
 
-/* ---- in whatever way it is asked ------------------------------------------------------------------- */
+/* ---- options and repeated steps -------------------------------------------------------------------- */
 
 static bool ignore_some(void *user, uint32_t a, uint32_t b) {
     (void)user;
@@ -213,7 +213,7 @@ static void scales_change_nothing(void **state) {
     }
 }
 
-/* ---- what it promises ------------------------------------------------------------------------------ */
+/* ---- guarantees ------------------------------------------------------------------------------------ */
 
 static void guarantees_say_how(void **state) {
     (void)state;

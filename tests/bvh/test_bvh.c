@@ -45,7 +45,7 @@ static void find_places(const bvh *f) {
     assert_int_equal(f->levels[f->tree_level - 1].block_count, f->tree_count);
 }
 
-/* ---- what lies where ----------------------------------------------------------------------------------- */
+/* ---- places of triangles ------------------------------------------------------------------------------- */
 
 static void check_leaf(const bvh_rig *r, uint32_t index, const bvh_tree *p, uint32_t *seen) {
     const bvh *f = &r->bvh;
@@ -262,7 +262,7 @@ static void bounds_of_points(void **state) {
     check_scene(&shape, KDOP_AXES, 2, 0.0);
 }
 
-/* ---- the same whatever computes it ----------------------------------------------------------------------
+/* ---- levels and threads ---------------------------------------------------------------------------------
  */
 
 static void assert_same_bvh(const bvh *a, const bvh *b) {

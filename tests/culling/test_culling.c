@@ -172,7 +172,7 @@ static void culling_loses_no_first_contact(void **state) {
     assert_true(sum.missing > 0);
 }
 
-/* ---- pairs to leave out ------------------------------------------------------------------------------ */
+/* ---- ignored pairs ----------------------------------------------------------------------------------- */
 
 static bool ignore_some(void *user, uint32_t a, uint32_t b) {
     (void)user;

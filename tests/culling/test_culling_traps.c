@@ -90,7 +90,7 @@ static void check_first_contact(cscd_reason expected) {
     }
 }
 
-/* ---- no inside ------------------------------------------------------------------------------------- */
+/* ---- surfaces without an inside -------------------------------------------------------------------- */
 
 /* Every triangle faces the centre, and yet the surface intersects itself because it winds around twice. */
 static void pentagrammic_bipyramid(void **state) {
@@ -131,7 +131,7 @@ static void rolled_sheet(void **state) {
     check_first_contact(CSCD_REASON_SURFACE);
 }
 
-/* ---- degenerate first touches ---------------------------------------------------------------------- */
+/* ---- degenerate first contacts --------------------------------------------------------------------- */
 
 /* Adds a horseshoe: the polygon extruded along z. Corner i is vertex 2 i at z = 0 and vertex 2 i + 1 at z
  * = 4. */

@@ -24,7 +24,7 @@ enum { FRAMES = 14, SMALL = 120, REGIONS_MAX = 5 };
 
 static sequence q; /* large; one test at a time */
 
-/* ---- one mesh, several ways -------------------------------------------------------------------------- */
+/* ---- one mesh, several detectors --------------------------------------------------------------------- */
 
 typedef struct local_tally {
     uint64_t intervals, with_contact, partly_clean, all_clean, closing_passes, contacts, tests, tests_without;
@@ -149,7 +149,7 @@ static void check_contacts(const ways *w, const cscd_detector *detector, const c
     assert_int_equal(next, found->count);
 }
 
-/* ---- what is tested, and what is called clean ---------------------------------------------------------- */
+/* ---- tests and clean triangles ------------------------------------------------------------------------- */
 
 static bool any_kept(const culling *c, const uint32_t *a, uint32_t a_count, const uint32_t *b,
                      uint32_t b_count) {

@@ -17,7 +17,7 @@ static const uint32_t thread_counts[COUNTS] = {1, 2, 3, 8};
 
 static scene s; /* large; one test at a time */
 
-/* ---- a body that is large enough to be shared ---------------------------------------------------------- */
+/* ---- a body large enough for several threads ----------------------------------------------------------- */
 
 /* A tube along z whose wall moves in waves, and whose upper part comes down on the lower one. */
 static void tube_at(const scene *tube, double time, double *out) {
@@ -99,7 +99,7 @@ static void separation_gives_the_same(void **state) {
     assert_true(compare_methods(&options) > 0);
 }
 
-/* ---- the crew itself ----------------------------------------------------------------------------------- */
+/* ---- the helper threads -------------------------------------------------------------------------------- */
 
 typedef struct threads_tally {
     uint32_t runs[TASKS_MAX]; /* written by the thread that has the task */

@@ -188,7 +188,7 @@ static void free_fall_is_a_parabola(void **state) {
     soft_body_free(&b);
 }
 
-/* ---- collisions ---- */
+/* ---- contacts ---- */
 
 /* Up to rounding, nothing is ever below the ground, and the energy never rises. */
 static void dropped_bodies_come_to_rest(void **state) {

@@ -75,7 +75,7 @@ def run(scenario, context, log_path):
     for step in (lambda: scenario(context), context.check_quiet):
         try:
             step()
-        except Exception:  # whatever it is, the next scenario runs
+        except Exception:  # the next scenario runs in any case
             text += told(sys.exc_info()[1])
     with open(log_path, "w", encoding="utf-8") as file:
         file.write(text)

@@ -177,7 +177,7 @@ static void contacts_and_orientations_come_back(void **state) {
     check_replay(recorded_spindle(24, 8, 9), recorded_spindle(24, 8, 9), CSCD_METHOD_CHARGE);
 }
 
-/* ---- of long and large ones only a part -------------------------------------------------------------- */
+/* ---- long and large recordings ----------------------------------------------------------------------- */
 
 /* Expects a list of the JSON to have these numbers. */
 static void expect_list(const json_node *list, const uint32_t *numbers, size_t count) {

@@ -287,7 +287,7 @@ static void a_word_stays_a_word(void **state) {
     rig_destroy(&r);
 }
 
-/* ---- together ------------------------------------------------------------------------------------------ */
+/* ---- lines and steps in turn --------------------------------------------------------------------------- */
 
 /* Two line searches and the steps of one detector take turns, and none notices the others. */
 static void lines_and_steps_take_turns(void **state) {

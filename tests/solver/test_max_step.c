@@ -250,7 +250,7 @@ static void never_crosses_on_the_way(void **state) {
     assert_true(sum.limited > 40 && sum.embedded > 60);
 }
 
-/* ---- what the caller says ------------------------------------------------------------------------------ */
+/* ---- arguments and guarantees ------------------------------------------------------------------------- */
 
 /* Makes a spike that goes through the far wall. */
 static void make_limited(void) {

@@ -244,7 +244,7 @@ static void same_as_brute_force_far_away(void **state) {
     oracle_free(&truth);
 }
 
-/* ---- beside steps -------------------------------------------------------------------------------------- */
+/* ---- queries between steps ----------------------------------------------------------------------------- */
 
 static void expect_same_state(const rig *r, const rig *other) {
     cscd_counters own = cscd_detector_counters(r->detector),
