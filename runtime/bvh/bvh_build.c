@@ -101,8 +101,7 @@ static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
     }
 }
 
-/* Computes the centres of triangles, and those of regions as the means of these, relative to the first corner and
- * scaled to floats. */
+/* Computes the centres of triangles relative to the first corner, scaled to floats; those of regions are their means. */
 static void find_centres(builder *b, const double *positions, double scale) {
     const cscd_mesh *mesh = b->mesh;
     const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
