@@ -24,18 +24,22 @@ static uint8_t *count_of_ee(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return &ee[(size_t)(a < b ? a : b) * mesh->edge_count + (a < b ? b : a)];
 }
 
+/* Adds 1 to a count if the bit of a set of features is there. */
+static void count_bit(uint8_t *count, uint32_t features, int bit) {
+    if ((features >> bit & 1) != 0) (*count)++;
+}
+
 static void count_pair(const swept_interval *interval, triangle_pair pair) {
     const cscd_mesh *mesh = interval->mesh;
     uint16_t tested = FEATURE_ALL;
     representatives_select(interval, &pair, 1, &tested);
-    uint32_t features = tested;
     for (int i = 0; i < 3; i++) {
-        *count_of_vf(mesh, mesh->triangles[pair.a][i], pair.b) += features >> i & 1;
-        *count_of_vf(mesh, mesh->triangles[pair.b][i], pair.a) += features >> (FEATURE_VERTEX_B + i) & 1;
+        count_bit(count_of_vf(mesh, mesh->triangles[pair.a][i], pair.b), tested, i);
+        count_bit(count_of_vf(mesh, mesh->triangles[pair.b][i], pair.a), tested, FEATURE_VERTEX_B + i);
     }
     for (int i = 0; i < 9; i++) {
         uint32_t a = mesh->triangle_edges[pair.a][i / 3], b = mesh->triangle_edges[pair.b][i % 3];
-        *count_of_ee(mesh, a, b) += features >> (FEATURE_EDGES + i) & 1;
+        count_bit(count_of_ee(mesh, a, b), tested, FEATURE_EDGES + i);
     }
 }
 
