@@ -9,7 +9,7 @@ enum { PAIR_BATCH_LEVELS = CSCD_SIMD_AVX512, PAIR_BATCH_MAX = FEATURE_LIST_CAPAC
 
 typedef struct query_answer {
     bool touching;
-    elementary_hit hit; /* zeros where they do not touch */
+    elementary_contact hit; /* zeros where they do not touch */
 } query_answer;
 
 typedef struct pair_batches {

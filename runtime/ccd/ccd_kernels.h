@@ -18,20 +18,20 @@ typedef struct feature_pairs {
     uint32_t count;
 } feature_pairs;
 
-/* The verdicts on eight pairs, and for each hit the begin of the first root interval in which it touches. */
+/* The verdicts on eight pairs, and for each contact the begin of the first root interval in which it touches. */
 typedef struct root_outcomes {
-    uint32_t misses, hits; /* sets of lanes */
+    uint32_t apart, contacts; /* sets of lanes */
     double begin[LANES];
 } root_outcomes;
 
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
-/* The outcomes for eight pairs. Misses certainly stay farther apart than a limit's distance and tolerance.
- * Hits are certainly within its distance at the start. For hits, u, v and offset name the nearest points at
+/* The outcomes for eight pairs. Pairs apart certainly stay farther apart than a limit's distance and tolerance.
+ * Pairs within its distance are so for certain at the start. For them u, v and offset name the nearest points at
  * the start as parameters and as the offset from b's point to a's; distance is the offset's length. */
 typedef struct proximity_outcomes {
-    uint32_t misses, hits; /* sets of lanes */
+    uint32_t apart, within; /* sets of lanes */
     double u[LANES], v[LANES], offset[3][LANES], distance[LANES];
 } proximity_outcomes;
 

@@ -70,7 +70,7 @@ static double leave_gap(const point_vectors *vectors, double coordinate, const c
 
 /* Finds the nearest points at one moment. The vectors are scaled, and relative to the face's first corner
  * (VF) or to the start of the shorter edge (EE), so that its shape survives the addition. */
-static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, elementary_hit *hit) {
+static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, elementary_contact *contact) {
     static const double origin[3] = {0, 0, 0};
     double a[3], b[3], c[3], end[3];
     double largest = max_of(vec3_largest(m->a), max_of(vec3_largest(m->b), vec3_largest(m->c)));
@@ -81,52 +81,52 @@ static void find_parameters(const moment_vectors *m, cscd_contact_kind kind, ele
         c[k] = factor * m->c[k];
     }
     if (kind == CSCD_CONTACT_VF) {
-        closest_point_triangle(c, origin, a, b, &hit->u, &hit->v);
+        closest_point_triangle(c, origin, a, b, &contact->u, &contact->v);
     } else if (vec3_largest(a) < vec3_largest(b)) {
         vec3_add_scaled(c, 1.0, b, end);
-        closest_segments(origin, a, c, end, &hit->u, &hit->v);
+        closest_segments(origin, a, c, end, &contact->u, &contact->v);
     } else {
         for (int k = 0; k < 3; k++) c[k] = -c[k];
         vec3_add_scaled(c, 1.0, a, end);
-        closest_segments(c, end, origin, b, &hit->u, &hit->v);
+        closest_segments(c, end, origin, b, &contact->u, &contact->v);
     }
 }
 
 /* Writes the vector from the point that u and v name on b to the one that they name on a. */
 static void connect_points(const double a[3], const double b[3], const double c[3], cscd_contact_kind kind,
-                           const elementary_hit *hit, double out[3]) {
+                           const elementary_contact *contact, double out[3]) {
     double sign = kind == CSCD_CONTACT_VF ? 1.0 : -1.0;
-    for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - hit->u * a[k]) - hit->v * b[k];
+    for (int k = 0; k < 3; k++) out[k] = sign * (c[k] - contact->u * a[k]) - contact->v * b[k];
 }
 
 /* Writes the unit normal of the touching features, turned against the motion of a relative to b. */
 static void contact_normal(const point_vectors *v, const moment_vectors *m, cscd_contact_kind kind,
-                           const elementary_hit *hit, double normal[3]) {
+                           const elementary_contact *contact, double normal[3]) {
     double cross[3], start[3], end[3], motion[3];
     int exponent;
     scaled_cross(m, cross, &exponent);
     scale_to_one(cross, normal);
     double length = sqrt(vec3_dot(normal, normal));
-    connect_points(v->a[0], v->b[0], v->c[0], kind, hit, start);
-    connect_points(v->a[1], v->b[1], v->c[1], kind, hit, end);
+    connect_points(v->a[0], v->b[0], v->c[0], kind, contact, start);
+    connect_points(v->a[1], v->b[1], v->c[1], kind, contact, end);
     vec3_subtract(end, start, motion);
     double sign = vec3_dot(normal, motion) > 0.0 ? -1.0 : 1.0;
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 
 void contact_frame_describe(const elementary_query *query, cscd_contact_kind kind, const coplanarity *f,
-                            double toi, elementary_hit *hit) {
+                            double toi, elementary_contact *contact) {
     point_vectors vectors;
     double apart[3];
     point_vectors_from(query, kind, &vectors);
-    hit->toi = leave_gap(&vectors, largest_coordinate(query), f, toi);
-    moment_vectors m = vectors_at(&vectors, hit->toi);
-    find_parameters(&m, kind, hit);
-    connect_points(m.a, m.b, m.c, kind, hit, apart);
+    contact->toi = leave_gap(&vectors, largest_coordinate(query), f, toi);
+    moment_vectors m = vectors_at(&vectors, contact->toi);
+    find_parameters(&m, kind, contact);
+    connect_points(m.a, m.b, m.c, kind, contact, apart);
     for (int k = 0; k < 3; k++) {
-        double on_a = blend_ends(query->x0[0][k], query->x1[0][k], hit->toi);
-        if (kind == CSCD_CONTACT_EE) on_a += hit->u * m.a[k];
-        hit->point[k] = on_a - 0.5 * apart[k];
+        double on_a = blend_ends(query->x0[0][k], query->x1[0][k], contact->toi);
+        if (kind == CSCD_CONTACT_EE) on_a += contact->u * m.a[k];
+        contact->point[k] = on_a - 0.5 * apart[k];
     }
-    contact_normal(&vectors, &m, kind, hit, hit->normal);
+    contact_normal(&vectors, &m, kind, contact, contact->normal);
 }

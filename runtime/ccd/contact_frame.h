@@ -5,7 +5,7 @@
 #include "runtime/ccd/elementary.h"
 
 /* f is the features' coplanarity cubic. toi is not after the first touch, and before it by at most 2^-31.
- * hit->toi is earlier than toi by at most 2^-32, so that positions at it, rounded to doubles, have not passed
+ * contact->toi is earlier than toi by at most 2^-32, so that positions at it, rounded to doubles, have not passed
  * each other yet. */
 void contact_frame_describe(const elementary_query *query, cscd_contact_kind kind, const coplanarity *f,
-                            double toi, elementary_hit *hit);
+                            double toi, elementary_contact *contact);

@@ -19,43 +19,44 @@ static const double narrow = 0x1p-31;
 /* Decides what level two leaves open. The directions come here, because before level two they cost more than
  * they save. */
 static elementary_verdict decide_what_is_left(const elementary_query *query, cscd_contact_kind kind,
-                                              const coplanarity *f, elementary_hit *hit) {
+                                              const coplanarity *f, elementary_contact *contact) {
     double toi;
     if (separated_by_diagonals(query, kind) || separated_in_plane(query, kind)) return apart_by_signs;
     bool touching = exact_touch(query, kind, &toi);
-    if (touching) contact_frame_describe(query, kind, f, toi, hit);
+    if (touching) contact_frame_describe(query, kind, f, toi, contact);
     return (elementary_verdict){touching, ELEMENTARY_EXACT};
 }
 
 static elementary_verdict decide_at_roots(const elementary_query *query, const point_vectors *vectors,
-                                          cscd_contact_kind kind, const coplanarity *f, elementary_hit *hit) {
+                                          cscd_contact_kind kind, const coplanarity *f,
+                                          elementary_contact *contact) {
     root_interval roots[ROOTS_MAX];
     int count = cubic_isolate(f, roots);
-    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, kind, f, hit);
+    if (count == ROOTS_UNCERTAIN) return decide_what_is_left(query, kind, f, contact);
     for (int i = 0; i < count; i++) {
         assert(roots[i].begin <= roots[i].end && (i == 0 || roots[i - 1].end <= roots[i].begin));
         inside_verdict inside = inside_test(vectors, kind, &roots[i]);
         if (inside == INSIDE_NO) continue;
         if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)
-            return decide_what_is_left(query, kind, f, hit);
-        contact_frame_describe(query, kind, f, roots[i].begin, hit);
+            return decide_what_is_left(query, kind, f, contact);
+        contact_frame_describe(query, kind, f, roots[i].begin, contact);
         return (elementary_verdict){true, ELEMENTARY_ROOTS};
     }
     return (elementary_verdict){false, ELEMENTARY_ROOTS};
 }
 
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
-                                          elementary_hit *hit) {
+                                          elementary_contact *contact) {
     point_vectors vectors;
     point_vectors_from(query, kind, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
-    return decide_at_roots(query, &vectors, kind, &f, hit);
+    return decide_at_roots(query, &vectors, kind, &f, contact);
 }
 
 void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
-                         elementary_hit *hit) {
+                         elementary_contact *contact) {
     point_vectors vectors;
     point_vectors_from(query, kind, &vectors);
     coplanarity f = coplanarity_cubic(&vectors);
-    contact_frame_describe(query, kind, &f, toi, hit);
+    contact_frame_describe(query, kind, &f, toi, contact);
 }

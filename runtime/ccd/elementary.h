@@ -18,10 +18,10 @@ static inline int points_of_first(cscd_contact_kind kind) {
 }
 
 /* The first touch. u, v, point and normal as in cscd_contact. */
-typedef struct elementary_hit {
+typedef struct elementary_contact {
     double toi, u, v;
     double point[3], normal[3];
-} elementary_hit;
+} elementary_contact;
 
 /* The level that decided. Each level is certified, and the next one sees only what it left open. */
 typedef enum elementary_level {
@@ -38,12 +38,12 @@ typedef struct elementary_verdict {
 } elementary_verdict;
 
 /* Decides pairs that the kernel of level one leaves undecided (see ccd_kernels.h). The result depends on
- * nothing but the query; *hit is written only when they touch. Features are closed, and so is the interval.
+ * nothing but the query; *contact is written only when they touch. Features are closed, and so is the interval.
  */
 elementary_verdict elementary_after_signs(const elementary_query *query, cscd_contact_kind kind,
-                                          elementary_hit *hit);
+                                          elementary_contact *contact);
 
 /* Describes the contact of a pair for which a kernel found a root interval that begins at toi, and a contact
  * in it. */
 void elementary_describe(const elementary_query *query, cscd_contact_kind kind, double toi,
-                         elementary_hit *hit);
+                         elementary_contact *contact);

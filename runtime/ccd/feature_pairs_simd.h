@@ -52,7 +52,7 @@ typedef void decide_some(const points_x8 *points, cscd_contact_kind kind, int i,
 
 static inline void decide_eight(const feature_source *source, const uint32_t *a, const uint32_t *b,
                                 cscd_contact_kind kind, decide_some *decide, root_outcomes *out) {
-    out->misses = out->hits = 0;
+    out->apart = out->contacts = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         load_features(source, kind, a + i, b + i, &points);

@@ -177,21 +177,21 @@ static void touching_normal(const feature_moment *m, double normal[3]) {
     for (int k = 0; k < 3; k++) normal[k] = length > 0.0 ? sign * normal[k] / length : 0.0;
 }
 
-static void describe_hit(const elementary_query *query, const local_query *local, const feature_moment *m,
-                         elementary_hit *hit) {
-    *hit = (elementary_hit){.toi = m->t, .u = m->u, .v = m->v};
+static void describe_contact(const elementary_query *query, const local_query *local, const feature_moment *m,
+                             elementary_contact *contact) {
+    *contact = (elementary_contact){.toi = m->t, .u = m->u, .v = m->v};
     for (int k = 0; k < 3; k++) {
-        hit->point[k] = query->x0[0][k] + m->middle[k] / local->scale;
-        hit->normal[k] = m->shortest.offset[k] / m->distance;
+        contact->point[k] = query->x0[0][k] + m->middle[k] / local->scale;
+        contact->normal[k] = m->shortest.offset[k] / m->distance;
     }
-    if (m->distance < too_near) touching_normal(m, hit->normal);
+    if (m->distance < too_near) touching_normal(m, contact->normal);
 }
 
 /* The extent is at least 1/2, so half of SEPARATION_FINEST is no larger a tolerance than promised. It is 16
  * times DISTANCE_ERROR and 8 times SEPARATING_PLANE_ERROR, so the steps get down to `reach` and do not
  * end before it. */
 static bool comes_within(const elementary_query *query, cscd_contact_kind kind, const separation *limit,
-                         elementary_hit *hit, bool *bounded) {
+                         elementary_contact *contact, bool *bounded) {
     local_query local = localise_query(query, kind, limit->distance);
     double tolerance = fmax(limit->tolerance * local.scale, 0.5 * SEPARATION_FINEST);
     double reach = local.distance + (tolerance - DISTANCE_ERROR);
@@ -199,17 +199,17 @@ static bool comes_within(const elementary_query *query, cscd_contact_kind kind, 
     bool ran_out;
     if (!advance_moment(&local, reach, &m, &ran_out)) return false;
     if (directions_part(query, kind, limit->distance)) return false;
-    describe_hit(query, &local, &m, hit);
+    describe_contact(query, &local, &m, contact);
     *bounded = ran_out;
     return true;
 }
 
-bool separation_vf(const elementary_query *query, const separation *limit, elementary_hit *hit,
+bool separation_vf(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded) {
-    return comes_within(query, CSCD_CONTACT_VF, limit, hit, bounded);
+    return comes_within(query, CSCD_CONTACT_VF, limit, contact, bounded);
 }
 
-bool separation_ee(const elementary_query *query, const separation *limit, elementary_hit *hit,
+bool separation_ee(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded) {
-    return comes_within(query, CSCD_CONTACT_EE, limit, hit, bounded);
+    return comes_within(query, CSCD_CONTACT_EE, limit, contact, bounded);
 }

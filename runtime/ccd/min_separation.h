@@ -17,12 +17,12 @@ enum { SEPARATION_STEPS_MAX = 128 };
  * The extent is the largest difference of a coordinate from that of the first point at t = 0. */
 #define SEPARATION_FINEST 0x1p-42
 
-/* These return true for all features that come within the distance. hit->toi is never after the first moment
+/* These return true for all features that come within the distance. contact->toi is never after the first moment
  * at which they do. u and v name the nearest points at that time, and normal points from b's point to a's.
  * The points are then at most distance + max(tolerance, SEPARATION_FINEST * extent) apart, unless *bounded is
  * set: then the steps ran out, and toi is the last moment before which the features were proven farther apart
- * than the distance. *hit and *bounded are written only when true is returned. */
-bool separation_vf(const elementary_query *query, const separation *limit, elementary_hit *hit,
+ * than the distance. *contact and *bounded are written only when true is returned. */
+bool separation_vf(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded);
-bool separation_ee(const elementary_query *query, const separation *limit, elementary_hit *hit,
+bool separation_ee(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded);

@@ -32,8 +32,8 @@ static inline void decide_by_root(const points_x8 *points, cscd_contact_kind kin
     cubics_of(&vectors, &f);
     uint32_t isolated = isolate_single(&f, &interval);
     sign_lanes touching = inside_test_x8(&vectors, kind, &interval);
-    out->misses |= (isolated & touching.wrong) << i;
-    out->hits |= (isolated & touching.right & narrow_enough(&interval)) << i;
+    out->apart |= (isolated & touching.wrong) << i;
+    out->contacts |= (isolated & touching.right & narrow_enough(&interval)) << i;
     memcpy(out->begin + i, &interval.begin, sizeof interval.begin);
 }
 

@@ -193,15 +193,15 @@ static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i,
     f64w gap_at_end = gap_along(direction, kind, end.c, end.a, end.b);
     uint32_t sound = f64w_below(f64w_all(0x1p-40), distance);
     uint32_t nearest_indeed = f64w_at_most(distance * (1.0 - 0x1p-24), gap + error);
-    out->misses |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
-    out->hits |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
+    out->apart |= (sound & f64w_below(far, f64w_min(gap, gap_at_end) - error)) << i;
+    out->within |= (sound & nearest_indeed & f64w_at_most(distance + error, near)) << i;
     store_nearest(&n, distance, factor, i, out);
 }
 
 static inline void decide_eight_by_proximity(const feature_source *source, const uint32_t *a,
                                              const uint32_t *b, cscd_contact_kind kind,
                                              const separation *limit, proximity_outcomes *out) {
-    out->misses = out->hits = 0;
+    out->apart = out->within = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         load_features(source, kind, a + i, b + i, &points);

@@ -66,21 +66,21 @@ static inline void decide_by_two_roots(const points_x8 *points, cscd_contact_kin
     vectors_between(points, kind, &vectors);
     cubics_of(&vectors, &f);
     uint32_t lanes = cut_at_lowest(&f, &parts);
-    out->misses |= (lanes & without_root(&parts, f.error)) << i;
+    out->apart |= (lanes & without_root(&parts, f.error)) << i;
     lanes &= with_two_roots(&parts, f.error);
     if (lanes == 0) return;
     lanes = isolate_both(&parts, f.error, lanes, roots);
     if (lanes == 0) return;
     sign_lanes first = inside_test_x8(&vectors, kind, &roots[0]);
-    uint32_t hits = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
+    uint32_t contacts = lanes & first.right & narrow_enough(&roots[0]), later = lanes & first.wrong;
     if (later != 0) {
         sign_lanes second = inside_test_x8(&vectors, kind, &roots[1]);
-        out->misses |= (later & second.wrong) << i;
+        out->apart |= (later & second.wrong) << i;
         later &= second.right & narrow_enough(&roots[1]);
     }
-    f64w begin = f64w_select(hits, roots[0].begin, roots[1].begin);
+    f64w begin = f64w_select(contacts, roots[0].begin, roots[1].begin);
     memcpy(out->begin + i, &begin, sizeof begin);
-    out->hits |= (hits | later) << i;
+    out->contacts |= (contacts | later) << i;
 }
 
 void SIMD_NAME(two_roots_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,

@@ -28,18 +28,18 @@ static bool make_contact_room(cscd_context *context, contact_lane *lane) {
 }
 
 void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
-                      uint32_t b, const elementary_hit *hit, bool bounded) {
+                      uint32_t b, const elementary_contact *where, bool bounded) {
     if (!make_contact_room(context, lane)) return;
     cscd_contact *contact = &lane->contacts[lane->count++];
     memset(contact, 0, sizeof *contact); /* padding too: lists are compared bit for bit */
     contact->kind = kind;
     contact->a = a;
     contact->b = b;
-    contact->toi = hit->toi;
-    contact->u = hit->u;
-    contact->v = hit->v;
-    memcpy(contact->point, hit->point, sizeof contact->point);
-    memcpy(contact->normal, hit->normal, sizeof contact->normal);
+    contact->toi = where->toi;
+    contact->u = where->u;
+    contact->v = where->v;
+    memcpy(contact->point, where->point, sizeof contact->point);
+    memcpy(contact->normal, where->normal, sizeof contact->normal);
     contact->bounded = bounded;
 }
 

@@ -50,6 +50,6 @@ void contact_lane_reset(contact_lane *lane);
 
 /* Both set lane->out_of_memory when there is no room. */
 void contact_lane_add(cscd_context *context, contact_lane *lane, cscd_contact_kind kind, uint32_t a,
-                      uint32_t b, const elementary_hit *hit, bool bounded);
+                      uint32_t b, const elementary_contact *where, bool bounded);
 void contact_lane_add_candidates(cscd_context *context, contact_lane *lane, cscd_contact_kind kind,
                                  const feature_list *pairs);

@@ -4,8 +4,8 @@
 #include <assert.h>
 
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
-                        uint32_t i, const elementary_hit *hit, bool bounded, contact_lane *lane) {
-    contact_lane_add(interval->mesh->context, lane, kind, pairs->a[i], pairs->b[i], hit, bounded);
+                        uint32_t i, const elementary_contact *contact, bool bounded, contact_lane *lane) {
+    contact_lane_add(interval->mesh->context, lane, kind, pairs->a[i], pairs->b[i], contact, bounded);
 }
 
 /* Fills up the last eight with the last pair. */
@@ -32,15 +32,16 @@ static uint32_t lanes_from(const feature_pairs *pairs, uint32_t i) {
     return rest < LANES ? (1u << rest) - 1 : (1u << LANES) - 1;
 }
 
-static void describe_hits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
-                          uint32_t i, const root_outcomes *roots, uint32_t lanes, contact_lane *lane) {
+static void describe_contacts(const swept_interval *interval, cscd_contact_kind kind,
+                              const feature_pairs *pairs, uint32_t i, const root_outcomes *roots,
+                              uint32_t lanes, contact_lane *lane) {
     for (; lanes != 0; lanes &= lanes - 1) {
         uint32_t at = (uint32_t)__builtin_ctz(lanes);
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact contact;
         swept_interval_load(interval, kind, pairs->a[i + at], pairs->b[i + at], &query);
-        elementary_describe(&query, kind, roots->begin[at], &hit);
-        add_contact(interval, kind, pairs, i + at, &hit, false, lane);
+        elementary_describe(&query, kind, roots->begin[at], &contact);
+        add_contact(interval, kind, pairs, i + at, &contact, false, lane);
     }
 }
 
@@ -54,8 +55,8 @@ static void decide_by_roots(const swept_interval *interval, cscd_contact_kind ki
         root_outcomes roots;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &roots);
-        describe_hits(interval, kind, pairs, i, &roots, real & roots.hits, lane);
-        kept = keep_lanes(pairs, i, real & ~roots.hits & ~roots.misses, kept);
+        describe_contacts(interval, kind, pairs, i, &roots, real & roots.contacts, lane);
+        kept = keep_lanes(pairs, i, real & ~roots.contacts & ~roots.apart, kept);
     }
     lane->decided[ELEMENTARY_ROOTS] += pairs->count - kept;
     pairs->count = kept;
@@ -65,11 +66,11 @@ static void decide_one_by_one(const swept_interval *interval, cscd_contact_kind 
                               const feature_pairs *pairs, contact_lane *lane) {
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact contact;
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        elementary_verdict verdict = elementary_after_signs(&query, kind, &hit);
+        elementary_verdict verdict = elementary_after_signs(&query, kind, &contact);
         lane->decided[verdict.level]++;
-        if (verdict.touching) add_contact(interval, kind, pairs, i, &hit, false, lane);
+        if (verdict.touching) add_contact(interval, kind, pairs, i, &contact, false, lane);
     }
 }
 
@@ -87,17 +88,18 @@ static void decide_by_levels(const swept_interval *interval, cscd_contact_kind k
 }
 
 /* The nearest points of lane i at the start. */
-static elementary_hit nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
-                                     const proximity_outcomes *near, uint32_t i) {
-    elementary_hit hit = {.u = near->u[i], .v = near->v[i]};
+static elementary_contact nearest_points(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                         const proximity_outcomes *near, uint32_t i) {
+    elementary_contact contact = {.u = near->u[i], .v = near->v[i]};
     bool vf = kind == CSCD_CONTACT_VF;
     const double *first = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][0]) * 3;
     const double *second = interval->x0 + (size_t)(vf ? a : interval->mesh->edges[a][1]) * 3;
     for (int k = 0; k < 3; k++) {
-        hit.point[k] = first[k] + (vf ? 0.0 : hit.u * (second[k] - first[k])) - 0.5 * near->offset[k][i];
-        hit.normal[k] = near->offset[k][i] / near->distance[i];
+        contact.point[k] =
+            first[k] + (vf ? 0.0 : contact.u * (second[k] - first[k])) - 0.5 * near->offset[k][i];
+        contact.normal[k] = near->offset[k][i] / near->distance[i];
     }
-    return hit;
+    return contact;
 }
 
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
@@ -112,12 +114,12 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
         proximity_outcomes near;
         uint32_t real = lanes_from(pairs, i);
         kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);
-        for (uint32_t lanes = real & near.hits; lanes != 0; lanes &= lanes - 1) {
+        for (uint32_t lanes = real & near.within; lanes != 0; lanes &= lanes - 1) {
             uint32_t at = (uint32_t)__builtin_ctz(lanes);
-            elementary_hit hit = nearest_points(interval, kind, pairs->a[i + at], &near, at);
-            add_contact(interval, kind, pairs, i + at, &hit, false, lane);
+            elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], &near, at);
+            add_contact(interval, kind, pairs, i + at, &contact, false, lane);
         }
-        kept = keep_lanes(pairs, i, real & ~near.hits & ~near.misses, kept);
+        kept = keep_lanes(pairs, i, real & ~near.within & ~near.apart, kept);
     }
     pairs->count = kept;
 }
@@ -128,12 +130,12 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
     decide_proximity(interval, kind, pairs, lane);
     for (uint32_t i = 0; i < pairs->count; i++) {
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact contact;
         bool bounded = false;
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &hit,
+        if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &contact,
                                                                       &bounded))
-            add_contact(interval, kind, pairs, i, &hit, bounded, lane);
+            add_contact(interval, kind, pairs, i, &contact, bounded, lane);
     }
 }
 

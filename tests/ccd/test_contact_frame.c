@@ -9,7 +9,7 @@ static double vector_length(const double v[3]) {
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static void check_normal(const elementary_hit *hit, double x, double y, double z) {
+static void check_normal(const elementary_contact *hit, double x, double y, double z) {
     double size = sqrt(x * x + y * y + z * z);
     assert_true(fabs(vector_length(hit->normal) - 1.0) < 1e-14);
     assert_true(fabs(hit->normal[0] * x + hit->normal[1] * y + hit->normal[2] * z) > (1.0 - 1e-12) * size);
@@ -22,7 +22,7 @@ static void tiny_face_at_rest(void **state) {
         double s = ldexp(1.3, exponent);
         const elementary_query query = {{{s / 4, s / 4, 1}, {0, 0, 0}, {s, 0, 0}, {0, s, 0}},
                                         {{s / 4, s / 4, -1}, {0, 0, 0}, {s, 0, 0}, {0, s, 0}}};
-        elementary_hit hit;
+        elementary_contact hit;
         assert_true(pair_test(CSCD_CONTACT_VF, &query, &hit).touching);
         assert_true(fabs(hit.u - 0.25) < 1e-12 && fabs(hit.v - 0.25) < 1e-12);
         check_normal(&hit, 0, 0, 1);
@@ -36,7 +36,7 @@ static void tiny_face_hit_aslant(void **state) {
         double s = ldexp(1.3, exponent);
         const elementary_query query = {{{1, 1, 1}, {0, 0, 0}, {s, 0, -s}, {0, s, s}},
                                         {{s / 2 - 1, s / 2 - 1, -1}, {0, 0, 0}, {s, 0, -s}, {0, s, s}}};
-        elementary_hit hit;
+        elementary_contact hit;
         if (pair_test(CSCD_CONTACT_VF, &query, &hit).touching) check_normal(&hit, 1, -1, 1);
     }
 }
@@ -48,7 +48,7 @@ static void tiny_edge_on_a_long_one(void **state) {
         double s = ldexp(1.5, exponent);
         const elementary_query query = {{{-1, 0, 0}, {1, 0, 0}, {0, -s, 1}, {0, s, 1}},
                                         {{-1, 0, 0}, {1, 0, 0}, {0, -s, -1}, {0, s, -1}}};
-        elementary_hit hit;
+        elementary_contact hit;
         assert_true(pair_test(CSCD_CONTACT_EE, &query, &hit).touching);
         assert_true(fabs(hit.u - 0.5) < 1e-12 && fabs(hit.v - 0.5) < 1e-12);
         check_normal(&hit, 0, 0, 1);
@@ -66,7 +66,7 @@ static void needle_face(void **state) {
          {-0x1.a6327cf48d982p-2, 0x1.1f34b2ca2684fp-3, -0x1.4cf4735774bcdp-4},
          {0x1.b15c7aa8d8b2cp-3, -0x1.26cce383e49fap-4, 0x1.55c254bf46f66p-5},
          {-0x1.f93b0d09fbdcp-4, 0x1.57b0c982c252cp-5, -0x1.8e6fe32e498d6p-6}}};
-    elementary_hit hit;
+    elementary_contact hit;
     (void)state;
     assert_true(pair_test(CSCD_CONTACT_VF, &query, &hit).touching);
     long double squared = 0, t = hit.toi;
@@ -91,7 +91,7 @@ static void nearly_parallel_edges(void **state) {
          {0x1.fc949e0f6fe6ep-5, 0x1.d8edc6f55fa1p-4, -0x1.ad772d2e0a9e4p-8},
          {-0x1.63eb0ef2df2afp-4, -0x1.4af68b8756b18p-3, 0x1.2c944217c5372p-7}}};
     const separation limit = {0x1.0c6f7a0b5ed8dp-21, 0x1.19799812dea11p-41};
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded;
     (void)state;
     assert_false(separation_ee(&query, &limit, &hit, &bounded));

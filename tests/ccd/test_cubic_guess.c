@@ -24,7 +24,7 @@ static void handler_left_alone(void **state) {
     gsl_error_handler_t *before = gsl_set_error_handler(count_call);
     for (int i = 0; i < QUERY_COUNT; i++) {
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact hit;
         int range = random_integer(1, 3);
         for (int j = 0; j < 12; j++) {
             query.x0[j / 3][j % 3] = random_integer(-range, range);

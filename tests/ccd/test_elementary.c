@@ -22,7 +22,7 @@ static const char *kind_name(cscd_contact_kind kind) {
 
 /* The contact that was built in, unless the features met before: then whatever was found holds. */
 static bool check_contact(const contact_case *c) {
-    elementary_hit hit;
+    elementary_contact hit;
     assert_true(pair_test(c->kind, &c->query, &hit).touching);
     check_hit(c->kind, &c->query, c->size, &hit);
     assert_true(hit.toi <= c->toi + 1e-9);
@@ -63,7 +63,7 @@ static void check_misses(cscd_contact_kind kind, const char *name, contact_case 
     int count[ELEMENTARY_LEVEL_COUNT] = {0};
     for (int round = 0; round < ROUND_COUNT; round++) {
         contact_case c = make(kind);
-        elementary_hit hit = {.toi = 47.0}, untouched = hit;
+        elementary_contact hit = {.toi = 47.0}, untouched = hit;
         elementary_verdict verdict = pair_test(kind, &c.query, &hit);
         count[verdict.level]++;
         assert_false(verdict.touching);
@@ -91,8 +91,8 @@ static const int vf_orders[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
 static const int ee_orders[8][4] = {{0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 3, 2}, {1, 0, 3, 2},
                                     {2, 3, 0, 1}, {3, 2, 0, 1}, {2, 3, 1, 0}, {3, 2, 1, 0}};
 
-static void check_same_contact(const contact_case *c, const elementary_hit *a, const elementary_hit *b,
-                               double side) {
+static void check_same_contact(const contact_case *c, const elementary_contact *a,
+                               const elementary_contact *b, double side) {
     double place = 1e-9 * c->size;
     assert_true(fabs(a->toi - b->toi) <= 1e-9);
     for (int k = 0; k < 3; k++) {
@@ -102,13 +102,13 @@ static void check_same_contact(const contact_case *c, const elementary_hit *a, c
 }
 
 static void check_orders(const contact_case *c) {
-    elementary_hit hit;
+    elementary_contact hit;
     elementary_verdict verdict = pair_test(c->kind, &c->query, &hit);
     int count = c->kind == CSCD_CONTACT_VF ? 6 : 8;
     for (int i = 0; i < count; i++) {
         elementary_query query =
             query_permuted(&c->query, c->kind == CSCD_CONTACT_VF ? vf_orders[i] : ee_orders[i]);
-        elementary_hit other;
+        elementary_contact other;
         assert_true(pair_test(c->kind, &query, &other).touching == verdict.touching);
         double side = c->kind == CSCD_CONTACT_EE && i >= 4 ? -1.0 : 1.0;
         if (verdict.touching) check_same_contact(c, &hit, &other, side);
@@ -116,7 +116,7 @@ static void check_orders(const contact_case *c) {
 }
 
 static void check_reversed(const contact_case *c) {
-    elementary_hit hit, other;
+    elementary_contact hit, other;
     elementary_query reversed = query_reversed(&c->query);
     elementary_verdict verdict = pair_test(c->kind, &c->query, &hit);
     assert_true(pair_test(c->kind, &reversed, &other).touching == verdict.touching);
@@ -130,7 +130,7 @@ static void check_reversed(const contact_case *c) {
 /* The same bits at any power of two. */
 static void check_scaled(const contact_case *c, int exponent) {
     elementary_query scaled = query_scaled(&c->query, exponent);
-    elementary_hit hit = {0}, other = {0};
+    elementary_contact hit = {0}, other = {0};
     assert_int_equal(pair_test(c->kind, &c->query, &hit).touching,
                      pair_test(c->kind, &scaled, &other).touching);
     assert_true(hit.toi == other.toi && hit.u == other.u && hit.v == other.v);

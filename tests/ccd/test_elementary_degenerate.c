@@ -153,7 +153,7 @@ static void double_roots(void **state) {
         cscd_contact_kind kind = round % 2 == 0 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         turning m = random_turning();
         elementary_query query = turning_query(kind, &m, 0.0);
-        elementary_hit hit = check_first(kind, &query, 0.5, 1e-9);
+        elementary_contact hit = check_first(kind, &query, 0.5, 1e-9);
         if (kind == CSCD_CONTACT_VF) assert_true(fabs(hit.u - m.c0) < 1e-4 && fabs(hit.v - m.d0) < 1e-4);
         query = turning_query(kind, &m, volume_curvature(&m) > 0.0 ? 0x1p-30 : -0x1p-30);
         check_apart(kind, &query);
@@ -260,7 +260,7 @@ static void symmetric_face(void **state) {
         if (fabs(across) < 0.05) continue;
         elementary_query query =
             query_through((const double(*)[3])at, (const double(*)[3])velocity, toi, 1.0 - toi);
-        elementary_hit hit = check_touches(CSCD_CONTACT_VF, &query, toi);
+        elementary_contact hit = check_touches(CSCD_CONTACT_VF, &query, toi);
         double width = (1.0 - hit.toi) * query.x0[2][0] + hit.toi * query.x1[2][0];
         if (fabs(width) > 1e-3) assert_true(fabs(hit.u - hit.v) < 1e-9);
     }

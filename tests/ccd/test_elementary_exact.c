@@ -24,7 +24,7 @@ static void pass_through(elementary_query *query, int i, const double place[3], 
     }
 }
 
-static void assert_touches(elementary_verdict verdict, const elementary_hit *hit) {
+static void assert_touches(elementary_verdict verdict, const elementary_contact *hit) {
     assert_true(verdict.touching);
     assert_true(hit->toi <= 1.0 / 3.0);
 }
@@ -35,7 +35,7 @@ static void edges_cross(double ratio) {
     for (int n = 0; n < CASES; n++) {
         double centre[3], along[3], other[3], motion[3], rest[3] = {0, 0, 0}, ends[4][3];
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact hit;
         integer_vector(&random, 1e3, centre);
         integer_vector(&random, 10.0 * ratio, along);
         integer_vector(&random, 10.0, other);
@@ -62,7 +62,7 @@ static void vertex_meets(double ratio) {
     for (int n = 0; n < CASES; n++) {
         double centre[3], along[3], across[3], motion[3], rest[3] = {0, 0, 0}, corners[3][3];
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact hit;
         integer_vector(&random, 1e3, centre);
         integer_vector(&random, 10.0 * ratio, along);
         integer_vector(&random, 10.0, across);
@@ -90,7 +90,7 @@ static void everything_through_one_point(void **state) {
     for (int n = 0; n < 10 * CASES; n++) {
         double place[3], motion[3];
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact hit;
         integer_vector(&random, n % 2 == 0 ? 0.0 : 1e6, place);
         for (int i = 0; i < 4; i++) {
             integer_vector(&random, 1e4, motion);
@@ -108,7 +108,7 @@ static void in_one_plane(void **state) {
     for (int n = 0; n < 10 * CASES; n++) {
         double p[3], q[3], corners[4][3], motion[3];
         elementary_query query;
-        elementary_hit hit;
+        elementary_contact hit;
         integer_vector(&random, 100.0, p);
         integer_vector(&random, 100.0, q);
         for (int i = 0; i < 4; i++) {

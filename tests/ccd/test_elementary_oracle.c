@@ -100,7 +100,7 @@ static void ee_agrees_with_oracle(void **state) {
 /* ---- symmetries ---- */
 
 static bool same_verdict(cscd_contact_kind kind, const elementary_query *query, bool touching, double toi) {
-    elementary_hit hit = {.toi = toi};
+    elementary_contact hit = {.toi = toi};
     return pair_test(kind, query, &hit).touching == touching && fabs(hit.toi - toi) <= 1e-9;
 }
 
@@ -126,7 +126,7 @@ static elementary_query axes_exchanged(const elementary_query *query, int turn, 
 }
 
 static void check_symmetries(failures *f, cscd_contact_kind kind, const elementary_query *query) {
-    elementary_hit hit = {.toi = 2.0}, unused;
+    elementary_contact hit = {.toi = 2.0}, unused;
     bool touching = pair_test(kind, query, &hit).touching;
     elementary_query reversed = query_reversed(query), large = query_scaled(query, 17);
     elementary_query small = query_scaled(query, -9);
@@ -154,7 +154,7 @@ static long double ulp_of_largest(const elementary_query *query) {
 }
 
 static void check_named_points(failures *f, cscd_contact_kind kind, const elementary_query *query) {
-    elementary_hit hit;
+    elementary_contact hit;
     if (!pair_test(kind, query, &hit).touching) return;
     bool inside = hit.toi >= 0.0 && hit.toi <= 1.0 && hit.u >= 0.0 && hit.u <= 1.0 && hit.v >= 0.0 &&
                   hit.v <= 1.0 && (kind == CSCD_CONTACT_EE || hit.u + hit.v <= 1.0 + 0x1p-50);
@@ -185,7 +185,7 @@ static int stepped;
 
 /* Simple roots of pairs well apart at the start that move visibly, and are still apart a millionth of the way
  * before the impact and at all times earlier: by more than the rounding of the step can move them. */
-static bool step_is_certain(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit) {
+static bool step_is_certain(cscd_contact_kind kind, const elementary_query *query, elementary_contact *hit) {
     long double ulp = ulp_of_largest(query);
     return pair_test(kind, query, hit).touching && algebraic_oracle(kind, query).simple &&
            feature_distance(kind, query, 0) >= 64 * ulp &&
@@ -194,7 +194,7 @@ static bool step_is_certain(cscd_contact_kind kind, const elementary_query *quer
 }
 
 static void check_step(failures *f, cscd_contact_kind kind, const elementary_query *query) {
-    elementary_hit hit = {.toi = 2.0}, again = {.toi = 2.0};
+    elementary_contact hit = {.toi = 2.0}, again = {.toi = 2.0};
     if (!step_is_certain(kind, query, &hit)) return;
     elementary_query shorter = step_to(query, hit.toi);
     stepped++;

@@ -126,7 +126,7 @@ static const known approaches[] = {
 
 static void check_known(const known *k) {
     separation limit = separation_within(k->distance);
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded;
     print_message("  %s\n", k->name);
     assert_true(check_separation(k->kind, &k->query, &limit, &bounded));
@@ -149,7 +149,7 @@ static void all_regions(void **state) {
 static void distance_is_closed(void **state) {
     (void)state;
     elementary_query query = {{{1, 1, 0.5}, FACE}, {{1, 1, 0.5}, FACE}};
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded;
     for (int flies = 0; flies < 2; flies++) {
         query.x1[0][2] = flies ? 7.0 : 0.5;
@@ -167,7 +167,7 @@ static void touching_at_the_start(void **state) {
     (void)state;
     elementary_query query = {{{1, 1, 0}, FACE}, {{1, 1, 2}, FACE}};
     separation limit = separation_within(0.25);
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded;
     assert_true(separation_vf(&query, &limit, &hit, &bounded) && hit.toi == 0.0);
     assert_true(hit.normal[0] == 0.0 && hit.normal[1] == 0.0 && hit.normal[2] == -1.0);
@@ -194,7 +194,7 @@ static void lines_and_points(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof degenerate / sizeof *degenerate; i++) {
         separation limit = separation_within(1.0);
-        elementary_hit hit;
+        elementary_contact hit;
         bool bounded;
         cscd_contact_kind kind = i < 3 ? CSCD_CONTACT_VF : CSCD_CONTACT_EE;
         assert_true(check_separation(kind, &degenerate[i], &limit, &bounded) && !bounded);
@@ -225,7 +225,7 @@ static void grazing_contacts(void **state) {
             elementary_query exact = passing_query((cscd_contact_kind)kind, d),
                              far = passing_query((cscd_contact_kind)kind, d * (1 + 1e-3)),
                              near = passing_query((cscd_contact_kind)kind, d * (1 - 1e-9));
-            elementary_hit hit;
+            elementary_contact hit;
             bool bounded;
             assert_true(check_separation((cscd_contact_kind)kind, &exact, &limit, &bounded) && !bounded);
             assert_false(check_separation((cscd_contact_kind)kind, &far, &limit, &bounded));
@@ -243,7 +243,7 @@ static void extreme_distances(void **state) {
     (void)state;
     elementary_query through = {{{1, 1, 1}, FACE}, {{1, 1, -1}, FACE}}, past = through;
     past.x0[0][0] = past.x1[0][0] = -1e-6;
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded;
     static const double tiny[] = {1e-10, 1e-20, 1e-60, 0x1p-300};
     for (size_t i = 0; i < sizeof tiny / sizeof *tiny; i++) {
@@ -303,7 +303,7 @@ static void along_the_directions(void **state) {
                 query.x0[3][k] = ldexp(corner - 2.0 * away + (k == 1), exponent);
             }
             memcpy(query.x1, query.x0, sizeof query.x1);
-            elementary_hit hit;
+            elementary_contact hit;
             bool bounded = false;
             separation near = separation_within(ldexp(direction[3] * (1.0 + 0x1p-40), exponent));
             separation far = separation_within(ldexp(direction[3] * 0.998, exponent));
@@ -324,7 +324,7 @@ static const elementary_query twisting = {{{1e-9, 1e-9, 2e-9}, {-1, 0, 1}, {1, -
 static void bound_on_work(void **state) {
     (void)state;
     separation limit = separation_within(1e-9);
-    elementary_hit hit;
+    elementary_contact hit;
     bool bounded = false;
     assert_true(check_separation(CSCD_CONTACT_VF, &twisting, &limit, &bounded));
     assert_true(bounded);

@@ -193,7 +193,7 @@ static void powers_of_two(void **state) {
             separation limit = random_limit((cscd_contact_kind)kind, &query);
             separation scaled = {ldexp(limit.distance, exponent), ldexp(limit.tolerance, exponent)};
             elementary_query other = query_scaled(&query, exponent);
-            elementary_hit hit = {0}, other_hit = {0};
+            elementary_contact hit = {0}, other_hit = {0};
             bool bounded = false, other_bounded = false;
             bool found = separation_test((cscd_contact_kind)kind, &query, &limit, &hit, &bounded);
             assert_true(separation_test((cscd_contact_kind)kind, &other, &scaled, &other_hit,

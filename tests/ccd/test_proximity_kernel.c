@@ -55,8 +55,8 @@ static void compare_with_pair_test(const proximity_batch *b, const separation *l
                                    const proximity_outcomes *found, proximity_tally *sum) {
     for (uint32_t i = 0; i < LANES; i++) {
         elementary_query query = query_of(b, i);
-        elementary_hit hit;
-        bool bounded, hits = (found->hits >> i & 1) != 0, misses = (found->misses >> i & 1) != 0;
+        elementary_contact hit;
+        bool bounded, hits = (found->within >> i & 1) != 0, misses = (found->apart >> i & 1) != 0;
         assert_false(hits && misses);
         sum->hits += hits;
         sum->misses += misses;

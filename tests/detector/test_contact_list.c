@@ -15,7 +15,7 @@ enum { CONTACT_COUNT = sizeof times / sizeof *times };
 static void fill_lanes(cscd_context *context, search_space *s) {
     for (uint32_t i = 0; i < s->traversal.lane_count; i++) contact_lane_reset(&s->lanes[i]);
     for (uint32_t i = 0; i < CONTACT_COUNT; i++) {
-        elementary_hit hit = {.toi = times[i]};
+        elementary_contact hit = {.toi = times[i]};
         cscd_contact_kind kind = i % 3 == 0 ? CSCD_CONTACT_EE : CSCD_CONTACT_VF;
         contact_lane_add(context, &s->lanes[i % s->traversal.lane_count], kind, (7 * i) % 5, 20 - i, &hit,
                          i == 5);

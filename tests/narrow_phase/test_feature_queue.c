@@ -152,7 +152,7 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
     }
     assert_int_equal(hit, touching != NULL);
     if (hit) assert_true(touching->begin == begin && touching->end - begin <= 0x1p-31 && touching->certain);
-    elementary_hit unused;
+    elementary_contact unused;
     assert_int_equal(elementary_after_signs(&work.queries[i], work.kind, &unused).touching, hit);
 }
 
@@ -165,7 +165,7 @@ static void check_eight(const ccd_kernels *table, const feature_source *source, 
     for (uint32_t lane = 0; lane < LANES && i + lane < pairs->count; lane++) {
         uint32_t decided = 0;
         for (int k = 0; k < 2; k++) {
-            bool hit = roots[k].hits >> lane & 1, miss = roots[k].misses >> lane & 1;
+            bool hit = roots[k].contacts >> lane & 1, miss = roots[k].apart >> lane & 1;
             assert_false(hit && miss);
             if (hit || miss) check_decided(query_of(pairs->a[i + lane]), k == 0, hit, roots[k].begin[lane]);
             totals.hits[k] += hit;

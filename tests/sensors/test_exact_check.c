@@ -61,7 +61,7 @@ static void test_pair(const swept_interval *moving, cscd_contact_kind kind, uint
     swept_box box_a = vf ? swept_box_of(moving, &a, 1) : swept_box_of(moving, mesh->edges[a], 2);
     swept_box box_b = swept_box_of(moving, vf ? mesh->triangles[b] : mesh->edges[b], vf ? 3 : 2);
     elementary_query query;
-    elementary_hit hit;
+    elementary_contact hit;
     swept_interval_load(moving, kind, a, b, &query);
     out->tests += swept_boxes_within(&box_a, &box_b, 0.0);
     if (!pair_test(kind, &query, &hit).touching) return;

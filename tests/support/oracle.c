@@ -83,7 +83,7 @@ static void find_within(const waiting_pairs *w, oracle_list *out) {
         uint32_t a = w->pairs[i][0], b = w->pairs[i][1];
         const uint32_t *corners = w->scene->triangles + (size_t)b * 3;
         bool vf = w->kind == CSCD_CONTACT_VF, bounded;
-        elementary_hit hit;
+        elementary_contact hit;
         elementary_query query =
             vf ? load_query(w->scene, (uint32_t[4]){a, corners[0], corners[1], corners[2]})
                : load_query(w->scene, (uint32_t[4]){w->edges[a].ends[0], w->edges[a].ends[1],

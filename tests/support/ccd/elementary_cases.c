@@ -296,7 +296,7 @@ static long double largest_displacement(const elementary_query *query) {
 }
 
 static void check_points(cscd_contact_kind kind, const elementary_query *query, double size,
-                         const elementary_hit *hit) {
+                         const elementary_contact *hit) {
     exact_positions p = positions_at(query, hit->toi);
     long double on_a[3], on_b[3], apart[3];
     long double rounding = 0x1p-50L * farthest_coordinate(query);
@@ -312,7 +312,7 @@ static void check_points(cscd_contact_kind kind, const elementary_query *query, 
 }
 
 static void check_normal(cscd_contact_kind kind, const elementary_query *query, double size,
-                         const elementary_hit *hit) {
+                         const elementary_contact *hit) {
     exact_positions p = positions_at(query, hit->toi);
     long double n[3] = {hit->normal[0], hit->normal[1], hit->normal[2]}, a[3], b[3], area[3], motion[3];
     contact_directions(kind, &p, a, b);
@@ -331,7 +331,7 @@ static void check_normal(cscd_contact_kind kind, const elementary_query *query, 
 }
 
 void check_hit(cscd_contact_kind kind, const elementary_query *query, double size,
-               const elementary_hit *hit) {
+               const elementary_contact *hit) {
     assert_true(hit->toi >= 0.0 && hit->toi <= 1.0);
     assert_true(hit->u >= 0.0 && hit->u <= 1.0 && hit->v >= 0.0 && hit->v <= 1.0);
     if (kind == CSCD_CONTACT_VF) assert_true(hit->u + hit->v <= 1.0 + 0x1p-50);
@@ -339,21 +339,22 @@ void check_hit(cscd_contact_kind kind, const elementary_query *query, double siz
     check_normal(kind, query, size, hit);
 }
 
-elementary_hit check_touches(cscd_contact_kind kind, const elementary_query *query, double toi) {
-    elementary_hit hit = {.toi = 2.0};
+elementary_contact check_touches(cscd_contact_kind kind, const elementary_query *query, double toi) {
+    elementary_contact hit = {.toi = 2.0};
     if (!pair_test(kind, query, &hit).touching || hit.toi > toi + TOI_LATE)
         fail_query(kind, query, hit.toi, toi);
     check_hit(kind, query, query_extent(query), &hit);
     return hit;
 }
 
-elementary_hit check_first(cscd_contact_kind kind, const elementary_query *query, double toi, double early) {
-    elementary_hit hit = check_touches(kind, query, toi);
+elementary_contact check_first(cscd_contact_kind kind, const elementary_query *query, double toi,
+                               double early) {
+    elementary_contact hit = check_touches(kind, query, toi);
     if (hit.toi < toi - early) fail_query(kind, query, hit.toi, toi);
     return hit;
 }
 
 void check_apart(cscd_contact_kind kind, const elementary_query *query) {
-    elementary_hit hit = {.toi = 2.0};
+    elementary_contact hit = {.toi = 2.0};
     if (pair_test(kind, query, &hit).touching) fail_query(kind, query, hit.toi, 2.0);
 }

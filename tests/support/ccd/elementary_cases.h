@@ -45,13 +45,15 @@ elementary_query query_through(const double at[4][3], const double velocity[4][3
  * displacement and 64 units in the last place of each other, the interval and the features contain them,
  * point is their midpoint; the normal is unit, perpendicular to the features, and against the motion, or 0
  * where the features have none. */
-void check_hit(cscd_contact_kind kind, const elementary_query *query, double size, const elementary_hit *hit);
+void check_hit(cscd_contact_kind kind, const elementary_query *query, double size,
+               const elementary_contact *hit);
 
 /* These print the query where they fail. A contact at toi or before it: */
-elementary_hit check_touches(cscd_contact_kind kind, const elementary_query *query, double toi);
+elementary_contact check_touches(cscd_contact_kind kind, const elementary_query *query, double toi);
 
 /* The first contact, at toi: what is found is not later, and at most `early` earlier. */
-elementary_hit check_first(cscd_contact_kind kind, const elementary_query *query, double toi, double early);
+elementary_contact check_first(cscd_contact_kind kind, const elementary_query *query, double toi,
+                               double early);
 
 /* No contact. */
 void check_apart(cscd_contact_kind kind, const elementary_query *query);

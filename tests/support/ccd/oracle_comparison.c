@@ -40,7 +40,7 @@ static void print_points(const double x[4][3]) {
 void print_compared(cscd_contact_kind kind, const elementary_query *query, const compared *c) {
     static const char *const words[] = {"agrees", "missed contact", "false contact", "toi too late",
                                         "toi too early"};
-    elementary_hit unused;
+    elementary_contact unused;
     printf("/* %s, %s: toi %a (2: never), exactly %a .. %a, level %d */\n",
            kind == CSCD_CONTACT_VF ? "vf" : "ee", words[c->result], c->hit.toi, c->oracle.toi_low,
            c->oracle.toi_high, (int)pair_test(kind, query, &unused).level);

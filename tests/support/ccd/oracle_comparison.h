@@ -16,7 +16,7 @@ typedef struct compared {
     comparison result;
     oracle_verdict oracle;
     bool touching;
-    elementary_hit hit; /* toi 2 where the test reports none */
+    elementary_contact hit; /* toi 2 where the test reports none */
 } compared;
 
 compared compare_with_oracle(cscd_contact_kind kind, const elementary_query *query);

@@ -48,7 +48,7 @@ void pair_test_all(cscd_contact_kind kind, const elementary_query *queries, size
     stop_test(problem);
 }
 
-elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit) {
+elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_contact *hit) {
     query_answer answer;
     pair_test_all(kind, query, 1, &answer);
     int level = 0;

@@ -4,7 +4,7 @@
 #include "benchmarks/lib/pair_batches.h"
 
 /* A batch of one. *hit is written when they touch only. */
-elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_hit *hit);
+elementary_verdict pair_test(cscd_contact_kind kind, const elementary_query *query, elementary_contact *hit);
 
 /* All queries, in random order and in batches of random sizes. */
 void pair_test_all(cscd_contact_kind kind, const elementary_query *queries, size_t count,

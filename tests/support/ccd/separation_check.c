@@ -12,7 +12,7 @@ enum { CELLS = 48, DEPTH_MAX = 40, SAMPLES_MAX = 5000, BISECTIONS = 60 };
 typedef long double vec[3];
 
 bool separation_test(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
-                     elementary_hit *hit, bool *bounded) {
+                     elementary_contact *hit, bool *bounded) {
     return (kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(query, limit, hit, bounded);
 }
 
@@ -220,7 +220,7 @@ static void fail_query(cscd_contact_kind kind, const elementary_query *query, co
 }
 
 /* The points that u and v name at toi, relative to the first point at t = 0. */
-static void named_points(cscd_contact_kind kind, const elementary_query *query, const elementary_hit *hit,
+static void named_points(cscd_contact_kind kind, const elementary_query *query, const elementary_contact *hit,
                          vec a, vec b) {
     vec x[4];
     long double t = hit->toi, u = hit->u, v = hit->v;
@@ -234,7 +234,7 @@ static void named_points(cscd_contact_kind kind, const elementary_query *query, 
 
 /* Between them; that of two points, so the features are no farther apart. */
 static long double named_distance(cscd_contact_kind kind, const elementary_query *query,
-                                  const elementary_hit *hit) {
+                                  const elementary_contact *hit) {
     vec a, b, offset;
     named_points(kind, query, hit, a, b);
     subtract_long(a, b, offset);
@@ -243,7 +243,7 @@ static long double named_distance(cscd_contact_kind kind, const elementary_query
 
 /* What is wrong with the hit's place; NULL if nothing is. */
 static const char *wrong_place(cscd_contact_kind kind, const elementary_query *query,
-                               const elementary_hit *hit) {
+                               const elementary_contact *hit) {
     vec a, b, offset;
     long double rounding = 0x1p-46L * query_extent_of(query), size = 0.0L;
     named_points(kind, query, hit, a, b);
@@ -265,7 +265,7 @@ static const char *wrong_place(cscd_contact_kind kind, const elementary_query *q
 
 bool check_separation(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
                       bool *bounded) {
-    elementary_hit hit;
+    elementary_contact hit;
     double time;
     long double farthest = limit->distance + tolerance_of(query, limit);
     bool reported = separation_test(kind, query, limit, &hit, bounded);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 bool separation_test(cscd_contact_kind kind, const elementary_query *query, const separation *limit,
-                     elementary_hit *hit, bool *bounded);
+                     elementary_contact *hit, bool *bounded);
 
 /* At one moment. */
 long double sampled_distance(cscd_contact_kind kind, const elementary_query *query, long double t);
