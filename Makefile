@@ -99,23 +99,22 @@ TOOL    := $(BUILD)/cscd
 TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
 # Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
 # tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
-SLOW_baselines     := contour iccd published
+SLOW_baselines     := contour iccd
 SLOW_bvh           := traversal
-SLOW_ccd           := algebraic algebraic_oracle cubic elementary_degenerate elementary_oracle min_separation_random
+SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random
 SLOW_core          := parallel_for progress
 SLOW_culling       := culling local_culling
 SLOW_detector      := min_separation_detector oracle threads
 SLOW_install       := install
 SLOW_intersections := static_check_kernel
-SLOW_io            := plan_file ply_binary
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue
 SLOW_preprocess    := charge partition regions
 SLOW_report        := report_browser
-SLOW_sensors       := sensor_recall sensor_scenes
+SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := max_step proximity
-SLOW_tool          := capsule tool_preprocess tool_render tool_stop
+SLOW_tool          := tool_preprocess tool_render tool_stop
 TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c)))))
 SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
 $(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c),,$(warning tests/$(test).c is called slow, but there is none)))
