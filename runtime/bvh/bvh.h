@@ -123,11 +123,7 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
  * checks that bounds hold the bounds below them. Takes linear time; asserts call it in debug and sanitizer builds. */
 const char *bvh_validate(const bvh *f, bool refitted);
 
-/* Returns a fault as a sentence, or NULL: a tree whose first triangle belongs to a culled component must hold triangles
- * of that component only. Takes linear time; an assert of bvh_orient calls it. */
-const char *bvh_validate_culled(const bvh *f, const bool *culled);
-
-/* Shows all hidden pairs again. Without room for hidden pairs there are none, and it does nothing. */
+/* Shows all pairs that are hidden, where there is room for hidden pairs. */
 void bvh_show_all(bvh *f);
 
 /* Makes room for hidden pairs. None is hidden yet. False: no memory. */

@@ -1,8 +1,6 @@
 /* Sets the flags of leaves and blocks: their orientations, and which triangles are newly kept. */
 #include "runtime/bvh/bvh.h"
 
-#include <assert.h>
-
 enum { LEAVES_PER_TASK = 64, BLOCKS_PER_TASK = 128 };
 
 typedef struct orienting {
@@ -157,7 +155,6 @@ void bvh_mark_unproven(bvh *f, const bool *unproven) {
 
 void bvh_orient(bvh *f, const orientation_query *view, uint8_t *orientations) {
     orienting now = {f, view, orientations};
-    assert(bvh_validate_culled(f, view->culled) == NULL);
     for (uint32_t i = 0; i < f->tree_count; i++) place_detector(f, &f->trees[i], view);
     run_over_leaves(f, orient_task, &now);
     mark_blocks(f);

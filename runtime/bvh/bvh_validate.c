@@ -176,17 +176,3 @@ const char *bvh_validate(const bvh *f, bool refitted) {
     if (fault == NULL && refitted) fault = check_bounds(f);
     return fault;
 }
-
-const char *bvh_validate_culled(const bvh *f, const bool *culled) {
-    const uint32_t *components = f->mesh->triangle_components;
-    for (uint32_t leaf = 0; leaf < f->leaf_count; leaf++) {
-        const bvh_tree *tree = &f->trees[f->leaf_trees[leaf]];
-        uint32_t own = components[f->leaves[tree->first_leaf].triangles[0]];
-        for (uint32_t lane = 0; culled[own] && lane < LANES && (f->leaf_flags[leaf].used >> lane & 1) != 0;
-             lane++) {
-            if (components[f->leaves[leaf].triangles[lane]] != own)
-                return "a tree of a culled component spans two components";
-        }
-    }
-    return NULL;
-}

@@ -126,23 +126,6 @@ static void obstacles_have_trees_of_their_own(void **state) {
     bvh_rig_destroy(&rig_of_shape);
 }
 
-/* A tree over two components is a fault only if the component of its first triangle is culled. */
-static void trees_of_culled_components_have_one_component(void **state) {
-    (void)state;
-    scene_clear(&shape);
-    for (int i = 0; i < 2; i++) scene_add_sphere(&shape, (double[3]){3.0 * i, 0, 0}, 1.0, 8, 8);
-    const bvh *f = build_and_refit((bvh_setup){CSCD_SIMD_SCALAR, 1, BOX_AXES, 1});
-    const bool both[2] = {true, true}, neither[2] = {false, false};
-    assert_null(bvh_validate_culled(f, neither));
-    assert_string_equal(bvh_validate_culled(f, both), "a tree of a culled component spans two components");
-    bvh_rig_destroy(&rig_of_shape);
-
-    f = build_and_refit((bvh_setup){CSCD_SIMD_SCALAR, 1, BOX_AXES, 0});
-    assert_int_equal(f->tree_count, 2);
-    assert_null(bvh_validate_culled(f, both));
-    bvh_rig_destroy(&rig_of_shape);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sound_ones_have_no_fault),
@@ -150,7 +133,6 @@ int main(void) {
         cmocka_unit_test(faults_of_levels),
         cmocka_unit_test(faults_of_bounds),
         cmocka_unit_test(obstacles_have_trees_of_their_own),
-        cmocka_unit_test(trees_of_culled_components_have_one_component),
     };
     return cmocka_run_group_tests_name("bvh_validate", tests, NULL, NULL);
 }

@@ -127,7 +127,7 @@ static void count_family(scene_family family, const sensor_setup *setup, const c
         cscd_detector_destroy(detector);
         sensor_rig_destroy(&r);
     }
-    assert_true(sum.touching > 30);
+    assert_true(sum.touching > 10);
     print_message("%-14s %-6s of %u frames %3u touch, of these %3u warned of, %3u found, %3u earliest; %3u "
                   "false alarms; of %u pairs of parts %u certainly apart\n",
                   scene_family_name(family), how, sum.frames, sum.touching, sum.warned, sum.found,
