@@ -1,7 +1,7 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
 #   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
-# GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results up to rounding.
+# GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
@@ -101,7 +101,7 @@ TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
 # tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
 SLOW_baselines     := contour iccd
 SLOW_bvh           := traversal
-SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random
+SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random root_finders
 SLOW_core          := parallel_for progress
 SLOW_culling       := culling local_culling
 SLOW_detector      := min_separation_detector oracle threads
@@ -378,6 +378,9 @@ $(OBJECTS)/%.o: %.c
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
+
+# This test compares GSL with our own guesses, where there is GSL.
+$(OBJECTS)/tests/ccd/test_root_finders.o: CFLAGS_ALL += $(if $(filter 0,$(GSL)),,-DWITH_GSL)
 
 # This object contains the page of the reports.
 $(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html

@@ -84,8 +84,14 @@ static bool polish_root(const double b[4], double low, double high, double chang
  * because the root is multiple, or nearly. */
 static bool interval_about(const coplanarity *f, double root, root_interval *out) {
     double radius = 1.25 * (f->error / fabs(cubic_slope(f, root))) + root_rounding;
-    *out = (root_interval){max_of(root - radius, 0.0), min_of(root + radius, 1.0), true};
+    *out = (root_interval){.begin = max_of(root - radius, 0.0), .end = min_of(root + radius, 1.0)};
     return radius <= widest_radius;
+}
+
+/* Returns the cell of the roots in the interval, or -1 when it reaches into the next cell. */
+static double cell_of_roots(const root_interval *interval) {
+    double cell = floor(interval->begin / ROOT_CELL) * ROOT_CELL;
+    return interval->end < cell + ROOT_CELL ? cell : -1.0;
 }
 
 static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
@@ -98,6 +104,7 @@ static int guess_intervals(const coplanarity *f, root_interval out[ROOTS_MAX]) {
         if (!polish_root(f->b, -1.0, 2.0, 0.0, &guesses[i]) || !interval_about(f, guesses[i], &out[count]))
             return ROOTS_UNCERTAIN;
         if (!(out[count].begin < out[count].end)) continue; /* polishing moved it out of [0,1] */
+        out[count].toi = cell_of_roots(&out[count]);
         if (count > 0 && !(out[count - 1].end < out[count].begin)) return ROOTS_UNCERTAIN;
         count++;
     }
@@ -137,6 +144,8 @@ static bool isolate_between(const coplanarity *f, double low, double high, doubl
     if (!polish_root(f->b, low, high, change, &root) || !interval_about(f, root, out)) return false;
     out->begin = max_of(out->begin, low);
     out->end = min_of(out->end, high);
+    out->toi = out->begin;
+    out->certain = true;
     polar_form begin = polar_at(f->b, out->begin), end = polar_at(f->b, out->end);
     return change * blend_linearly(begin.low, begin.high, out->begin) > f->error &&
            change * blend_linearly(end.low, end.high, out->end) < -f->error;

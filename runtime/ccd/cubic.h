@@ -6,6 +6,9 @@
 typedef struct root_interval {
     double begin, end;
     bool certain; /* the exact cubic has a root in it */
+    /* A time that is not above the roots in it, at most 2^-34 below the begin, and the same for every guess; -1 where
+     * the interval leaves that open. */
+    double toi;
 } root_interval;
 
 enum { ROOTS_MAX = 3, ROOTS_UNCERTAIN = -1 };

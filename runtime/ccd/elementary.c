@@ -13,7 +13,7 @@
 
 static const elementary_verdict apart_by_signs = {false, ELEMENTARY_SIGNS};
 
-/* A root interval must be this narrow for its begin to be the TOI. */
+/* A root interval must be this narrow for its toi to be the TOI. */
 static const double narrow = 0x1p-31;
 
 /* Decides what level two leaves open. The directions come here, because before level two they cost more than
@@ -37,9 +37,10 @@ static elementary_verdict decide_at_roots(const elementary_query *query, const p
         assert(roots[i].begin <= roots[i].end && (i == 0 || roots[i - 1].end <= roots[i].begin));
         inside_verdict inside = inside_test(vectors, kind, &roots[i]);
         if (inside == INSIDE_NO) continue;
-        if (inside == INSIDE_UNSURE || !roots[i].certain || roots[i].end - roots[i].begin > narrow)
+        bool timed = roots[i].toi >= 0.0 && roots[i].end - roots[i].begin <= narrow;
+        if (inside == INSIDE_UNSURE || !roots[i].certain || !timed)
             return decide_what_is_left(query, kind, f, contact);
-        contact_frame_describe(query, kind, f, roots[i].begin, contact);
+        contact_frame_describe(query, kind, f, roots[i].toi, contact);
         return (elementary_verdict){true, ELEMENTARY_ROOTS};
     }
     return (elementary_verdict){false, ELEMENTARY_ROOTS};

@@ -197,6 +197,8 @@ static void rational_roots(void **state) {
             if (!inside) continue;
             assert_true(found[i].low <= value + 0x1p-52 && found[i].high >= value - 0x1p-52);
             assert_true(found[i].high - found[i].low < 0x1p-34);
+            assert_true(found[i].cell ==
+                        (double)(roots[which][0] * ((int64_t)1 << 34) / roots[which][1]) * 0x1p-34);
             assert_int_equal(algebraic_sign(&pool, &found[i], &q),
                              sign_at(c, roots[which][0], roots[which][1]));
         }

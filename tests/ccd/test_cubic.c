@@ -63,6 +63,8 @@ static void check_intervals(const root_list *list, const test_polynomial *f) {
         double begin = list->items[i].begin, end = list->items[i].end;
         assert_true(begin >= 0.0 && begin <= end && end <= 1.0 && end - begin < 1.0 / 64.0);
         if (i > 0) assert_true(list->items[i - 1].end < begin);
+        double toi = list->items[i].toi;
+        assert_true(toi == -1.0 || (toi >= 0.0 && toi <= begin && toi > begin - 0x1p-34));
         if (!list->items[i].certain) continue;
         long double start = value_at(f, begin), stop = value_at(f, end), least = list->error - list->slack;
         assert_true((start >= least && stop <= -least) || (start <= -least && stop >= least));

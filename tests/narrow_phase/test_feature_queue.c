@@ -152,6 +152,7 @@ static void check_decided(uint32_t i, bool single, bool hit, double begin) {
     }
     assert_int_equal(hit, touching != NULL);
     if (hit) assert_true(touching->begin == begin && touching->end - begin <= 0x1p-31 && touching->certain);
+    if (hit) assert_true(touching->toi == begin);
     elementary_contact unused;
     assert_int_equal(elementary_after_signs(&work.queries[i], work.kind, &unused).touching, hit);
 }

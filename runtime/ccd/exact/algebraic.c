@@ -13,7 +13,8 @@
 #include <stdbool.h>
 
 /* Places are given in units of 1 / grid. The first width that is tried about a guess is first_width. It grows
- * by the factor width_growth until it holds the root. A bracket below `narrow` is narrow enough. */
+ * by the factor width_growth until it holds the root. A bracket below `narrow` is narrow enough; this is also
+ * the size of a cell, ROOT_CELL. */
 static const int64_t grid = (int64_t)1 << 60;
 static const int64_t first_width = (int64_t)1 << 14, width_growth = 32, narrow = (int64_t)1 << 26;
 
@@ -257,12 +258,20 @@ static double double_above(int64_t x) {
     return (int64_t)rounded < x ? nextafter(rounded, 0x1p61) : rounded;
 }
 
+/* Returns the greatest multiple of `narrow` that is not above the root. A bracket below `narrow` holds at most one,
+ * and the root is compared with it. */
+static int64_t cell_of(integer_pool *pool, const algebraic *root, bracket *known) {
+    int64_t cell = known->low - known->low % narrow, next = cell + narrow;
+    return next <= known->high && compare_at(pool, root, next, known) >= 0 ? next : cell;
+}
+
 bool algebraic_locate(integer_pool *pool, algebraic *root) {
     bracket known = {INT64_MIN, INT64_MAX};
     if (compare_at(pool, root, 0, &known) < 0 || compare_at(pool, root, grid, &known) > 0) return false;
     search_from_guess(pool, root, &known);
     while (known.high - known.low >= narrow)
         compare_at(pool, root, known.low + (known.high - known.low) / 2, &known);
+    root->cell = (double)cell_of(pool, root, &known) / (double)grid;
     root->located = true;
     root->low = double_below(known.low) / (double)grid;
     root->high = double_above(known.high) / (double)grid;

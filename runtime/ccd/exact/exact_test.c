@@ -149,17 +149,18 @@ static bool touch_at(integer_pool *pool, const configuration *c, const algebraic
     return collapsed_touch(pool, c, root);
 }
 
-/* The time of the first touch that was found so far, or 2 if there is none. */
+/* The cell of the first touch that was found so far, or 2 if there is none. */
 typedef struct touch_search {
     integer_pool *pool;
     const configuration *configuration;
     double toi;
 } touch_search;
 
-/* Tries one time. It becomes the first touch if the features touch then and no touch so far is earlier. */
+/* Tries one time. Its cell becomes that of the first touch if the features touch then and no touch so far is in an
+ * earlier one. */
 static void try_root(touch_search *s, algebraic *root) {
-    if (!algebraic_locate(s->pool, root) || root->low >= s->toi) return;
-    if (touch_at(s->pool, s->configuration, root)) s->toi = root->low;
+    if (!algebraic_locate(s->pool, root)) return;
+    if (root->cell < s->toi && touch_at(s->pool, s->configuration, root)) s->toi = root->cell;
 }
 
 static void try_roots(touch_search *s, const polynomial *p) {
