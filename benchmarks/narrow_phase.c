@@ -101,9 +101,9 @@ static bool open_recording(interval_recording *r, io_error *error) {
     if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
         cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
         bvh_rebuild_move(&r->detector->rebuild, &r->detector->space.bvh, r->start.positions, r->end.positions,
-                         0.0, 0.0) != CSCD_OK)
+                         uniform_growth(0.0), uniform_growth(0.0)) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));
-    bvh_refit(&r->detector->space.bvh, r->start.positions, r->end.positions, 0.0);
+    bvh_refit(&r->detector->space.bvh, r->start.positions, r->end.positions, uniform_growth(0.0));
     r->lane = &r->detector->space.lanes[0];
     r->interval = (swept_interval){.mesh = r->mesh,
                                    .x0 = r->start.positions,

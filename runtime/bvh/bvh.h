@@ -15,6 +15,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh_kernels.h"
+#include "runtime/bvh/object_set.h"
 #include "src/core/kdop.h"
 #include "src/mesh/mesh.h"
 
@@ -48,12 +49,17 @@ typedef struct bvh_level {
 
     /* The children of each block that hold obstacles only, which are not compared with each other; NULL: none do. */
     uint8_t *obstacle_lanes;
+
+    /* With rules for objects: per block the objects that each of its eight children holds. Pairs of children that can
+     * hold none that are looked at are not compared; obstacle_lanes is not read then. NULL: there are no rules. */
+    object_set *child_sets;
 } bvh_level;
 
 /* The tree of one region. Its frame subtracts origin[0] from positions at the start, origin[1] from those at the end,
  * and multiplies by the BVH's scale. */
 typedef struct bvh_tree {
     uint32_t region;
+    uint32_t object;    /* OBJECT_SEVERAL: only where a baseline has joined components */
     bool skip_adjacent; /* the traversal leaves out pairs of its triangles that share a vertex */
     uint32_t first_leaf, leaf_count, first_record, record_count;
     uint32_t first_blocks[TREE_LEVEL_MAX]; /* per level below the tree level */
@@ -89,7 +95,8 @@ typedef struct bvh {
     bvh_level levels[BVH_LEVEL_MAX];
     int tree_level, level_count;
     double scale;
-    uint32_t *slots; /* per triangle, where it is: 8 * leaf + lane */
+    bool trees_mix_objects; /* some tree holds several objects */
+    uint32_t *slots;        /* per triangle, where it is: 8 * leaf + lane */
 } bvh;
 
 /* Triangles in regions 0 to count - 1, none of them empty, and none in two components unless joined on purpose by a
@@ -106,17 +113,34 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
                       bvh *out);
 void bvh_free(bvh *f);
 
-/* Fills in obstacle_lanes, as a step of bvh_build. False: no memory. */
-bool bvh_mark_obstacles(bvh *f);
+/* Names the objects of trees and fills in obstacle_lanes, as a step of bvh_build. False: no memory. */
+bool bvh_mark_objects(bvh *f);
+
+/* Frees obstacle_lanes and child_sets, as a step of bvh_free. */
+void bvh_free_objects(bvh *f);
+
+/* Fills in child_sets; sets: one for each object, NULL: there are no rules. False: no memory, and nothing has changed. */
+bool bvh_set_objects(bvh *f, const object_set *sets);
 
 static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
     return f->leaves[slot / LANES].triangles[slot % LANES];
 }
 
+/* How far volumes are widened: so far that those of two triangles overlap when the triangles come within the distance
+ * of each other or, if this is more, within the mean of their objects' distances. */
+typedef struct volume_growth {
+    double distance;
+    const double *of_objects; /* NULL: the distance is that of all */
+    double beyond;            /* is added to all these distances */
+} volume_growth;
+
+static inline volume_growth uniform_growth(double distance) {
+    return (volume_growth){.distance = distance};
+}
+
 /* Moves frames, records and bounds to the interval from x0 to x1, or to a moment if both are the same array. Clears
- * all flags and shows all hidden pairs. Volumes are widened so far that those of two triangles overlap when the
- * triangles come within distance of each other. */
-void bvh_refit(bvh *f, const double *x0, const double *x1, double distance);
+ * all flags and shows all hidden pairs. Widens the volumes. */
+void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth);
 
 /* Returns the first fault of the structure as a sentence, or NULL. After a build it checks that lanes fill prefixes,
  * that the blocks of one tree and level lie together, and that slots and leaves are inverse. After a refit it also

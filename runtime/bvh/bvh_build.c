@@ -355,7 +355,7 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
         order_run(&b.regions, 0, regions.count);
         made = allocate_bvh(&b, &f);
         for (uint32_t p = 0; made && p < f.tree_count; p++) fill_tree(&b, &f, p);
-        made = made && build_levels(&f, b.regions.items) && bvh_mark_obstacles(&f);
+        made = made && build_levels(&f, b.regions.items) && bvh_mark_objects(&f);
     }
     free_builder(&b);
     if (!made) {
@@ -379,8 +379,8 @@ void bvh_free(bvh *f) {
         context_free(context, f->levels[i].bounds);
         context_free(context, f->levels[i].flags);
         context_free(context, f->levels[i].self_pairs);
-        context_free(context, f->levels[i].obstacle_lanes);
     }
+    bvh_free_objects(f);
     *f = (bvh){0};
 }
 

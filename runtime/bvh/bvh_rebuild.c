@@ -10,7 +10,15 @@ enum { MEASURE_EVERY = 16, USELESS_MAX = 4 };
 static const double decayed = 1.25, of_use = 1.1;
 
 static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bvh *out) {
-    return bvh_build(r->mesh, r->regions, positions, r->axis_count, out);
+    bvh built;
+    cscd_status status = bvh_build(r->mesh, r->regions, positions, r->axis_count, &built);
+    if (status != CSCD_OK) return status;
+    if (!bvh_set_objects(&built, r->objects)) {
+        bvh_free(&built);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = built;
+    return CSCD_OK;
 }
 
 /* Returns how far blocks of trees extend, as a multiple of the extent of their trees; 0 if there is only one block. */
@@ -51,32 +59,37 @@ static bool replace_trees(bvh_rebuild *r, bvh *f, const double *positions) {
     return true;
 }
 
+static bool same_growth(const volume_growth *a, const volume_growth *b) {
+    return a->distance == b->distance && a->of_objects == b->of_objects && a->beyond == b->beyond;
+}
+
 /* The first volumes are widened as for a step, so that the first spread can be compared with later ones. */
-static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
-                                  double step_distance) {
+static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
+                                  volume_growth growth, volume_growth step_growth) {
     if (f->mesh == NULL) {
         cscd_status status = build_trees(r, x0, f);
         if (status != CSCD_OK) return status;
-        bvh_refit(f, x0, x1, step_distance);
+        bvh_refit(f, x0, x1, step_growth);
         r->spread_when_built = spread_of(f);
-        if (distance == step_distance) return CSCD_OK;
+        if (same_growth(&growth, &step_growth)) return CSCD_OK;
     }
-    bvh_refit(f, x0, x1, distance);
+    bvh_refit(f, x0, x1, growth);
     return CSCD_OK;
 }
 
-cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, double distance,
-                                double step_distance) {
-    return refit_or_build(r, f, positions, positions, distance, step_distance);
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, volume_growth growth,
+                                volume_growth step_growth) {
+    return refit_or_build(r, f, positions, positions, growth, step_growth);
 }
 
 /* Compares the trees, refitted as for a step, with what they were when they were built, and rebuilds them if they have
  * decayed. */
-static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double step_distance) {
+static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
+                          volume_growth step_growth) {
     bvh_spread spread = spread_of(f);
     r->intervals_unmeasured = 0;
     if (!is_beyond(spread, r->spread_when_built, decayed) || !replace_trees(r, f, x0)) return;
-    bvh_refit(f, x0, x1, step_distance);
+    bvh_refit(f, x0, x1, step_growth);
     r->spread_when_built = spread_of(f);
     if (is_beyond(spread, r->spread_when_built, of_use))
         r->useless_rebuilds = 0;
@@ -84,13 +97,13 @@ static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double
         r->useless_rebuilds++;
 }
 
-cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
-                             double step_distance) {
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
+                             volume_growth step_growth) {
     r->rebuilt = false;
     bool due = ++r->intervals_unmeasured >= (uint32_t)MEASURE_EVERY << r->useless_rebuilds;
-    cscd_status status = refit_or_build(r, f, x0, x1, due ? step_distance : distance, step_distance);
+    cscd_status status = refit_or_build(r, f, x0, x1, due ? step_growth : growth, step_growth);
     if (status != CSCD_OK || !due) return status;
-    measure_trees(r, f, x0, x1, step_distance);
-    if (distance != step_distance) bvh_refit(f, x0, x1, distance);
+    measure_trees(r, f, x0, x1, step_growth);
+    if (!same_growth(&growth, &step_growth)) bvh_refit(f, x0, x1, growth);
     return CSCD_OK;
 }

@@ -14,6 +14,7 @@ typedef struct bvh_rebuild {
     const cscd_mesh *mesh;
     bvh_regions regions;
     int axis_count;
+    const object_set *objects; /* the rules for objects, one for each; NULL: there are none */
 
     bvh_spread spread_when_built;
     uint32_t intervals_unmeasured; /* intervals since the spread was last measured */
@@ -21,17 +22,17 @@ typedef struct bvh_rebuild {
     bool rebuilt;                  /* by the last call of bvh_rebuild_move */
 } bvh_rebuild;
 
-/* Builds the trees from x0 if there are none, and refits them to the interval from x0 to x1, with volumes widened for
- * distance (see bvh_refit).
+/* Builds the trees from x0 if there are none, and refits them to the interval from x0 to x1, with volumes widened by
+ * growth.
  *
  * A refit keeps together what was near when the trees were built. So the spread is measured every 16th interval; where
  * it has grown by a quarter, the trees are rebuilt from x0. After a rebuild that was of no use the next measurement
- * waits twice as long. Spreads are compared with volumes that are widened for step_distance, whatever the distance.
+ * waits twice as long. Spreads are compared with volumes that are widened by step_growth, whatever the growth.
  * All this depends on positions alone. Without memory for new trees the old ones stay. */
-cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, double distance,
-                             double step_distance);
+cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
+                             volume_growth step_growth);
 
 /* Refits the trees to a moment, and builds them first if there are none. It measures nothing, because only intervals
  * count. */
-cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, double distance,
-                                double step_distance);
+cscd_status bvh_rebuild_move_to(bvh_rebuild *r, bvh *f, const double *positions, volume_growth growth,
+                                volume_growth step_growth);

@@ -15,7 +15,7 @@ static const double least_reach = 0x1p-16, greatest_reach = 0x1p16;
 typedef struct moving {
     bvh *bvh;
     const double *x0, *x1;
-    double distance;
+    volume_growth growth;
     int level;
 } moving;
 
@@ -76,8 +76,19 @@ static void finish_tree(bvh_tree *tree, double distance, const copied *sum) {
     memcpy(tree->weighted, sum->weighted, sizeof tree->weighted);
 }
 
+/* With the distances of objects: the greatest of those in the tree. */
+static double tree_distance(const bvh *f, const bvh_tree *tree, const volume_growth *growth) {
+    double distance = growth->distance;
+    if (growth->of_objects != NULL) {
+        bool several = tree->object == OBJECT_SEVERAL;
+        uint32_t first = several ? 0 : tree->object, last = several ? f->mesh->object_count - 1 : first;
+        for (uint32_t i = first; i <= last; i++) distance = fmax(distance, growth->of_objects[i]);
+    }
+    return distance + growth->beyond;
+}
+
 /* Chunks are sorted by tree. */
-static void finish_trees(const bvh *f, double distance) {
+static void finish_trees(const bvh *f, const volume_growth *growth) {
     for (uint32_t i = 0, at = 0; i < f->tree_count; i++) {
         copied sum = {0};
         for (; at < f->chunk_count && f->chunks[at].tree == i; at++) {
@@ -85,7 +96,7 @@ static void finish_trees(const bvh *f, double distance) {
             sum.reach = c->reach > sum.reach ? c->reach : sum.reach;
             for (int k = 0; k < 6; k++) sum.weighted[k / 3][k % 3] += c->weighted[k / 3][k % 3];
         }
-        finish_tree(&f->trees[i], distance * f->scale, &sum);
+        finish_tree(&f->trees[i], tree_distance(f, &f->trees[i], growth) * f->scale, &sum);
     }
 }
 
@@ -99,7 +110,7 @@ static void move_records(moving *now) {
         f->scale = ldexp(f->scale, -exponent);
         copy_records(now);
     }
-    finish_trees(f, now->distance);
+    finish_trees(f, &now->growth);
 }
 
 /* ---- bounds -------------------------------------------------------------------------------------------- */
@@ -184,8 +195,8 @@ void bvh_show_all(bvh *f) {
     }
 }
 
-void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
-    moving now = {f, x0, x1, distance, 0};
+void bvh_refit(bvh *f, const double *x0, const double *x1, volume_growth growth) {
+    moving now = {f, x0, x1, growth, 0};
     move_records(&now);
     for (; now.level < f->level_count; now.level++) {
         if (now.level == f->tree_level)
@@ -198,7 +209,7 @@ void bvh_refit(bvh *f, const double *x0, const double *x1, double distance) {
     bvh_show_all(f);
     /* A distance that floats cannot hold leaves the bounds of empty lanes without a value, so bounds are checked
      * only where no distance widens them. */
-    assert(bvh_validate(f, distance == 0.0) == NULL);
+    assert(bvh_validate(f, growth.distance + growth.beyond == 0.0 && growth.of_objects == NULL) == NULL);
 }
 
 void bvh_skip_adjacent(bvh *f, const bool *components) {

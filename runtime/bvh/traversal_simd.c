@@ -97,6 +97,16 @@ static inline uint32_t one_sign(uint32_t plus_a, uint32_t minus_a, uint32_t plus
     return (plus_a >> i & 1) != 0 ? plus_b : (minus_a >> i & 1) != 0 ? minus_b : 0;
 }
 
+/* Returns those of the lanes of b whose objects are looked at with some of a's. */
+static inline uint32_t lanes_looked_at(const object_set *a, const object_set *b, uint32_t lanes) {
+    uint32_t kept = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        int lane = __builtin_ctz(lanes);
+        kept |= (uint32_t)object_sets_may_meet(a, &b[lane]) << lane;
+    }
+    return kept;
+}
+
 /* Returns the lanes of b that are to be compared with lane i of a. */
 static inline uint32_t lanes_to_compare(const lane_comparison *c, int i) {
     uint32_t lanes = c->b.used;
@@ -252,17 +262,21 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
     const displacement *d = crosses ? &between_trees : NULL;
     size_t stride = (size_t)f->axis_count * 2 * LANES;
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
+    const object_set *sets = level->child_sets;
+    bool obstacles = level->obstacle_lanes != NULL && sets == NULL;
     const lane_comparison c = {.a = level->flags[at.a],
                                .b = level->flags[at.b],
                                .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
-                               .obstacles_a = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.a] : 0,
-                               .obstacles_b = level->obstacle_lanes != NULL ? level->obstacle_lanes[at.b] : 0,
+                               .obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0,
+                               .obstacles_b = obstacles ? level->obstacle_lanes[at.b] : 0,
                                .itself = at.a == at.b,
                                .one_tree = below && !crosses,
                                .pass = t->pass};
     for (uint32_t rows = c.a.used; rows != 0; rows &= rows - 1) {
         int i = __builtin_ctz(rows);
         uint32_t lanes = lanes_to_compare(&c, i);
+        const object_set *set = sets != NULL ? &sets[(size_t)at.a * LANES + (size_t)i] : NULL;
+        if (set != NULL) lanes = lanes_looked_at(set, sets + (size_t)at.b * LANES, lanes);
         if (lanes != 0) {
             lane->boxes_tested += (uint32_t)__builtin_popcount(lanes);
             lanes &= ~lanes_apart(bounds_a, bounds_b, i, f->axis_count, d);
@@ -270,6 +284,7 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
         if (c.itself) {
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;
+            if (set != NULL) own = own && object_sets_may_meet(set, set);
             if (own && (c.obstacles_a >> i & 1) == 0) lanes |= 1u << i;
         }
         if (lanes != 0) visit_children(t, lane, &at, i, lanes, d);

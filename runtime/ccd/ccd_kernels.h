@@ -27,7 +27,12 @@ typedef struct root_outcomes {
 typedef void root_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
                          root_outcomes *out);
 
-/* The outcomes for eight pairs. Pairs apart certainly stay farther apart than a limit's distance and tolerance.
+/* The limits of eight pairs; see separation. */
+typedef struct separations_x8 {
+    double distance[LANES], tolerance[LANES];
+} separations_x8;
+
+/* The outcomes for eight pairs. Pairs apart certainly stay farther apart than their limit's distance and tolerance.
  * Pairs within its distance are so for certain at the start. For them u, v and offset name the nearest points at
  * the start as parameters and as the offset from b's point to a's; distance is the offset's length. */
 typedef struct proximity_outcomes {
@@ -36,7 +41,7 @@ typedef struct proximity_outcomes {
 } proximity_outcomes;
 
 typedef void proximity_kernel(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                              const separation *limit, proximity_outcomes *out);
+                              const separations_x8 *limits, proximity_outcomes *out);
 
 typedef struct ccd_kernels {
     /* Keep the pairs that signs leave undecided, in their order. The same operations as separated_by_axes and

@@ -174,15 +174,18 @@ static inline void store_nearest(const nearest *n, f64w distance, f64w factor, i
  * least of differences that are linear in time, so it is least at an end. Pairs that come within the
  * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
  * (SEPARATION_FINEST). */
-static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separation *limit,
+static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separations_x8 *limits,
                                     proximity_outcomes *out) {
     vectors_at_end start, end;
+    f64w limit, tolerance;
+    memcpy(&limit, limits->distance + i, sizeof limit);
+    memcpy(&tolerance, limits->tolerance + i, sizeof tolerance);
     f64w error = f64w_all(0x1p-45), direction[3];
     vectors_at(p->x0, kind, &start);
     vectors_at(p->x1, kind, &end);
     f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
-    f64w factor = to_one(extent), near = limit->distance * factor;
-    f64w far = near + limit->tolerance * factor + 0x1p-40;
+    f64w factor = to_one(extent), near = limit * factor;
+    f64w far = near + tolerance * factor + 0x1p-40;
     scale_vectors(&start, factor);
     scale_vectors(&end, factor);
     nearest n = kind == CSCD_CONTACT_VF ? nearest_in_triangle(start.c, start.a, start.b)
@@ -200,21 +203,21 @@ static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i,
 
 static inline void decide_eight_by_proximity(const feature_source *source, const uint32_t *a,
                                              const uint32_t *b, cscd_contact_kind kind,
-                                             const separation *limit, proximity_outcomes *out) {
+                                             const separations_x8 *limits, proximity_outcomes *out) {
     out->apart = out->within = 0;
     for (int i = 0; i < LANES; i += WIDTH) {
         points_x8 points;
         load_features(source, kind, a + i, b + i, &points);
-        decide_proximity(&points, kind, i, limit, out);
+        decide_proximity(&points, kind, i, limits, out);
     }
 }
 
 void SIMD_NAME(proximity_vf)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             const separation *limit, proximity_outcomes *out) {
-    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, limit, out);
+                             const separations_x8 *limits, proximity_outcomes *out) {
+    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_VF, limits, out);
 }
 
 void SIMD_NAME(proximity_ee)(const feature_source *source, const uint32_t *a, const uint32_t *b,
-                             const separation *limit, proximity_outcomes *out) {
-    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, limit, out);
+                             const separations_x8 *limits, proximity_outcomes *out) {
+    decide_eight_by_proximity(source, a, b, CSCD_CONTACT_EE, limits, out);
 }

@@ -254,7 +254,8 @@ uint32_t start_states_mark_unproven(start_states *s, bool *unproven) {
     start_states_count(s);
     for (uint32_t c = 0; c < mesh->component_count; c++) {
         component_start *start = &s->of[c];
-        bool may_be_culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c);
+        bool may_be_culled = mesh->components[c].closed_manifold && !component_is_obstacle(mesh, c) &&
+                             !(s->never_culled != NULL && s->never_culled[c]);
         wanted[c] = may_be_culled && start->unknown > 0 && start->waiting == 0;
         if (start->unknown > 0 && start->waiting > 0) start->waiting--;
         any |= wanted[c];
@@ -329,6 +330,13 @@ void start_states_save(start_states *s) {
 
 void start_states_restore(start_states *s) {
     memcpy(s->triangles, s->saved, s->mesh->triangle_count * sizeof *s->saved);
+    s->counted = false;
+}
+
+void start_states_forget_component(start_states *s, uint32_t component) {
+    for (uint32_t t = 0; t < s->mesh->triangle_count; t++) {
+        if (s->mesh->triangle_components[t] == component) s->triangles[t] = TRIANGLE_UNKNOWN;
+    }
     s->counted = false;
 }
 

@@ -30,15 +30,16 @@ typedef struct start_states {
     cscd_context *context;
     const cscd_mesh *mesh;
     double *positions;
-    bool known;          /* positions have been seen */
-    bool vouched;        /* some triangles are clean only because the caller says so */
-    uint8_t *triangles;  /* the triangle_state of each */
-    component_start *of; /* per component; its numbers of triangles are valid if counted is set */
-    bool counted;        /* start_states_count was called after the last change of states */
-    uint8_t *saved;      /* the states when start_states_save was called */
-    bool *clean;         /* per triangle: the outcome of start_states_clean */
-    uint32_t *queue;     /* scratch, per triangle */
-    free_patch *largest; /* scratch, per component */
+    bool known;               /* positions have been seen */
+    bool vouched;             /* some triangles are clean only because the caller says so */
+    uint8_t *triangles;       /* the triangle_state of each */
+    component_start *of;      /* per component; its numbers of triangles are valid if counted is set */
+    const bool *never_culled; /* per component: it is not proven, since it is not culled either; NULL: none */
+    bool counted;             /* start_states_count was called after the last change of states */
+    uint8_t *saved;           /* the states when start_states_save was called */
+    bool *clean;              /* per triangle: the outcome of start_states_clean */
+    uint32_t *queue;          /* scratch, per triangle */
+    free_patch *largest;      /* scratch, per component */
     bool *component_scratch;
     double share_worth_it; /* below this share of clean triangles neither culling nor a check pays */
 } start_states;
@@ -94,6 +95,9 @@ void start_states_end(start_states *s, const double *x, const bool *incomplete);
  * vertices do not go there. Restoring takes back what the contacts have tainted. */
 void start_states_save(start_states *s);
 void start_states_restore(start_states *s);
+
+/* Makes the triangles of one component UNKNOWN. */
+void start_states_forget_component(start_states *s, uint32_t component);
 
 /* Makes all triangles UNKNOWN, because nothing is known of the end of the interval. */
 void start_states_forget(start_states *s);

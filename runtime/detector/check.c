@@ -40,12 +40,14 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
 
 /* States and positions belong together, so both are written once nothing can fail any more. */
 static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
-    cscd_status status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, 0.0, d->limit.distance);
+    cscd_status status =
+        bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0), detector_growth(d));
     if (status == CSCD_OK)
         status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
     if (status == CSCD_OK) status = collect_intersections(d, positions, out);
     if (status != CSCD_OK) return status;
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
+    detector_unmark_masked(d, d->check.unproven);
     start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
     return CSCD_OK;
 }

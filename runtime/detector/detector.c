@@ -78,7 +78,8 @@ static array_list list_arrays(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
     return (array_list){{ARRAY(d->culled, components), ARRAY(d->wants_all_contacts, components),
                          ARRAY(d->touched, components), ARRAY(d->incomplete, components),
-                         ARRAY(d->guarantees, components), ARRAY(d->contacts_seen, lanes)}};
+                         ARRAY(d->guarantees, components), ARRAY(d->contacts_seen, lanes),
+                         ARRAY(d->never_culled, components)}};
 }
 
 static void choose_regions(cscd_detector *d) {
@@ -149,6 +150,7 @@ void cscd_detector_destroy(cscd_detector *d) {
     static_check_destroy(&d->check);
     search_space_destroy(&d->space);
     exclusions_free(context, &d->exclusions);
+    pair_rules_free(d->mesh, &d->pair_rules);
     rollback_free(context, &d->before);
     result_buffer_free(context, &d->contacts);
     result_buffer_free(context, &d->proximities);
@@ -164,10 +166,18 @@ cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_sep
     changed.min_separation = min_separation;
     changed.tolerance = tolerance;
     cscd_status status = check_separation(detector->context, &changed);
+    if (status == CSCD_OK)
+        status = detector_check_distances(detector, min_separation, detector->pair_rules.greatest);
     if (status != CSCD_OK) return status;
     detector->options = changed;
     detector->limit = limit_of(&changed);
     return CSCD_OK;
+}
+
+interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1) {
+    interval_search search = interval_search_begin(&d->space, x0, x1, d->limit);
+    search.interval.thick = detector_thick(d);
+    return search;
 }
 
 void detector_begin_call(cscd_detector *d) {

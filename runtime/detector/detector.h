@@ -4,6 +4,7 @@
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/culling/culling.h"
 #include "runtime/culling/start_state.h"
+#include "runtime/detector/interval_search.h"
 #include "runtime/detector/method_table.h"
 #include "runtime/detector/result_buffer.h"
 #include "runtime/detector/rollback.h"
@@ -22,6 +23,12 @@ struct cscd_detector {
     const method_stages *stages;
     culling_rules rules;
     exclusions exclusions;
+
+    pair_rules pair_rules;   /* for objects; without sets: there are none */
+    uint32_t rules_revision; /* so many times they have been set */
+    bool *never_culled; /* per component: its triangles are not looked at with each other, or have to stay
+                              * farther apart than 0 */
+    bool all_never_culled;
 
     search_space space;
     bvh_rebuild rebuild; /* of space.bvh */
@@ -56,14 +63,42 @@ void detector_begin_call(cscd_detector *d);
  * and it already has its sentence. */
 cscd_status detector_fail_call(cscd_detector *d, cscd_status status);
 
-/* With a minimum separation no pair is culled. */
-static inline bool detector_culls(const cscd_detector *d) {
-    return d->rules.by_orientation && d->limit.distance == 0.0;
+/* Do the rules say distances? */
+static inline bool detector_thick(const cscd_detector *d) {
+    return d->pair_rules.greatest > 0.0;
 }
 
-static inline bool detector_hides_pairs(const cscd_detector *d) {
-    return d->stages->hider != NULL && d->limit.distance == 0.0;
+/* Are the triangles of a component not looked at with each other, because the rule of its object says so? */
+static inline bool detector_masks(const cscd_detector *d, uint32_t component) {
+    if (d->pair_rules.sets == NULL || component_is_obstacle(d->mesh, component)) return false;
+    return !d->pair_rules.sets[d->pair_rules.component_objects[component]].self;
 }
+
+/* With a minimum separation no pair is culled; nor, in a component, with a distance from itself. */
+static inline bool detector_culls(const cscd_detector *d) {
+    return d->rules.by_orientation && d->limit.distance == 0.0 && !d->all_never_culled;
+}
+
+/* A hider knows touching only. Where it has joined components, it hides pairs of different objects, too. */
+static inline bool detector_hides_pairs(const cscd_detector *d) {
+    const pair_rules *rules = &d->pair_rules;
+    double distance = d->rules.joins_components ? rules->greatest : rules->greatest_to_itself;
+    return d->stages->hider != NULL && d->limit.distance == 0.0 && distance == 0.0;
+}
+
+/* How far the volumes of a step are widened. */
+static inline volume_growth detector_growth(const cscd_detector *d) {
+    return (volume_growth){d->limit.distance, detector_thick(d) ? d->pair_rules.reaches : NULL, 0.0};
+}
+
+/* INVALID_ARGUMENT, if both min_separation and the rules say distances. */
+cscd_status detector_check_distances(cscd_detector *d, double min_separation, double greatest_of_rules);
+
+/* Sets the marks of components whose triangles are not looked at with each other to false. */
+void detector_unmark_masked(const cscd_detector *d, bool *triangles);
+
+/* Begins a search for what comes nearer than it may, from x0 to x1. */
+interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1);
 
 /* The number of regions that triangles are oriented by; 0 where they are not oriented. */
 static inline uint32_t detector_region_count(const cscd_detector *d) {

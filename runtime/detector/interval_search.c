@@ -13,6 +13,7 @@ interval_search interval_search_begin(search_space *space, const double *x0, con
                                           .x1 = x1,
                                           .bvh = &space->bvh,
                                           .representatives = &space->representatives,
+                                          .rules = space->rules,
                                           .limit = limit}};
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/bvh/traversal.h"
 #include "runtime/narrow_phase/contact_lane.h"
 #include "runtime/narrow_phase/orphan_pairs.h"
+#include "runtime/narrow_phase/pair_rules.h"
 #include "runtime/narrow_phase/representatives.h"
 
 typedef struct search_space {
@@ -12,7 +13,8 @@ typedef struct search_space {
     const cscd_mesh *mesh;
     bvh bvh; /* refitted to the current interval or moment before a search begins */
     traversal traversal;
-    contact_lane *lanes; /* one per lane of the traversal */
+    const pair_rules *rules; /* NULL: all objects are looked at */
+    contact_lane *lanes;     /* one per lane of the traversal */
     representatives representatives;
     orphan_pairs
         orphans; /* made by the first search that skips adjacent triangles, unless there are too many */

@@ -59,8 +59,8 @@ static cscd_status prove_starts(step_work *work) {
     work->unproven = start_states_mark_unproven(&d->starts, d->check.unproven);
     work->search.counters.static_checks = work->unproven > 0;
     if (work->unproven > d->mesh->triangle_count / UNPROVEN_SHARE) {
-        status =
-            bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, work->search.interval.x0, 0.0, d->limit.distance);
+        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, work->search.interval.x0,
+                                     uniform_growth(0.0), detector_growth(d));
         if (status == CSCD_OK) status = check_start(work);
     }
     timer_lap(&since, &work->search.timings.proof_ms);
@@ -71,8 +71,9 @@ static cscd_status refit_trees(step_work *work) {
     cscd_detector *d = work->detector;
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
-    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1,
-                                          d->limit.distance, d->limit.distance);
+    volume_growth growth = detector_growth(d);
+    cscd_status status =
+        bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1, growth, growth);
     timer_lap(&since, &work->search.timings.update_ms);
     return status;
 }
@@ -103,8 +104,8 @@ static bool finds_all_contacts(const step_work *work) {
     return work->mode == CSCD_MODE_ALL || exclusions_any(&work->detector->exclusions);
 }
 
-static bool is_culled(const cscd_detector *d, uint32_t clean, uint32_t triangle_count) {
-    if (!detector_culls(d)) return false;
+static bool is_culled(const cscd_detector *d, uint32_t component, uint32_t clean, uint32_t triangle_count) {
+    if (!detector_culls(d) || d->never_culled[component]) return false;
     if (d->rules.assumes_clean) return true;
     if (d->rules.embedded_only) return clean == triangle_count;
     return start_states_pay(&d->starts, clean, triangle_count);
@@ -118,10 +119,10 @@ static cscd_status choose_culled(step_work *work) {
     start_states_count(&d->starts);
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_component *component = &d->mesh->components[c];
-        if (component_is_obstacle(d->mesh, c)) continue;
+        if (component_is_obstacle(d->mesh, c) || detector_masks(d, c)) continue;
         uint32_t clean = component->closed_manifold ? d->starts.of[c].clean : 0;
         bool embedded = clean == component->triangle_count;
-        d->culled[c] = is_culled(d, clean, component->triangle_count);
+        d->culled[c] = is_culled(d, c, clean, component->triangle_count);
         d->wants_all_contacts[c] =
             d->culled[c] && !d->traits->loses_contacts && (finds_all_contacts(work) || !embedded);
         work->any_culled |= d->culled[c];
@@ -258,6 +259,7 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
         return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
     if (d->traits->loses_contacts) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};
     if (!detector_culls(d)) return (cscd_guarantee){true, embedded, CSCD_REASON_CONTOUR};
+    if (d->never_culled[component]) return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
     cscd_reason reason = culling_reason(work, component, embedded);
     return (cscd_guarantee){reason != CSCD_REASON_EARLIEST, embedded, reason};
 }
@@ -265,7 +267,7 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
     step_work work = {.detector = d,
-                      .search = interval_search_begin(&d->space, x0, x1, d->limit),
+                      .search = detector_search_begin(d, x0, x1),
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};
@@ -288,7 +290,7 @@ void step_take(cscd_detector *d, const double *end) {
     }
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
-        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
+        d->incomplete[c] = d->never_culled[c] || (!g->complete && g->reason != CSCD_REASON_OBSTACLE);
     }
     start_states_end(&d->starts, end, d->incomplete);
 }

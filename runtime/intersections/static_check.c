@@ -58,6 +58,13 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
     lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
 }
 
+static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
+    const static_check *c = work->check;
+    if (work->own_component_only && a != b) return false;
+    if (c->objects == NULL || !work->bvh->trees_mix_objects) return true;
+    return object_sets_may_meet(&c->objects[c->component_objects[a]], &c->objects[c->component_objects[b]]);
+}
+
 /* Replaces the slots of a batch by triangles, and drops the pairs that do not count. */
 static void name_triangles(const check_work *work, traversal_lane *batch) {
     const uint32_t *components = work->check->mesh->triangle_components;
@@ -66,7 +73,7 @@ static void name_triangles(const check_work *work, traversal_lane *batch) {
         triangle_pair slots = batch->pairs[i];
         triangle_pair pair = {bvh_triangle(work->bvh, slots.a), bvh_triangle(work->bvh, slots.b)};
         batch->pairs[kept] = pair;
-        kept += !work->own_component_only || components[pair.a] == components[pair.b];
+        kept += pair_counts(work, components[pair.a], components[pair.b]);
     }
     batch->pair_count = kept;
 }

@@ -19,6 +19,11 @@ typedef struct static_check {
     intersection_lane
         *lanes; /* one per lane of the traversal; their pairs include those that the caller ignores */
     uint32_t lane_count;
+
+    /* The rules for objects, and the object of each component. They are read where trees mix objects; elsewhere the
+     * traversal has left out what they say. NULL: there are none. */
+    const object_set *objects;
+    const uint32_t *component_objects;
 } static_check;
 
 /* On failure *out holds nothing. */
@@ -30,5 +35,5 @@ void static_check_destroy(static_check *c);
  * contains it. CANCELLED, here and below: not all pairs have been compared. */
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions);
 
-/* Compares all triangles with one another, and marks them all as unproven. */
+/* Compares all triangles whose objects are looked at with one another, and marks all triangles as unproven. */
 cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions);

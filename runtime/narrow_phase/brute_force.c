@@ -8,25 +8,23 @@ static bool in_surface(const cscd_mesh *mesh, uint32_t vertex) {
     return mesh->vertex_star_offsets[vertex + 1] > mesh->vertex_star_offsets[vertex];
 }
 
-static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
-    return triangle_of_obstacle(mesh, mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]);
-}
-
-static bool edge_of_obstacle(const cscd_mesh *mesh, uint32_t edge) {
-    return triangle_of_obstacle(mesh, mesh->edge_stars[mesh->edge_star_offsets[edge]]);
+/* Rules know obstacles, too. */
+static bool may_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
+    if (interval->rules != NULL) return components_look(interval, a, b);
+    return !component_is_obstacle(interval->mesh, a) || !component_is_obstacle(interval->mesh, b);
 }
 
 static void test_face(const swept_interval *interval, uint32_t triangle, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = swept_box_of(interval, corners, 3);
-    bool obstacle = triangle_of_obstacle(mesh, triangle);
+    uint32_t component = mesh->triangle_components[triangle];
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
-        if (obstacle && vertex_of_obstacle(mesh, v)) continue;
+        if (!may_meet(interval, component, vertex_component(mesh, v))) continue;
         lane->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
-        if (swept_boxes_within(&face, &vertex, interval->limit.distance))
+        if (swept_boxes_within(&face, &vertex, pair_reach(interval, CSCD_CONTACT_VF, v, triangle)))
             narrow_phase_test_vf(interval, v, triangle, lane);
     }
 }
@@ -35,13 +33,14 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *ends_a = mesh->edges[a];
     swept_box box_a = swept_box_of(interval, ends_a, 2);
-    bool obstacle = edge_of_obstacle(mesh, a);
+    uint32_t component = edge_component(mesh, a);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
-        if (edges_share_vertex(ends_a, ends_b) || (obstacle && edge_of_obstacle(mesh, b))) continue;
+        if (edges_share_vertex(ends_a, ends_b)) continue;
+        if (!may_meet(interval, component, edge_component(mesh, b))) continue;
         lane->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);
-        if (swept_boxes_within(&box_a, &box_b, interval->limit.distance))
+        if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))
             narrow_phase_test_ee(interval, a, b, lane);
     }
 }

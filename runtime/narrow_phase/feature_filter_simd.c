@@ -131,8 +131,21 @@ typedef struct tree_pair {
     float gap, wide; /* as in pairs_x8 */
 } tree_pair;
 
-static void relate_parts(const bvh *f, uint32_t a, uint32_t b, double distance, tree_pair *out) {
+/* A tree of several objects has pairs of any distance, the greatest one among them. */
+static double tree_distance(const swept_interval *interval, const bvh_tree *p, const bvh_tree *q) {
+    double distance = interval->limit.distance;
+    if (interval->thick) {
+        bool several = p->object == OBJECT_SEVERAL || q->object == OBJECT_SEVERAL;
+        distance = several ? __builtin_fmax(distance, interval->rules->greatest)
+                           : object_separation(interval, p->object, q->object).distance;
+    }
+    return distance + interval->beyond;
+}
+
+static void relate_parts(const swept_interval *interval, uint32_t a, uint32_t b, tree_pair *out) {
+    const bvh *f = interval->bvh;
     const bvh_tree *p = &f->trees[a], *q = &f->trees[b];
+    double distance = tree_distance(interval, p, q);
     float between[LANES] = {0.0f};
     double size = (double)p->reach + (double)q->reach, d = distance * f->scale * (1.0 + 0x1p-20);
     for (int i = 0; i < 6 && a != b; i++) {
@@ -148,14 +161,15 @@ static void relate_parts(const bvh *f, uint32_t a, uint32_t b, double distance, 
 }
 
 /* The places of the last pair are filled up with itself. */
-static inline void load_pairs(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+static inline void load_pairs(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                               tree_pair *trees, pairs_x8 *out) {
+    const bvh *f = interval->bvh;
     f32x8 rows[6][LANES];
     for (uint32_t lane = 0; lane < LANES; lane++) {
         triangle_pair pair = pairs[lane < count ? lane : count - 1];
         const bvh_leaf *a = &f->leaves[pair.a / LANES], *b = &f->leaves[pair.b / LANES];
         uint32_t tree_a = f->leaf_trees[pair.a / LANES], tree_b = f->leaf_trees[pair.b / LANES];
-        if (tree_a != trees->a || tree_b != trees->b) relate_parts(f, tree_a, tree_b, distance, trees);
+        if (tree_a != trees->a || tree_b != trees->b) relate_parts(interval, tree_a, tree_b, trees);
         for (int i = 0; i < 3; i++) {
             uint32_t record_a = a->corners[i][pair.a % LANES], record_b = b->corners[i][pair.b % LANES];
             rows[i][lane] = f32x8_load(f->records[record_a]);
@@ -176,13 +190,13 @@ static inline bool any_feature(i32x8 features) {
     return i32x8_negative(-features) != 0;
 }
 
-void SIMD_NAME(feature_filter)(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+void SIMD_NAME(feature_filter)(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                                uint16_t *features) {
     tree_pair trees = {.a = UINT32_MAX};
     for (uint32_t p = 0; p < count; p += LANES) {
         uint32_t lanes = count - p < LANES ? count - p : LANES;
         pairs_x8 o;
-        load_pairs(f, pairs + p, lanes, distance, &trees, &o);
+        load_pairs(interval, pairs + p, lanes, &trees, &o);
         i32x8 kept = near_along_axes(&o, ~sharing_vertex(&o) & FEATURE_ALL);
         if (any_feature(kept)) kept = near_along_diagonals(&o, kept);
         for (uint32_t i = 0; i < lanes; i++) features[p + i] = (uint16_t)kept[i];

@@ -102,6 +102,16 @@ static elementary_contact nearest_points(const swept_interval *interval, cscd_co
     return contact;
 }
 
+/* The limits of the eight pairs from i on. */
+static void load_limits(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
+                        uint32_t i, separations_x8 *limits) {
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        separation limit = pair_separation(interval, kind, pairs->a[i + lane], pairs->b[i + lane]);
+        limits->distance[lane] = limit.distance;
+        limits->tolerance[lane] = limit.tolerance;
+    }
+}
+
 /* Eight at a time; keeps the pairs that the kernel leaves open. */
 static void decide_proximity(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                              contact_lane *lane) {
@@ -112,8 +122,10 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
     if (pairs->count > 0) repeat_last(pairs);
     for (uint32_t i = 0; i < pairs->count; i += LANES) {
         proximity_outcomes near;
+        separations_x8 limits;
         uint32_t real = lanes_from(pairs, i);
-        kernel(&source, pairs->a + i, pairs->b + i, &interval->limit, &near);
+        load_limits(interval, kind, pairs, i, &limits);
+        kernel(&source, pairs->a + i, pairs->b + i, &limits, &near);
         for (uint32_t lanes = real & near.within; lanes != 0; lanes &= lanes - 1) {
             uint32_t at = (uint32_t)__builtin_ctz(lanes);
             elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], &near, at);
@@ -132,11 +144,36 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
         elementary_query query;
         elementary_contact contact;
         bool bounded = false;
+        separation limit = pair_separation(interval, kind, pairs->a[i], pairs->b[i]);
         swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
-        if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &interval->limit, &contact,
-                                                                      &bounded))
+        if ((kind == CSCD_CONTACT_VF ? separation_vf : separation_ee)(&query, &limit, &contact, &bounded))
             add_contact(interval, kind, pairs, i, &contact, bounded, lane);
     }
+}
+
+/* Pairs that have to stay apart by a distance go to the separations; what is left must not touch. */
+static void split_by_distance(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                              feature_list *separations) {
+    uint32_t kept = 0;
+    separations->count = 0;
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        uint32_t a = pairs->a[i], b = pairs->b[i];
+        uint32_t apart = pair_separation(interval, kind, a, b).distance > 0.0;
+        separations->count = feature_list_put(separations, separations->count, a, b, apart);
+        pairs->a[kept] = a;
+        pairs->b[kept] = b;
+        kept += 1 - apart;
+    }
+    pairs->count = kept;
+}
+
+static void decide_by_pair(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                           contact_lane *lane) {
+    feature_list list;
+    split_by_distance(interval, kind, pairs, &list);
+    feature_pairs separations = {list.a, list.b, list.count};
+    test_separations(interval, kind, &separations, lane);
+    decide_by_levels(interval, kind, pairs, lane);
 }
 
 void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind, contact_lane *lane) {
@@ -145,6 +182,8 @@ void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind
     assert(list->count <= FEATURE_LIST_CAPACITY); /* kernels fill up behind it */
     if (interval->collecting)
         contact_lane_add_candidates(interval->mesh->context, lane, kind, list);
+    else if (interval->thick)
+        decide_by_pair(interval, kind, &pairs, lane);
     else if (interval->limit.distance > 0.0)
         test_separations(interval, kind, &pairs, lane);
     else

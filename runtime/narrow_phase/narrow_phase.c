@@ -59,6 +59,12 @@ static void queue_features(const swept_interval *interval, triangle_pair pair, u
     }
 }
 
+/* Does the traversal leave this to us, because a tree holds several objects? */
+static bool triangles_look(const swept_interval *interval, triangle_pair pair) {
+    const uint32_t *components = interval->mesh->triangle_components;
+    return components_look(interval, components[pair.a], components[pair.b]);
+}
+
 static void test_some(const swept_interval *interval, const triangle_pair *slots, uint32_t count,
                       contact_lane *lane) {
     const bvh *f = interval->bvh;
@@ -66,10 +72,13 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
     uint16_t features[PAIRS_AT_ONCE];
     triangle_pair pairs[PAIRS_AT_ONCE];
     uint32_t kept = 0;
-    kernels->feature_filter(f, slots, count, interval->limit.distance, features);
+    bool trees_mix = interval->rules != NULL && f->trees_mix_objects;
+    kernels->feature_filter(interval, slots, count, features);
     for (uint32_t i = 0; i < count; i++) {
         if (features[i] == 0) continue;
-        pairs[kept] = (triangle_pair){bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
+        triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
+        if (trees_mix && !triangles_look(interval, pair)) continue;
+        pairs[kept] = pair;
         features[kept++] = features[i];
     }
     representatives_select(interval, pairs, kept, features);
@@ -88,12 +97,13 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
                                  uint32_t b) {
     elementary_query query;
     swept_interval_load(interval, kind, a, b, &query);
-    return directions_part(&query, kind, interval->limit.distance);
+    return directions_part(&query, kind, pair_reach(interval, kind, a, b));
 }
 
 /* Adjacent triangles of components that are culled are pairs like others. */
-static bool reached_by_flags(const swept_interval *interval, uint32_t triangle) {
-    return interval->culling != NULL && interval->culled[interval->mesh->triangle_components[triangle]];
+static bool left_to_others(const swept_interval *interval, uint32_t component) {
+    return (interval->culling != NULL && interval->culled[component]) ||
+           !components_look(interval, component, component);
 }
 
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
@@ -101,14 +111,14 @@ void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan
     const cscd_mesh *mesh = interval->mesh;
     for (size_t i = index; i < orphans->vf_count; i += stride) {
         uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
-        if (reached_by_flags(interval, triangle)) continue;
+        if (left_to_others(interval, mesh->triangle_components[triangle])) continue;
         if (parted_by_directions(interval, CSCD_CONTACT_VF, vertex, triangle)) continue;
         lane->feature_pairs++;
         narrow_phase_test_vf(interval, vertex, triangle, lane);
     }
     for (size_t i = index; i < orphans->ee_count; i += stride) {
         uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
-        if (reached_by_flags(interval, mesh->edge_stars[mesh->edge_star_offsets[a]])) continue;
+        if (left_to_others(interval, edge_component(mesh, a))) continue;
         if (parted_by_directions(interval, CSCD_CONTACT_EE, a, b)) continue;
         lane->feature_pairs++;
         narrow_phase_test_ee(interval, a, b, lane);

@@ -3,6 +3,7 @@
 
 #include "runtime/bvh/traversal.h"
 #include "runtime/narrow_phase/representatives.h"
+#include "runtime/narrow_phase/swept_interval.h"
 #include "src/core/kernels.h"
 
 /* Sets of pairs of features of two triangles a and b: bit i is vertex i of a against the face b,
@@ -10,9 +11,9 @@
  * of b. */
 enum { FEATURE_VERTEX_B = 3, FEATURE_EDGES = 6, FEATURE_ALL = (1 << 15) - 1 };
 
-/* Of the pairs of features of two triangles, in slots, those that may touch, or come within distance, by
+/* Of the pairs of features of two triangles, in slots, those that may touch, or come within their distance, by
  * their volumes, and that share no vertex. */
-typedef void feature_filter_kernel(const bvh *f, const triangle_pair *pairs, uint32_t count, double distance,
+typedef void feature_filter_kernel(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                                    uint16_t *features);
 
 /* Of features of pairs of triangles, those that these represent; open: those whose representatives share a

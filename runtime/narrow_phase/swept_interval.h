@@ -6,6 +6,7 @@
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
 #include "runtime/culling/culling.h"
+#include "runtime/narrow_phase/pair_rules.h"
 #include "src/mesh/mesh.h"
 
 struct representatives;
@@ -16,19 +17,65 @@ typedef struct swept_interval {
     const double *x0, *x1;
     const bvh *bvh; /* triangle pairs are given by its slots */
     const struct representatives *representatives;
-    const culling *culling; /* NULL: nothing is culled, and representatives test all pairs of features */
-    const bool *culled;     /* with culling: the components whose flags say which triangle pair tests */
-    bool skip_adjacent;     /* elsewhere, pairs of adjacent triangles are not reached: other pairs test their
+    const culling *culling;  /* NULL: nothing is culled, and representatives test all pairs of features */
+    const bool *culled;      /* with culling: the components whose flags say which triangle pair tests */
+    bool skip_adjacent;      /* elsewhere, pairs of adjacent triangles are not reached: other pairs test their
                              * features, and orphan pairs are tested apart */
-    bool closing_pass;      /* with culling: the pairs that are reached are those that were culled before */
-    separation limit;       /* distance 0: a contact is touching */
-    bool collecting;        /* pairs of features become the lanes' candidates instead of being tested */
+    bool closing_pass;       /* with culling: the pairs that are reached are those that were culled before */
+    const pair_rules *rules; /* NULL: all objects are looked at */
+    separation limit;        /* of every pair; distance 0: a contact is touching */
+    bool thick;              /* a pair's distance is that of the rules, where this is the greater one; its
+                              * tolerance is that of the limit or, where this is 0, 1e-6 of the distance */
+    double beyond;           /* volumes are compared within so much more than the pairs' distances */
+    bool collecting;         /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 
 /* What the kernels read of an interval. */
 static inline feature_source swept_interval_source(const swept_interval *interval) {
     return (feature_source){interval->x0, interval->x1, (const uint32_t(*)[3])interval->mesh->triangles,
                             (const uint32_t(*)[2])interval->mesh->edges};
+}
+
+static inline uint32_t vertex_component(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->triangle_components[mesh->vertex_stars[mesh->vertex_star_offsets[vertex]]];
+}
+
+static inline uint32_t edge_component(const cscd_mesh *mesh, uint32_t edge) {
+    return mesh->triangle_components[mesh->edge_stars[mesh->edge_star_offsets[edge]]];
+}
+
+/* Are the objects of two components, or one component and itself, looked at with each other? */
+static inline bool components_look(const swept_interval *interval, uint32_t a, uint32_t b) {
+    if (interval->rules == NULL) return true;
+    const uint32_t *objects = interval->rules->component_objects;
+    return pair_rules_look_at(interval->rules, objects[a], objects[b]);
+}
+
+/* How far two objects have to stay apart, and how exactly. */
+static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
+    if (!interval->thick) return interval->limit;
+    double distance = pair_rules_distance(interval->rules, a, b);
+    double tolerance = interval->limit.tolerance;
+    if (distance < interval->limit.distance) distance = interval->limit.distance;
+    return (separation){distance, tolerance > 0.0 ? tolerance : 1e-6 * distance};
+}
+
+/* How far vertex a and triangle b, or the edges a and b, have to stay apart. */
+static inline separation pair_separation(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                         uint32_t b) {
+    if (!interval->thick) return interval->limit;
+    const cscd_mesh *mesh = interval->mesh;
+    const uint32_t *objects = interval->rules->component_objects;
+    bool vf = kind == CSCD_CONTACT_VF;
+    uint32_t first = vf ? vertex_component(mesh, a) : edge_component(mesh, a);
+    uint32_t second = vf ? mesh->triangle_components[b] : edge_component(mesh, b);
+    return object_separation(interval, objects[first], objects[second]);
+}
+
+/* The distance within which volumes of a pair are compared. */
+static inline double pair_reach(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                uint32_t b) {
+    return pair_separation(interval, kind, a, b).distance + interval->beyond;
 }
 
 /* The points of vertex a and triangle b, or of the edges a and b. */

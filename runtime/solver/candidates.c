@@ -27,11 +27,14 @@ static bool join_lists(const search_space *s, cscd_contact_kind kind, candidate_
     return true;
 }
 
-cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double distance,
-                               candidates *out) {
-    interval_search search = interval_search_begin(&d->space, x0, x1, (separation){distance, distance});
+cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double reach,
+                               double margin, candidates *out) {
+    interval_search search = interval_search_begin(&d->space, x0, x1, (separation){reach, reach});
+    volume_growth growth = {reach, detector_growth(d).of_objects, margin};
     search.interval.collecting = true;
-    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, x0, x1, distance, d->limit.distance);
+    search.interval.thick = detector_thick(d);
+    search.interval.beyond = margin;
+    cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, x0, x1, growth, detector_growth(d));
     if (status == CSCD_OK) status = interval_search_everything(&search);
     if (status != CSCD_OK) return status;
     bool taken = join_lists(&d->space, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
@@ -55,7 +58,7 @@ typedef struct testing {
 static void test_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
     swept_box vertex = swept_box_of(interval, &pair[0], 1);
     swept_box face = swept_box_of(interval, interval->mesh->triangles[pair[1]], 3);
-    if (!swept_boxes_within(&vertex, &face, interval->limit.distance)) return;
+    if (!swept_boxes_within(&vertex, &face, pair_reach(interval, CSCD_CONTACT_VF, pair[0], pair[1]))) return;
     lane->feature_pairs++;
     narrow_phase_test_vf(interval, pair[0], pair[1], lane);
 }
@@ -63,7 +66,7 @@ static void test_vf(const swept_interval *interval, const uint32_t pair[2], cont
 static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
     swept_box a = swept_box_of(interval, interval->mesh->edges[pair[0]], 2);
     swept_box b = swept_box_of(interval, interval->mesh->edges[pair[1]], 2);
-    if (!swept_boxes_within(&a, &b, interval->limit.distance)) return;
+    if (!swept_boxes_within(&a, &b, pair_reach(interval, CSCD_CONTACT_EE, pair[0], pair[1]))) return;
     lane->feature_pairs++;
     narrow_phase_test_ee(interval, pair[0], pair[1], lane);
 }

@@ -8,10 +8,10 @@ typedef struct candidates {
     candidate_list lists[2]; /* by cscd_contact_kind */
 } candidates;
 
-/* Collects every pair that, by its bounding volumes, comes within a distance above 0 between x0 and x1. Nothing is culled.
- * The candidates of before are replaced; their memory is used again. */
-cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double distance,
-                               candidates *out);
+/* Collects every pair that, by its bounding volumes, comes within reach, or within its own distance if this is more,
+ * between x0 and x1; the margin is added to both. Nothing is culled. The candidates of before are replaced; their memory is used again. */
+cscd_status candidates_collect(cscd_detector *d, const double *x0, const double *x1, double reach,
+                               double margin, candidates *out);
 void candidates_free(cscd_context *context, candidates *c);
 
 /* Tests all candidates in the interval that the search has begun with. */

@@ -99,7 +99,7 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     remember_states(line);
     line->covered = max_of(d->limit.distance, reach);
     detector_begin_call(d);
-    status = candidates_collect(d, line->x0, line->x1, line->covered + rounding_on(line), &line->candidates);
+    status = candidates_collect(d, line->x0, line->x1, line->covered, rounding_on(line), &line->candidates);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
     return CSCD_OK;
@@ -168,7 +168,7 @@ static cscd_status test_candidates_on_motion(void *of, const double *from, const
     cscd_counters counters = {.vf = 0};
     progress_part(&d->context->progress, line->done, 0.5 + 0.5 * line->done);
     line->done = 0.5 + 0.5 * line->done;
-    interval_search search = interval_search_begin(&d->space, from, to, d->limit);
+    interval_search search = detector_search_begin(d, from, to);
     cscd_status status = candidates_test(&line->candidates, &search);
     return status == CSCD_OK ? contact_list_collect(&d->space, &d->exclusions, &d->contacts, &counters, out)
                              : status;

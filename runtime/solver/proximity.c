@@ -104,7 +104,8 @@ static cscd_status find_proximities(cscd_detector *d, const double *positions, d
     if (d->stages->brute_force) {
         status = interval_search_by_brute_force(&search);
     } else {
-        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, distance, d->limit.distance);
+        status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(distance),
+                                     detector_growth(d));
         if (status == CSCD_OK) status = interval_search_everything(&search);
     }
     return status == CSCD_OK ? proximity_collect(d, positions, out) : status;

@@ -199,9 +199,9 @@ static void check_scene(const scene *s, int axis_count, uint32_t region_count, d
     bvh_rig r;
     assert_true(bvh_rig_create(s, (bvh_setup){CSCD_SIMD_AUTO, 1, axis_count, region_count}, &r));
     find_places(&r.bvh);
-    bvh_refit(&r.bvh, s->x0, s->x1, distance);
+    bvh_refit(&r.bvh, s->x0, s->x1, uniform_growth(distance));
     check_bounds(&r.bvh, (gap_motion){s->x0, s->x1}, distance);
-    bvh_refit(&r.bvh, s->x1, s->x1, 0.0);
+    bvh_refit(&r.bvh, s->x1, s->x1, uniform_growth(0.0));
     check_bounds(&r.bvh, (gap_motion){s->x1, s->x1}, 0.0);
     bvh_rig_destroy(&r);
 }
@@ -246,7 +246,7 @@ static void bounds_at_changing_scales(void **state) {
     for (size_t i = 0; i < sizeof from / sizeof *from; i++) {
         scale_scene(&shape, from[i], &start);
         scale_scene(&shape, to[i], &end);
-        bvh_refit(&r.bvh, start.x0, end.x1, 0.0);
+        bvh_refit(&r.bvh, start.x0, end.x1, uniform_growth(0.0));
         check_bounds(&r.bvh, (gap_motion){start.x0, end.x1}, 0.0);
     }
     bvh_rig_destroy(&r);
@@ -285,12 +285,12 @@ static void same_on_all_levels_and_threads(void **state) {
         scene_make((scene_family)(i * 3), 16, &shape);
         bvh_setup setup = {CSCD_SIMD_SCALAR, 1, axis_counts[i % 2], region_counts[i]};
         assert_true(bvh_rig_create(&shape, setup, &one));
-        bvh_refit(&one.bvh, shape.x0, shape.x1, 0.0);
+        bvh_refit(&one.bvh, shape.x0, shape.x1, uniform_growth(0.0));
         for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
             setup.simd = (cscd_simd)simd;
             setup.thread_count = (uint32_t)simd;
             if (!bvh_rig_create(&shape, setup, &other)) continue;
-            bvh_refit(&other.bvh, shape.x0, shape.x1, 0.0);
+            bvh_refit(&other.bvh, shape.x0, shape.x1, uniform_growth(0.0));
             assert_same_bvh(&one.bvh, &other.bvh);
             bvh_rig_destroy(&other);
         }

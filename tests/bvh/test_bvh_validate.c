@@ -15,7 +15,7 @@ static bvh *build_and_refit(bvh_setup setup) {
     assert_true(bvh_rig_create(&shape, setup, &rig_of_shape));
     bvh *f = &rig_of_shape.bvh;
     assert_null(bvh_validate(f, false));
-    bvh_refit(f, shape.x0, shape.x1, 0.0);
+    bvh_refit(f, shape.x0, shape.x1, uniform_growth(0.0));
     return f;
 }
 

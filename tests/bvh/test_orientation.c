@@ -175,7 +175,7 @@ static void signs_are_exact(void **state) {
         move_triangles(random_integer(0, 1) ? 0.0 : ldexp(random_unit(), random_integer(0, 20)), speed);
         for (uint32_t l = 0; l < level_count; l++) {
             bvh *f = &levels[l].bvh;
-            bvh_refit(f, shape.x0, shape.x1, 0.0);
+            bvh_refit(f, shape.x0, shape.x1, uniform_growth(0.0));
             if (l == 0) place_detector(f, speed, i % 3 == 0);
             memcpy(f->trees[0].detector, levels[0].bvh.trees[0].detector, sizeof f->trees[0].detector);
             orient_all(f, flags[l]);
@@ -193,7 +193,7 @@ static void signs_are_exact(void **state) {
 static uint8_t orientation_from(bvh *f, double end_height, const double start[3], const double end[3]) {
     uint8_t flag;
     for (int i = 0; i < 3; i++) shape.x1[3 * i + 2] = end_height;
-    bvh_refit(f, shape.x0, shape.x1, 0.0);
+    bvh_refit(f, shape.x0, shape.x1, uniform_growth(0.0));
     bvh_tree *p = &f->trees[0];
     for (int k = 0; k < 3; k++) {
         p->detector[0][k] = (float)((start[k] - p->origin[0][k]) * f->scale);
@@ -265,7 +265,7 @@ static void detector_points_follow_their_regions(void **state) {
         bool culled[4] = {true, true, true, true};
         for (int i = 0; i < 12; i++) offsets[i / 3][i % 3] = random_unit();
         assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
-        bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
+        bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
         for (int still = 0; still < 2; still++) {
             orientation_query view = {culled, NULL, (const double(*)[3])offsets, still != 0};
             bvh_orient(&r.bvh, &view, flags);

@@ -80,7 +80,7 @@ static size_t check_scene(bvh_setup setup, double distance) {
     bvh_rig r;
     assert_true(shape.triangle_count <= TRIANGLES_MAX);
     assert_true(bvh_rig_create(&shape, setup, &r));
-    bvh_refit(&r.bvh, shape.x0, shape.x1, distance);
+    bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(distance));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
     size_t required = check_against_gaps(&all, distance);
     bvh_rig_destroy(&r);
@@ -151,7 +151,7 @@ static void finds_what_may_touch_in_a_crowd(void **state) {
 static void check_same(bvh_setup setup) {
     bvh_rig r;
     if (!bvh_rig_create(&shape, setup, &r)) return;
-    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
+    bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
     traverse_all(&r, TRAVERSAL_KEPT, &others);
     assert_memory_equal(&others, &all, sizeof all);
     bvh_rig_destroy(&r);
@@ -161,7 +161,7 @@ static void check_all_ways(uint32_t region_count) {
     bvh_setup setup = {CSCD_SIMD_SCALAR, 1, BOX_AXES, region_count};
     bvh_rig r;
     assert_true(bvh_rig_create(&shape, setup, &r));
-    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
+    bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
     bvh_rig_destroy(&r);
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
@@ -255,7 +255,7 @@ static void choose_flags(random_stream *random, uint32_t run) {
 static void check_passes(random_stream *random, uint32_t region_count) {
     bvh_rig r;
     assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
-    bvh_refit(&r.bvh, shape.x0, shape.x1, 0.0);
+    bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
     for (uint32_t run = 1; run < 1000; run *= 6) {
         choose_flags(random, run);

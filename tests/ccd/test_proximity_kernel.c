@@ -88,8 +88,13 @@ static void never_against_the_test_of_one_pair(void **state) {
                 if (contexts[level] == NULL) continue;
                 const ccd_kernels *table = ccd_kernels_of(contexts[level]);
                 proximity_outcomes found;
+                separations_x8 limits;
+                for (int i = 0; i < LANES; i++) {
+                    limits.distance[i] = limit.distance;
+                    limits.tolerance[i] = limit.tolerance;
+                }
                 (vf ? table->proximity_vf : table->proximity_ee)(&source, vf ? b.vf_a : b.ee_a,
-                                                                 vf ? b.faces : b.ee_b, &limit, &found);
+                                                                 vf ? b.faces : b.ee_b, &limits, &found);
                 compare_with_pair_test(&b, &limit, vf, &found, &sum);
                 double own = found.distance[random_integer(0, LANES - 1)];
                 if (level == 0 && own > 1e-9 && own < 1e9)

@@ -22,7 +22,7 @@ static void open_levels(uint32_t region_count, double distance) {
     for (int simd = CSCD_SIMD_SCALAR; simd <= CSCD_SIMD_AVX512; simd++) {
         bvh_rig *r = &levels[level_count];
         if (!bvh_rig_create(&shape, (bvh_setup){(cscd_simd)simd, 1, BOX_AXES, region_count}, r)) continue;
-        bvh_refit(&r->bvh, shape.x0, shape.x1, distance);
+        bvh_refit(&r->bvh, shape.x0, shape.x1, uniform_growth(distance));
         level_count++;
     }
 }
@@ -109,7 +109,8 @@ static void feature_filter_in_runs(const bvh *f, double distance, uint16_t *out)
         uint32_t count = PAIR_COUNT - i < run ? PAIR_COUNT - i : run;
         uint16_t some[32];
         for (int k = 0; k < 32; k++) some[k] = UNWRITTEN;
-        narrow_phase_kernels_of(f->mesh->context)->feature_filter(f, pairs + i, count, distance, some);
+        swept_interval interval = {.bvh = f, .limit = {distance, 0.0}};
+        narrow_phase_kernels_of(f->mesh->context)->feature_filter(&interval, pairs + i, count, some);
         for (uint32_t k = count; k < 32; k++) assert_int_equal(some[k], UNWRITTEN);
         memcpy(out + i, some, count * sizeof *some);
     }
@@ -177,8 +178,9 @@ static void keeps_what_just_touches(void **state) {
             const uint32_t *slots = levels[0].bvh.slots;
             pairs[p] = (triangle_pair){slots[2 * p + i % 2], slots[2 * p + 1 - i % 2]};
         }
+        swept_interval interval = {.bvh = &levels[0].bvh};
         narrow_phase_kernels_of(levels[0].bvh.mesh->context)
-            ->feature_filter(&levels[0].bvh, pairs, count, 0.0, features[0]);
+            ->feature_filter(&interval, pairs, count, features[0]);
         for (uint32_t p = 0; p < count; p++) check_features(p, 0.0);
         close_levels();
     }

@@ -38,12 +38,12 @@ static void candidates_hold_every_contact(void **state) {
         scene_make((scene_family)family, 1, &interval);
         rig r = rig_create(&interval, 1 + (uint32_t)family % 3, NULL),
             reference = rig_create(&interval, 1, NULL);
-        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 1e-6, &c), CSCD_OK);
+        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 1e-6, 0.0, &c), CSCD_OK);
         collected += count_of(&c);
         contacts += compare_share(&r, &reference, &c, 1.0, &buffer);
         contacts += compare_share(&r, &reference, &c, 0.4, &buffer);
         size_t near = count_of(&c);
-        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 0.1, &c), CSCD_OK);
+        assert_int_equal(candidates_collect(r.detector, interval.x0, interval.x1, 0.1, 0.0, &c), CSCD_OK);
         assert_true(count_of(&c) >= near);
         farther += count_of(&c);
         candidates_free(r.context, &c);

@@ -1,0 +1,148 @@
+/* Which objects are looked at with which, and how far apart they have to stay: the rules of the caller. */
+#include "runtime/narrow_phase/pair_rules.h"
+
+#include "src/core/check.h"
+
+#include <math.h>
+#include <string.h>
+
+object_rule object_rule_neutral(void) {
+    return (object_rule){.category = 1, .mask = UINT64_MAX, .self = true};
+}
+
+/* ---- what the caller says --------------------------------------------------------------------------- */
+
+static cscd_status check_matrix(cscd_context *context, const given_rules *given) {
+    uint32_t count = given->class_count;
+    if (given->matrix == NULL || count > THICKNESS_CLASSES_MAX || count == 0) {
+        if (given->matrix == NULL && count == 0) return CSCD_OK;
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "thickness_matrix is %s and thickness_class_count is %u, expected a matrix of 1 to "
+            "%d classes, or NULL and 0",
+            given->matrix == NULL ? "NULL" : "given", count, THICKNESS_CLASSES_MAX);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t j = 0; j < count; j++) {
+            double distance = given->matrix[(size_t)i * count + j],
+                   other = given->matrix[(size_t)j * count + i];
+            if (!is_length(distance))
+                return context_fail(
+                    context, CSCD_INVALID_ARGUMENT,
+                    "thickness_matrix has %g for classes %u and %u, expected 0 or a length from 2^-300 to 2^300",
+                    distance, i, j);
+            if (distance != other)
+                return context_fail(
+                    context, CSCD_INVALID_ARGUMENT,
+                    "thickness_matrix has %g for classes %u and %u, but %g for %u and %u; make it "
+                    "symmetric",
+                    distance, i, j, other, j, i);
+        }
+    }
+    return CSCD_OK;
+}
+
+static cscd_status check_rule(cscd_context *context, const given_rules *given, uint32_t object) {
+    const object_rule *rule = &given->objects[object];
+    if (!is_length(rule->thickness))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "object %u has a thickness of %g, expected 0 or a length from 2^-300 to 2^300",
+                            object, rule->thickness);
+    if (given->matrix != NULL && rule->thickness > 0.0)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "object %u has a thickness of %g, but the distances are those of thickness_matrix; leave it at 0",
+            object, rule->thickness);
+    if (given->matrix != NULL ? rule->thickness_class >= given->class_count : rule->thickness_class != 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "object %u has the thickness_class %u, but there are %u classes", object,
+                            rule->thickness_class, given->class_count);
+    return CSCD_OK;
+}
+
+static cscd_status check_rules(const cscd_mesh *mesh, const given_rules *given) {
+    cscd_context *context = mesh->context;
+    if (given->count != 0 && given->count != mesh->object_count)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "there are %u rules, expected none or one for each of the %u objects",
+                            given->count, mesh->object_count);
+    if (given->count > 0 && given->objects == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "rules is NULL, but there are to be %u",
+                            given->count);
+    cscd_status status = check_matrix(context, given);
+    for (uint32_t i = 0; status == CSCD_OK && i < given->count; i++) status = check_rule(context, given, i);
+    return status;
+}
+
+/* ---- what follows ------------------------------------------------------------------------------------ */
+
+static array_list list_arrays(const cscd_mesh *mesh, pair_rules *r) {
+    size_t objects = r->object_count, classes = r->class_count;
+    return (array_list){
+        {ARRAY(r->sets, objects), ARRAY(r->reaches, objects),
+         ARRAY(r->component_objects, mesh->component_count), ARRAY_IF(classes == 0, r->halves, objects),
+         ARRAY_IF(classes > 0, r->classes, objects), ARRAY_IF(classes > 0, r->matrix, classes * classes)}};
+}
+
+static object_set set_of(const cscd_mesh *mesh, const object_rule *rule, uint32_t object) {
+    bool obstacle = mesh->objects[object].obstacle, asks = rule->obstacle_pairs;
+    uint8_t kind = !obstacle ? OBJECT_FREE : asks ? OBJECT_ASKING_OBSTACLE : OBJECT_OBSTACLE;
+    uint8_t sought = !obstacle ? OBJECT_FREE | OBJECT_OBSTACLE | OBJECT_ASKING_OBSTACLE
+                     : asks    ? OBJECT_FREE | OBJECT_ASKING_OBSTACLE
+                               : OBJECT_FREE;
+    return (object_set){.categories = rule->category,
+                        .masks = rule->mask,
+                        .kinds = kind,
+                        .kinds_sought = sought,
+                        .self = rule->self && !obstacle,
+                        .first = object,
+                        .last = object};
+}
+
+static double greatest_of_row(const pair_rules *r, uint32_t row) {
+    double greatest = 0.0;
+    for (uint32_t i = 0; i < r->class_count; i++)
+        greatest = fmax(greatest, r->matrix[(size_t)row * r->class_count + i]);
+    return greatest;
+}
+
+static void fill_objects(const cscd_mesh *mesh, const given_rules *given, pair_rules *r) {
+    for (uint32_t i = 0; i < r->object_count; i++) {
+        object_rule rule = given->count > 0 ? given->objects[i] : object_rule_neutral();
+        r->sets[i] = set_of(mesh, &rule, i);
+        if (r->matrix != NULL) r->classes[i] = rule.thickness_class;
+        if (r->halves != NULL) r->halves[i] = 0.5 * rule.thickness;
+        r->reaches[i] = r->matrix != NULL ? greatest_of_row(r, rule.thickness_class) : rule.thickness;
+        r->greatest = fmax(r->greatest, r->reaches[i]);
+        if (r->sets[i].self)
+            r->greatest_to_itself = fmax(r->greatest_to_itself, pair_rules_distance(r, i, i));
+    }
+}
+
+/* No component spans two objects. */
+static void name_objects(const cscd_mesh *mesh, uint32_t *component_objects) {
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        const cscd_object *object = &mesh->objects[i];
+        for (uint32_t t = 0; t < object->triangle_count; t++)
+            component_objects[mesh->triangle_components[object->first_triangle + t]] = i;
+    }
+}
+
+cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, pair_rules *out) {
+    cscd_status status = check_rules(mesh, given);
+    if (status != CSCD_OK) return status;
+    pair_rules r = {.object_count = mesh->object_count, .class_count = given->class_count};
+    if (!context_allocate_all(mesh->context, list_arrays(mesh, &r)))
+        return context_out_of_memory(mesh->context);
+    if (r.matrix != NULL)
+        memcpy(r.matrix, given->matrix, (size_t)r.class_count * r.class_count * sizeof *r.matrix);
+    fill_objects(mesh, given, &r);
+    name_objects(mesh, r.component_objects);
+    *out = r;
+    return CSCD_OK;
+}
+
+void pair_rules_free(const cscd_mesh *mesh, pair_rules *r) {
+    context_free_all(mesh->context, list_arrays(mesh, r));
+    *r = (pair_rules){.object_count = 0};
+}
