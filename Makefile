@@ -204,7 +204,7 @@ test-without-baselines: packages
 
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
-                  core/test_parallel_for core/test_contexts)
+                  core/test_parallel_for core/test_contexts detector/test_lifetimes)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 

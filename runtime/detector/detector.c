@@ -124,8 +124,12 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
 
     cscd_detector *d = context_allocate(context, 1, sizeof *d);
     if (d == NULL) return context_out_of_memory(context);
+    context_hold(context);
+    mesh_hold(mesh);
+    reference_begin(&d->references);
     d->context = context;
-    d->mesh = mesh;
+    d->seen = mesh_seen_from(context, mesh);
+    d->mesh = mesh = &d->seen;
     d->options = chosen;
     d->traits = method_traits_of(chosen.method);
     d->stages = method_stages_of(chosen.method);
@@ -141,9 +145,9 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     return CSCD_OK;
 }
 
-void cscd_detector_destroy(cscd_detector *d) {
-    if (d == NULL) return;
+static void free_detector(cscd_detector *d) {
     cscd_context *context = d->context;
+    cscd_mesh mesh = d->seen;
     if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
@@ -158,6 +162,20 @@ void cscd_detector_destroy(cscd_detector *d) {
     context_free_all(context, list_arrays(d));
     context_free(context, d->reached);
     context_free(context, d);
+    mesh_release(&mesh);
+    context_release(context);
+}
+
+void detector_hold(cscd_detector *d) {
+    reference_add(&d->references);
+}
+
+void detector_release(cscd_detector *d) {
+    if (reference_drop(&d->references)) free_detector(d);
+}
+
+void cscd_detector_destroy(cscd_detector *d) {
+    if (d != NULL && reference_destroy(&d->references)) free_detector(d);
 }
 
 cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {

@@ -15,8 +15,10 @@
 #include "src/core/methods.h"
 
 struct cscd_detector {
+    reference_count references; /* the caller, and lines */
     cscd_context *context;
-    const cscd_mesh *mesh;
+    cscd_mesh seen;        /* the mesh, which the detector holds, in its context */
+    const cscd_mesh *mesh; /* &seen */
     cscd_detector_options options;
     separation limit; /* of the options, with the default tolerance filled in */
     const method_traits *traits;
@@ -53,6 +55,10 @@ struct cscd_detector {
     cscd_timings timings;
     cscd_counters counters;
 };
+
+/* Lines hold their detector. */
+void detector_hold(cscd_detector *d);
+void detector_release(cscd_detector *d);
 
 /* Begins a call that can be cancelled or fail. Its positions have been checked, and the states are those of its
  * start. */

@@ -97,7 +97,7 @@ cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
     if (partition == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: partition is NULL");
-    if (partition->mesh != mesh)
+    if (!mesh_is_same(partition->mesh, mesh))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "the partition was made for another mesh");
     cscd_sensor_options chosen = options != NULL ? *options : cscd_sensor_defaults();
     cscd_status status = check_options(context, &chosen);
@@ -105,8 +105,11 @@ cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition
 
     cscd_sensors *s = context_allocate(context, 1, sizeof *s);
     if (s == NULL) return context_out_of_memory(context);
+    context_hold(context);
+    partition_hold(partition);
+    reference_begin(&s->references);
     s->context = context;
-    s->mesh = mesh;
+    s->mesh = partition->mesh;
     s->partition = partition;
     s->options = chosen;
     if (create_parts(s) != CSCD_OK) {
@@ -118,7 +121,7 @@ cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition
 }
 
 void cscd_sensors_destroy(cscd_sensors *s) {
-    if (s == NULL) return;
+    if (s == NULL || !reference_destroy(&s->references)) return;
     cscd_context *context = s->context;
     particles_free(&s->particles);
     random_particles_free(context, &s->random);
@@ -130,7 +133,9 @@ void cscd_sensors_destroy(cscd_sensors *s) {
     context_free_all(context, list_arrays(s));
     context_free(context, s->before);
     context_free(context, s->warnings);
+    partition_release(s->partition);
     context_free(context, s);
+    context_release(context);
 }
 
 /* ---- one interval ------------------------------------------------------------------------------------- */

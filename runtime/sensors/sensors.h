@@ -10,9 +10,10 @@
 #include "runtime/sensors/renewal.h"
 
 struct cscd_sensors {
+    reference_count references; /* the caller alone */
     cscd_context *context;
+    cscd_partition *partition; /* held, and with it its mesh: */
     const cscd_mesh *mesh;
-    cscd_partition *partition;
     cscd_sensor_options options;
 
     uint64_t

@@ -8,9 +8,10 @@
 #include "src/mesh/positions.h"
 
 struct cscd_line {
-    cscd_detector *detector;
-    double *x0, *x1, *reached; /* positions */
-    double reach, covered;     /* covered: all pairs that come within this distance are candidates */
+    reference_count references; /* the caller alone */
+    cscd_detector *detector;    /* held, and with it the context */
+    double *x0, *x1, *reached;  /* positions */
+    double reach, covered;      /* covered: all pairs that come within this distance are candidates */
     bool begun;
     double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
@@ -42,16 +43,19 @@ cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
         context_free(context, line);
         return context_out_of_memory(context);
     }
+    reference_begin(&line->references);
+    detector_hold(detector);
     *out = line;
     return CSCD_OK;
 }
 
 void cscd_line_destroy(cscd_line *line) {
-    if (line == NULL) return;
-    cscd_context *context = line->detector->context;
-    candidates_free(context, &line->candidates);
-    context_free_all(context, list_arrays(line));
-    context_free(context, line);
+    if (line == NULL || !reference_destroy(&line->references)) return;
+    cscd_detector *detector = line->detector;
+    candidates_free(detector->context, &line->candidates);
+    context_free_all(detector->context, list_arrays(line));
+    context_free(detector->context, line);
+    detector_release(detector);
 }
 
 /* ---- begin --------------------------------------------------------------------------------------------- */

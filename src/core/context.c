@@ -30,6 +30,7 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
         chosen.allocator.allocate(chosen.allocator.user, sizeof *context, MEMORY_ALIGNMENT);
     if (context == NULL) return CSCD_OUT_OF_MEMORY;
     memset(context, 0, sizeof *context);
+    reference_begin(&context->references);
     context->progress = progress_of(chosen.progress);
     context->simd = chosen.simd != CSCD_SIMD_AUTO ? chosen.simd : processor_best_simd();
     if (!memory_begin(&context->memory, chosen.allocator)) {
@@ -47,12 +48,23 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     return CSCD_OK;
 }
 
-void cscd_context_destroy(cscd_context *context) {
-    if (context == NULL) return;
+static void free_context(cscd_context *context) {
     parallel_destroy(&context->memory, context->threads);
     memory_end(&context->memory);
     cscd_allocator allocator = context->memory.allocator;
     allocator.release(allocator.user, context, sizeof *context);
+}
+
+void context_hold(cscd_context *context) {
+    reference_add(&context->references);
+}
+
+void context_release(cscd_context *context) {
+    if (reference_drop(&context->references)) free_context(context);
+}
+
+void cscd_context_destroy(cscd_context *context) {
+    if (context != NULL && reference_destroy(&context->references)) free_context(context);
 }
 
 const char *cscd_context_detail(const cscd_context *context) {
@@ -68,7 +80,7 @@ cscd_simd cscd_context_simd(const cscd_context *context) {
 }
 
 size_t cscd_context_bytes(const cscd_context *context) {
-    return context->memory.bytes;
+    return atomic_load_explicit(&context->memory.bytes, memory_order_relaxed);
 }
 
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...) {
@@ -81,7 +93,8 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 
 cscd_status context_out_of_memory(cscd_context *context) {
     return context_fail(context, CSCD_OUT_OF_MEMORY,
-                        "out of memory with %zu bytes in use; nothing was changed", context->memory.bytes);
+                        "out of memory with %zu bytes in use; nothing was changed",
+                        cscd_context_bytes(context));
 }
 
 cscd_status context_progress_status(cscd_context *context) {

@@ -4,14 +4,23 @@
 #include "src/core/memory.h"
 #include "src/core/parallel.h"
 #include "src/core/progress.h"
+#include "src/core/references.h"
 
+/* A context lives, with its allocator and threads, until the caller has destroyed it and the last object that was
+ * made from it is gone. */
 struct cscd_context {
+    reference_count references;
     host_memory memory;
     parallel *threads;
     progress progress;
     cscd_simd simd; /* never AUTO */
     char detail[512];
 };
+
+/* An object that is made from the context holds it, first of all, and lets go last: the memory of the context goes
+ * with it. */
+void context_hold(cscd_context *context);
+void context_release(cscd_context *context);
 
 /* These pass on to the functions of memory.h. */
 

@@ -29,7 +29,7 @@ cscd_allocator memory_system_allocator(void) {
 
 bool memory_begin(host_memory *m, cscd_allocator allocator) {
     m->allocator = allocator;
-    m->bytes = 0;
+    atomic_init(&m->bytes, 0);
     return pthread_mutex_init(&m->lock, NULL) == 0;
 }
 

@@ -4,13 +4,14 @@
 #include "cscd/cscd.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 enum { MEMORY_ALIGNMENT = 64 };
 
 typedef struct host_memory {
     cscd_allocator allocator;
     pthread_mutex_t lock;
-    size_t bytes; /* in use, headers included */
+    atomic_size_t bytes; /* in use, headers included; changed under the lock, read by any thread */
 } host_memory;
 
 /* The allocator for a host that has none of its own. */
@@ -21,7 +22,8 @@ bool memory_begin(host_memory *m, cscd_allocator allocator);
 void memory_end(host_memory *m);
 
 /* Zeroed memory for count elements of size bytes, 64-byte aligned; NULL when count * size overflows or the
- * allocator refuses. count 0 gives a block too. Any thread may call it. */
+ * allocator refuses. count 0 gives a block too. Any thread may call this and the following functions: a mesh
+ * that other contexts share is freed by whoever lets go of it last. */
 void *memory_allocate(host_memory *m, size_t count, size_t size);
 
 /* A block of new_count elements that begins with the first old_count of block; block is then freed, or,

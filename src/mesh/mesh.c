@@ -7,6 +7,12 @@
 /* Corners are numbered by 32 bits: 3 * triangle_count must fit. */
 enum { TRIANGLE_COUNT_MAX = (int)(UINT32_MAX / 3) };
 
+/* The mesh that its creator has, and the number of those who hold it. */
+typedef struct shared_mesh {
+    cscd_mesh mesh;
+    reference_count references;
+} shared_mesh;
+
 /* How messages name an object: "" if it is the only one, else for instance "object 2: ". */
 typedef struct object_name {
     char text[32];
@@ -139,9 +145,13 @@ static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *ob
                                cscd_mesh **out) {
     cscd_status status = check_objects(context, objects, count);
     if (status != CSCD_OK) return status;
-    cscd_mesh *mesh = context_allocate(context, 1, sizeof *mesh);
-    if (mesh == NULL) return context_out_of_memory(context);
+    shared_mesh *shared = context_allocate(context, 1, sizeof *shared);
+    if (shared == NULL) return context_out_of_memory(context);
+    context_hold(context);
+    reference_begin(&shared->references);
+    cscd_mesh *mesh = &shared->mesh;
     mesh->context = context;
+    mesh->shared = shared;
     if (build_mesh(mesh, objects, count) != CSCD_OK) {
         cscd_mesh_destroy(mesh);
         return context_out_of_memory(context);
@@ -177,11 +187,32 @@ static array_list mesh_arrays(cscd_mesh *mesh) {
                          ARRAY(mesh->objects, 0), ARRAY(mesh->obstacles, 0)}};
 }
 
+static void free_mesh(shared_mesh *shared) {
+    cscd_context *context = shared->mesh.context;
+    context_free_all(context, mesh_arrays(&shared->mesh));
+    context_free(context, shared);
+    context_release(context);
+}
+
+void mesh_hold(const cscd_mesh *mesh) {
+    reference_add(&mesh->shared->references);
+}
+
+void mesh_release(const cscd_mesh *mesh) {
+    shared_mesh *shared = mesh->shared;
+    if (reference_drop(&shared->references)) free_mesh(shared);
+}
+
 void cscd_mesh_destroy(cscd_mesh *mesh) {
     if (mesh == NULL) return;
-    cscd_context *context = mesh->context;
-    context_free_all(context, mesh_arrays(mesh));
-    context_free(context, mesh);
+    shared_mesh *shared = mesh->shared;
+    if (reference_destroy(&shared->references)) free_mesh(shared);
+}
+
+cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh) {
+    cscd_mesh view = *mesh;
+    view.context = context;
+    return view;
 }
 
 uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh) {

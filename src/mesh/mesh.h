@@ -3,8 +3,12 @@
 
 #include "src/core/context.h"
 
+/* What it says of the triangles never changes, and any number of objects in any contexts read it at the same time.
+ * Each of them has a copy of this struct, its own view of the mesh, whose context is the one that the object works
+ * in: it allocates there, runs tasks there and fails there. Arrays belong to the mesh that they were copied from. */
 struct cscd_mesh {
     cscd_context *context;
+    struct shared_mesh *shared; /* what all views have in common; NULL in a mesh that only a test has */
     uint32_t vertex_count, triangle_count, edge_count, component_count;
 
     uint32_t (*triangles)[3];
@@ -24,6 +28,18 @@ struct cscd_mesh {
         obstacles; /* per component: it is an obstacle, whose features are not tested with those of obstacles;
                       * NULL: there are no obstacles */
 };
+
+/* An object that keeps a mesh holds it, and with it the context whose allocator has its memory. */
+void mesh_hold(const cscd_mesh *mesh);
+void mesh_release(const cscd_mesh *mesh);
+
+/* The mesh as an object of the given context sees it, for as long as the mesh is held. */
+cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh);
+
+/* Are these views of one mesh? */
+static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
+    return a->shared == b->shared;
+}
 
 /* Builds edges, triangle_edges and both kinds of stars from the triangles. */
 cscd_status mesh_build_topology(cscd_mesh *mesh);

@@ -16,20 +16,40 @@ static array_list list_arrays(cscd_partition *p) {
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count) {
     cscd_partition *partition = context_allocate(mesh->context, 1, sizeof *partition);
     if (partition == NULL) return NULL;
+    reference_begin(&partition->references);
     partition->context = mesh->context;
-    partition->mesh = mesh;
+    partition->seen = mesh_seen_from(mesh->context, mesh);
+    partition->mesh = &partition->seen;
     partition->object_count = object_count;
     partition->part_count = part_count;
-    if (context_allocate_all(partition->context, list_arrays(partition))) return partition;
-    context_free(mesh->context, partition);
-    return NULL;
+    if (!context_allocate_all(partition->context, list_arrays(partition))) {
+        context_free(mesh->context, partition);
+        return NULL;
+    }
+    context_hold(partition->context);
+    mesh_hold(mesh);
+    return partition;
+}
+
+static void free_partition(cscd_partition *partition) {
+    cscd_context *context = partition->context;
+    cscd_mesh mesh = partition->seen;
+    context_free_all(context, list_arrays(partition));
+    context_free(context, partition);
+    mesh_release(&mesh);
+    context_release(context);
+}
+
+void partition_hold(cscd_partition *partition) {
+    reference_add(&partition->references);
+}
+
+void partition_release(cscd_partition *partition) {
+    if (reference_drop(&partition->references)) free_partition(partition);
 }
 
 void cscd_partition_destroy(cscd_partition *partition) {
-    if (partition == NULL) return;
-    cscd_context *context = partition->context;
-    context_free_all(context, list_arrays(partition));
-    context_free(context, partition);
+    if (partition != NULL && reference_destroy(&partition->references)) free_partition(partition);
 }
 
 uint32_t cscd_partition_object_count(const cscd_partition *partition) {

@@ -9,8 +9,10 @@ enum { PARTITION_NONE = UINT32_MAX };
 /* Objects, parts and the mesh never change; cells do when parts are renewed, and generation then grows.
  * Arrays of cells have room for one per vertex, so that renewing never moves them. */
 struct cscd_partition {
+    reference_count references;
     cscd_context *context;
-    const cscd_mesh *mesh;
+    cscd_mesh seen;        /* the mesh, which the partition holds, in this context */
+    const cscd_mesh *mesh; /* &seen */
     cscd_partition_options options;
 
     uint32_t object_count, part_count, cell_count;
@@ -36,6 +38,10 @@ struct cscd_partition {
 
 /* Returns a partition of zeros with all its arrays; NULL when out of memory. */
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count);
+
+/* Sensors hold their partition. */
+void partition_hold(cscd_partition *partition);
+void partition_release(cscd_partition *partition);
 
 /* Do the sensors watch this pair of parts? They watch parts of different objects unless both are obstacles,
  * and with the option `within` also different parts of one object that is no obstacle. */

@@ -28,22 +28,27 @@ static array_list list_arrays(cscd_plan *plan) {
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count) {
     cscd_plan *plan = context_allocate(mesh->context, 1, sizeof *plan);
     if (plan == NULL) return NULL;
+    reference_begin(&plan->references);
     plan->context = mesh->context;
     plan->mesh_hash = cscd_mesh_hash(mesh);
     plan->triangle_count = mesh->triangle_count;
     plan->component_count = mesh->component_count;
     plan->region_count = region_count;
     plan->method = method;
-    if (context_allocate_all(mesh->context, list_arrays(plan))) return plan;
-    context_free(mesh->context, plan);
-    return NULL;
+    if (!context_allocate_all(mesh->context, list_arrays(plan))) {
+        context_free(mesh->context, plan);
+        return NULL;
+    }
+    context_hold(plan->context);
+    return plan;
 }
 
 void cscd_plan_destroy(cscd_plan *plan) {
-    if (plan == NULL) return;
+    if (plan == NULL || !reference_destroy(&plan->references)) return;
     cscd_context *context = plan->context;
     context_free_all(context, list_arrays(plan));
     context_free(context, plan);
+    context_release(context);
 }
 
 cscd_method cscd_plan_method(const cscd_plan *plan) {

@@ -3,7 +3,9 @@
 
 #include "src/mesh/mesh.h"
 
+/* It says of its mesh what detectors need, and does not hold it; detectors copy what they need of the plan. */
 struct cscd_plan {
+    reference_count references; /* the caller alone */
     cscd_context *context;
     uint64_t mesh_hash;
     uint32_t triangle_count, component_count, region_count;

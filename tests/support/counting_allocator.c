@@ -2,6 +2,7 @@
 #include "tests/support/counting_allocator.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 counting_allocator counting_allocator_start(void) {
     return (counting_allocator){.fail_at = SIZE_MAX};
@@ -21,6 +22,8 @@ static void count_and_release(void *user, void *block, size_t size) {
     counting_allocator *counter = user;
     counter->live--;
     counter->bytes -= size;
+    memset(block, 0xdd, size); /* so that what is read after its release is noticed */
+    __asm__ volatile("" : : "r"(block) : "memory");
     free(block);
 }
 
