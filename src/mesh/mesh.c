@@ -7,6 +7,10 @@
 /* Corners are numbered by 32 bits: 3 * triangle_count must fit. */
 enum { TRIANGLE_COUNT_MAX = (int)(UINT32_MAX / 3) };
 
+/* Every vertex costs memory and time in many places, whether a triangle has it or not. A host may keep all its
+ * vertices in one array, of which a mesh uses a part: so many without a triangle take some ten milliseconds. */
+enum { SPARE_VERTICES = 1 << 24, SPARE_VERTICES_OF_TRIANGLE = 256 };
+
 /* The mesh that its creator has, and the number of those who hold it. */
 typedef struct shared_mesh {
     cscd_mesh mesh;
@@ -56,6 +60,14 @@ static cscd_status check_totals(cscd_context *context, uint64_t vertices, uint64
     if (vertices >= UINT32_MAX)
         return context_fail(context, CSCD_INVALID_MESH, "%llu vertices are too many: the ceiling is 2^32 - 2",
                             (unsigned long long)vertices);
+    uint64_t most = SPARE_VERTICES + triangles * SPARE_VERTICES_OF_TRIANGLE;
+    if (vertices > most)
+        return context_fail(
+            context, CSCD_INVALID_MESH,
+            "%llu vertices are too many for %llu triangle%s: each takes memory, so the ceiling "
+            "is 2^24 and %d more for each triangle; leave out vertices that no triangle has",
+            (unsigned long long)vertices, (unsigned long long)triangles, triangles == 1 ? "" : "s",
+            SPARE_VERTICES_OF_TRIANGLE);
     return CSCD_OK;
 }
 

@@ -1,6 +1,8 @@
 /* Edges and stars of a mesh, by counting sorts: linear in its size. */
 #include "src/mesh/mesh.h"
 
+#include <string.h>
+
 /* A corner c = 3 * triangle + i stands for the triangle's side from its vertex i to its vertex i + 1. */
 static uint32_t corner_vertex(const cscd_mesh *mesh, uint32_t corner) {
     return mesh->triangles[corner / 3][corner % 3];
@@ -20,11 +22,12 @@ static uint32_t side_larger(const cscd_mesh *mesh, uint32_t corner) {
     return a > b ? a : b;
 }
 
-/* A stable counting sort of corners by key. offsets has vertex_count + 1 zeros, and ends as the bounds of the
- * buckets. in == NULL stands for 0, 1, 2, ... */
+/* A stable counting sort of corners by key. in == NULL stands for 0, 1, 2, ... The mesh's vertex_star_offsets end
+ * as the bounds of the buckets. */
 static void sort_corners(const cscd_mesh *mesh, uint32_t (*key)(const cscd_mesh *, uint32_t),
-                         const uint32_t *in, uint32_t *out, uint32_t *offsets) {
-    uint32_t corner_count = mesh->triangle_count * 3;
+                         const uint32_t *in, uint32_t *out) {
+    uint32_t corner_count = mesh->triangle_count * 3, *offsets = mesh->vertex_star_offsets;
+    memset(offsets, 0, ((size_t)mesh->vertex_count + 1) * sizeof *offsets);
     for (uint32_t i = 0; i < corner_count; i++) offsets[key(mesh, in != NULL ? in[i] : i)]++;
     uint32_t sum = 0;
     for (uint32_t v = 0; v <= mesh->vertex_count; v++) {
@@ -68,17 +71,16 @@ static void number_edges(cscd_mesh *mesh, const uint32_t *sides) {
     mesh->edge_star_offsets[next] = corner_count;
 }
 
-/* The other arguments are scratch: one number per corner, and two per vertex and one more of each, zeroed. */
-static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger, uint32_t *offsets_larger,
-                               uint32_t *offsets_smaller) {
+/* by_larger is scratch: one number per corner. */
+static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger) {
     cscd_context *context = mesh->context;
     uint32_t corner_count = mesh->triangle_count * 3;
     array_list by_side = {
         {ARRAY(mesh->edge_stars, corner_count), ARRAY(mesh->triangle_edges, mesh->triangle_count)}};
     if (!context_allocate_all(context, by_side)) return CSCD_OUT_OF_MEMORY;
     uint32_t *sides = mesh->edge_stars;
-    sort_corners(mesh, side_larger, NULL, by_larger, offsets_larger);
-    sort_corners(mesh, side_smaller, by_larger, sides, offsets_smaller);
+    sort_corners(mesh, side_larger, NULL, by_larger);
+    sort_corners(mesh, side_smaller, by_larger, sides);
 
     mesh->edge_count = count_edges(mesh, sides);
     array_list by_edge = {
@@ -89,24 +91,21 @@ static cscd_status build_edges(cscd_mesh *mesh, uint32_t *by_larger, uint32_t *o
     return CSCD_OK;
 }
 
-static cscd_status build_vertex_stars(cscd_mesh *mesh) {
+static void build_vertex_stars(cscd_mesh *mesh) {
+    sort_corners(mesh, corner_vertex, NULL, mesh->vertex_stars);
+    corners_to_triangles(mesh->vertex_stars, mesh->triangle_count * 3);
+}
+
+/* Offsets by vertex are the only memory that vertices without a triangle cost. */
+cscd_status mesh_build_topology(cscd_mesh *mesh) {
     size_t corner_count = (size_t)mesh->triangle_count * 3;
     array_list stars = {{ARRAY(mesh->vertex_stars, corner_count),
                          ARRAY(mesh->vertex_star_offsets, (size_t)mesh->vertex_count + 1)}};
     if (!context_allocate_all(mesh->context, stars)) return CSCD_OUT_OF_MEMORY;
-    sort_corners(mesh, corner_vertex, NULL, mesh->vertex_stars, mesh->vertex_star_offsets);
-    corners_to_triangles(mesh->vertex_stars, (uint32_t)corner_count);
-    return CSCD_OK;
-}
-
-cscd_status mesh_build_topology(cscd_mesh *mesh) {
-    cscd_context *context = mesh->context;
-    uint32_t *by_larger, *offsets_larger, *offsets_smaller;
-    array_list scratch = {{ARRAY(by_larger, (size_t)mesh->triangle_count * 3),
-                           ARRAY(offsets_larger, (size_t)mesh->vertex_count + 1),
-                           ARRAY(offsets_smaller, (size_t)mesh->vertex_count + 1)}};
-    if (!context_allocate_all(context, scratch)) return CSCD_OUT_OF_MEMORY;
-    cscd_status status = build_edges(mesh, by_larger, offsets_larger, offsets_smaller);
-    context_free_all(context, scratch);
-    return status == CSCD_OK ? build_vertex_stars(mesh) : status;
+    uint32_t *by_larger = context_allocate(mesh->context, corner_count, sizeof *by_larger);
+    if (by_larger == NULL) return CSCD_OUT_OF_MEMORY;
+    cscd_status status = build_edges(mesh, by_larger);
+    context_free(mesh->context, by_larger);
+    if (status == CSCD_OK) build_vertex_stars(mesh);
+    return status;
 }

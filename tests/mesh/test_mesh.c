@@ -312,6 +312,26 @@ static void refused_descriptions(void **state) {
 
 /* ---- memory ---- */
 
+/* Vertices without a triangle cost one number each, and a count that can only be a mistake costs nothing. */
+static void absurd_vertex_counts(void **state) {
+    (void)state;
+    static const uint32_t one[] = {0, 1, 2};
+    const uint32_t most = (1u << 24) + 256;
+    counting_allocator counter = counting_allocator_start();
+    cscd_context *context = new_context(&counter);
+    size_t calls = counter.calls;
+    check_refused(context, &(cscd_mesh_desc){most + 1, 1, one}, CSCD_INVALID_MESH,
+                  "16777473 vertices are too many for 1 triangle:");
+    check_refused(context, &(cscd_mesh_desc){(uint32_t)-6, 1, one}, CSCD_INVALID_MESH,
+                  "leave out vertices that no triangle has");
+    assert_int_equal(counter.calls, calls);
+    cscd_mesh *mesh = NULL;
+    assert_int_equal(cscd_mesh_create(context, &(cscd_mesh_desc){most, 1, one}, &mesh), CSCD_OK);
+    assert_true(counter.peak < (size_t)most * 4 + 10000);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
 /* Lets allocation number fail_at of cscd_mesh_create fail; the next try must succeed. Returns false when
  * there were not so many allocations. */
 static bool fail_allocation(const shape *s, size_t fail_at, const expected_component *expected) {
@@ -357,6 +377,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closed_surfaces),
         cmocka_unit_test(isolated_vertices),
+        cmocka_unit_test(absurd_vertex_counts),
         cmocka_unit_test(two_components),
         cmocka_unit_test(open_surfaces),
         cmocka_unit_test(moebius_strip),

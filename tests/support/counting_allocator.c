@@ -15,6 +15,7 @@ static void *count_and_allocate(void *user, size_t size, size_t alignment) {
     if (block == NULL) return NULL;
     counter->live++;
     counter->bytes += size;
+    if (counter->bytes > counter->peak) counter->peak = counter->bytes;
     return block;
 }
 
