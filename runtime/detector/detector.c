@@ -161,6 +161,8 @@ static void free_detector(cscd_detector *d) {
     result_buffer_free(context, &d->intersections);
     context_free_all(context, list_arrays(d));
     context_free(context, d->reached);
+    context_free(context, d->pair_scratch);
+    context_free(context, d->vertex_scratch);
     context_free(context, d);
     mesh_release(&mesh);
     context_release(context);

@@ -51,6 +51,10 @@ struct cscd_detector {
 
     result_buffer contacts, proximities, intersections;
     double *reached; /* the positions that cscd_detector_max_step tries; NULL before its first call */
+    void *
+        pair_scratch; /* of displacement bounds and truncation, per near pair; NULL before their first call */
+    size_t pair_scratch_size;
+    void *vertex_scratch; /* of truncation, per vertex; NULL before its first call */
 
     cscd_timings timings;
     cscd_counters counters;

@@ -97,8 +97,8 @@ interval_search proximity_search(cscd_detector *d, const double *positions, doub
     return interval_search_begin(&d->space, positions, positions, proximity_limit(distance));
 }
 
-static cscd_status find_proximities(cscd_detector *d, const double *positions, double distance,
-                                    cscd_proximities *out) {
+cscd_status proximity_find(cscd_detector *d, const double *positions, double distance,
+                           cscd_proximities *out) {
     interval_search search = proximity_search(d, positions, distance);
     cscd_status status = CSCD_OK;
     if (d->stages->brute_force) {
@@ -122,7 +122,7 @@ cscd_status cscd_detector_near(cscd_detector *detector, const double *positions,
     if (status != CSCD_OK) return status;
     cscd_proximities found;
     detector_begin_call(detector);
-    status = find_proximities(detector, positions, distance, &found);
+    status = proximity_find(detector, positions, distance, &found);
     if (status != CSCD_OK) return detector_fail_call(detector, status);
     *out = found;
     return CSCD_OK;

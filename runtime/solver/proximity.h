@@ -15,3 +15,6 @@ interval_search proximity_search(cscd_detector *d, const double *positions, doub
 
 /* Lists what the search has found, in the detector's memory, sorted by (kind, a, b). */
 cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_proximities *out);
+
+/* Finds all pairs within the distance and lists them so. The positions have been checked. */
+cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_proximities *out);

@@ -1,0 +1,20 @@
+/* Rounding to the scalar in which the caller stores a number. */
+#pragma once
+
+#include "src/core/check.h"
+
+#include <math.h>
+
+/* The number of the scalar that is nearest to x. Positions below the least length become 0, as no position may be nearer
+ * to it. */
+static inline double stored_coordinate(double x, cscd_scalar scalar) {
+    if (scalar == CSCD_SCALAR_FLOAT) return (double)(float)x;
+    return fabs(x) < LENGTH_MIN ? 0.0 : x;
+}
+
+/* The largest number of the scalar that is not above x >= 0. */
+static inline double stored_below(double x, cscd_scalar scalar) {
+    if (scalar != CSCD_SCALAR_FLOAT) return x;
+    float rounded = (float)x;
+    return (double)((double)rounded > x ? nextafterf(rounded, 0.0f) : rounded);
+}
