@@ -1,0 +1,109 @@
+/* Planes that divide the space between near pairs, and how far each vertex may go towards them. */
+#include "runtime/solver/division_planes.h"
+
+#include "runtime/ccd/pair_plane.h"
+#include "src/core/vec3.h"
+
+#include <string.h>
+
+/* What is given to the two sides of a plane together (lemma 4). */
+static const double share_of_gap = 1.0 - 0x1p-20;
+
+/* What an obstacle needs, so that rounding does not stop it just before its end. */
+static const double rounded_up = 1.0 + 0x1p-40;
+
+typedef struct division_work {
+    const cscd_detector *detector;
+    const double *x0, *x1;
+    const cscd_proximities *near;
+    double farthest; /* that a vertex may go anyway */
+    division_plane *planes;
+} division_work;
+
+/* How far the two sides want to go beyond where they are, and may go for all other pairs. */
+typedef struct approach {
+    double a, b;
+} approach;
+
+static double height_above_side(const pair_plane *plane, const division_plane *out, int i) {
+    return division_sign(out, i) < 0.0 ? plane->height[i] - plane->low_a : plane->high_b - plane->height[i];
+}
+
+static approach approach_of(const division_work *w, const pair_plane *plane, const division_plane *out) {
+    approach wanted = {0.0, 0.0};
+    for (int i = 0; i < 4; i++) {
+        const double *x0 = w->x0 + (size_t)out->vertices[i] * 3, *x1 = w->x1 + (size_t)out->vertices[i] * 3;
+        double motion[3], sign = division_sign(out, i);
+        vec3_subtract(x1, x0, motion);
+        double length = sqrt(vec3_dot(motion, motion)),
+               share = length > w->farthest ? w->farthest / length : 1.0;
+        double towards = sign * share * vec3_dot(plane->normal, motion) - height_above_side(plane, out, i);
+        double *side = sign < 0.0 ? &wanted.a : &wanted.b;
+        *side = max_of(*side, towards);
+    }
+    return wanted;
+}
+
+static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
+    return component_is_obstacle(mesh, vertex_component(mesh, vertex));
+}
+
+/* Returns what a gets of a room that both sides share. */
+static double share_of_a(const cscd_mesh *mesh, const division_plane *plane, const approach *wanted,
+                         double room) {
+    double sum = wanted->a + wanted->b;
+    if (sum <= room) return wanted->a + 0.5 * (room - sum);
+    if (vertex_of_obstacle(mesh, plane->vertices[0])) return min_of(wanted->a * rounded_up, room);
+    if (vertex_of_obstacle(mesh, plane->vertices[3])) return room - min_of(wanted->b * rounded_up, room);
+    return room * (wanted->a / sum);
+}
+
+/* The vertices of a pair without a plane stay where they are. A pair within its separation has a plane and no room, so
+ * that its sides may part. */
+static void divide_pair(const division_work *w, const cscd_proximity *pair, division_plane *out) {
+    const cscd_detector *d = w->detector;
+    cscd_stencil stencil = near_pair_stencil(d->mesh, pair);
+    double points[4][3];
+    pair_plane plane;
+    near_pair_load(w->x0, &stencil, points);
+    pair_plane_find(pair->kind, (const double(*)[3])points, &plane);
+    *out = (division_plane){.kind = pair->kind, .room = {-1.0, -1.0, -1.0, -1.0}};
+    memcpy(out->vertices, stencil.vertices, sizeof out->vertices);
+    if (!(plane.gap > 0.0)) return;
+    double room = max_of(plane.gap - near_pair_separation(d, pair), 0.0) * share_of_gap;
+    approach wanted = approach_of(w, &plane, out);
+    double for_a = share_of_a(d->mesh, out, &wanted, room), for_b = max_of(room - for_a, 0.0);
+    memcpy(out->normal, plane.normal, sizeof out->normal);
+    for (int i = 0; i < 4; i++)
+        out->room[i] = (division_sign(out, i) < 0.0 ? for_a : for_b) + height_above_side(&plane, out, i);
+}
+
+static void divide_share(void *data, uint32_t index) {
+    const division_work *w = data;
+    size_t begin = (size_t)index * NEAR_PAIRS_PER_SHARE, end = begin + NEAR_PAIRS_PER_SHARE;
+    for (size_t i = begin; i < end && i < w->near->count; i++)
+        divide_pair(w, &w->near->items[i], &w->planes[i]);
+}
+
+/* Lists the limits of each vertex in the order of the pairs. */
+static void link_limits(division_planes *p, uint32_t vertex_count) {
+    for (uint32_t v = 0; v < vertex_count; v++) p->first[v] = DIVISION_NONE;
+    for (size_t i = p->count; i-- > 0;) {
+        division_plane *plane = &p->planes[i];
+        for (int j = 4; j-- > 0;) {
+            plane->next[j] = p->first[plane->vertices[j]];
+            p->first[plane->vertices[j]] = 4 * i + (size_t)j;
+        }
+    }
+}
+
+cscd_status division_planes_find(cscd_detector *d, const double *x0, const double *x1, double farthest,
+                                 const cscd_proximities *near, size_t *first, division_planes *out) {
+    *out = (division_planes){near_pairs_scratch(d, near->count, sizeof *out->planes), near->count, first};
+    if (out->planes == NULL) return CSCD_OUT_OF_MEMORY;
+    division_work work = {d, x0, x1, near, farthest, out->planes};
+    uint32_t shares = (uint32_t)((near->count + NEAR_PAIRS_PER_SHARE - 1) / NEAR_PAIRS_PER_SHARE);
+    parallel_run(d->context->threads, shares, divide_share, &work);
+    link_limits(out, d->mesh->vertex_count);
+    return CSCD_OK;
+}

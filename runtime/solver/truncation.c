@@ -1,0 +1,187 @@
+/* Shortens the motion of each vertex, so that planes between near pairs keep these apart. */
+#include "runtime/solver/truncation.h"
+
+#include "runtime/culling/tainting.h"
+#include "runtime/solver/division_planes.h"
+#include "runtime/solver/stored_scalar.h"
+#include "src/core/vec3.h"
+
+#include <string.h>
+
+/* Rounding may carry a vertex across a plane that its shortened motion just reaches. Then it goes a little less far, and
+ * at last it stays. Floats whose spacing is a hundredth of a gap need the fifth or sixth of these. */
+static const double shorter[] = {1.0,    1.0 - 0x1p-40, 1.0 - 0x1p-20, 1.0 - 0x1p-10, 1.0 - 0x1p-6,
+                                 0.9375, 0.75,          0.5,           0.25,          0.0625};
+enum { SHORTER_COUNT = sizeof shorter / sizeof *shorter };
+
+typedef struct truncation_work {
+    const cscd_mesh *mesh;
+    const wanted_motion *motion;
+    division_planes planes;
+    double farthest; /* that a vertex may go, so that pairs that are not near stay apart */
+    double *end;
+    double *shares; /* per vertex: of its motion */
+} truncation_work;
+
+/* ---- one vertex ---------------------------------------------------------------------------------------- */
+
+/* Lemma 5: with 2^-50 of the products' magnitudes added, the sum that is computed is no less than the exact one. */
+static bool keeps_side(const division_plane *plane, int place, const double moved[3]) {
+    double sum = 0.0, magnitude = 0.0;
+    for (int k = 0; k < 3; k++) {
+        sum += plane->normal[k] * moved[k];
+        magnitude += fabs(plane->normal[k] * moved[k]);
+    }
+    return division_sign(plane, place) * sum + 0x1p-50 * magnitude <= plane->room[place];
+}
+
+static bool keeps_sides(const truncation_work *w, size_t vertex, const double moved[3]) {
+    if (!(sqrt(vec3_dot(moved, moved)) * (1.0 + 0x1p-50) <= w->farthest)) return false;
+    for (size_t i = w->planes.first[vertex]; i != DIVISION_NONE;) {
+        const division_plane *plane = &w->planes.planes[i / 4];
+        if (!keeps_side(plane, (int)(i % 4), moved)) return false;
+        i = plane->next[i % 4];
+    }
+    return true;
+}
+
+/* Returns the share of the motion that reaches the first plane, up to rounding. */
+static double share_to_planes(const truncation_work *w, size_t vertex, const double motion[3]) {
+    double length = sqrt(vec3_dot(motion, motion));
+    double share = length > w->farthest ? w->farthest / length : 1.0;
+    for (size_t i = w->planes.first[vertex]; i != DIVISION_NONE;) {
+        const division_plane *plane = &w->planes.planes[i / 4];
+        double room = plane->room[i % 4];
+        double towards = division_sign(plane, (int)(i % 4)) * vec3_dot(plane->normal, motion);
+        if (room < 0.0) return 0.0;
+        if (towards * share > room) share = room / towards;
+        i = plane->next[i % 4];
+    }
+    return share;
+}
+
+/* Writes where the vertex is after this share of its motion, as it is stored, and returns how far it has moved. */
+static void place_vertex(const double x0[3], const double x1[3], double share, cscd_scalar scalar,
+                         double end[3], double moved[3]) {
+    for (int k = 0; k < 3; k++) {
+        end[k] = share == 1.0 ? x1[k] : stored_coordinate(x0[k] + share * (x1[k] - x0[k]), scalar);
+        moved[k] = end[k] - x0[k];
+    }
+}
+
+/* Returns the share of the motion that the vertex goes. */
+static double truncate_vertex(const truncation_work *w, size_t vertex, cscd_scalar scalar, double end[3]) {
+    const double *x0 = w->motion->x0 + vertex * 3, *x1 = w->motion->x1 + vertex * 3;
+    double moved[3];
+    place_vertex(x0, x1, 1.0, scalar, end, moved);
+    if (vec3_largest(moved) == 0.0) return 1.0;
+    double reach = share_to_planes(w, vertex, moved);
+    for (int i = 0; i < SHORTER_COUNT && reach > 0.0; i++) {
+        double share = reach * shorter[i];
+        place_vertex(x0, x1, share, scalar, end, moved);
+        if (vec3_largest(moved) == 0.0) break;
+        if (keeps_sides(w, vertex, moved)) return share;
+    }
+    memcpy(end, x0, sizeof(double[3]));
+    return 0.0;
+}
+
+/* ---- all vertices -------------------------------------------------------------------------------------- */
+
+/* The result may lie where x1 does, so a vertex is written when its own x1 is no longer needed. */
+static void truncate_object(const truncation_work *w, uint32_t object, size_t begin, size_t end) {
+    const cscd_object *of = &w->mesh->objects[object];
+    cscd_scalar scalar = w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
+    size_t first = of->first_vertex, last = first + of->vertex_count;
+    for (size_t v = first > begin ? first : begin; v < last && v < end; v++) {
+        double reached[3];
+        w->shares[v] = truncate_vertex(w, v, scalar, reached);
+        memcpy(w->end + v * 3, reached, sizeof reached);
+    }
+}
+
+static void truncate_share(void *data, uint32_t index) {
+    const truncation_work *w = data;
+    size_t begin = (size_t)index * VERTICES_PER_SHARE, end = begin + VERTICES_PER_SHARE;
+    for (uint32_t i = 0; i < w->mesh->object_count; i++) truncate_object(w, i, begin, end);
+}
+
+static void sum_up_vertices(const truncation_work *w, truncation_outcome *out) {
+    out->fraction = out->obstacle_fraction = 1.0;
+    for (uint32_t i = 0; i < w->mesh->object_count; i++) {
+        const cscd_object *of = &w->mesh->objects[i];
+        for (uint32_t v = of->first_vertex; v < of->first_vertex + of->vertex_count; v++) {
+            double share = w->shares[v];
+            out->shortened += share < 1.0;
+            out->fraction = min_of(out->fraction, share);
+            if (of->obstacle) out->obstacle_fraction = min_of(out->obstacle_fraction, share);
+        }
+    }
+}
+
+/* Keeps the pairs that no plane divides, in order. */
+static cscd_proximities list_held(const division_planes *planes, cscd_proximity *items) {
+    size_t held = 0;
+    for (size_t i = 0; i < planes->count; i++) {
+        if (planes->planes[i].room[0] < 0.0) items[held++] = items[i];
+    }
+    return (cscd_proximities){items, held};
+}
+
+/* ---- what is known ------------------------------------------------------------------------------------- */
+
+/* Pairs that the caller leaves out may touch on the way, so their triangles lose what is known of them. */
+static void taint_left_out(cscd_detector *d) {
+    const search_space *s = &d->space;
+    tainting t = {d->mesh, &d->starts, &d->culling, d->wants_all_contacts, d->touched};
+    memset(d->wants_all_contacts, 0, d->mesh->component_count * sizeof *d->wants_all_contacts);
+    for (uint32_t i = 0; exclusions_any(&d->exclusions) && i < s->traversal.lane_count; i++) {
+        for (size_t j = 0; j < s->lanes[i].count; j++) {
+            const cscd_contact *near = &s->lanes[i].contacts[j];
+            if (exclusions_cover_features(&d->exclusions, near->kind, near->a, near->b))
+                tainting_look(&t, near, 1);
+        }
+    }
+}
+
+/* Lemma 6: triangles that were clean at x0 are so at the end. */
+static void carry_states_over(cscd_detector *d, const double *end) {
+    taint_left_out(d);
+    start_states_count(&d->starts);
+    memset(d->incomplete, 0, d->mesh->component_count * sizeof *d->incomplete);
+    start_states_end(&d->starts, end, d->incomplete);
+}
+
+/* ---- the call ------------------------------------------------------------------------------------------ */
+
+/* Per vertex: its first limit, and its share. */
+static cscd_status reserve_vertices(cscd_detector *d, size_t **first, double **shares) {
+    uint32_t count = d->mesh->vertex_count;
+    if (d->vertex_scratch == NULL)
+        d->vertex_scratch = context_allocate(d->context, count, sizeof **first + sizeof **shares);
+    if (d->vertex_scratch == NULL) return CSCD_OUT_OF_MEMORY;
+    *first = d->vertex_scratch;
+    *shares = (void *)(*first + count);
+    return CSCD_OK;
+}
+
+cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
+                            truncation_outcome *out) {
+    truncation_work work = {d->mesh, motion, .farthest = 0.5 * search_radius, .end = end};
+    size_t size = (size_t)d->mesh->vertex_count * 3, *first;
+    bool known = detector_culls(d) && start_states_hold(&d->starts, motion->x0);
+    cscd_proximities near;
+    cscd_status status = reserve_vertices(d, &first, &work.shares);
+    if (status == CSCD_OK) status = near_pairs_find(d, motion->x0, search_radius, &near);
+    if (status == CSCD_OK)
+        status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
+    if (status != CSCD_OK) return status;
+    uint32_t shares = (d->mesh->vertex_count + VERTICES_PER_SHARE - 1) / VERTICES_PER_SHARE;
+    parallel_run(d->context->threads, shares, truncate_share, &work);
+    *out = (truncation_outcome){.moved = false};
+    sum_up_vertices(&work, out);
+    for (size_t i = 0; i < size && !out->moved; i++) out->moved = end[i] != motion->x0[i];
+    out->held = list_held(&work.planes, d->proximities.items);
+    if (known) carry_states_over(d, end);
+    return CSCD_OK;
+}

@@ -1,0 +1,392 @@
+/* Truncated motions: what was apart stays apart on the way, by the exact tests of a step and by rational numbers. */
+#include "runtime/solver/division_planes.h"
+#include "runtime/solver/truncation.h"
+#include "tests/support/methods.h"
+#include "tests/support/random.h"
+#include "tests/support/rig.h"
+#include "tests/support/solver/exact_distance.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef double points[4][3];
+
+static scene interval; /* large; one test at a time */
+static double end[SCENE_VERTICES_MAX * 3];
+static bool stays[SCENE_VERTICES_MAX]; /* a pair at x0 holds the vertex */
+
+static rig rig_apart(double apart, cscd_method method, uint32_t threads) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = apart;
+    options.method = method_or_none(method);
+    return rig_create(&interval, threads, &options);
+}
+
+static truncation_outcome truncate_motion(const rig *r, double radius, const cscd_scalar *scalar) {
+    truncation_outcome out;
+    wanted_motion motion = {interval.x0, interval.x1, scalar};
+    detector_begin_call(r->detector);
+    assert_int_equal(truncation_find(r->detector, &motion, radius, end, &out), CSCD_OK);
+    return out;
+}
+
+static cscd_stencil stencil_of(const rig *r, const cscd_proximity *p) {
+    return cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
+}
+
+static void load_points(const cscd_stencil *s, const double *x, points out) {
+    for (int i = 0; i < 4; i++) memcpy(out[i], x + (size_t)s->vertices[i] * 3, sizeof out[i]);
+}
+
+/* ---- scenes -------------------------------------------------------------------------------------------- */
+
+static void make_stored(cscd_scalar scalar, double offset) {
+    for (size_t i = 0; i < (size_t)interval.vertex_count * 3; i++) {
+        interval.x0[i] += offset;
+        interval.x1[i] += offset;
+        if (scalar == CSCD_SCALAR_DOUBLE) continue;
+        interval.x0[i] = (double)(float)interval.x0[i];
+        interval.x1[i] = (double)(float)interval.x1[i];
+    }
+}
+
+/* Vertices that pairs without a plane hold stay in place. */
+static size_t note_held(const rig *r, const cscd_proximities *held) {
+    memset(stays, 0, sizeof stays);
+    for (size_t i = 0; i < held->count; i++) {
+        cscd_stencil s = stencil_of(r, &held->items[i]);
+        for (int j = 0; j < 4; j++) stays[s.vertices[j]] = true;
+    }
+    for (uint32_t v = 0; v < interval.vertex_count; v++)
+        if (stays[v])
+            assert_memory_equal(end + (size_t)v * 3, interval.x0 + (size_t)v * 3, sizeof(double[3]));
+    return held->count;
+}
+
+/* Every vertex is stored, has gone straight on, and not too far. */
+static void check_vertices(double radius, cscd_scalar scalar, const truncation_outcome *out) {
+    bool moved = false;
+    uint32_t reached = 0;
+    for (uint32_t v = 0; v < interval.vertex_count; v++) {
+        const double *x0 = interval.x0 + (size_t)v * 3, *x1 = interval.x1 + (size_t)v * 3,
+                     *x = end + (size_t)v * 3;
+        assert_true(points_within(x, x0, 0.5 * radius));
+        double way = 0.0, gone = 0.0, size = 0.0, off = 0.0;
+        for (int k = 0; k < 3; k++) {
+            way += (x1[k] - x0[k]) * (x1[k] - x0[k]);
+            gone += (x[k] - x0[k]) * (x1[k] - x0[k]);
+            size = fmax(size, fabs(x0[k]) + fabs(x1[k]));
+            if (scalar == CSCD_SCALAR_FLOAT) assert_true((double)(float)x[k] == x[k]);
+            moved = moved || x[k] != x0[k];
+        }
+        double share = way > 0.0 ? gone / way : 0.0;
+        for (int k = 0; k < 3; k++) off = fmax(off, fabs(x[k] - x0[k] - share * (x1[k] - x0[k])));
+        assert_true(off <= size * (scalar == CSCD_SCALAR_FLOAT ? 0x1p-23 : 0x1p-50));
+        reached += memcmp(x, x1, sizeof(double[3])) == 0;
+    }
+    assert_true(moved == out->moved);
+    assert_true(out->shortened + reached >= interval.vertex_count);
+}
+
+/* Exact steps see contacts of pairs that touch at x0 and stay, and no others. */
+static void check_no_contact(const truncation_outcome *out) {
+    static scene way;
+    way = interval;
+    memcpy(way.x1, end, sizeof end);
+    rig exact = rig_apart(0.0, CSCD_METHOD_NONE, 1);
+    cscd_contacts found = rig_step(&exact, &way);
+    for (size_t i = 0; i < found.count; i++) {
+        const cscd_contact *c = &found.items[i];
+        cscd_stencil s = cscd_mesh_stencil(exact.mesh, c->kind, c->a, c->b, c->u, c->v);
+        assert_true(out->held.count > 0 && c->toi == 0.0);
+        for (int j = 0; j < 4; j++) assert_true(stays[s.vertices[j]]);
+    }
+    rig_destroy(&exact);
+}
+
+/* A pair that was farther apart than the separation is so at the end; one that was not has come no nearer. */
+static void check_separation(const rig *r, double apart, double radius) {
+    cscd_proximities near;
+    assert_int_equal(cscd_detector_near(r->detector, interval.x0, radius + apart, &near), CSCD_OK);
+    for (size_t i = 0; i < near.count; i++) {
+        const cscd_proximity *p = &near.items[i];
+        cscd_stencil s = stencil_of(r, p);
+        points x0, x1;
+        load_points(&s, interval.x0, x0);
+        load_points(&s, end, x1);
+        if (distance_sign_of_sum(p->kind, (const double(*)[3])x0, apart, 0.0, 1.0) > 0)
+            assert_true(distance_sign_of_sum(p->kind, (const double(*)[3])x1, apart, 0.0, 1.0) > 0);
+        else
+            assert_true(distance_sign_of_sum(p->kind, (const double(*)[3])x1, p->distance * (1.0 - 1e-6), 0.0,
+                                             1.0) >= 0);
+    }
+}
+
+static void truncated_motions_keep_pairs_apart(void **state) {
+    (void)state;
+    static const double radii[] = {0.03, 0.1, 0.3};
+    size_t held = 0, shortened = 0, moved = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 0; seed < 6; seed++) {
+            scene_make((scene_family)family, seed, &interval);
+            cscd_scalar scalar = seed % 2 == 0 ? CSCD_SCALAR_DOUBLE : CSCD_SCALAR_FLOAT;
+            make_stored(scalar, seed == 5 ? 1000.0 : 0.0);
+            double radius = radii[seed / 2], apart = seed % 3 == 0 ? 0.0 : 0.1 * radius;
+            rig r = rig_apart(apart, CSCD_METHOD_NONE, 1);
+            truncation_outcome out = truncate_motion(&r, radius, &scalar);
+            held += note_held(&r, &out.held);
+            check_vertices(radius, scalar, &out);
+            check_no_contact(&out);
+            if (seed < 4) check_separation(&r, apart, radius);
+            shortened += out.shortened;
+            moved += out.moved;
+            rig_destroy(&r);
+        }
+    }
+    assert_true(held > 20 && shortened > 3000 && moved > 60);
+}
+
+/* Random motions, again and again from where the last one ended: nothing ever touches, and nothing gets stuck. */
+static void a_march_never_touches(void **state) {
+    (void)state;
+    random_seed(3);
+    for (int scalar_of = 0; scalar_of < 2; scalar_of++) {
+        cscd_scalar scalar = (cscd_scalar)scalar_of;
+        scene_make(SCENE_BENT_CAPSULE, 7, &interval);
+        make_stored(scalar, scalar == CSCD_SCALAR_FLOAT ? 1000.0 : 0.0);
+        rig r = rig_apart(0.0, CSCD_METHOD_NONE, 1);
+        size_t size = (size_t)interval.vertex_count * 3;
+        double travelled = 0.0;
+        for (int step = 0; step < 60; step++) {
+            for (size_t i = 0; i < size; i++) {
+                interval.x1[i] = interval.x0[i] + 0.03 * random_unit();
+                if (scalar == CSCD_SCALAR_FLOAT) interval.x1[i] = (double)(float)interval.x1[i];
+            }
+            truncation_outcome out = truncate_motion(&r, 0.1, &scalar);
+            note_held(&r, &out.held);
+            assert_int_equal(out.held.count, 0);
+            check_no_contact(&out);
+            for (size_t i = 0; i < size; i++) travelled += fabs(end[i] - interval.x0[i]);
+            memcpy(interval.x0, end, size * sizeof *end);
+        }
+        assert_true(travelled > 0.9 * 60.0 * (double)size * 0.015);
+        rig_destroy(&r);
+    }
+}
+
+/* Lemma 4: where each vertex goes as far as it may, a's lie above b's by more than the separation or, where they were not,
+ * by no less than they did. */
+static void check_plane(const division_plane *plane, double apart) {
+    long double low = INFINITY, high = -INFINITY, low_before = INFINITY, high_before = -INFINITY;
+    for (int i = 0; i < 4; i++) {
+        const double *x = interval.x0 + (size_t)plane->vertices[i] * 3;
+        const double *origin = interval.x0 + (size_t)plane->vertices[0] * 3;
+        long double height = 0.0L;
+        for (int k = 0; k < 3; k++)
+            height += (long double)plane->normal[k] * ((long double)x[k] - (long double)origin[k]);
+        assert_true(plane->room[i] >= 0.0);
+        bool of_a = division_sign(plane, i) < 0.0;
+        if (of_a) low = fminl(low, height - plane->room[i]), low_before = fminl(low_before, height);
+        if (!of_a) high = fmaxl(high, height + plane->room[i]), high_before = fmaxl(high_before, height);
+    }
+    bool pressed = low_before - high_before <= apart + 0x1p-40L;
+    assert_true(pressed ? low - high >= low_before - high_before - 0x1p-44L : low - high > apart);
+    assert_true(low > high);
+}
+
+static void planes_divide_near_pairs(void **state) {
+    (void)state;
+    static size_t first[SCENE_VERTICES_MAX];
+    size_t divided = 0;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 1, &interval);
+        rig r = rig_apart(0.01, CSCD_METHOD_NONE, 1);
+        cscd_proximities near;
+        division_planes planes;
+        assert_int_equal(near_pairs_find(r.detector, interval.x0, 0.25, &near), CSCD_OK);
+        assert_int_equal(
+            division_planes_find(r.detector, interval.x0, interval.x1, 0.125, &near, first, &planes),
+            CSCD_OK);
+        for (size_t i = 0; i < planes.count; i++) {
+            if (planes.planes[i].room[0] < 0.0) continue;
+            check_plane(&planes.planes[i], 0.01);
+            divided++;
+        }
+        rig_destroy(&r);
+    }
+    assert_true(divided > 1000);
+}
+
+/* ---- how much may move --------------------------------------------------------------------------------- */
+
+/* Two triangles, one above the other. */
+static void make_two_triangles(double apart) {
+    static const double corners[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+    interval.vertex_count = 6;
+    interval.triangle_count = 2;
+    for (uint32_t i = 0; i < 6; i++) {
+        interval.triangles[i] = i;
+        interval.x0[3 * i] = corners[i % 3][0];
+        interval.x0[3 * i + 1] = corners[i % 3][1];
+        interval.x0[3 * i + 2] = i < 3 ? 0.0 : apart;
+    }
+    memcpy(interval.x1, interval.x0, sizeof interval.x1);
+}
+
+static void move_triangle(uint32_t which, double by) {
+    for (uint32_t i = 3 * which; i < 3 * which + 3; i++) interval.x1[3 * i + 2] = interval.x0[3 * i + 2] + by;
+}
+
+/* The room between two sides goes to whoever needs it, down to the separation. */
+static void room_goes_to_whoever_needs_it(void **state) {
+    (void)state;
+    static const double wanted[][2] = {{0.0, -1.0}, {1.0, 0.0}, {0.2, -0.6}, {-0.5, -0.4}, {0.05, -0.02}};
+    static const double gone[][2] = {
+        {0.0, -0.15}, {0.15, 0.0}, {0.0375, -0.1125}, {-0.5, -0.15}, {0.05, -0.02}};
+    for (int i = 0; i < 5; i++) {
+        make_two_triangles(0.25);
+        move_triangle(0, wanted[i][0]);
+        move_triangle(1, wanted[i][1]);
+        rig r = rig_apart(0.1, CSCD_METHOD_NONE, 1);
+        truncation_outcome out = truncate_motion(&r, 2.0, NULL);
+        for (uint32_t v = 0; v < 6; v++)
+            assert_true(fabs(end[3 * v + 2] - interval.x0[3 * v + 2] - gone[i][v / 3]) <= 1e-6);
+        assert_int_equal(out.shortened, i < 2 ? 3 : i == 2 ? 6 : i == 3 ? 3 : 0);
+        if (i == 4) assert_memory_equal(end, interval.x1, 18 * sizeof *end);
+        rig_destroy(&r);
+    }
+}
+
+/* Pairs within the separation may part, and come no nearer. */
+static void pressed_pairs_may_part(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        make_two_triangles(0.05);
+        move_triangle(1, i == 0 ? 0.5 : -0.01);
+        rig r = rig_apart(0.1, CSCD_METHOD_NONE, 1);
+        truncation_outcome out = truncate_motion(&r, 2.0, NULL);
+        assert_int_equal(out.held.count, 0);
+        assert_true(out.moved == (i == 0));
+        assert_memory_equal(end, i == 0 ? interval.x1 : interval.x0, 18 * sizeof *end);
+        rig_destroy(&r);
+    }
+}
+
+/* Pairs that touch stay, and are listed. */
+static void touching_pairs_are_held(void **state) {
+    (void)state;
+    make_two_triangles(0.0);
+    move_triangle(1, 0.5);
+    rig r = rig_apart(0.0, CSCD_METHOD_NONE, 1);
+    truncation_outcome out = truncate_motion(&r, 2.0, NULL);
+    assert_true(out.held.count > 0 && !out.moved && out.fraction == 0.0 && out.shortened == 3);
+    assert_memory_equal(end, interval.x0, 18 * sizeof *end);
+    rig_destroy(&r);
+}
+
+/* An obstacle gets its way as far as the gap allows; cloth has the rest. */
+static void obstacles_come_first(void **state) {
+    (void)state;
+    static const uint32_t triangle[] = {0, 1, 2};
+    for (uint32_t obstacle = 0; obstacle < 2; obstacle++) {
+        make_two_triangles(0.25);
+        move_triangle(0, 0.2);
+        move_triangle(1, -0.2);
+        cscd_object_desc objects[2] = {{{3, 1, triangle}, obstacle == 0}, {{3, 1, triangle}, obstacle == 1}};
+        rig r = {NULL, NULL, NULL};
+        assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
+        assert_int_equal(cscd_mesh_create_scene(r.context, objects, 2, &r.mesh), CSCD_OK);
+        assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+        truncation_outcome out = truncate_motion(&r, 1.0, NULL);
+        assert_true(out.obstacle_fraction == 1.0 && fabs(out.fraction - 0.25) < 1e-5);
+        assert_int_equal(out.shortened, 3);
+        assert_memory_equal(end + obstacle * 9, interval.x1 + obstacle * 9, 9 * sizeof *end);
+        rig_destroy(&r);
+    }
+}
+
+/* ---- what is known, and the same for everyone ---------------------------------------------------------- */
+
+/* The step from where a truncated motion ended need not prove its start, and finds what a new detector finds. */
+static void the_end_is_known(void **state) {
+    (void)state;
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        scene_make(SCENE_BENT_CAPSULE, seed, &interval);
+        rig r = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
+        cscd_contacts found;
+        assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+        assert_int_equal(found.count, 0);
+        for (int i = 0; i < 3; i++) {
+            truncate_motion(&r, 0.1, NULL);
+            memcpy(interval.x0, end, sizeof end);
+        }
+        assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
+        assert_int_equal(cscd_detector_counters(r.detector).static_checks, 0);
+        assert_int_equal(cscd_detector_counters(r.detector).clean, interval.triangle_count);
+        rig fresh = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
+        cscd_contacts again = rig_step(&fresh, &interval);
+        assert_int_equal(found.count, again.count);
+        for (size_t i = 0; i < found.count; i++)
+            assert_memory_equal(&found.items[i], &again.items[i], sizeof *found.items);
+        rig_destroy(&r);
+        rig_destroy(&fresh);
+    }
+}
+
+static bool ignore_all(void *user, uint32_t a, uint32_t b) {
+    return user == NULL && a < b;
+}
+
+/* Pairs that are left out may pass through each other, so what is near such a pair is checked anew. */
+static void pairs_left_out_leave_nothing_known(void **state) {
+    (void)state;
+    scene_make(SCENE_BENT_CAPSULE, 0, &interval);
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_SINGLE;
+    options.ignore = ignore_all;
+    rig r = rig_create(&interval, 1, &options);
+    cscd_contacts found;
+    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    truncation_outcome out = truncate_motion(&r, 4.0, NULL);
+    assert_int_equal(out.shortened, 0);
+    memcpy(interval.x0, end, sizeof end);
+    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_true(cscd_detector_counters(r.detector).static_checks > 0);
+    rig_destroy(&r);
+}
+
+static void truncation_is_the_same_for_all_threads_and_methods(void **state) {
+    (void)state;
+    static double first[SCENE_VERTICES_MAX * 3];
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        scene_make(seed % 2 == 0 ? SCENE_BENT_CAPSULE : SCENE_SOUP, seed, &interval);
+        size_t size = (size_t)interval.vertex_count * 3 * sizeof *end;
+        for (int i = 0; i < 3; i++) {
+            rig r = rig_apart(0.01, i == 2 ? CSCD_METHOD_BRUTE : CSCD_METHOD_NONE, i == 1 ? 4 : 1);
+            truncate_motion(&r, 0.2, NULL);
+            if (i == 0)
+                memcpy(first, end, size);
+            else
+                assert_memory_equal(first, end, size);
+            rig_destroy(&r);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(truncated_motions_keep_pairs_apart),
+        cmocka_unit_test(a_march_never_touches),
+        cmocka_unit_test(planes_divide_near_pairs),
+        cmocka_unit_test(room_goes_to_whoever_needs_it),
+        cmocka_unit_test(pressed_pairs_may_part),
+        cmocka_unit_test(touching_pairs_are_held),
+        cmocka_unit_test(obstacles_come_first),
+        cmocka_unit_test(the_end_is_known),
+        cmocka_unit_test(pairs_left_out_leave_nothing_known),
+        cmocka_unit_test(truncation_is_the_same_for_all_threads_and_methods),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
