@@ -1,7 +1,8 @@
 # cscd: `make demo` and `make test` do all their own set-up; `make help` lists the rest.
 #
-#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   WERROR=1   `make -j` as usual
+#   CONFIG=release|debug|sanitize|tsan|scalar   CC=gcc|clang   GSL=0   CHARGE=0   WERROR=1   `make -j` as usual
 # GSL=0 builds without GSL (GPL-3): with our own guesses of cubic roots, and the same results, bit for bit.
+# CHARGE=0 leaves out what makes charge plans, and with it LAPACKE and OpenBLAS; plan files with charge are read all the same.
 # One build folder per configuration; the release tool is also linked as ./cscd.
 
 CONFIG  ?= release
@@ -10,8 +11,9 @@ CC      := gcc
 endif
 WERROR  ?= 0
 GSL     ?= 1
+CHARGE  ?= 1
 BUILD_ROOT ?= build
-BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)
+BUILD   := $(BUILD_ROOT)/$(CONFIG)$(if $(filter 0,$(GSL)),-without-gsl)$(if $(filter 0,$(CHARGE)),-without-charge)
 
 OPTIMISE_release  := -O3 -g -DNDEBUG
 OPTIMISE_debug    := -O0 -g3
@@ -43,13 +45,19 @@ LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
-CORE_LIBS  := $(if $(filter 0,$(GSL)),,-lgsl) -llapacke -lopenblas -lm
-TOOL_LIBS  := -lpng -lz -ljson-c $(CORE_LIBS)
-TEST_LIBS  := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS)
+# libcscd.so opens libcscd-charge.so when it needs it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is in libc,
+# -ldl is an empty archive.)
+SHARED_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) -lm -ldl
+CHARGE_LIBS := -llapacke -lopenblas -lm
+STATIC_LIBS := $(if $(filter 0,$(GSL)),,-lgsl) $(if $(filter 0,$(CHARGE)),-lm -ldl,$(CHARGE_LIBS))
+TOOL_LIBS   := -lpng -lz -ljson-c $(STATIC_LIBS)
+TEST_LIBS   := -lcmocka -lflint-arb -lflint -lgmp $(TOOL_LIBS) $(CHARGE_LIBS)
 
-# A file that ends in _simd.c is compiled once per instruction set.
+# A file that ends in _simd.c is compiled once per instruction set. Charge is a library of its own.
+CHARGE_SOURCES  := $(wildcard preprocess/charge/*.c)
 CORE_FILES      := $(wildcard src/core/*.c src/mesh/*.c preprocess/*.c preprocess/*/*.c runtime/*/*.c runtime/*/*/*.c)
-CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c,$(CORE_FILES))
+CORE_SOURCES    := $(filter-out %_simd.c runtime/ccd/cubic_guess_$(if $(filter 0,$(GSL)),gsl,own).c \
+                     preprocess/charge_library.c $(CHARGE_SOURCES),$(CORE_FILES))
 KERNEL_SOURCES  := $(filter %_simd.c,$(CORE_FILES))
 # What commands of the tool share, and the commands.
 COMMON_SOURCES  := $(wildcard src/io/*.c src/tool/picture/*.c src/tool/common/*.c src/tool/report/*.c)
@@ -58,7 +66,8 @@ SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 # `rm -r runtime/baselines`, and its lines in runtime/detector/method_table.c: what needs them is not built then.
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
-NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c) \
+NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
@@ -74,7 +83,7 @@ MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
-SOURCES := $(CORE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
+SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
            $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
 
 # One short line per file; V=1 shows the commands.
@@ -86,15 +95,20 @@ say = $(if $(findstring s,$(firstword -$(MAKEFLAGS))),@:,@echo)
 VERSION := $(shell awk '/define CSCD_VERSION_/ {print $$3}' include/cscd/cscd.h | paste -sd .)
 MAJOR   := $(firstword $(subst ., ,$(VERSION)))
 
-# Objects have a folder of their own: a program may have the name of the folder of its parts.
-OBJECTS := $(BUILD)/objects
+# Objects have a folder of their own: a program may have the name of the folder of its parts. Builds with GSL=0 and CHARGE=0
+# link others of the same objects.
+OBJECTS := $(BUILD_ROOT)/$(CONFIG)/objects
 objects = $(patsubst %.c,$(OBJECTS)/%.o,$(1))
 KERNEL_OBJECTS := $(foreach level,$(LEVELS),$(patsubst %.c,$(OBJECTS)/%.$(level).o,$(KERNEL_SOURCES)))
 CORE_OBJECTS := $(call objects,$(CORE_SOURCES)) $(KERNEL_OBJECTS)
+CHARGE_OBJECTS := $(call objects,$(filter-out %/charge_export.c,$(CHARGE_SOURCES)))
+LINKED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.linked.o $(CHARGE_OBJECTS)
+OPENED_OBJECTS := $(CORE_OBJECTS) $(OBJECTS)/preprocess/charge_library.opened.o
 COMMON_OBJECTS := $(call objects,$(COMMON_SOURCES))
 IO_OBJECTS     := $(call objects,$(filter src/io/%,$(COMMON_SOURCES)))
 LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/libcscd.so.$(VERSION)
+CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
 TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
 # Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
@@ -124,42 +138,48 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: packages
+# Installs no package: it says which are missing.
+all:
+	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages --tell build
 	@$(MAKE) --no-print-directory tool library
 
 tool: $(TOOL)
 	@if [ "$(BUILD)" = build/release ]; then ln -sfn $(TOOL) cscd; fi
 
-library: $(LIBRARY) $(SHARED)
+library: $(LIBRARY) $(SHARED) $(CHARGE_SHARED)
 
-# Installs what is built and builds the rest; it needs no network and no package but those of `make`.
+# Installs what is built and builds the rest; it needs no network and no package but those of `make`, and install-library
+# none but those of the library.
 PREFIX     ?= /usr/local
 BINDIR     ?= $(PREFIX)/bin
 LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 MANDIR     ?= $(PREFIX)/share/man
-INSTALLER = BUILD='$(BUILD)' VERSION='$(VERSION)' STATIC_LIBS='$(strip $(CORE_LIBS)) -pthread' \
+INSTALLER = BUILD='$(BUILD)' VERSION='$(VERSION)' STATIC_LIBS='$(strip $(STATIC_LIBS)) -pthread' CHARGE='$(CHARGE)' \
             POINTER_SIZE='$(shell echo __SIZEOF_POINTER__ | $(CC) $(CFLAGS) -E -P -)' DESTDIR='$(DESTDIR)' \
             BINDIR='$(BINDIR)' LIBDIR='$(LIBDIR)' INCLUDEDIR='$(INCLUDEDIR)' MANDIR='$(MANDIR)' src/packaging/install.sh
-install: $(TOOL) $(LIBRARY) $(SHARED)
+install: $(TOOL) library
 	@$(INSTALLER) install
+
+install-library: library
+	@$(INSTALLER) install-library
 
 uninstall:
 	@$(INSTALLER) uninstall
 
 # The functions of the library as HTML, from the comments of the headers; a warning of doxygen is an error.
 reference:
-	@GSL=$(GSL) .ci/packages reference
+	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages reference
 	@mkdir -p build/reference
 	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
 
 # Installs what the build or the tests need and this machine lacks.
 packages:
-	@GSL=$(GSL) .ci/packages
+	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages
 
 demo: packages
 	@$(MAKE) --no-print-directory tool $(BUILD)/models/record
@@ -241,7 +261,7 @@ performance: packages
 
 # The broad phase beside that of Embree (Debian: libembree-dev), which nothing else needs.
 bench-embree:
-	@GSL=$(GSL) .ci/packages embree
+	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages embree
 	@$(MAKE) --no-print-directory $(BUILD)/benchmarks/embree
 	@$(BUILD)/benchmarks/embree $(EMBREE)
 
@@ -276,8 +296,9 @@ help:
 	@echo 'make test      build and run every test (CONFIG=sanitize: with sanitizers; ONLY="bvh line_search": of these rooms or names)'
 	@echo 'make test-without-baselines   build and test what is left when runtime/baselines is removed'
 	@echo 'make test-threads   the tests that use threads, under the thread sanitizer'
-	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so'
-	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make uninstall'
+	@echo 'make           build the tool (./cscd), build/release/libcscd.a and libcscd.so; make library builds these alone'
+	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans'
+	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
 	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
@@ -290,7 +311,7 @@ help:
 	@echo 'make format    clang-format all sources; make clean removes build/'
 
 # The library is one relocatable object in which everything but the public API is local.
-$(LIBRARY): $(CORE_OBJECTS)
+$(LIBRARY): $(if $(filter 0,$(CHARGE)),$(OPENED_OBJECTS),$(LINKED_OBJECTS))
 	@mkdir -p $(@D)
 	$(say) '  AR $@'
 	$(Q)ld -r -o $(BUILD)/cscd.o $^
@@ -300,14 +321,22 @@ $(LIBRARY): $(CORE_OBJECTS)
 
 # The shared library names the libraries that it needs, so that a user links -lcscd alone. The functions of sanitizers
 # come with the program.
-SHARED_FLAGS := -shared -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--as-needed \
-                $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
-$(SHARED): $(CORE_OBJECTS) $(BUILD)/cscd.map
+SHARED_FLAGS := -shared -Wl,--as-needed $(if $(findstring -fsanitize,$(OPTIMISE_$(CONFIG))),,-Wl,-z,defs)
+$(SHARED): $(OPENED_OBJECTS) $(BUILD)/cscd.map
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
-	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,--version-script,$(BUILD)/cscd.map -o $@ $(CORE_OBJECTS) $(CORE_LIBS)
+	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-soname,libcscd.so.$(MAJOR) -Wl,--version-script,$(BUILD)/cscd.map \
+	    -o $@ $(OPENED_OBJECTS) $(SHARED_LIBS)
 	@ln -sfn $(@F) $(BUILD)/libcscd.so.$(MAJOR)
 	@ln -sfn libcscd.so.$(MAJOR) $(BUILD)/libcscd.so
+
+# The charge library exports one function, and needs two more files of the core.
+CHARGE_LIBRARY_OBJECTS := $(call objects,$(CHARGE_SOURCES) src/core/sort.c src/core/timer.c)
+$(BUILD)/libcscd-charge.so.$(VERSION): $(CHARGE_LIBRARY_OBJECTS)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) $(SHARED_FLAGS) -Wl,-soname,libcscd-charge.so.$(MAJOR) -o $@ $^ $(CHARGE_LIBS)
+	@ln -sfn $(@F) $(BUILD)/libcscd-charge.so.$(MAJOR)
 
 $(BUILD)/cscd.map: src/packaging/cscd.map.in include/cscd/cscd.h
 	@mkdir -p $(@D)
@@ -358,7 +387,7 @@ $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_
 	$(Q)ar rcs $@ $^
 
 # q: objects of different folders may have the same name.
-$(BUILD)/inside.a: $(CORE_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
+$(BUILD)/inside.a: $(LINKED_OBJECTS) $(COMMON_OBJECTS) $(MODEL_PART_OBJECTS)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(Q)ar qcs $@ $^
@@ -379,8 +408,13 @@ $(OBJECTS)/%.o: %.c
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
 
-# This test compares GSL with our own guesses, where there is GSL.
-$(OBJECTS)/tests/ccd/test_root_finders.o: CFLAGS_ALL += $(if $(filter 0,$(GSL)),,-DWITH_GSL)
+# One file, compiled twice.
+CHARGE_LIBRARY_FORMS := $(foreach form,linked opened,$(OBJECTS)/preprocess/charge_library.$(form).o)
+$(OBJECTS)/preprocess/charge_library.linked.o: CFLAGS_ALL += -DCHARGE_LINKED
+$(CHARGE_LIBRARY_FORMS): preprocess/charge_library.c
+	@mkdir -p $(@D)
+	$(say) '  CC $< ($(@F))'
+	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
 
 # This object contains the page of the reports.
 $(OBJECTS)/src/tool/report/template.o: src/tool/report/template.html
@@ -393,4 +427,5 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(OBJECTS)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)
+-include $(patsubst %.c,$(OBJECTS)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) \
+         $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)

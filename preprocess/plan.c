@@ -2,7 +2,7 @@
  * these see. */
 #include "src/mesh/plan.h"
 
-#include "preprocess/charge/charge.h"
+#include "preprocess/charge_call.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"

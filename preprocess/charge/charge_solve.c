@@ -30,8 +30,9 @@ static void potentials_of_source(const charge_system *system, uint32_t k, uint32
 
 static void assemble_columns(void *data, uint32_t task) {
     charge_system *system = data;
+    const charge_host *host = &system->problem->host;
     uint32_t n = system->count, first = task * COLUMNS_PER_TASK;
-    if (!progress_go_on(&system->context->progress, (double)first / n)) return;
+    if (!host->go_on(host->context, (double)first / n)) return;
     for (uint32_t k = first; k < n && k < first + COLUMNS_PER_TASK; k++) {
         float *column = system->matrix + (size_t)k * n;
         for (uint32_t begin = 0; begin < n; begin += POINTS_PER_BLOCK) {
@@ -47,8 +48,9 @@ static void assemble_columns(void *data, uint32_t task) {
  * precision. */
 static void evaluate_residual(void *data, uint32_t task) {
     charge_system *system = data;
+    const charge_host *host = &system->problem->host;
     uint32_t begin = task * POINTS_PER_BLOCK, size = block_size(system, begin);
-    if (!progress_go_on(&system->context->progress, (double)begin / system->count)) return;
+    if (!host->go_on(host->context, (double)begin / system->count)) return;
     double sums[POINTS_PER_BLOCK] = {0.0}, potentials[POINTS_PER_BLOCK];
     for (uint32_t k = 0; k < system->count; k++) {
         potentials_of_source(system, k, begin, size, potentials);
@@ -92,8 +94,8 @@ static uint32_t most_dependent_triangle(const charge_system *system) {
 }
 
 static cscd_status fail_singular(const charge_system *system) {
-    return context_fail(
-        system->context, CSCD_INVALID_ARGUMENT,
+    return charge_fail(
+        system->problem, CSCD_INVALID_ARGUMENT,
         "charge: the charges of component %u cannot be told apart in its %u equations, least of "
         "all that of triangle %u: some triangles there lie (almost) on each other or on one "
         "line; move or remove them",
@@ -116,27 +118,28 @@ double charge_system_work(uint32_t count) {
 
 /* Begin and end are parts of the work. */
 static void enter_stage(const charge_system *system, const char *name, double begin, double end) {
+    const charge_host *host = &system->problem->host;
     double work = charge_system_work(system->count);
-    progress_stage(&system->context->progress, name, begin / work, end / work);
+    host->stage(host->context, name, begin / work, end / work);
 }
 
 static cscd_status assemble_matrix(charge_system *system) {
+    const charge_host *host = &system->problem->host;
     enter_stage(system, "charge: matrix", 0.0, entries_work(system->count));
-    parallel_run(system->context->threads, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns,
-                 system);
-    return context_progress_status(system->context);
+    host->run(host->context, tasks_of(system->count, COLUMNS_PER_TASK), assemble_columns, system);
+    return host->progress(host->context);
 }
 
 static cscd_status factor_matrix(charge_system *system, uint32_t *zero_pivot) {
     double begin = entries_work(system->count);
     enter_stage(system, "charge: factors", begin, begin + factors_work(system->count));
-    return dense_factor(system->context, system->matrix, system->count, system->pivots, zero_pivot);
+    return dense_factor(&system->problem->host, system->matrix, system->count, system->pivots, zero_pivot);
 }
 
 /* Iterative refinement. Each step shrinks the error by about condition number * 2^-24, so from two steps the
  * next one is known: change * (change / change before). */
 static cscd_status refine_charges(charge_system *system) {
-    parallel *threads = system->context->threads;
+    const charge_host *host = &system->problem->host;
     double before = 1.0, work = charge_system_work(system->count);
     for (uint32_t k = 0; k < system->count; k++) {
         system->charges[k] = 0.0;
@@ -147,8 +150,8 @@ static cscd_status refine_charges(charge_system *system) {
         double left = 3.0 - i > 1.0 ? 3.0 - i : 1.0; /* mostly it takes three */
         enter_stage(system, "charge: refinement", work - left * entries_work(system->count),
                     work - (left - 1.0) * entries_work(system->count));
-        parallel_run(threads, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
-        cscd_status status = context_progress_status(system->context);
+        host->run(host->context, tasks_of(system->count, POINTS_PER_BLOCK), evaluate_residual, system);
+        cscd_status status = host->progress(host->context);
         if (status != CSCD_OK) return status;
         double change = apply_correction(system);
         double rate = change / before;

@@ -1,8 +1,11 @@
 /* The system of equations for the charges of one component. */
 #pragma once
 
-#include "preprocess/charge/charge.h"
+#include "preprocess/charge/charge_interface.h"
 #include "preprocess/charge/potential.h"
+
+/* Arrays begin on cache lines. */
+enum { CHARGE_ALIGNMENT = 64 };
 
 /* A triangle and its collocation point. */
 typedef struct charge_point {
@@ -14,7 +17,7 @@ typedef struct charge_point {
 /* Unknown k is the charge on a triangle, or on all triangles that coincide with it. Lengths are scaled by a
  * power of two so that the component's extent lies in [1/2, 1), about its box's middle. */
 typedef struct charge_system {
-    cscd_context *context;
+    const charge_problem *problem;
     uint32_t component, count;  /* the number of unknowns */
     uint32_t point_count;       /* the number of triangles with an area */
     double scale;               /* scaled length / length */
@@ -33,11 +36,15 @@ typedef struct charge_system {
 size_t charge_system_lay_out(charge_system *system, uint32_t capacity, char *memory);
 
 /* Takes the component whose triangles are given; ends with unknowns, sources and collocation points. */
-cscd_status charge_system_collect(charge_system *system, const cscd_mesh *mesh, const double *positions,
-                                  uint32_t component, const uint32_t *triangles, uint32_t triangle_count);
+cscd_status charge_system_collect(charge_system *system, const charge_problem *problem, uint32_t component,
+                                  const uint32_t *triangles, uint32_t triangle_count);
 
 /* The estimated cost of a system of so many unknowns, to compare it with others. */
 double charge_system_work(uint32_t count);
+
+/* Explains a failure to the host, as printf does, and returns its status. */
+cscd_status charge_fail(const charge_problem *problem, cscd_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Assembles, factors and solves; adds to timings. CANCELLED: nothing is solved. */
 cscd_status charge_system_solve(charge_system *system, charge_timings *timings);

@@ -51,7 +51,7 @@ static void end_single_thread(void) {
 /* ---- factors ------------------------------------------------------------------------------------------ */
 
 typedef struct factoring {
-    cscd_context *context;
+    const charge_host *host;
     float *matrix;
     lapack_int *pivots; /* from 1, and until all are done, from the panel's first row on */
     uint32_t count, zero_pivot;
@@ -98,7 +98,7 @@ static void update_columns(const factoring *f, uint32_t first, uint32_t last) {
 static void advance_panel(void *data, uint32_t task) {
     factoring *f = data;
     uint32_t begin = f->end + task * PANEL_WIDTH, end = smaller_count(f->count, begin + PANEL_WIDTH);
-    if (!progress_go_on(&f->context->progress, f->done)) return;
+    if (!f->host->go_on(f->host->context, f->done)) return;
     update_columns(f, begin, end);
     if (task == 0) factor_panel(f, begin, end);
 }
@@ -118,26 +118,26 @@ static double share_done(const factoring *f) {
 }
 
 static cscd_status factor_panels(factoring *f) {
-    parallel *threads = f->context->threads;
+    const charge_host *host = f->host;
     uint32_t panels = f->count / PANEL_WIDTH + (f->count % PANEL_WIDTH != 0);
     f->end = smaller_count(f->count, PANEL_WIDTH);
     factor_panel(f, 0, f->end);
     for (uint32_t left = panels - 1; left > 0; left--) {
         f->done = share_done(f);
-        parallel_run(threads, left, advance_panel, f);
-        cscd_status status = context_progress_status(f->context);
+        host->run(host->context, left, advance_panel, f);
+        cscd_status status = host->progress(host->context);
         if (status != CSCD_OK) return status;
         f->begin = f->end;
         f->end = smaller_count(f->count, f->end + PANEL_WIDTH);
     }
-    parallel_run(threads, panels - 1, swap_left, f);
+    host->run(host->context, panels - 1, swap_left, f);
     for (uint32_t i = 0; i < f->count; i++) f->pivots[i] += (lapack_int)(i / PANEL_WIDTH * PANEL_WIDTH);
     return CSCD_OK;
 }
 
-cscd_status dense_factor(cscd_context *context, float *matrix, uint32_t count, int32_t *pivots,
+cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot) {
-    factoring f = {.context = context, .matrix = matrix, .pivots = pivots, .count = count};
+    factoring f = {.host = host, .matrix = matrix, .pivots = pivots, .count = count};
     begin_single_thread();
     cscd_status status = factor_panels(&f);
     end_single_thread();

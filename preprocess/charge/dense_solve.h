@@ -1,13 +1,13 @@
-/* Dense linear systems in single precision: LU with partial pivoting, by LAPACK and BLAS on the context's
+/* Dense linear systems in single precision: LU with partial pivoting, by LAPACK and BLAS on the host's
  * threads. */
 #pragma once
 
-#include "src/core/context.h"
+#include "preprocess/charge/charge_interface.h"
 
 /* matrix: count x count, column after column, replaced by its factors; pivots: count. *zero_pivot becomes 0,
  * or k when the k-th pivot (from 1) is exactly 0. CANCELLED: neither means anything. The bits of the factors
  * depend on neither the number of threads nor who runs them. */
-cscd_status dense_factor(cscd_context *context, float *matrix, uint32_t count, int32_t *pivots,
+cscd_status dense_factor(const charge_host *host, float *matrix, uint32_t count, int32_t *pivots,
                          uint32_t *zero_pivot);
 
 /* vector is replaced by the solution. */

@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 : "${BUILD:?}" "${VERSION:?}" "${STATIC_LIBS:?}" "${POINTER_SIZE:?}"
-: "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
+: "${CHARGE:?}" "${BINDIR:?}" "${LIBDIR:?}" "${INCLUDEDIR:?}" "${MANDIR:?}"
 DESTDIR=${DESTDIR:-}
 major=${VERSION%%.*}
 pc_folder=$LIBDIR/pkgconfig
@@ -22,9 +22,12 @@ for folder in "$BINDIR" "$LIBDIR" "$INCLUDEDIR" "$MANDIR"; do
     esac
 done
 
+# The tool and the library; only the library.
+what=all
+
 # each ACTION: calls it with MODE SOURCE TARGET for every file; ACTION decides what becomes of it.
 each_file() {
-    "$1" 755 "$BUILD/cscd" "$BINDIR/cscd"
+    [ "$what" = library ] || "$1" 755 "$BUILD/cscd" "$BINDIR/cscd"
     for header in include/cscd/*.h; do
         "$1" 644 "$header" "$INCLUDEDIR/cscd/${header##*/}"
     done
@@ -32,10 +35,15 @@ each_file() {
     "$1" 644 "$BUILD/libcscd.so.$VERSION" "$LIBDIR/libcscd.so.$VERSION"
     "$1" link "libcscd.so.$VERSION" "$LIBDIR/libcscd.so.$major"
     "$1" link "libcscd.so.$major" "$LIBDIR/libcscd.so"
+    if [ "$CHARGE" != 0 ]; then
+        "$1" 644 "$BUILD/libcscd-charge.so.$VERSION" "$LIBDIR/libcscd-charge.so.$VERSION"
+        "$1" link "libcscd-charge.so.$VERSION" "$LIBDIR/libcscd-charge.so.$major"
+    fi
     "$1" template "$templates/cscd.pc.in" "$pc_folder/cscd.pc"
     "$1" template "$templates/cscdConfig.cmake.in" "$cmake_folder/cscdConfig.cmake"
     "$1" template "$templates/cscdConfigVersion.cmake.in" "$cmake_folder/cscdConfigVersion.cmake"
     for page in docs/man/*.[1-9]; do
+        [ "$what" = library ] && [ "${page##*.}" != 3 ] && continue
         "$1" template "$page" "$MANDIR/man${page##*.}/${page##*/}"
     done
 }
@@ -87,6 +95,10 @@ remove_folders() {
 
 case ${1:-} in
 install) each_file put ;;
+install-library)
+    what=library
+    each_file put
+    ;;
 uninstall)
     each_file remove
     remove_folders
@@ -96,7 +108,7 @@ uninstall)
     done
     ;;
 *)
-    echo "usage: $0 install|uninstall" >&2
+    echo "usage: $0 install|install-library|uninstall" >&2
     exit 2
     ;;
 esac

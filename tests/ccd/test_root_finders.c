@@ -6,14 +6,12 @@
 #undef cubic_guess_roots
 #undef negligible
 
-#ifdef WITH_GSL
 int guess_with_gsl(const double c[4], double roots[3]);
 #define cubic_guess_roots guess_with_gsl
 #define negligible        negligible_with_gsl
 #include "runtime/ccd/cubic_guess_gsl.c"
 #undef cubic_guess_roots
 #undef negligible
-#endif
 
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/ccd/queue_test.h"
@@ -54,11 +52,8 @@ typedef struct root_finder {
 } root_finder;
 
 static const root_finder finders[] = {
-    {"our own", guess_without_gsl},
-#ifdef WITH_GSL
-    {"GSL", guess_with_gsl},
-#endif
-    {"roughly", guess_roughly},     {"badly", guess_badly}, {"nothing", guess_nothing},
+    {"our own", guess_without_gsl}, {"GSL", guess_with_gsl},    {"roughly", guess_roughly},
+    {"badly", guess_badly},         {"nothing", guess_nothing},
 };
 
 enum { FINDERS = sizeof finders / sizeof *finders, RIGHT_FINDERS = FINDERS - 2 };

@@ -84,9 +84,10 @@ static void files_are_where_they_belong(void **state) {
              "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/sensors.h\n"
              "include/cscd/solver.h\n"
              "lib/cmake/cscd/cscdConfig.cmake\nlib/cmake/cscd/cscdConfigVersion.cmake\n"
+             "lib/libcscd-charge.so.%d\nlib/libcscd-charge.so.%s\n"
              "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"
              "lib/pkgconfig/cscd.pc\nshare/man/man1/cscd.1\nshare/man/man3/cscd.3\n",
-             CSCD_VERSION_MAJOR, version);
+             CSCD_VERSION_MAJOR, version, CSCD_VERSION_MAJOR, version);
     expect_output("installed files",
                   shell_output(0, "cd '%s' && find . ! -type d -printf '%%P\\n' | LC_ALL=C sort", prefix),
                   expected);
@@ -96,6 +97,41 @@ static void files_are_where_they_belong(void **state) {
                   shell_output(1, "grep -rn '@[A-Z_]*@' '%s/lib/pkgconfig' '%s/lib/cmake' '%s/share'", prefix,
                                prefix, prefix),
                   "");
+}
+
+/* Without the tool and its page; and nothing of it asks a package manager. */
+static void library_alone(void **state) {
+    (void)state;
+    char place[512];
+    snprintf(place, sizeof place, "%s/library", folder.path);
+    run_make("install-library", place, "PREFIX=/opt/cscd");
+    expect_output(
+        "files that the library lacks",
+        shell_output(
+            0,
+            "cd '%s/opt/cscd' && find . ! -type d -printf '%%P\n' | LC_ALL=C sort >'%s/library.txt'; "
+            "cd '%s' && find . ! -type d -printf '%%P\n' | LC_ALL=C sort | diff - '%s/library.txt' | grep '^[<>]'",
+            place, folder.path, prefix, folder.path),
+        "< bin/cscd\n< share/man/man1/cscd.1\n");
+    run_make("uninstall", place, "PREFIX=/opt/cscd");
+    expect_output("what is left", shell_output(0, "ls -d '%s' 2>/dev/null || true", place), "");
+    expect_output("packages",
+                  shell_output(1, "env -u MAKEFLAGS make -n library install-library | grep -n packages"), "");
+}
+
+/* On a machine without any library, where a compiler finds no header: make says what to type, and types nothing. */
+static void plain_make_installs_no_package(void **state) {
+    (void)state;
+    shell("mkdir '%s/bare' && cd '%s/bare' && printf '#!/bin/sh\nexit 1\n' >cc && "
+          "printf '#!/bin/sh\ntouch %s/asked\n' >apt-get && cp apt-get sudo && chmod +x cc apt-get sudo",
+          folder.path, folder.path, folder.path);
+    char *said = shell_output(2, "env -u MAKEFLAGS PATH=\"%s/bare:$PATH\" make -s all BUILD_ROOT='%s/none'",
+                              folder.path, folder.path);
+    assert_non_null(strstr(said, "apt-get install -y"));
+    assert_non_null(strstr(said, "libopenblas-dev"));
+    assert_null(strstr(said, "libcmocka-dev"));
+    free(said);
+    shell("test ! -e '%s/asked' && test ! -e '%s/none'", folder.path, folder.path);
 }
 
 static void shared_library_exports_the_api(void **state) {
@@ -251,10 +287,16 @@ static void uninstall_leaves_what_others_made(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_are_where_they_belong), cmocka_unit_test(shared_library_exports_the_api),
-        cmocka_unit_test(c_program_by_pkg_config),     cmocka_unit_test(example_of_the_manual),
-        cmocka_unit_test(cpp_program_by_cmake),        cmocka_unit_test(cmake_takes_the_same_major_version),
-        cmocka_unit_test(uninstall_leaves_nothing),    cmocka_unit_test(uninstall_leaves_what_others_made),
+        cmocka_unit_test(files_are_where_they_belong),
+        cmocka_unit_test(library_alone),
+        cmocka_unit_test(plain_make_installs_no_package),
+        cmocka_unit_test(shared_library_exports_the_api),
+        cmocka_unit_test(c_program_by_pkg_config),
+        cmocka_unit_test(example_of_the_manual),
+        cmocka_unit_test(cpp_program_by_cmake),
+        cmocka_unit_test(cmake_takes_the_same_major_version),
+        cmocka_unit_test(uninstall_leaves_nothing),
+        cmocka_unit_test(uninstall_leaves_what_others_made),
     };
     return cmocka_run_group_tests(tests, install_release, remove_all);
 }

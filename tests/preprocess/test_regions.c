@@ -1,5 +1,5 @@
 /* Bodies are cut where one would expect it, and detector points see more after it. */
-#include "preprocess/charge/charge.h"
+#include "preprocess/charge_call.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"

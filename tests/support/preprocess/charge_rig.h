@@ -1,7 +1,7 @@
 /* A context, a mesh and room for the charges of a surface. */
 #pragma once
 
-#include "preprocess/charge/charge.h"
+#include "preprocess/charge_call.h"
 #include "tests/support/preprocess/charge_shapes.h"
 
 typedef struct charge_rig {

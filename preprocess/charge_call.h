@@ -1,16 +1,12 @@
 /* The charge density of a conductor in the shape of the mesh: collocation at triangle centroids. */
 #pragma once
 
+#include "preprocess/charge/charge_interface.h"
 #include "src/mesh/mesh.h"
 
-typedef struct charge_timings { /* sums over the components */
-    double assembly_ms, factor_ms, refine_ms;
-    double total_ms; /* with all checks and the sorting */
-} charge_timings;
-
 /* Bytes that charge_solve takes at its peak through the context's allocator; the largest component's matrix,
- * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted. External for
- * the tests of memory limits. */
+ * 4 bytes per pair of its triangles, is nearly all of it. SIZE_MAX when they cannot be counted, or when there is
+ * no charge library. External for the tests of memory limits. */
 size_t charge_memory(const cscd_mesh *mesh);
 
 /* Each component is a conductor of its own, alone in space, at potential 1, in Gaussian units:
@@ -21,7 +17,8 @@ size_t charge_memory(const cscd_mesh *mesh);
  *
  * OUT_OF_MEMORY: charge_memory exceeds what the system has available (the sentence gives both), or an
  * allocation failed. INVALID_ARGUMENT: positions; two triangles with one centroid, or so near to each other
- * that their charges cannot be told apart. CANCELLED: the context's progress function said so. The same
+ * that their charges cannot be told apart. CANCELLED: the context's progress function said so.
+ * SYSTEM_ERROR: there is no charge library. The same
  * inputs give the same bits, for any thread count and whoever runs the tasks. */
 cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double *density, double *capacitance,
                          charge_timings *timings);
@@ -29,3 +26,7 @@ cscd_status charge_solve(const cscd_mesh *mesh, const double *positions, double 
 /* The same with a limit in bytes of the caller's in place of the system's. */
 cscd_status charge_solve_within(const cscd_mesh *mesh, const double *positions, size_t memory_limit,
                                 double *density, double *capacitance, charge_timings *timings);
+
+/* Writes the functions of the charge library, which is linked or opened (charge_library.c). Without
+ * it, fails with SYSTEM_ERROR and a sentence that says how to get it. */
+cscd_status charge_library_find(cscd_context *context, const charge_functions **out);
