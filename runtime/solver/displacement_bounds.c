@@ -41,6 +41,14 @@ static void lower_bounds(const cscd_mesh *mesh, const cscd_proximities *near, co
     }
 }
 
+/* The vertices of a seam count as one. A name is the smallest vertex of its seam. */
+static void join_seams(const cscd_detector *d, double *bounds) {
+    const uint32_t *names = d->exclusions.names;
+    uint32_t count = names != NULL ? d->mesh->vertex_count : 0;
+    for (uint32_t v = 0; v < count; v++) bounds[names[v]] = min_of(bounds[names[v]], bounds[v]);
+    for (uint32_t v = 0; v < count; v++) bounds[v] = bounds[names[v]];
+}
+
 /* Keeps the pairs that do not let their vertices move, in order. */
 static cscd_proximities list_blocked(cscd_proximity *items, size_t count, const double *limits) {
     size_t blocked = 0;
@@ -62,6 +70,7 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
     double farthest = stored_below(0.5 * search_radius, scalar);
     for (uint32_t v = 0; v < d->mesh->vertex_count; v++) bounds[v] = farthest;
     lower_bounds(d->mesh, &near, work.limits, bounds);
+    join_seams(d, bounds);
     *blocked = list_blocked(d->proximities.items, near.count, work.limits);
     return CSCD_OK;
 }

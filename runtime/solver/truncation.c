@@ -16,11 +16,13 @@ enum { SHORTER_COUNT = sizeof shorter / sizeof *shorter };
 
 typedef struct truncation_work {
     const cscd_mesh *mesh;
+    const uint32_t *names; /* of seams, whose vertices go alike; NULL: there are none */
     const wanted_motion *motion;
     division_planes planes;
     double farthest; /* that a vertex may go, so that pairs that are not near stay apart */
     double *end;
-    double *shares; /* per vertex: of its motion */
+    double *shares; /* per vertex: of its motion, up to the first plane; at last what it goes */
+    size_t *tries;  /* per vertex: so many of them did not fit */
 } truncation_work;
 
 /* ---- one vertex ---------------------------------------------------------------------------------------- */
@@ -46,10 +48,12 @@ static bool keeps_sides(const truncation_work *w, size_t vertex, const double mo
 }
 
 /* Returns the share of the motion that reaches the first plane, up to rounding. */
-static double share_to_planes(const truncation_work *w, size_t vertex, const double motion[3]) {
+static double share_to_planes(const truncation_work *w, size_t vertex) {
+    double motion[3];
+    vec3_subtract(w->motion->x1 + vertex * 3, w->motion->x0 + vertex * 3, motion);
     double length = sqrt(vec3_dot(motion, motion));
     double share = length > w->farthest ? w->farthest / length : 1.0;
-    for (size_t i = w->planes.first[vertex]; i != DIVISION_NONE;) {
+    for (size_t i = w->planes.first[vertex]; i != DIVISION_NONE && length > 0.0;) {
         const division_plane *plane = &w->planes.planes[i / 4];
         double room = plane->room[i % 4];
         double towards = division_sign(plane, (int)(i % 4)) * vec3_dot(plane->normal, motion);
@@ -60,50 +64,83 @@ static double share_to_planes(const truncation_work *w, size_t vertex, const dou
     return share;
 }
 
-/* Writes where the vertex is after this share of its motion, as it is stored, and returns how far it has moved. */
-static void place_vertex(const double x0[3], const double x1[3], double share, cscd_scalar scalar,
-                         double end[3], double moved[3]) {
-    for (int k = 0; k < 3; k++) {
-        end[k] = share == 1.0 ? x1[k] : stored_coordinate(x0[k] + share * (x1[k] - x0[k]), scalar);
-        moved[k] = end[k] - x0[k];
-    }
+static double share_tried(const truncation_work *w, size_t vertex) {
+    return w->tries[vertex] < SHORTER_COUNT ? w->shares[vertex] * shorter[w->tries[vertex]] : 0.0;
 }
 
-/* Returns the share of the motion that the vertex goes. */
-static double truncate_vertex(const truncation_work *w, size_t vertex, cscd_scalar scalar, double end[3]) {
+/* Writes where the vertex is after this share of its motion, as it is stored. Returns whether its planes allow that. */
+static bool place_vertex(const truncation_work *w, size_t vertex, double share, cscd_scalar scalar) {
     const double *x0 = w->motion->x0 + vertex * 3, *x1 = w->motion->x1 + vertex * 3;
-    double moved[3];
-    place_vertex(x0, x1, 1.0, scalar, end, moved);
-    if (vec3_largest(moved) == 0.0) return 1.0;
-    double reach = share_to_planes(w, vertex, moved);
-    for (int i = 0; i < SHORTER_COUNT && reach > 0.0; i++) {
-        double share = reach * shorter[i];
-        place_vertex(x0, x1, share, scalar, end, moved);
-        if (vec3_largest(moved) == 0.0) break;
-        if (keeps_sides(w, vertex, moved)) return share;
+    double *end = w->end + vertex * 3, moved[3];
+    for (int k = 0; k < 3; k++) {
+        end[k] = share == 0.0   ? x0[k]
+                 : share == 1.0 ? x1[k]
+                                : stored_coordinate(x0[k] + share * (x1[k] - x0[k]), scalar);
+        moved[k] = end[k] - x0[k];
     }
-    memcpy(end, x0, sizeof(double[3]));
-    return 0.0;
+    return vec3_largest(moved) == 0.0 || keeps_sides(w, vertex, moved);
 }
 
 /* ---- all vertices -------------------------------------------------------------------------------------- */
 
-/* The result may lie where x1 does, so a vertex is written when its own x1 is no longer needed. */
-static void truncate_object(const truncation_work *w, uint32_t object, size_t begin, size_t end) {
+static void settle_object(const truncation_work *w, uint32_t object, size_t begin, size_t end) {
     const cscd_object *of = &w->mesh->objects[object];
     cscd_scalar scalar = w->motion->scalars != NULL ? w->motion->scalars[object] : CSCD_SCALAR_DOUBLE;
     size_t first = of->first_vertex, last = first + of->vertex_count;
     for (size_t v = first > begin ? first : begin; v < last && v < end; v++) {
-        double reached[3];
-        w->shares[v] = truncate_vertex(w, v, scalar, reached);
-        memcpy(w->end + v * 3, reached, sizeof reached);
+        while (!place_vertex(w, v, share_tried(w, v), scalar)) w->tries[v]++;
     }
 }
 
-static void truncate_share(void *data, uint32_t index) {
+static void settle_share(void *data, uint32_t index) {
     const truncation_work *w = data;
     size_t begin = (size_t)index * VERTICES_PER_SHARE, end = begin + VERTICES_PER_SHARE;
-    for (uint32_t i = 0; i < w->mesh->object_count; i++) truncate_object(w, i, begin, end);
+    for (uint32_t i = 0; i < w->mesh->object_count; i++) settle_object(w, i, begin, end);
+}
+
+static void reach_planes(void *data, uint32_t index) {
+    const truncation_work *w = data;
+    size_t begin = (size_t)index * VERTICES_PER_SHARE, end = begin + VERTICES_PER_SHARE;
+    for (size_t v = begin; v < end && v < w->mesh->vertex_count; v++) {
+        w->shares[v] = share_to_planes(w, v);
+        w->tries[v] = 0;
+    }
+}
+
+/* All vertices of a seam go the least share of any. */
+static void join_shares(const truncation_work *w) {
+    uint32_t count = w->names != NULL ? w->mesh->vertex_count : 0;
+    for (uint32_t v = 0; v < count; v++)
+        w->shares[w->names[v]] = min_of(w->shares[w->names[v]], w->shares[v]);
+    for (uint32_t v = 0; v < count; v++) w->shares[v] = w->shares[w->names[v]];
+}
+
+/* All vertices of a seam try what did not fit for none of them. Returns whether this is new to any. */
+static bool join_tries(const truncation_work *w) {
+    bool any = false;
+    uint32_t count = w->names != NULL ? w->mesh->vertex_count : 0;
+    for (uint32_t v = 0; v < count; v++) {
+        size_t *of_seam = &w->tries[w->names[v]];
+        any |= w->tries[v] != *of_seam;
+        if (w->tries[v] > *of_seam) *of_seam = w->tries[v];
+    }
+    for (uint32_t v = 0; v < count; v++) w->tries[v] = w->tries[w->names[v]];
+    return any;
+}
+
+/* Numbers of tries only grow, and where all have failed the vertex stays, which always fits. */
+static void truncate_all(truncation_work *w, parallel *threads) {
+    uint32_t shares = (w->mesh->vertex_count + VERTICES_PER_SHARE - 1) / VERTICES_PER_SHARE;
+    parallel_run(threads, shares, reach_planes, w);
+    join_shares(w);
+    do parallel_run(threads, shares, settle_share, w);
+    while (join_tries(w));
+}
+
+static bool differ_in_place(const double *a, const double *b, size_t vertex) {
+    for (size_t i = vertex * 3; i < vertex * 3 + 3; i++)
+        if (a[i] != b[i]) return true;
+    return false;
 }
 
 static void sum_up_vertices(const truncation_work *w, truncation_outcome *out) {
@@ -111,7 +148,10 @@ static void sum_up_vertices(const truncation_work *w, truncation_outcome *out) {
     for (uint32_t i = 0; i < w->mesh->object_count; i++) {
         const cscd_object *of = &w->mesh->objects[i];
         for (uint32_t v = of->first_vertex; v < of->first_vertex + of->vertex_count; v++) {
-            double share = w->shares[v];
+            bool moved = differ_in_place(w->end, w->motion->x0, v);
+            bool wanted = differ_in_place(w->motion->x1, w->motion->x0, v);
+            double share = !wanted ? 1.0 : moved ? share_tried(w, v) : 0.0;
+            out->moved |= moved;
             out->shortened += share < 1.0;
             out->fraction = min_of(out->fraction, share);
             if (of->obstacle) out->obstacle_fraction = min_of(out->obstacle_fraction, share);
@@ -154,33 +194,32 @@ static void carry_states_over(cscd_detector *d, const double *end) {
 
 /* ---- the call ------------------------------------------------------------------------------------------ */
 
-/* Per vertex: its first limit, and its share. */
-static cscd_status reserve_vertices(cscd_detector *d, size_t **first, double **shares) {
-    uint32_t count = d->mesh->vertex_count;
+static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t **first) {
+    size_t count = d->mesh->vertex_count;
     if (d->vertex_scratch == NULL)
-        d->vertex_scratch = context_allocate(d->context, count, sizeof **first + sizeof **shares);
+        d->vertex_scratch = context_allocate(d->context, count, 2 * sizeof(size_t) + sizeof(double));
     if (d->vertex_scratch == NULL) return CSCD_OUT_OF_MEMORY;
-    *first = d->vertex_scratch;
-    *shares = (void *)(*first + count);
+    w->shares = d->vertex_scratch;
+    w->tries = (void *)(w->shares + count);
+    *first = w->tries + count;
     return CSCD_OK;
 }
 
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
                             truncation_outcome *out) {
-    truncation_work work = {d->mesh, motion, .farthest = 0.5 * search_radius, .end = end};
-    size_t size = (size_t)d->mesh->vertex_count * 3, *first;
+    truncation_work work = {d->mesh, d->exclusions.names, motion, .farthest = 0.5 * search_radius,
+                            .end = end};
+    size_t *first;
     bool known = detector_culls(d) && start_states_hold(&d->starts, motion->x0);
     cscd_proximities near;
-    cscd_status status = reserve_vertices(d, &first, &work.shares);
+    cscd_status status = reserve_vertices(d, &work, &first);
     if (status == CSCD_OK) status = near_pairs_find(d, motion->x0, search_radius, &near);
     if (status == CSCD_OK)
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
-    uint32_t shares = (d->mesh->vertex_count + VERTICES_PER_SHARE - 1) / VERTICES_PER_SHARE;
-    parallel_run(d->context->threads, shares, truncate_share, &work);
+    truncate_all(&work, d->context->threads);
     *out = (truncation_outcome){.moved = false};
     sum_up_vertices(&work, out);
-    for (size_t i = 0; i < size && !out->moved; i++) out->moved = end[i] != motion->x0[i];
     out->held = list_held(&work.planes, d->proximities.items);
     if (known) carry_states_over(d, end);
     return CSCD_OK;

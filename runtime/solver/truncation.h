@@ -18,7 +18,8 @@ typedef struct truncation_outcome {
         held; /* pairs without a plane between them: their vertices stay; in the detector's memory */
 } truncation_outcome;
 
-/* Writes where the vertices go: docs/theory/displacement-bounds.md, lemmas 4 to 6, say what holds then. `end` may be x1. What
+/* Writes where the vertices go: docs/theory/displacement-bounds.md, lemmas 4 to 6, say what holds then. The vertices
+ * of a seam go the same share. What
  * the detector knows of x0, it then knows of the end. */
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
                             truncation_outcome *out);

@@ -208,7 +208,10 @@ static void pairs_left_out_give_no_bounds(void **state) {
         for (int v = 0; v < 6; v++) {
             if (i == 0) assert_true(bounds[v] < 0.125 && bounds[v] > 0.124);
             if (i == 1 || i == 2) assert_true(bounds[v] == 0.5);
-            if (i == 3) assert_true(bounds[v] > 0.3); /* a corner and the other triangle's opposite side */
+            if (i == 3)
+                assert_true(bounds[v] > 0.3 &&
+                            bounds[v] ==
+                                bounds[(v + 3) % 6]); /* a corner and the other triangle's opposite side */
         }
         rig_destroy(&r);
     }

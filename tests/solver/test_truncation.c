@@ -307,6 +307,42 @@ static void obstacles_come_first(void **state) {
     }
 }
 
+/* Two sewn triangles fall, and only one of them onto something: sewn vertices stay on each other, bit for bit. */
+static void sewn_vertices_stay_together(void **state) {
+    (void)state;
+    static const uint32_t seams[] = {4, 1, 2, 3};
+    static const double corners[9][3] = {{0.0, 1.0, 0.3},   {-1.0, 0.3, 0.4}, {1.0, 0.1, 0.2},
+                                         {1.0, 0.1, 0.2},   {-1.0, 0.3, 0.4}, {0.1, -1.0, 0.1},
+                                         {-3.0, -0.9, 0.0}, {3.0, -0.9, 0.0}, {0.0, -4.0, 0.0}};
+    interval.vertex_count = 9;
+    interval.triangle_count = 3;
+    random_seed(5);
+    for (int i = 0; i < 200; i++) {
+        cscd_scalar scalar = (cscd_scalar)(i % 2);
+        for (uint32_t v = 0; v < 9; v++) {
+            interval.triangles[v] = v;
+            for (uint32_t k = 0; k < 3; k++) {
+                double step = v < 6 ? 0.3 * random_unit() : 0.0;
+                interval.x0[3 * v + k] = corners[v][k];
+                interval.x1[3 * v + k] = corners[v][k] + step - (k == 2 && v < 6 ? 0.4 : 0.0);
+            }
+        }
+        memcpy(interval.x1 + 9, interval.x1 + 6, sizeof(double[3]));
+        memcpy(interval.x1 + 12, interval.x1 + 3, sizeof(double[3]));
+        make_stored(scalar, 0.0);
+        cscd_detector_options options = cscd_detector_defaults();
+        options.seams = seams;
+        options.seam_count = 2;
+        rig r = rig_create(&interval, 1, &options);
+        const cscd_scalar scalars[] = {scalar};
+        truncation_outcome out = truncate_motion(&r, 3.0, scalars);
+        assert_true(out.moved && out.held.count == 0 && out.shortened > 0);
+        assert_memory_equal(end + 9, end + 6, sizeof(double[3]));
+        assert_memory_equal(end + 12, end + 3, sizeof(double[3]));
+        rig_destroy(&r);
+    }
+}
+
 /* ---- what is known, and the same for everyone ---------------------------------------------------------- */
 
 /* The step from where a truncated motion ended need not prove its start, and finds what a new detector finds. */
@@ -384,6 +420,7 @@ int main(void) {
         cmocka_unit_test(pressed_pairs_may_part),
         cmocka_unit_test(touching_pairs_are_held),
         cmocka_unit_test(obstacles_come_first),
+        cmocka_unit_test(sewn_vertices_stay_together),
         cmocka_unit_test(the_end_is_known),
         cmocka_unit_test(pairs_left_out_leave_nothing_known),
         cmocka_unit_test(truncation_is_the_same_for_all_threads_and_methods),
