@@ -67,7 +67,7 @@ SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
@@ -119,7 +119,7 @@ SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_de
 SLOW_core          := parallel_for progress
 SLOW_culling       := culling local_culling
 SLOW_detector      := min_separation_detector oracle threads
-SLOW_install       := install
+SLOW_install       := embedding install
 SLOW_intersections := static_check_kernel
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body

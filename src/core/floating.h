@@ -1,6 +1,10 @@
 /* Doubles: minimum, maximum, exponent and powers of two without a function call. */
 #pragma once
 
+#ifdef __FAST_MATH__
+#error "cscd proves what it says by IEEE arithmetic: compile it without -ffast-math"
+#endif
+
 #include <stdint.h>
 #include <string.h>
 

@@ -34,6 +34,7 @@
  */
 #pragma once
 
+#include "src/core/floating.h"
 #include "src/core/kernels.h"
 
 #include <math.h>
