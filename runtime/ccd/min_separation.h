@@ -1,7 +1,7 @@
 /* Minimum separation: do a moving vertex and face, or two moving edges, come within a distance, and when? */
 #pragma once
 
-#include "runtime/ccd/elementary.h"
+#include "runtime/ccd/feature_moment.h"
 
 /* Both are lengths above 0. */
 typedef struct separation {
@@ -26,3 +26,15 @@ bool separation_vf(const elementary_query *query, const separation *limit, eleme
                    bool *bounded);
 bool separation_ee(const elementary_query *query, const separation *limit, elementary_contact *contact,
                    bool *bounded);
+
+/* The finest tolerance in the units of a local query. Its extent is at least 1/2, so this is no larger than promised.
+ * It is 16 times the error of a distance and 8 times SEPARATING_PLANE_ERROR, so the steps get down to distance and
+ * tolerance and do not end before them. */
+#define SEPARATION_FINEST_LOCAL (0.5 * SEPARATION_FINEST)
+
+/* The same for a query in its own frame, with its distance and the tolerance scaled. */
+bool approach_within(const elementary_query *query, const local_query *local, double tolerance,
+                       elementary_contact *contact, bool *bounded);
+
+/* The nearest points at the start, as a contact at time 0. */
+void separation_describe(const elementary_query *query, cscd_contact_kind kind, elementary_contact *contact);

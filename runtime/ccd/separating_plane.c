@@ -41,16 +41,22 @@ static void add_axis(axis_list *axes, const double axis[3], const double change[
     axes->count++;
 }
 
+/* The points of edge i, as shortest_connection counts them. */
+static const int edge_ends[2][3][2] = {
+    [CSCD_CONTACT_VF] = {{1, 2}, {1, 3}, {2, 3}}, [CSCD_CONTACT_EE] = {{0, 1}, {2, 3}}};
+
+static void edge_of(const moving_features *f, int i, double axis[3], double change[3]) {
+    const int *ends = edge_ends[f->kind][i];
+    vec3_subtract(f->x[ends[1]], f->x[ends[0]], axis);
+    vec3_subtract(f->velocity[ends[1]], f->velocity[ends[0]], change);
+}
+
 /* Finds the edges in which the shortest connection ends, and those that are perpendicular to it by chance. */
 static axis_list find_axes(const moving_features *f, const shortest_connection *shortest, int axes_max) {
-    static const int ends[2][3][2] = {
-        [CSCD_CONTACT_VF] = {{1, 2}, {1, 3}, {2, 3}}, [CSCD_CONTACT_EE] = {{0, 1}, {2, 3}}};
     axis_list axes = {.count = 0};
-    for (int i = 0; i < (f->kind == CSCD_CONTACT_VF ? 3 : 2) && axes.count < axes_max; i++) {
-        const int *edge = ends[f->kind][i];
+    for (int i = 0; i < separating_plane_edges(f->kind) && axes.count < axes_max; i++) {
         double axis[3], change[3];
-        vec3_subtract(f->x[edge[1]], f->x[edge[0]], axis);
-        vec3_subtract(f->velocity[edge[1]], f->velocity[edge[0]], change);
+        edge_of(f, i, axis, change);
         double dot = vec3_dot(axis, shortest->offset), squared = vec3_dot(axis, axis);
         bool by_chance = dot * dot <= offset_error * offset_error * squared;
         if (squared > 0.0 && (shortest->inside[i] || by_chance)) add_axis(&axes, axis, change);
@@ -62,9 +68,7 @@ static axis_list find_axes(const moving_features *f, const shortest_connection *
  * that would tilt the plane. It turns by n': n'.q = -n.q' keeps it perpendicular to the axes, n'.n = 0 keeps
  * its length to first order, and the freedom that is left follows the offset. A normal of 0 proves nothing.
  */
-separating_plane separating_plane_find(const moving_features *f, const shortest_connection *shortest,
-                                       int axes_max) {
-    axis_list axes = find_axes(f, shortest, axes_max);
+static separating_plane plane_beside(const shortest_connection *shortest, axis_list axes) {
     separating_plane plane = {.axis_count = axes.count};
     for (int k = 0; k < 3; k++) {
         plane.normal[k] = shortest->offset[k];
@@ -86,6 +90,23 @@ separating_plane separating_plane_find(const moving_features *f, const shortest_
         vec3_add_scaled(plane.turn, -rate, axes.axis[i], plane.turn);
     }
     return plane;
+}
+
+separating_plane separating_plane_find(const moving_features *f, const shortest_connection *shortest,
+                                       int axes_max) {
+    return plane_beside(shortest, find_axes(f, shortest, axes_max));
+}
+
+separating_plane separating_plane_along(const moving_features *f, const shortest_connection *shortest,
+                                        unsigned edges) {
+    axis_list axes = {.count = 0};
+    for (int i = 0; i < separating_plane_edges(f->kind) && axes.count < 2; i++) {
+        double axis[3], change[3];
+        if ((edges >> i & 1) == 0) continue;
+        edge_of(f, i, axis, change);
+        if (vec3_dot(axis, axis) > 0.0) add_axis(&axes, axis, change);
+    }
+    return plane_beside(shortest, axes);
 }
 
 /* Returns the least s > 0 at which a + b s + c s^2 is not above 0, or a smaller number. It returns 0 when a
@@ -167,4 +188,15 @@ double separating_plane_holds(const moving_features *f, const separating_plane *
     double lean = fabs(vec3_dot(plane->normal, plane->turn));
     double size = sqrt(vec3_dot(plane->turn, plane->turn));
     return fmax(without_turn, time_plane_holds(f, &p, distance, lean, size));
+}
+
+/* With a distance of the gap itself, the bound of time_plane_holds on a is not above 0. */
+double separating_plane_gap(const moving_features *f, const separating_plane *plane) {
+    double least = INFINITY, along[4];
+    int first = points_of_first(f->kind);
+    for (int i = 0; i < 4; i++) along[i] = vec3_dot(f->x[i], plane->normal);
+    for (int i = 0; i < first; i++) {
+        for (int j = first; j < 4; j++) least = min_of(least, along[i] - along[j]);
+    }
+    return least - SEPARATING_PLANE_ERROR;
 }

@@ -32,6 +32,16 @@ typedef struct separating_plane {
 separating_plane separating_plane_find(const moving_features *features, const shortest_connection *shortest,
                                        int axes_max);
 
+/* So many edges are counted: 1-2, 1-3, 2-3 (vertex and face) or 0-1, 2-3. */
+static inline int separating_plane_edges(cscd_contact_kind kind) {
+    return kind == CSCD_CONTACT_VF ? 3 : 2;
+}
+
+/* The plane that is parallel to the edges in a set, of which two count: in thin faces, and beside edges that are nearly
+ * parallel, rounding hides in which of them the connection ends. */
+separating_plane separating_plane_along(const moving_features *features, const shortest_connection *shortest,
+                                        unsigned edges);
+
 /* The allowance of separating_plane_holds for rounding. It proves nothing about features that are no more
  * than this beyond the distance. */
 #define SEPARATING_PLANE_ERROR 0x1p-46
@@ -41,3 +51,6 @@ separating_plane separating_plane_find(const moving_features *features, const sh
  * time holds for any plane: a bad plane only gives a short time. */
 double separating_plane_holds(const moving_features *features, const separating_plane *plane,
                               double distance);
+
+/* Returns a distance that the features certainly have now. */
+double separating_plane_gap(const moving_features *features, const separating_plane *plane);
