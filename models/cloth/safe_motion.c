@@ -19,7 +19,10 @@ static const double share_of_way = 0.7;
 static const double share_of_excess = 0.25;
 
 /* Each separation is a quarter of the one before. */
-static cscd_status set_separation(safe_motion *s, uint32_t which) {
+static cscd_status take_separation(safe_motion *s, uint32_t which) {
+    s->which = which;
+    s->counts.tight += which == 1;
+    if (which > s->counts.tightest) s->counts.tightest = which;
     return cscd_detector_set_separation(s->detector, ldexp(s->separation, -2 * (int)which), 0.0);
 }
 
@@ -40,6 +43,7 @@ cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const dou
     s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
     s.zones = body_allocate(s.vertex_count, sizeof *s.zones);
     s.told = body_allocate(s.vertex_count, sizeof *s.told);
+    s.reached = body_allocate(s.vertex_count, sizeof(double[3]));
     *out = s;
     return CSCD_OK;
 }
@@ -50,6 +54,7 @@ void safe_motion_close(safe_motion *s) {
     free(s->parents);
     free(s->zones);
     free(s->told);
+    free(s->reached);
     *s = (safe_motion){0};
 }
 
@@ -192,18 +197,6 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
     }
 }
 
-/* Shortens the whole motion. */
-static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
-    cscd_free_step way = {.length = 0.0};
-    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, x1, &way);
-    s->counts.fallbacks++;
-    *length = way.length;
-    if (status != CSCD_IN_CONTACT) return status;
-    s->counts.waits++;
-    memcpy(x1, x0, (size_t)s->vertex_count * 3 * sizeof *x1);
-    return CSCD_OK;
-}
-
 static cscd_status find_contacts(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
     cscd_status status = cscd_detector_step(s->detector, x0, x1, found);
     if (status != CSCD_OK) return status;
@@ -212,15 +205,33 @@ static cscd_status find_contacts(safe_motion *s, const double *x0, const double 
     return CSCD_OK;
 }
 
+/* What comes so near the separation goes nowhere: then the next one is taken. */
+static const double no_way = 1e-6;
+
+/* Shortens the whole motion. */
+static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
+    cscd_free_step way = {.length = 0.0};
+    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, s->reached, &way);
+    while (status == CSCD_OK && way.length < no_way && s->which + 1 < SAFE_MOTION_SEPARATIONS) {
+        status = take_separation(s, s->which + 1);
+        if (status == CSCD_OK) status = cscd_detector_max_step(s->detector, x0, x1, s->reached, &way);
+    }
+    s->counts.fallbacks++;
+    *length = way.length;
+    bool waits = status == CSCD_IN_CONTACT;
+    s->counts.waits += waits;
+    if (status == CSCD_OK || waits)
+        memcpy(x1, waits ? x0 : s->reached, (size_t)s->vertex_count * 3 * sizeof *x1);
+    return waits ? CSCD_OK : status;
+}
+
 /* Steps with the first separation that x0 keeps, or with the last. A contact at time 0 shows that x0 does
  * not keep it. */
 static cscd_status find_first(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
     for (uint32_t which = 0; which < SAFE_MOTION_SEPARATIONS; which++) {
-        cscd_status status = set_separation(s, which);
+        cscd_status status = take_separation(s, which);
         if (status == CSCD_OK) status = find_contacts(s, x0, x1, found);
         if (status != CSCD_OK) return status;
-        s->counts.tight += which == 1;
-        if (which > s->counts.tightest) s->counts.tightest = which;
         if (found->count == 0 || found->items[0].toi > 0.0) break;
     }
     s->counts.cut += found->count > 0;

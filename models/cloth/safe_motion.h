@@ -9,7 +9,7 @@ typedef struct safe_motion_counts {
     uint64_t contacts;         /* found by these calls */
     uint64_t cut;              /* motions that needed a change */
     uint64_t fallbacks, waits; /* motions that took cscd_detector_max_step; motions without any way on */
-    uint64_t tight;            /* motions that began too near for the first separation */
+    uint64_t tight;            /* motions that began too near for the first separation to leave them a way */
     uint32_t tightest;         /* the smallest separation that was needed; 0 is the first */
 } safe_motion_counts;
 
@@ -35,6 +35,7 @@ typedef struct safe_motion {
     cscd_detector *detector; /* its separation is that of the last motion */
     const cscd_mesh *mesh;
     double separation; /* the first */
+    uint32_t which;    /* of the separations is that of the detector */
     const double *inverse_masses;
     const uint32_t *seams; /* pairs of vertices that move as one */
     uint32_t seam_count;
@@ -44,6 +45,7 @@ typedef struct safe_motion {
     uint32_t *parents;       /* zones of the current motion, as a forest of vertices */
     safe_motion_zone *zones; /* indexed by the vertices that name them */
     double (*told)[4];       /* per vertex: sum and number of the motions of obstacles in contact */
+    double *reached;         /* the end of a motion that is shortened as a whole */
     safe_motion_counts counts;
 } safe_motion;
 

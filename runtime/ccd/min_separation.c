@@ -106,7 +106,7 @@ void separation_describe(const elementary_query *query, cscd_contact_kind kind, 
 }
 
 bool approach_within(const elementary_query *query, const local_query *local, double tolerance,
-                       elementary_contact *contact, bool *bounded) {
+                     elementary_contact *contact, bool *bounded) {
     double reach = local->distance + (fmax(tolerance, SEPARATION_FINEST_LOCAL) - DISTANCE_ERROR);
     feature_moment m = feature_moment_start(local);
     bool ran_out;

@@ -34,7 +34,7 @@ bool separation_ee(const elementary_query *query, const separation *limit, eleme
 
 /* The same for a query in its own frame, with its distance and the tolerance scaled. */
 bool approach_within(const elementary_query *query, const local_query *local, double tolerance,
-                       elementary_contact *contact, bool *bounded);
+                     elementary_contact *contact, bool *bounded);
 
 /* The nearest points at the start, as a contact at time 0. */
 void separation_describe(const elementary_query *query, cscd_contact_kind kind, elementary_contact *contact);

@@ -3,6 +3,7 @@
 
 #include "src/core/check.h"
 #include "src/core/methods.h"
+#include "src/core/vec3.h"
 
 #include <string.h>
 
@@ -135,6 +136,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->stages = method_stages_of(chosen.method);
     d->rules = *d->stages->rules;
     d->limit = limit_of(&chosen);
+    d->floor_ratio = 0.9;
     status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     if (status != CSCD_OK) {
@@ -197,6 +199,29 @@ cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_sep
 interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1) {
     interval_search search = interval_search_begin(&d->space, x0, x1, d->limit);
     search.interval.thick = detector_thick(d);
+    return search;
+}
+
+static double largest_coordinate(const double *x, size_t count) {
+    double largest = 0.0;
+    for (size_t i = 0; i < count; i++) largest = max_of(largest, fabs(x[i]));
+    return largest;
+}
+
+/* A pair exceeds its floor surely when it exceeds it by the tolerance and 2^-40 of its extent, which is at most twice
+ * the largest coordinate C. 2^-37 C is more. */
+double detector_floors_beyond(const cscd_detector *d, double distance, const double *x0, const double *x1) {
+    size_t count = (size_t)d->mesh->vertex_count * 3;
+    double greatest = max_of(distance, d->pair_rules.greatest);
+    if (greatest == 0.0) return 0.0;
+    double largest = max_of(largest_coordinate(x0, count), largest_coordinate(x1, count));
+    return max_of(d->limit.tolerance, 1e-6 * greatest) + 0x1p-37 * largest;
+}
+
+interval_search detector_search_floors(cscd_detector *d, const double *x0, const double *x1) {
+    interval_search search = detector_search_begin(d, x0, x1);
+    search.interval.beyond = detector_floors_beyond(d, d->limit.distance, x0, x1);
+    search.interval.floor_ratio = search.interval.beyond > 0.0 ? d->floor_ratio : 0.0;
     return search;
 }
 

@@ -20,7 +20,8 @@ struct cscd_detector {
     cscd_mesh seen;        /* the mesh, which the detector holds, in its context */
     const cscd_mesh *mesh; /* &seen */
     cscd_detector_options options;
-    separation limit; /* of the options, with the default tolerance filled in */
+    separation limit;   /* of the options, with the default tolerance filled in */
+    double floor_ratio; /* of one floor to the next */
     const method_traits *traits;
     const method_stages *stages;
     culling_rules rules;
@@ -109,6 +110,13 @@ void detector_unmark_masked(const cscd_detector *d, bool *triangles);
 
 /* Begins a search for what comes nearer than it may, from x0 to x1. */
 interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1);
+
+/* Returns how far beyond a distance and those of the rules volumes must reach, so that pairs that they part are sure of
+ * their distance when the next motion asks; 0 where there is none. */
+double detector_floors_beyond(const cscd_detector *d, double distance, const double *x0, const double *x1);
+
+/* Begins a search for what falls below its floor; without a distance, for what touches. */
+interval_search detector_search_floors(cscd_detector *d, const double *x0, const double *x1);
 
 /* The number of regions that triangles are oriented by; 0 where they are not oriented. */
 static inline uint32_t detector_region_count(const cscd_detector *d) {

@@ -72,6 +72,7 @@ static cscd_status refit_trees(step_work *work) {
     const swept_interval *interval = &work->search.interval;
     double since = timer_now_ms();
     volume_growth growth = detector_growth(d);
+    growth.beyond = interval->beyond;
     cscd_status status =
         bvh_rebuild_move(&d->rebuild, &d->space.bvh, interval->x0, interval->x1, growth, growth);
     timer_lap(&since, &work->search.timings.update_ms);
@@ -267,7 +268,8 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
 cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd_mode mode, bool rehearsal,
                       step_outcome *out) {
     step_work work = {.detector = d,
-                      .search = detector_search_begin(d, x0, x1),
+                      .search =
+                          rehearsal ? detector_search_floors(d, x0, x1) : detector_search_begin(d, x0, x1),
                       .mode = mode,
                       .rehearsal = rehearsal,
                       .all_clean = true};

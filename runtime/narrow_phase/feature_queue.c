@@ -1,6 +1,8 @@
 /* Queue of feature pairs. SIMD kernels decide them in batches of eight; the scalar test decides the rest. */
 #include "runtime/narrow_phase/feature_queue.h"
 
+#include "runtime/ccd/separation_floor.h"
+
 #include <assert.h>
 
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
@@ -126,12 +128,13 @@ static void decide_proximity(const swept_interval *interval, cscd_contact_kind k
         uint32_t real = lanes_from(pairs, i);
         load_limits(interval, kind, pairs, i, &limits);
         kernel(&source, pairs->a + i, pairs->b + i, &limits, &near);
-        for (uint32_t lanes = real & near.within; lanes != 0; lanes &= lanes - 1) {
+        uint32_t within = interval->floor_ratio > 0.0 ? 0 : near.within;
+        for (uint32_t lanes = real & within; lanes != 0; lanes &= lanes - 1) {
             uint32_t at = (uint32_t)__builtin_ctz(lanes);
             elementary_contact contact = nearest_points(interval, kind, pairs->a[i + at], &near, at);
             add_contact(interval, kind, pairs, i + at, &contact, false, lane);
         }
-        kept = keep_lanes(pairs, i, real & ~near.within & ~near.apart, kept);
+        kept = keep_lanes(pairs, i, real & ~within & ~near.apart, kept);
     }
     pairs->count = kept;
 }
@@ -151,6 +154,28 @@ static void test_separations(const swept_interval *interval, cscd_contact_kind k
     }
 }
 
+/* Finds the pairs that fall below their floors. Those whose floor is 0 must not touch. */
+static void test_floors(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                        contact_lane *lane) {
+    uint32_t kept = 0;
+    lane->separations += pairs->count;
+    decide_proximity(interval, kind, pairs, lane);
+    for (uint32_t i = 0; i < pairs->count; i++) {
+        elementary_query query;
+        elementary_contact contact;
+        bool bounded = false;
+        separation limit = pair_separation(interval, kind, pairs->a[i], pairs->b[i]);
+        floor_ladder ladder = {limit.distance, interval->floor_ratio, limit.tolerance / limit.distance};
+        swept_interval_load(interval, kind, pairs->a[i], pairs->b[i], &query);
+        floor_verdict verdict = separation_floor_test(&query, kind, &ladder, &contact, &bounded);
+        if (verdict == FLOOR_BROKEN) add_contact(interval, kind, pairs, i, &contact, bounded, lane);
+        if (verdict == FLOOR_NONE) kept = keep_lanes(pairs, i, 1, kept);
+    }
+    pairs->count = kept;
+    lane->separations -= kept;
+    decide_by_levels(interval, kind, pairs, lane);
+}
+
 /* Pairs that have to stay apart by a distance go to the separations; what is left must not touch. */
 static void split_by_distance(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                               feature_list *separations) {
@@ -167,12 +192,20 @@ static void split_by_distance(const swept_interval *interval, cscd_contact_kind 
     pairs->count = kept;
 }
 
+static void decide_with_distance(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
+                                 contact_lane *lane) {
+    if (interval->floor_ratio > 0.0)
+        test_floors(interval, kind, pairs, lane);
+    else
+        test_separations(interval, kind, pairs, lane);
+}
+
 static void decide_by_pair(const swept_interval *interval, cscd_contact_kind kind, feature_pairs *pairs,
                            contact_lane *lane) {
     feature_list list;
     split_by_distance(interval, kind, pairs, &list);
     feature_pairs separations = {list.a, list.b, list.count};
-    test_separations(interval, kind, &separations, lane);
+    decide_with_distance(interval, kind, &separations, lane);
     decide_by_levels(interval, kind, pairs, lane);
 }
 
@@ -185,7 +218,7 @@ void feature_queue_decide(const swept_interval *interval, cscd_contact_kind kind
     else if (interval->thick)
         decide_by_pair(interval, kind, &pairs, lane);
     else if (interval->limit.distance > 0.0)
-        test_separations(interval, kind, &pairs, lane);
+        decide_with_distance(interval, kind, &pairs, lane);
     else
         decide_by_levels(interval, kind, &pairs, lane);
     list->count = 0;

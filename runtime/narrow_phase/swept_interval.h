@@ -27,6 +27,7 @@ typedef struct swept_interval {
     bool thick;              /* a pair's distance is that of the rules, where this is the greater one; its
                               * tolerance is that of the limit or, where this is 0, 1e-6 of the distance */
     double beyond;           /* volumes are compared within so much more than the pairs' distances */
+    double floor_ratio;      /* above 0: pairs that start nearer than they should have a floor instead */
     bool collecting;         /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 

@@ -1,8 +1,10 @@
 /* How far vertices may go on straight lines without contact: tries shorter and shorter steps until one is proven. */
 #include "runtime/solver/free_step.h"
 
+#include "runtime/solver/stored_scalar.h"
 #include "src/core/vec3.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Any shorter step leaves every vertex where it is: coordinates differ by at most 2^301, and are 0 or at
@@ -12,29 +14,81 @@ static const double shortest = 0x1p-1000;
 /* Stands in for a time of 0: times are early by less than 1e-9 (docs/theory/elementary.md). */
 static const double about_0 = 0x1p-33;
 
-static const double least_coordinate = 0x1p-300;
+/* ---- positions on the motion ----------------------------------------------------------------------------- */
+
+static size_t coordinates_of(const straight_motion *m) {
+    return (size_t)m->mesh->vertex_count * 3;
+}
+
+/* The coordinates of one object. */
+typedef struct coordinate_range {
+    size_t begin, end;
+} coordinate_range;
+
+static coordinate_range range_of(const cscd_mesh *mesh, uint32_t object) {
+    size_t begin = (size_t)mesh->objects[object].first_vertex * 3;
+    return (coordinate_range){begin, begin + (size_t)mesh->objects[object].vertex_count * 3};
+}
+
+static bool is_in_floats(const straight_motion *m, uint32_t object) {
+    return m->scalars != NULL && m->scalars[object] == CSCD_SCALAR_FLOAT;
+}
+
+static bool becomes_infinite(double x) {
+    return isinf(stored_coordinate(x, CSCD_SCALAR_FLOAT));
+}
+
+cscd_status motion_check(cscd_context *context, const straight_motion *m) {
+    for (uint32_t o = 0; o < m->mesh->object_count; o++) {
+        coordinate_range r = range_of(m->mesh, o);
+        for (size_t i = r.begin; is_in_floats(m, o) && i < r.end; i++) {
+            bool start = becomes_infinite(m->x0[i]);
+            if (!start && !becomes_infinite(m->x1[i])) continue;
+            return context_fail(context, CSCD_INVALID_ARGUMENT,
+                                "%s: vertex %zu has %c = %g, which is infinite as a float",
+                                start ? "x0" : "x1", i / 3, "xyz"[i % 3], start ? m->x0[i] : m->x1[i]);
+        }
+    }
+    return CSCD_OK;
+}
+
+static void round_to_floats(const straight_motion *m, double *x) {
+    for (uint32_t o = 0; o < m->mesh->object_count; o++) {
+        coordinate_range r = range_of(m->mesh, o);
+        for (size_t i = r.begin; is_in_floats(m, o) && i < r.end; i++)
+            x[i] = stored_coordinate(x[i], CSCD_SCALAR_FLOAT);
+    }
+}
 
 void motion_at(const straight_motion *m, double length, double *out) {
-    size_t count = (size_t)m->vertex_count * 3;
+    size_t count = coordinates_of(m);
     if (length == 0.0 || length == 1.0) {
         memmove(out, length == 0.0 ? m->x0 : m->x1, count * sizeof *out);
-        return;
+    } else {
+        for (size_t i = 0; i < count; i++) {
+            double x = m->x0[i] + length * (m->x1[i] - m->x0[i]);
+            out[i] = stored_coordinate(x, CSCD_SCALAR_DOUBLE);
+        }
     }
-    for (size_t i = 0; i < count; i++) {
-        double x = m->x0[i] + length * (m->x1[i] - m->x0[i]);
-        out[i] = fabs(x) < least_coordinate ? 0.0 : x;
-    }
+    round_to_floats(m, out);
 }
 
-static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
-    bool vf = at->kind == CSCD_CONTACT_VF;
-    const char *how = d->limit.distance > 0.0 ? "are within min_separation" : "touch";
-    return context_fail(
-        d->context, CSCD_IN_CONTACT,
-        "%s %u and %s %u %s at the start, so no step is free of contact: part them, or leave the "
-        "pair out",
-        vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b, how);
+/* C bounds the coordinates. In doubles
+ * - the difference, which may be 2 C, is off by 2^-52 C, and the product by as much,
+ * - the sum is off by 2^-53 C,
+ * - together this is below 2^-50 C for each coordinate or, at 0, 2^-300;
+ * so the distance of two points is off by less than 2^-48 C. Rounding to floats adds 2^-24 C, or 2^-150 close to 0, to
+ * each coordinate. Two points with three coordinates each make 2 sqrt 3 (2^-24 + 2^-50) C < 2^-22 C. */
+double motion_rounding(const straight_motion *m) {
+    bool any = false;
+    double largest = 0.0;
+    for (uint32_t o = 0; o < m->mesh->object_count; o++) any |= is_in_floats(m, o);
+    for (size_t i = 0; i < coordinates_of(m); i++)
+        largest = max_of(largest, max_of(fabs(m->x0[i]), fabs(m->x1[i])));
+    return any ? largest * 0x1p-22 + 0x1p-148 : largest * 0x1p-48 + 0x1p-297;
 }
+
+/* ---- tries ----------------------------------------------------------------------------------------------- */
 
 /* A motion, its test, and the outcome of the last test. */
 typedef struct trial {
@@ -54,17 +108,16 @@ static cscd_status try_between(trial *t, const double *from, const double *to) {
     return CSCD_OK;
 }
 
-/* With min_separation, a pair that ends just farther apart than that, but within the tolerance, is not found in this
- * motion, and would be found at the start of the next one. So the end is tested by itself, too. */
-static cscd_status try_step(const cscd_detector *d, trial *t, const double *end) {
-    cscd_status status = try_between(t, t->of->x0, end);
-    if (status != CSCD_OK || t->touches || d->limit.distance == 0.0) return status;
-    status = try_between(t, end, end);
-    t->first.toi = 1.0;
-    return status;
+static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
+    bool vf = at->kind == CSCD_CONTACT_VF;
+    return context_fail(
+        d->context, CSCD_IN_CONTACT,
+        "%s %u and %s %u touch at the start, so no step is free of contact: part them, or leave the "
+        "pair out",
+        vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b);
 }
 
-/* Tests an interval in which nothing moves. IN_CONTACT: something touches. */
+/* Tests an interval in which nothing moves. IN_CONTACT: something touches, which is t->first. */
 static cscd_status check_start(cscd_detector *d, trial *t) {
     cscd_status status = try_between(t, t->of->x0, t->of->x0);
     if (status != CSCD_OK || !t->touches) return status;
@@ -76,41 +129,66 @@ static double cut_for(const cscd_detector *d, double time) {
     return d->options.step_factor * (time > 0.0 ? time : about_0);
 }
 
+static bool is_moved(const straight_motion *m, const double *reached) {
+    for (size_t i = 0; i < coordinates_of(m); i++) {
+        if (reached[i] != m->x0[i]) return true;
+    }
+    return false;
+}
+
+/* x0 is given in doubles, is rounded to floats, and cannot get there. */
+static cscd_status fail_to_round(cscd_detector *d, const cscd_contact *at) {
+    bool vf = at->kind == CSCD_CONTACT_VF;
+    return context_fail(
+        d->context, CSCD_IN_CONTACT,
+        "%s %u and %s %u do not stay apart where x0 is rounded to floats: give x0 in floats, or ask "
+        "for doubles",
+        vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b);
+}
+
 /* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own,
  * or the time is 0, steps shrink ever faster. */
 static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *length) {
     cscd_status status = CSCD_OK;
-    double shrink = 0.25;
-    bool start_checked = false, at_once = t->first.toi == 0.0;
-    for (;;) {
+    bool start_checked = false;
+    for (double shrink = 0.25;; shrink *= shrink) {
+        bool at_once = t->first.toi == 0.0;
         if (at_once && !start_checked) status = check_start(d, t);
         if (status != CSCD_OK) return status;
-        start_checked = at_once;
+        start_checked |= at_once;
         motion_at(t->of, *length, reached);
-        status = try_step(d, t, reached);
+        status = try_between(t, t->of->x0, reached);
         if (status != CSCD_OK || !t->touches) return status;
+        if (*length == shortest && (start_checked || t->first.toi > 0.0)) return fail_to_round(d, &t->first);
         *length = max_of(*length * min_of(cut_for(d, t->first.toi), shrink), shortest);
-        shrink *= shrink;
-        at_once = true;
     }
 }
 
+static cscd_status find_step(cscd_detector *d, trial *t, double longest, double *reached,
+                             cscd_free_step *step) {
+    motion_at(t->of, longest, reached);
+    cscd_status status = try_between(t, t->of->x0, reached);
+    if (status != CSCD_OK || !t->touches) return status;
+    step->limited = true;
+    step->limit = t->first;
+    step->limit.toi *= longest;
+    double cut = longest * cut_for(d, 0.0);
+    if (t->first.toi > 0.0)
+        cut = d->options.step_factor * step->limit.toi; /* rounding must not make it larger */
+    step->length = max_of(cut, shortest);
+    status = shorten_step(d, t, reached, &step->length);
+    if (status == CSCD_IN_CONTACT) *step = (cscd_free_step){.limited = true, .limit = t->first};
+    return status;
+}
+
 cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
-                           void *of, double *reached, cscd_free_step *out) {
-    cscd_free_step step = {.length = longest};
+                           void *of, double *reached, free_step *out) {
+    free_step found = {.result.length = longest};
     trial t = {.of = m, .test = test, .data = of};
-    motion_at(m, longest, reached);
-    cscd_status status = try_step(d, &t, reached);
-    if (status == CSCD_OK && t.touches) {
-        step.limited = true;
-        step.limit = t.first;
-        step.limit.toi *= longest;
-        double cut = longest * cut_for(d, 0.0);
-        if (t.first.toi > 0.0)
-            cut = d->options.step_factor * step.limit.toi; /* rounding must not make it larger */
-        step.length = max_of(cut, shortest);
-        status = shorten_step(d, &t, reached, &step.length);
-    }
-    if (status == CSCD_OK) *out = step;
+    cscd_status status = motion_check(d->context, m);
+    if (status == CSCD_OK) status = find_step(d, &t, longest, reached, &found.result);
+    if (status == CSCD_OK) found.moved = is_moved(m, reached);
+    if (status == CSCD_OK && !found.moved) memcpy(reached, m->x0, coordinates_of(m) * sizeof *reached);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = found;
     return status;
 }

@@ -12,6 +12,7 @@ struct cscd_line {
     cscd_detector *detector;    /* held, and with it the context */
     double *x0, *x1, *reached;  /* positions */
     double reach, covered;      /* covered: all pairs that come within this distance are candidates */
+    double beyond;              /* ... as are those that are so much farther apart */
     bool begun;
     double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
@@ -20,7 +21,7 @@ struct cscd_line {
 };
 
 static straight_motion motion_of(const cscd_line *line) {
-    return (straight_motion){line->detector->mesh->vertex_count, line->x0, line->x1};
+    return (straight_motion){.mesh = line->detector->mesh, .x0 = line->x0, .x1 = line->x1};
 }
 
 /* ---- life ---------------------------------------------------------------------------------------------- */
@@ -60,19 +61,6 @@ void cscd_line_destroy(cscd_line *line) {
 
 /* ---- begin --------------------------------------------------------------------------------------------- */
 
-/* Bounds the rounding of positions on the line, where C is the largest coordinate.
- * - The difference, which may be 2 C, is off by 2^-52 C, and the product by as much.
- * - The sum is off by 2^-53 C.
- * - Together this is below 2^-50 C for each coordinate or, at 0, 2^-300.
- * So the distance of two points is off by less than 2^-48 C. */
-static double rounding_on(const cscd_line *line) {
-    size_t count = (size_t)line->detector->mesh->vertex_count * 3;
-    double largest = 0.0;
-    for (size_t i = 0; i < count; i++)
-        largest = max_of(largest, max_of(fabs(line->x0[i]), fabs(line->x1[i])));
-    return largest * 0x1p-48 + 0x1p-297;
-}
-
 /* Remembers what the detector knows of the triangles at x0, because it will hold where a step of the
  * line ends. */
 static void remember_states(cscd_line *line) {
@@ -101,9 +89,12 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     memcpy(line->x0, x0, vertices * sizeof(double[3]));
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
+    straight_motion m = motion_of(line);
     line->covered = max_of(d->limit.distance, reach);
+    line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
     detector_begin_call(d);
-    status = candidates_collect(d, line->x0, line->x1, line->covered, rounding_on(line), &line->candidates);
+    status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
+                                &line->candidates);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
     return CSCD_OK;
@@ -172,7 +163,7 @@ static cscd_status test_candidates_on_motion(void *of, const double *from, const
     cscd_counters counters = {.vf = 0};
     progress_part(&d->context->progress, line->done, 0.5 + 0.5 * line->done);
     line->done = 0.5 + 0.5 * line->done;
-    interval_search search = detector_search_begin(d, from, to);
+    interval_search search = detector_search_floors(d, from, to);
     cscd_status status = candidates_test(&line->candidates, &search);
     return status == CSCD_OK ? contact_list_collect(&d->space, &d->exclusions, &d->contacts, &counters, out)
                              : status;
@@ -185,8 +176,7 @@ static bool lanes_are_empty(const search_space *s) {
     return true;
 }
 
-/* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. If the
- * detector got a minimum separation since the line began, the lanes hold the contacts of the step's end only. */
+/* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. */
 static void carry_states_over(cscd_line *line) {
     cscd_detector *d = line->detector;
     if (!line->states_known || !detector_culls(d) || !lanes_are_empty(&d->space)) return;
@@ -201,12 +191,14 @@ static void carry_states_over(cscd_line *line) {
 /* Do the candidates still cover the separation? cscd_detector_set_separation may have been called since the line
  * began. */
 static cscd_status check_covered(const cscd_line *line) {
-    double distance = line->detector->limit.distance;
-    if (distance <= line->covered) return CSCD_OK;
-    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+    const cscd_detector *d = line->detector;
+    double beyond = detector_floors_beyond(d, d->limit.distance, line->x0, line->x1);
+    bool covered = d->limit.distance + beyond <= line->covered + line->beyond;
+    if (covered && (!detector_thick(d) || beyond <= line->beyond)) return CSCD_OK;
+    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                         "cscd_line_max_step: min_separation is %g since the line was begun, and its "
                         "candidates reach to %g only; call cscd_line_begin again",
-                        distance, line->covered);
+                        d->limit.distance, line->covered);
 }
 
 cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out) {
@@ -223,11 +215,12 @@ cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, csc
     detector_begin_call(d);
     line->done = 0.0;
     straight_motion m = motion_of(line);
-    cscd_free_step step;
+    free_step step;
     status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
+    if (status == CSCD_IN_CONTACT) *out = step.result;
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
-    if (end != NULL) memcpy(end, line->reached, m.vertex_count * sizeof(double[3]));
-    *out = step;
+    if (end != NULL) memcpy(end, line->reached, d->mesh->vertex_count * sizeof(double[3]));
+    *out = step.result;
     return CSCD_OK;
 }

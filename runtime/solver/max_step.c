@@ -1,6 +1,7 @@
 /* The longest step towards x1 that is certified free of contact, by the stages of a step. */
+#include "runtime/solver/max_step.h"
+
 #include "runtime/detector/step.h"
-#include "runtime/solver/free_step.h"
 #include "src/core/timer.h"
 
 #include <string.h>
@@ -80,28 +81,39 @@ static cscd_status reserve_reached(cscd_detector *d) {
     return d->reached != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
+/* Withdraws what a failed call has tried, and passes the status on. */
+static cscd_status fail_tries(const tries *t, cscd_status status) {
+    if (t->any) step_withdraw(t->detector);
+    return detector_fail_call(t->detector, status);
+}
+
+cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step *out) {
+    double since = timer_now_ms();
+    tries t = {.detector = d, .timings = {.check_ms = d->timings.check_ms}};
+    detector_begin_call(d);
+    cscd_status status = reserve_reached(d);
+    if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
+    if (status != CSCD_OK) return fail_tries(&t, status);
+    step_take(d, d->reached);
+    timer_lap(&since, &t.timings.total_ms);
+    d->timings = t.timings;
+    d->counters = t.counters;
+    return CSCD_OK;
+}
+
 cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, const double *x1, double *end,
                                    cscd_free_step *out) {
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
-    double since = timer_now_ms();
+    double since = timer_now_ms(), check_ms = 0.0;
     cscd_status status = check_arguments(detector, x0, x1, out);
     if (status != CSCD_OK) return status;
-    straight_motion m = {detector->mesh->vertex_count, x0, x1};
-    tries t = {.detector = detector, .timings = {.check_ms = detector->timings.check_ms}};
-    cscd_free_step step;
-    detector_begin_call(detector);
-    status = reserve_reached(detector);
-    if (status == CSCD_OK)
-        status = free_step_find(detector, &m, 1.0, try_motion, &t, detector->reached, &step);
-    if (status != CSCD_OK) {
-        if (t.any) step_withdraw(detector);
-        return detector_fail_call(detector, status);
-    }
-    step_take(detector, detector->reached);
-    if (end != NULL) memcpy(end, detector->reached, m.vertex_count * sizeof(double[3]));
-    timer_lap(&since, &t.timings.total_ms);
-    detector->timings = t.timings;
-    detector->counters = t.counters;
-    *out = step;
+    straight_motion m = {.mesh = detector->mesh, .x0 = x0, .x1 = x1};
+    free_step step;
+    timer_lap(&since, &check_ms);
+    status = max_step_find(detector, &m, &step);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = step.result;
+    if (status != CSCD_OK) return status;
+    if (end != NULL) memcpy(end, detector->reached, detector->mesh->vertex_count * sizeof(double[3]));
+    detector->timings.total_ms += check_ms;
     return CSCD_OK;
 }

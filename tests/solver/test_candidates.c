@@ -18,7 +18,7 @@ static size_t compare_share(const rig *r, const rig *reference, const candidates
     cscd_detector *d = r->detector;
     cscd_contacts expected, found;
     cscd_counters counters = {.vf = 0};
-    straight_motion m = {interval.vertex_count, interval.x0, interval.x1};
+    straight_motion m = {.mesh = r->mesh, .x0 = interval.x0, .x1 = interval.x1};
     motion_at(&m, share, end);
     interval_search search = interval_search_begin(&d->space, interval.x0, end, d->limit);
     assert_int_equal(candidates_test(c, &search), CSCD_OK);

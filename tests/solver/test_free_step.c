@@ -30,52 +30,54 @@ static cscd_status test_wall(void *of, const double *from, const double *to, csc
 static rig make_flight(straight_motion *m) {
     scene_make(SCENE_TWO_SPHERES, 1, &shape);
     for (uint32_t i = 0; i < shape.vertex_count * 3; i++) ends[i] = shape.x0[i] + (i % 3 == 0);
-    *m = (straight_motion){shape.vertex_count, shape.x0, ends};
-    return rig_create(&shape, 1, NULL);
+    rig r = rig_create(&shape, 1, NULL);
+    *m = (straight_motion){.mesh = r.mesh, .x0 = shape.x0, .x1 = ends};
+    return r;
 }
 
 static void free_motions_are_whole_steps(void **state) {
     straight_motion m;
-    cscd_free_step out;
+    free_step out;
     (void)state;
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.length == 1.0 && !out.limited && nowhere.tests == 1);
+    assert_true(out.result.length == 1.0 && !out.result.limited && out.moved && nowhere.tests == 1);
     assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
     assert_int_equal(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.length == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
+    assert_true(out.result.length == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
     rig_destroy(&r);
 }
 
 static void limited_steps_end_before_the_wall(void **state) {
     straight_motion m;
-    cscd_free_step out;
+    free_step out;
     (void)state;
     rig r = make_flight(&m);
     for (double share = 0.9; share > 1e-6; share *= 0.1) {
         wall w = {.at = shape.x0[0] + share};
         assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_OK);
-        assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
-        assert_true(fabs(out.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(out.result.limited && out.result.limit.a == 4 && out.result.limit.b == 9);
+        assert_true(fabs(out.result.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.result.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
         w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
         assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
-        assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(out.result.limited && fabs(out.result.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.result.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }
     rig_destroy(&r);
 }
 
 static void no_step_is_free_from_within(void **state) {
     straight_motion m;
-    cscd_free_step out = {.length = -1.0};
+    free_step out = {.result.length = -1.0};
     (void)state;
     rig r = make_flight(&m);
     wall w = {.at = shape.x0[0]};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_IN_CONTACT);
-    assert_true(out.length == -1.0 && w.tests < 10);
+    assert_true(out.result.length == 0.0 && out.result.limited && w.tests < 10);
+    assert_true(out.result.limit.a == 4 && out.result.limit.b == 9 && out.result.limit.toi == 0.0);
     rig_destroy(&r);
 }
 

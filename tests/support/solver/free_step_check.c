@@ -1,8 +1,11 @@
 /* Checks by brute force everything that a step certified free of contact promises. */
 #include "tests/support/solver/free_step_check.h"
+#include "runtime/detector/detector.h"
+#include "src/core/vec3.h"
 #include "tests/support/test.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Times are early by less than this, each by a different amount. */
@@ -49,11 +52,26 @@ bool free_step_embedded(const rig *reference, const double *positions) {
     return found.count == 0 && found.zero_area_triangles == 0;
 }
 
+static void set_distance(const rig *reference, double distance) {
+    assert_int_equal(cscd_detector_set_separation(reference->detector, distance, 0.0), CSCD_OK);
+}
+
+static bool same_pair(const cscd_contact *c, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    return c->kind == kind && c->a == a && c->b == b;
+}
+
+/* Checks that the limit names a pair that touches. */
 static void check_refused(const rig *reference, const cscd_context *called, const free_step_call *call) {
+    cscd_contacts touching = contacts_between(reference, call->x0, call->x0);
+    const cscd_contact *limit = &call->step.limit;
+    bool listed = false;
     assert_int_equal(call->status, CSCD_IN_CONTACT);
-    assert_true(call->step.length == untouched && !call->step.limited);
+    assert_true(call->step.length == 0.0 && call->step.limited && limit->toi == 0.0);
+    for (size_t i = 0; i < touching.count; i++)
+        listed |= same_pair(&touching.items[i], limit->kind, limit->a, limit->b);
+    assert_true(listed);
     for (size_t i = 0; i < coordinates_of(reference); i++) assert_true(call->end[i] == untouched);
-    assert_non_null(strstr(cscd_context_detail(called), "at the start"));
+    assert_non_null(strstr(cscd_context_detail(called), "touch at the start"));
 }
 
 /* Checks that the limit is a first contact of the requested motion, on the scale of the line. */
@@ -63,41 +81,121 @@ static void check_limit(const free_step_call *call, cscd_contacts truth) {
     assert_true(limit->toi <= (truth.items[0].toi + early) * call->longest);
     for (size_t i = 0; i < truth.count; i++) {
         const cscd_contact *t = &truth.items[i];
-        bool same = t->kind == limit->kind && t->a == limit->a && t->b == limit->b;
+        bool same = same_pair(t, limit->kind, limit->a, limit->b);
         listed |= same && t->toi * call->longest == limit->toi && t->u == limit->u && t->v == limit->v;
     }
     assert_true(listed);
     if (limit->toi > early) assert_true(call->step.length <= call->step_factor * limit->toi);
 }
 
-/* Without a contact on the way the step may be limited only if its end lies within min_separation, and
- * then by the end. */
-static void check_unlimited(const rig *reference, const free_step_call *call) {
+/* Without min_separation: the step ends before the first contact. */
+static void check_touching(const rig *reference, const free_step_call *call) {
     static double end[SCENE_VERTICES_MAX * 3];
-    free_step_positions(reference, call->x0, call->x1, call->longest, end);
-    assert_int_equal(call->step.limited, contacts_between(reference, end, end).count > 0);
-    if (call->step.limited) assert_true(call->step.limit.toi == call->longest);
-}
-
-bool free_step_check(const rig *reference, const cscd_context *called, const free_step_call *call) {
-    static double end[SCENE_VERTICES_MAX * 3];
-    if (contacts_between(reference, call->x0, call->x0).count > 0) {
-        check_refused(reference, called, call);
-        return false;
-    }
-    assert_int_equal(call->status, CSCD_OK);
-    assert_true(call->step.length > 0.0 && call->step.length <= call->longest);
     free_step_positions(reference, call->x0, call->x1, call->longest, end);
     cscd_contacts truth = contacts_between(reference, call->x0, end);
-    assert_int_equal(call->step.limited, call->step.length < call->longest);
-    if (truth.count > 0) {
-        assert_true(call->step.limited);
-        check_limit(call, truth);
+    assert_int_equal(call->step.limited, truth.count > 0);
+    if (truth.count > 0) check_limit(call, truth);
+}
+
+/* ---- floors ------------------------------------------------------------------------------------------------ */
+
+/* Of distances: what the tolerance, rounding and a rung of the ladder make of them. */
+static const double a_little = 1e-5, rung = 0.9;
+
+/* Pairs this much nearer than coordinates are long may have floors of 0. */
+static const double finest = 1e-9;
+
+/* A copy, sorted by (kind, a, b), of the pairs within a distance. */
+typedef struct near_pairs {
+    cscd_proximity *items;
+    size_t count;
+} near_pairs;
+
+static near_pairs pairs_near(const rig *reference, const double *x, double distance) {
+    cscd_proximities found;
+    assert_int_equal(cscd_detector_near(reference->detector, x, distance, &found), CSCD_OK);
+    near_pairs copy = {malloc((found.count + 1) * sizeof *copy.items), found.count};
+    assert_non_null(copy.items);
+    if (found.count > 0) memcpy(copy.items, found.items, found.count * sizeof *copy.items);
+    return copy;
+}
+
+static int compare_pairs(const void *left, const void *right) {
+    const cscd_proximity *l = left, *r = right;
+    if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return l->b < r->b ? -1 : l->b > r->b;
+}
+
+static const cscd_proximity *find_pair(const near_pairs *pairs, cscd_contact_kind kind, uint32_t a,
+                                       uint32_t b) {
+    const cscd_proximity wanted = {.kind = kind, .a = a, .b = b};
+    return bsearch(&wanted, pairs->items, pairs->count, sizeof wanted, compare_pairs);
+}
+
+/* Whatever starts above the distance stays there, and whatever starts below it loses no more than a rung. */
+static void check_pairs_at_end(const rig *reference, const free_step_call *call, const near_pairs *before,
+                               double distance) {
+    near_pairs after = pairs_near(reference, call->end, distance);
+    for (size_t i = 0; i < after.count; i++) {
+        const cscd_proximity *p = &after.items[i], *was = find_pair(before, p->kind, p->a, p->b);
+        if (p->distance > distance * (1.0 - a_little)) continue;
+        assert_non_null(was);
+        double floor = rung * fmin(distance, was->distance) * (1.0 - a_little);
+        if (floor > finest * vec3_largest(p->point)) assert_true(p->distance > floor);
     }
+    free(after.items);
+}
+
+static void check_limit_above_floors(const rig *reference, const free_step_call *call,
+                                     const near_pairs *before, double distance) {
+    static double end[SCENE_VERTICES_MAX * 3];
+    const cscd_contact *limit = &call->step.limit;
+    free_step_positions(reference, call->x0, call->x1, call->longest, end);
+    set_distance(reference, distance * (1.0 + a_little));
+    cscd_contacts truth = contacts_between(reference, call->x0, end);
+    bool listed = find_pair(before, limit->kind, limit->a, limit->b) != NULL;
+    for (size_t i = 0; i < truth.count; i++)
+        listed |= same_pair(&truth.items[i], limit->kind, limit->a, limit->b);
+    if (call->step.limited) assert_true(listed);
+    if (call->step.limited && limit->toi > early)
+        assert_true(call->step.length <= call->step_factor * limit->toi);
+}
+
+static void check_floors(const rig *reference, const free_step_call *call, double distance) {
+    near_pairs before = pairs_near(reference, call->x0, distance * (1.0 + a_little));
+    set_distance(reference, distance * (1.0 - a_little));
+    cscd_contacts truth = contacts_between(reference, call->x0, call->end);
+    for (size_t i = 0; i < truth.count; i++)
+        assert_non_null(find_pair(&before, truth.items[i].kind, truth.items[i].a, truth.items[i].b));
+    check_pairs_at_end(reference, call, &before, distance);
+    check_limit_above_floors(reference, call, &before, distance);
+    free(before.items);
+}
+
+static void check_free(const rig *reference, const free_step_call *call, double distance) {
+    static double end[SCENE_VERTICES_MAX * 3];
+    assert_int_equal(call->status, CSCD_OK);
+    assert_true(call->step.length > 0.0 && call->step.length <= call->longest);
+    assert_int_equal(call->step.limited, call->step.length < call->longest);
     free_step_positions(reference, call->x0, call->x1, call->step.length, end);
     assert_memory_equal(end, call->end, coordinates_of(reference) * sizeof(double));
     assert_int_equal(contacts_between(reference, call->x0, call->end).count, 0);
-    assert_int_equal(contacts_between(reference, call->end, call->end).count, 0);
-    if (truth.count == 0) check_unlimited(reference, call);
-    return true;
+    if (distance == 0.0)
+        check_touching(reference, call);
+    else
+        check_floors(reference, call, distance);
+}
+
+bool free_step_check(const rig *reference, const cscd_context *called, const free_step_call *call) {
+    double distance = reference->detector->options.min_separation;
+    double tolerance = reference->detector->options.tolerance;
+    set_distance(reference, 0.0);
+    bool refused = contacts_between(reference, call->x0, call->x0).count > 0;
+    if (refused)
+        check_refused(reference, called, call);
+    else
+        check_free(reference, call, distance);
+    assert_int_equal(cscd_detector_set_separation(reference->detector, distance, tolerance), CSCD_OK);
+    return !refused;
 }

@@ -1,0 +1,191 @@
+/* Starts nearer than min_separation: pressed together they lose no more than a rung, torn apart they go on. */
+#include "runtime/solver/max_step.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 3, PANEL = SIDE * SIDE, VERTICES = 2 * PANEL, TRIANGLES = 4 * (SIDE - 1) * (SIDE - 1) };
+
+/* Two square panels of side 1, one above the other. */
+typedef struct panels {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+    double x0[VERTICES * 3], x1[VERTICES * 3];
+} panels;
+
+static void fill_triangles(uint32_t *out) {
+    for (uint32_t panel = 0; panel < 2; panel++) {
+        for (uint32_t i = 0; i < (SIDE - 1) * (SIDE - 1); i++, out += 6) {
+            uint32_t corner = panel * PANEL + i / (SIDE - 1) * SIDE + i % (SIDE - 1);
+            const uint32_t two[6] = {corner,     corner + SIDE, corner + 1,
+                                     corner + 1, corner + SIDE, corner + SIDE + 1};
+            memcpy(out, two, sizeof two);
+        }
+    }
+}
+
+/* The upper panel is a height above the lower one, turned a little, so that edges cross. */
+static void place_panels(panels *p, double height) {
+    for (int i = 0; i < VERTICES; i++) {
+        double u = i % PANEL / SIDE / (SIDE - 1.0), v = i % SIDE / (SIDE - 1.0), *x = p->x0 + 3 * (size_t)i;
+        bool upper = i >= PANEL;
+        x[0] = upper ? 0.03 + 0.99 * u - 0.08 * v : u;
+        x[1] = upper ? 0.01 + 0.08 * u + 0.99 * v : v;
+        x[2] = upper ? height : 0.0;
+    }
+}
+
+static void open_panels(panels *p, double min_separation, double height) {
+    uint32_t triangles[TRIANGLES * 3];
+    cscd_mesh_desc desc = {VERTICES, TRIANGLES, triangles};
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = min_separation;
+    fill_triangles(triangles);
+    place_panels(p, height);
+    assert_int_equal(cscd_context_create(NULL, &p->context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(p->context, &desc, &p->mesh), CSCD_OK);
+    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &p->detector), CSCD_OK);
+}
+
+static void close_panels(panels *p) {
+    cscd_detector_destroy(p->detector);
+    cscd_mesh_destroy(p->mesh);
+    cscd_context_destroy(p->context);
+}
+
+/* The distance of the nearest pair of the two panels. */
+static double distance_of(const panels *p) {
+    cscd_proximities near;
+    double least = INFINITY;
+    assert_int_equal(cscd_detector_near(p->detector, p->x0, 0.3, &near), CSCD_OK);
+    for (size_t i = 0; i < near.count; i++) {
+        cscd_stencil s =
+            cscd_mesh_stencil(p->mesh, near.items[i].kind, near.items[i].a, near.items[i].b, 0.5, 0.5);
+        bool other = (s.vertices[0] < PANEL) != (s.vertices[3] < PANEL);
+        if (other) least = fmin(least, near.items[i].distance);
+    }
+    return least;
+}
+
+/* One certified step towards x1, and on to where it ends. */
+static free_step go_on(panels *p) {
+    free_step step;
+    straight_motion m = {.mesh = p->mesh, .x0 = p->x0, .x1 = p->x1};
+    assert_int_equal(max_step_find(p->detector, &m, &step), CSCD_OK);
+    memcpy(p->x0, p->detector->reached, sizeof p->x0);
+    return step;
+}
+
+/* The upper panel falls on the lower one, or leaves it, and both tremble. */
+static void aim_panels(panels *p, double fall, double tremble, random_stream *random) {
+    for (int i = 0; i < VERTICES * 3; i++) {
+        bool upper = i >= PANEL * 3;
+        p->x1[i] =
+            p->x0[i] + tremble * stream_between(random, -1.0, 1.0) - (upper && i % 3 == 2 ? fall : 0.0);
+    }
+}
+
+/* ---- pressed together --------------------------------------------------------------------------------- */
+
+static void press_panels(double distance, double height, int steps, double tremble) {
+    panels p;
+    random_stream random = stream_start((uint64_t)steps);
+    open_panels(&p, distance, height);
+    double start = distance_of(&p);
+    for (int i = 0; i < steps; i++) {
+        aim_panels(&p, 0.05, tremble, &random);
+        go_on(&p);
+        if (i % 100 != 99 && i >= 20) continue;
+        assert_true(distance_of(&p) > (start > distance * 1.0001 ? distance : 0.9 * start * (1 - 2e-6)));
+    }
+    print_message("  d %g: from %.9g d to %.9g d in %d steps\n", distance, start / distance,
+                  distance_of(&p) / distance, steps);
+    close_panels(&p);
+}
+
+static void pressed_pairs_lose_no_more_than_a_rung(void **state) {
+    (void)state;
+    press_panels(0.01, 0.05, 10000, 0.0); /* above d: stays above d */
+    press_panels(0.01, 0.05, 2000, 1e-3);
+    press_panels(0.01, 0.0095, 10000, 0.0); /* below: one rung at most, 0.9 d here */
+    press_panels(0.01, 0.005, 2000, 1e-4);
+    press_panels(0.01, 1e-9, 2000, 1e-10);
+    press_panels(1e-6, 1e-4, 2000, 0.0);
+}
+
+/* ---- torn apart ---------------------------------------------------------------------------------------- */
+
+/* Panels much nearer than they should be leave each other at once. */
+static void torn_panels_part(void **state) {
+    (void)state;
+    static const double shares[] = {0.999, 0.5, 1e-3, 1e-7, 1e-9};
+    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
+        panels p;
+        random_stream random = stream_start(i);
+        open_panels(&p, 0.01, 0.01 * shares[i]);
+        aim_panels(&p, -0.001, 0.0, &random);
+        free_step step = go_on(&p);
+        assert_true(step.result.length == 1.0 && !step.result.limited && step.moved);
+        while (p.x0[VERTICES * 3 - 1] < 0.02) {
+            aim_panels(&p, -0.001, 0.0, &random);
+            assert_true(go_on(&p).result.length == 1.0);
+        }
+        assert_true(distance_of(&p) > 0.01);
+        close_panels(&p);
+    }
+}
+
+/* A panel at 1e-7 d above another one shivers while both fly and the wound opens slowly: no step is lost. */
+static void torn_panels_move_on(void **state) {
+    (void)state;
+    panels p;
+    random_stream random = stream_start(5);
+    uint32_t lost = 0;
+    open_panels(&p, 0.01, 1e-9);
+    for (int i = 0; i < 300; i++) {
+        double flight[3];
+        aim_panels(&p, 0.0, 0.0, &random);
+        for (int k = 0; k < 3; k++) flight[k] = stream_between(&random, -0.1, 0.1);
+        for (int c = 0; c < VERTICES * 3; c++) p.x1[c] += flight[c % 3];
+        for (int v = PANEL; v < VERTICES; v++) p.x1[3 * v + 2] += 1e-4 * stream_between(&random, 0.0, 1.0);
+        free_step step = go_on(&p);
+        lost += !step.moved || step.result.length < 1.0;
+    }
+    assert_int_equal(lost, 0);
+    assert_true(distance_of(&p) > 0.01);
+    close_panels(&p);
+}
+
+/* ---- touching ------------------------------------------------------------------------------------------ */
+
+/* Only what truly touches is in contact, and the result says what. */
+static void only_touching_is_in_contact(void **state) {
+    (void)state;
+    panels p;
+    cscd_free_step step = {.length = -1.0};
+    open_panels(&p, 0.01, 1e-80);
+    memcpy(p.x1, p.x0, sizeof p.x1);
+    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
+    assert_true(step.length == 1.0 && !step.limited);
+    for (int v = PANEL; v < VERTICES; v++) p.x1[3 * v + 2] = 1e-3;
+    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
+    assert_true(step.length == 1.0 && !step.limited);
+    p.x0[3 * PANEL + 2] = 0.0; /* a corner on the lower panel */
+    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_IN_CONTACT);
+    assert_true(step.limited && step.length == 0.0 && step.limit.toi == 0.0);
+    assert_int_equal(step.limit.kind, CSCD_CONTACT_VF);
+    assert_int_equal(step.limit.a, PANEL);
+    assert_non_null(strstr(cscd_context_detail(p.context), "vertex 9 and triangle"));
+    close_panels(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pressed_pairs_lose_no_more_than_a_rung), cmocka_unit_test(torn_panels_part),
+        cmocka_unit_test(torn_panels_move_on), cmocka_unit_test(only_touching_is_in_contact)};
+    return cmocka_run_group_tests_name("floors", tests, NULL, NULL);
+}
