@@ -15,7 +15,7 @@ enum { OBJECT_FREE = 1, OBJECT_OBSTACLE = 2, OBJECT_ASKING_OBSTACLE = 4 };
 typedef struct object_set {
     uint64_t categories,
         masks; /* of the caller; two objects are looked at if each one's category is in both masks */
-    uint8_t kinds, kinds_sought; /* the same of the library */
+    uint8_t kinds, kinds_sought; /* the same of the library; who seeks a kind is sought by it */
     bool self;                   /* an object is looked at with itself */
     uint32_t first, last;        /* the least and the greatest object */
 } object_set;
@@ -38,5 +38,5 @@ static inline bool object_sets_may_meet(const object_set *a, const object_set *b
         if (a->first == b->last && a->last == b->first) return false; /* one object and itself */
     }
     return (a->categories & b->masks) != 0 && (b->categories & a->masks) != 0 &&
-           (a->kinds & b->kinds_sought) != 0 && (b->kinds & a->kinds_sought) != 0;
+           (a->kinds & b->kinds_sought) != 0;
 }

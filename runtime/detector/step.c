@@ -292,7 +292,7 @@ void step_take(cscd_detector *d, const double *end) {
     }
     for (uint32_t c = 0; c < d->mesh->component_count; c++) {
         const cscd_guarantee *g = &d->guarantees[c];
-        d->incomplete[c] = d->never_culled[c] || (!g->complete && g->reason != CSCD_REASON_OBSTACLE);
+        d->incomplete[c] = !g->complete && g->reason != CSCD_REASON_OBSTACLE;
     }
     start_states_end(&d->starts, end, d->incomplete);
 }

@@ -8,6 +8,11 @@ static bool in_surface(const cscd_mesh *mesh, uint32_t vertex) {
     return mesh->vertex_star_offsets[vertex + 1] > mesh->vertex_star_offsets[vertex];
 }
 
+/* Is a component looked at with all others, and with itself? */
+static bool meets_all(const swept_interval *interval, uint32_t component) {
+    return interval->rules == NULL && !component_is_obstacle(interval->mesh, component);
+}
+
 /* Rules know obstacles, too. */
 static bool may_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (interval->rules != NULL) return components_look(interval, a, b);
@@ -19,9 +24,10 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
     const uint32_t *corners = mesh->triangles[triangle];
     swept_box face = swept_box_of(interval, corners, 3);
     uint32_t component = mesh->triangle_components[triangle];
+    bool all = meets_all(interval, component);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
-        if (!may_meet(interval, component, vertex_component(mesh, v))) continue;
+        if (!all && !may_meet(interval, component, vertex_component(mesh, v))) continue;
         lane->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
         if (swept_boxes_within(&face, &vertex, pair_reach(interval, CSCD_CONTACT_VF, v, triangle)))
@@ -34,10 +40,11 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     const uint32_t *ends_a = mesh->edges[a];
     swept_box box_a = swept_box_of(interval, ends_a, 2);
     uint32_t component = edge_component(mesh, a);
+    bool all = meets_all(interval, component);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
         if (edges_share_vertex(ends_a, ends_b)) continue;
-        if (!may_meet(interval, component, edge_component(mesh, b))) continue;
+        if (!all && !may_meet(interval, component, edge_component(mesh, b))) continue;
         lane->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);
         if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))
