@@ -1,6 +1,7 @@
 /* Culling on recordings: pairs and time per stage, by method, for intervals with and without a proven
  * start. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "src/io/animation.h"
 #include "src/io/mesh_file.h"
 
@@ -73,7 +74,8 @@ static bool replay_method(culled_recording *r, cscd_detector *detector, const ch
         cscd_contacts found;
         if (!animation_read(r->frames, i, end, &error)) return print_failure(error.text);
         if (i == 0) continue;
-        if (cscd_detector_step(detector, start, end, &found) != CSCD_OK)
+        if (cscd_detector_step(detector, CSCD_DOUBLES(start, cscd_mesh_vertex_count(r->mesh)),
+                               CSCD_DOUBLES(end, cscd_mesh_vertex_count(r->mesh)), &found) != CSCD_OK)
             return print_failure(cscd_context_detail(r->context));
         cscd_timings ms = cscd_detector_timings(detector);
         cscd_counters n = cscd_detector_counters(detector);
@@ -107,8 +109,10 @@ static bool run_method(culled_recording *r, const char *name) {
     plan_options.method = options.method == CSCD_METHOD_PUBLISHED ? CSCD_METHOD_SINGLE : options.method;
     cscd_status status = CSCD_OK;
     if (options.method != CSCD_METHOD_NONE)
-        status = cscd_plan_create(r->mesh, r->model.positions, &plan_options, &plan);
-    if (status == CSCD_OK) status = cscd_detector_create(r->mesh, plan, &options, &detector);
+        status = cscd_plan_create(r->context, r->mesh,
+                                  CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)),
+                                  &plan_options, &plan);
+    if (status == CSCD_OK) status = cscd_detector_create(r->context, r->mesh, plan, &options, &detector);
     bool ran =
         status == CSCD_OK ? replay_method(r, detector, name) : print_failure(cscd_context_detail(r->context));
     cscd_detector_destroy(detector);
@@ -120,11 +124,12 @@ static bool open_recording(const char *model, const char *frames, culled_recordi
     io_error error;
     culled_recording r = {0};
     if (!mesh_file_read(model, &r.model, &error)) return print_failure(error.text);
-    cscd_mesh_desc desc = {r.model.vertex_count, r.model.triangle_count, r.model.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(r.model.vertex_count, r.model.triangle_count, r.model.triangles);
     bool opened =
         animation_open(&frames, 1, r.model.vertex_count, &r.frames, &error) || print_failure(error.text);
     if (opened && (cscd_context_create(NULL, &r.context) != CSCD_OK ||
-                   cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK))
+                   cscd_mesh_create(r.context, &desc, 1, &r.mesh) != CSCD_OK))
         opened = print_failure("the mesh could not be made");
     for (int i = 0; opened && i < 2; i++) {
         r.positions[i] = malloc((size_t)r.model.vertex_count * sizeof(double[3]));

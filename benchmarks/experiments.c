@@ -1,5 +1,6 @@
 /* Chapter 6 of the thesis in numbers (a sphere, the stability of k-means), and long steps. */
 #include "benchmarks/lib/scene_files.h"
+#include "cscd/research.h"
 #include "models/shapes/catalogue.h"
 
 #include <stdio.h>
@@ -21,9 +22,14 @@ static bool measure_step(const cscd_mesh *mesh, const cscd_context *context, con
     cscd_detector *detector = NULL;
     cscd_contacts found;
     options.method = method;
-    cscd_status status = cscd_detector_create(mesh, plan, &options, &detector);
-    if (status == CSCD_OK) status = cscd_detector_step(detector, start, end, &found); /* builds the tree */
-    if (status == CSCD_OK) status = cscd_detector_step(detector, start, end, &found);
+    cscd_status status = cscd_detector_create(cscd_mesh_context(mesh), mesh, plan, &options, &detector);
+    if (status == CSCD_OK)
+        status =
+            cscd_detector_step(detector, CSCD_DOUBLES(start, cscd_mesh_vertex_count(mesh)),
+                               CSCD_DOUBLES(end, cscd_mesh_vertex_count(mesh)), &found); /* builds the tree */
+    if (status == CSCD_OK)
+        status = cscd_detector_step(detector, CSCD_DOUBLES(start, cscd_mesh_vertex_count(mesh)),
+                                    CSCD_DOUBLES(end, cscd_mesh_vertex_count(mesh)), &found);
     if (status == CSCD_OK) {
         *counters = cscd_detector_counters(detector);
         *ms = cscd_detector_timings(detector);
@@ -39,10 +45,11 @@ static bool measure_sphere(uint32_t triangles) {
     io_error error;
     if (!body_make(BODY_SPHERE, triangles, &sphere, &error)) return print_failure(error.text);
     recording_data r = {.frame_count = 0};
-    const cscd_mesh_desc desc = {sphere.vertex_count, sphere.triangle_count, sphere.triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(sphere.vertex_count, sphere.triangle_count, sphere.triangles);
     double *end = malloc((size_t)sphere.vertex_count * 3 * sizeof *end);
     bool good = end != NULL && cscd_context_create(NULL, &r.context) == CSCD_OK &&
-                cscd_mesh_create(r.context, &desc, &r.mesh) == CSCD_OK;
+                cscd_mesh_create(r.context, &desc, 1, &r.mesh) == CSCD_OK;
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_ICCD};
     for (uint32_t i = 0; good && i < sphere.vertex_count * 3; i++) end[i] = 1.01 * sphere.positions[i];
     for (int i = 0; good && i < 3; i++) {
@@ -116,7 +123,9 @@ static bool measure_kmeans(const recording_data *r) {
         options.method = CSCD_METHOD_KMEANS;
         options.k = n;
         options.seed = seed;
-        if (cscd_plan_create(r->mesh, r->model.positions, &options, &plan) != CSCD_OK)
+        if (cscd_plan_create(r->context, r->mesh,
+                             CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), &options,
+                             &plan) != CSCD_OK)
             return print_failure(cscd_context_detail(r->context));
         double share = visible_share(plan);
         uint32_t enclosed = count_enclosed(r->mesh, plan);

@@ -2,6 +2,7 @@
 #include "benchmarks/lib/methods_report.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/thesis_numbers.h"
+#include "cscd/research.h"
 #include "src/core/timer.h"
 #include "src/tool/common/provenance.h"
 

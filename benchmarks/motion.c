@@ -2,6 +2,7 @@
  * interval. */
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
+#include "cscd/research.h"
 
 #include <math.h>
 #include <stdlib.h>

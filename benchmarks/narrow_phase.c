@@ -95,11 +95,12 @@ static bool record_pairs(interval_recording *r) {
 static bool open_recording(interval_recording *r, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_NONE;
-    cscd_mesh_desc desc = {r->start.vertex_count, r->start.triangle_count, r->start.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(r->start.vertex_count, r->start.triangle_count, r->start.triangles);
     if (r->start.vertex_count != r->end.vertex_count) return io_fail(error, "different numbers of vertices");
     if (cscd_context_create(NULL, &r->context) != CSCD_OK) return io_fail(error, "no context");
-    if (cscd_mesh_create(r->context, &desc, &r->mesh) != CSCD_OK ||
-        cscd_detector_create(r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
+    if (cscd_mesh_create(r->context, &desc, 1, &r->mesh) != CSCD_OK ||
+        cscd_detector_create(r->context, r->mesh, NULL, &options, &r->detector) != CSCD_OK ||
         bvh_rebuild_move(&r->detector->rebuild, &r->detector->space.bvh, r->start.positions, r->end.positions,
                          uniform_growth(0.0), uniform_growth(0.0)) != CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->context));

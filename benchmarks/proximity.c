@@ -16,7 +16,7 @@ static const char models[] = "build/models";
 static const char help[] =
     "usage: proximity [options]\n"
     "\n"
-    "What cscd_detector_near, a step with min_separation, cscd_detector_max_step and a cscd_line take, in plain\n"
+    "What cscd_detector_find_near, a step with min_separation, cscd_detector_max_step and a cscd_line_search take, in plain\n"
     "steps of method none, mode all: intervals of recordings (build/models, recorded if missing) and of cloth.\n"
     "Each interval's least of some repetitions, fewer of what takes seconds; an interval that max_step refuses\n"
     "for its start counts in no ratio of max_step and line. Lengths are in mean edges of the first frame, up to\n"
@@ -38,7 +38,7 @@ typedef struct frames {
 typedef struct task_rig {
     const frames *f;
     cscd_detector *detector;
-    cscd_line *line;
+    cscd_line_search *line;
     double distance;
     size_t found; /* length of the list of the last call */
 } task_rig;
@@ -60,39 +60,46 @@ typedef struct task_result {
 
 static cscd_status act_step(task_rig *r, uint32_t i) {
     cscd_contacts found = {NULL, 0};
-    cscd_status status = cscd_detector_step(r->detector, r->f->ends[i], r->f->ends[i + 1], &found);
+    cscd_status status =
+        cscd_detector_step(r->detector, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)),
+                           CSCD_DOUBLES(r->f->ends[i + 1], cscd_mesh_vertex_count(r->f->mesh)), &found);
     r->found = found.count;
     return status;
 }
 
 static cscd_status act_near(task_rig *r, uint32_t i) {
     cscd_proximities found = {NULL, 0};
-    cscd_status status = cscd_detector_near(r->detector, r->f->ends[i], r->distance, &found);
+    cscd_status status = cscd_detector_find_near(
+        r->detector, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)), r->distance, &found);
     r->found = found.count;
     return status;
 }
 
 static cscd_status act_max_step(task_rig *r, uint32_t i) {
     cscd_free_step unused;
-    return cscd_detector_max_step(r->detector, r->f->ends[i], r->f->ends[i + 1], NULL, &unused);
+    return cscd_detector_max_step(
+        r->detector, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)),
+        CSCD_DOUBLES(r->f->ends[i + 1], cscd_mesh_vertex_count(r->f->mesh)), NULL, &unused);
 }
 
 static cscd_status act_begin(task_rig *r, uint32_t i) {
-    cscd_status status = cscd_line_begin(r->line, r->f->ends[i], r->f->ends[i + 1], r->distance);
-    r->found = cscd_line_candidate_count(r->line);
+    cscd_status status = cscd_line_search_begin(
+        r->line, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)),
+        CSCD_DOUBLES(r->f->ends[i + 1], cscd_mesh_vertex_count(r->f->mesh)), r->distance);
+    r->found = cscd_line_search_candidate_count(r->line);
     return status;
 }
 
 static cscd_status act_line_step(task_rig *r, uint32_t i) {
     cscd_free_step unused;
     (void)i;
-    return cscd_line_max_step(r->line, 1.0, NULL, &unused);
+    return cscd_line_search_max_step(r->line, 1.0, NULL, &unused);
 }
 
 static cscd_status act_line_near(task_rig *r, uint32_t i) {
     cscd_proximities found = {NULL, 0};
     (void)i;
-    cscd_status status = cscd_line_near(r->line, 0.5, r->distance, &found);
+    cscd_status status = cscd_line_search_find_near(r->line, 0.5, r->distance, &found);
     r->found = found.count;
     return status;
 }
@@ -124,13 +131,14 @@ static bool measure_task(const frames *f, const task *t, uint32_t repeats, task_
     options.min_separation = t->separation * f->edge;
     *out = (task_result){.found = 0.0};
     for (uint32_t i = 0; i < f->interval_count; i++) out->ms[i] = HUGE_VAL;
-    cscd_status status = cscd_detector_create(f->mesh, f->plan, &options, &r.detector);
-    if (status == CSCD_OK) status = cscd_line_create(r.detector, &r.line);
+    cscd_status status =
+        cscd_detector_create(cscd_mesh_context(f->mesh), f->mesh, f->plan, &options, &r.detector);
+    if (status == CSCD_OK) status = cscd_line_search_create(r.detector, &r.line);
     double begin = timer_now_ms();
     uint32_t runs = 0;
     for (; status == CSCD_OK && runs <= repeats && (runs < 2 || timer_now_ms() - begin < budget_ms); runs++)
         status = run_once(&r, t, runs > 0, out);
-    cscd_line_destroy(r.line);
+    cscd_line_search_destroy(r.line);
     cscd_detector_destroy(r.detector);
     out->found /= fmax(runs - 1.0, 1.0) * (f->interval_count - f->first_timed);
     for (uint32_t i = f->first_timed; i < f->interval_count; i++) out->refused += isnan(out->ms[i]) ? 1 : 0;

@@ -1,5 +1,6 @@
 /* What each rule of the published culling loses, one rule at a time. */
 #include "benchmarks/lib/contest.h"
+#include "cscd/research.h"
 #include "runtime/baselines/published.h"
 #include "runtime/detector/detector.h"
 
@@ -33,7 +34,7 @@ static bool measure_losses(const truth *t, const rule_set *set, losses *out, io_
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
     options.method = CSCD_METHOD_PUBLISHED;
-    if (cscd_detector_create(r->mesh, r->charge, &options, &detector) != CSCD_OK)
+    if (cscd_detector_create(r->context, r->mesh, r->charge, &options, &detector) != CSCD_OK)
         return io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
     detector->rules = published_rules(set->rules);
     losses sum = {.with_contact = 0};
@@ -41,8 +42,9 @@ static bool measure_losses(const truth *t, const rule_set *set, losses *out, io_
     for (uint32_t i = 0; status == CSCD_OK && i + 1 < r->frame_count; i++) {
         cscd_contacts found;
         size_t count = t->offsets[i + 1] - t->offsets[i];
-        status =
-            cscd_detector_step(detector, recording_data_frame(r, i), recording_data_frame(r, i + 1), &found);
+        status = cscd_detector_step(
+            detector, CSCD_DOUBLES(recording_data_frame(r, i), cscd_mesh_vertex_count(r->mesh)),
+            CSCD_DOUBLES(recording_data_frame(r, i + 1), cscd_mesh_vertex_count(r->mesh)), &found);
         if (status != CSCD_OK || count == 0) continue;
         sum.with_contact++;
         sum.contacts += count;

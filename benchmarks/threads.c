@@ -2,6 +2,7 @@
 #include "benchmarks/lib/fixed_arithmetic.h"
 #include "benchmarks/lib/options.h"
 #include "benchmarks/lib/stages.h"
+#include "cscd/research.h"
 #include "src/core/timer.h"
 
 #include <pthread.h>

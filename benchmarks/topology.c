@@ -60,25 +60,29 @@ static cscd_status make_plan(subject_set *s) {
                                        .region_count = s->carried->region_count,
                                        .triangle_regions = s->carried->regions,
                                        .detector_points = s->carried->points};
-        return cscd_plan_create_from_parts(s->mesh, s->body->rest, &parts, &s->plan);
+        return cscd_plan_create_from_parts(s->context, s->mesh,
+                                           CSCD_DOUBLES(s->body->rest, cscd_mesh_vertex_count(s->mesh)),
+                                           &parts, &s->plan);
     }
     cscd_plan_options options = cscd_plan_defaults();
     options.method = s->method;
-    return cscd_plan_create(s->mesh, s->body->rest, &options, &s->plan);
+    return cscd_plan_create(s->context, s->mesh, CSCD_DOUBLES(s->body->rest, cscd_mesh_vertex_count(s->mesh)),
+                            &options, &s->plan);
 }
 
 static cscd_status make_subjects(subject_set *s, double ms[PART_COUNT]) {
     const deforming_body *b = s->body;
-    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     cscd_detector_options options = cscd_detector_defaults();
     options.method = s->method;
     options.start = s->start;
     double now = timer_now_ms();
-    cscd_status status = cscd_mesh_create(s->context, &desc, &s->mesh);
+    cscd_status status = cscd_mesh_create(s->context, &desc, 1, &s->mesh);
     timer_lap(&now, &ms[PART_MESH]);
     if (status == CSCD_OK) status = make_plan(s);
     timer_lap(&now, &ms[PART_PLAN]);
-    if (status == CSCD_OK) status = cscd_detector_create(s->mesh, s->plan, &options, &s->detector);
+    if (status == CSCD_OK)
+        status = cscd_detector_create(s->context, s->mesh, s->plan, &options, &s->detector);
     timer_lap(&now, &ms[PART_DETECTOR]);
     return status;
 }
@@ -95,7 +99,9 @@ static void destroy_subjects(subject_set *s) {
 static cscd_status step_interval(subject_set *s, uint32_t interval, double ms[PART_COUNT]) {
     cscd_contacts found;
     double now = timer_now_ms(), took = 0.0;
-    cscd_status status = cscd_detector_step(s->detector, s->ends[interval][0], s->ends[interval][1], &found);
+    cscd_status status =
+        cscd_detector_step(s->detector, CSCD_DOUBLES(s->ends[interval][0], cscd_mesh_vertex_count(s->mesh)),
+                           CSCD_DOUBLES(s->ends[interval][1], cscd_mesh_vertex_count(s->mesh)), &found);
     timer_lap(&now, &took);
     if (interval == 0) {
         ms[PART_FIRST] = took;

@@ -107,10 +107,11 @@ static bool record_census(object_recording *r, census *c, cscd_context *context,
 }
 
 static bool record_opened(object_recording *r, cscd_context *context, const char *folder, io_error *error) {
-    const cscd_mesh_desc desc = {r->shape->vertex_count, r->shape->triangle_count, r->shape->triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(r->shape->vertex_count, r->shape->triangle_count, r->shape->triangles);
     cscd_mesh *mesh = NULL;
     census c;
-    cscd_status status = cscd_mesh_create(context, &desc, &mesh);
+    cscd_status status = cscd_mesh_create(context, &desc, 1, &mesh);
     if (status == CSCD_OK) status = census_begin(mesh, &c);
     bool good = status == CSCD_OK ? record_census(r, &c, context, folder, error)
                                   : io_fail(error, "%s: %s", r->name, cscd_context_detail(context));

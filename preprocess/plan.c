@@ -2,24 +2,26 @@
  * these see. */
 #include "src/mesh/plan.h"
 
+#include "cscd/research.h"
 #include "preprocess/charge_call.h"
 #include "preprocess/regions/kmeans.h"
 #include "preprocess/regions/regions.h"
 #include "preprocess/regions/visibility.h"
 #include "src/core/methods.h"
+#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
 #include "src/mesh/surface.h"
+#include "src/mesh/views.h"
 
 #include <math.h>
 #include <string.h>
 
-cscd_plan_options cscd_plan_defaults(void) {
-    return (cscd_plan_options){.struct_size = sizeof(cscd_plan_options),
-                               .method = CSCD_METHOD_CHARGE,
-                               .k = 4,
-                               .seed = 1,
-                               .threshold = 0.1};
+static const cscd_plan_options default_options = {
+    .method = CSCD_METHOD_CHARGE, .k = 4, .seed = 1, .threshold = 0.1};
+
+void cscd_plan_defaults_sized(cscd_plan_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
 }
 
 /* The steps' results, before the plan is made. */
@@ -39,10 +41,6 @@ static bool makes_plans(cscd_method method) {
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_plan_options *options) {
-    if (options->struct_size != sizeof *options)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "plan options were not made by cscd_plan_defaults (struct_size %u, expected %zu)",
-                            options->struct_size, sizeof *options);
     if (!makes_plans(options->method))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "method %s makes no plan: use charge, kmeans or single",
@@ -51,6 +49,9 @@ static cscd_status check_options(cscd_context *context, const cscd_plan_options 
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "threshold is %g, expected a share of the triangles between 0 and 1",
                             options->threshold);
+    if (options->variant > CSCD_PLAN_VARIANT_PUBLISHED)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown variant %llu of the plan",
+                            (unsigned long long)options->variant);
     return CSCD_OK;
 }
 
@@ -59,7 +60,8 @@ static cscd_status solve_charge(draft *d) {
     d->charges = context_allocate(d->mesh->context, d->mesh->triangle_count, sizeof *d->charges);
     d->capacitances = context_allocate(d->mesh->context, d->mesh->component_count, sizeof *d->capacitances);
     if (d->charges == NULL || d->capacitances == NULL) return context_out_of_memory(d->mesh->context);
-    size_t limit = d->options.memory_limit;
+    uint64_t asked = d->options.memory_limit;
+    size_t limit = asked < SIZE_MAX ? (size_t)asked : SIZE_MAX;
     cscd_status status =
         limit == 0 ? charge_solve(d->mesh, d->positions, d->charges, d->capacitances, &timings)
                    : charge_solve_within(d->mesh, d->positions, limit, d->charges, d->capacitances, &timings);
@@ -72,7 +74,7 @@ static cscd_status find_regions(draft *d) {
     const cscd_mesh *mesh = d->mesh;
     region_options by_charge = region_options_defaults();
     by_charge.threshold = d->options.threshold;
-    by_charge.published = d->options.published;
+    by_charge.published = d->options.variant == CSCD_PLAN_VARIANT_PUBLISHED;
     switch (d->options.method) {
     case CSCD_METHOD_CHARGE:
         return regions_from_charge(mesh, d->positions, d->charges, &by_charge, d->regions, &d->region_count);
@@ -186,16 +188,11 @@ static cscd_status run_draft(draft *d, cscd_plan **out) {
     return CSCD_OK;
 }
 
-cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions, const cscd_plan_options *options,
-                             cscd_plan **out) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *positions,
+                                       const cscd_plan_options *options, cscd_plan **out) {
     cscd_context *context = mesh->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create: out is NULL");
-    draft d = {.mesh = mesh, .positions = positions};
-    d.options = options != NULL ? *options : cscd_plan_defaults();
-    progress_begin(&context->progress);
-    cscd_status status = check_options(context, &d.options);
-    if (status == CSCD_OK) status = positions_check(context, positions, mesh->vertex_count, "positions");
+    draft d = {.mesh = mesh, .positions = positions, .options = *options};
+    cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     d.regions = context_allocate(context, mesh->triangle_count, sizeof *d.regions);
     bool allocated = d.regions != NULL;
@@ -208,6 +205,26 @@ cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions, con
     context_free(context, d.detector_points);
     context_free(context, d.charges);
     context_free(context, d.capacitances);
+    return status;
+}
+
+cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
+                             const cscd_plan_options *options, cscd_plan **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create: out is NULL");
+    cscd_plan_options chosen = default_options;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+                                     "cscd_plan_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status != CSCD_OK) return status;
+    progress_begin(&context->progress);
+    double *buffer = NULL;
+    const double *x = NULL;
+    status = views_read(context, mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = plan_from_positions(mesh, x, &chosen, out);
+    context_free(context, buffer);
     return status;
 }
 
@@ -247,13 +264,9 @@ static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *par
     return CSCD_OK;
 }
 
-cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
-                                        const cscd_plan_parts *parts, cscd_plan **out) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status plan_from_parts(const cscd_mesh *mesh, const double *positions,
+                                   const cscd_plan_parts *parts, cscd_plan **out) {
     cscd_context *context = mesh->context;
-    if (parts == NULL || out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "cscd_plan_create_from_parts: parts or out is NULL");
     if (parts->region_count == 0 || parts->region_count > mesh->triangle_count)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "%u regions for %u triangles",
                             parts->region_count, mesh->triangle_count);
@@ -265,4 +278,22 @@ cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *pos
     context_free(context, component_of);
     if (status != CSCD_OK) return status;
     return make_plan(mesh, positions, parts, out);
+}
+
+cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
+                                              const cscd_view *positions, const cscd_plan_parts *parts,
+                                              size_t parts_size, cscd_plan **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (parts == NULL || out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "cscd_plan_create_from_parts: parts or out is NULL");
+    cscd_plan_parts taken;
+    double *buffer = NULL;
+    const double *x = NULL;
+    cscd_status status =
+        struct_take(context, &taken, sizeof taken, sizeof taken, parts, parts_size, "cscd_plan_parts");
+    if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = plan_from_parts(mesh, x, &taken, out);
+    context_free(context, buffer);
+    return status;
 }

@@ -1,6 +1,7 @@
 /* One method on one recording, compared with the method that leaves out no pair. */
 #include "benchmarks/lib/contest.h"
 
+#include "cscd/research.h"
 #include "src/core/methods.h"
 #include "src/tool/common/stages.h"
 
@@ -38,10 +39,14 @@ static bool find_interval(truth *t, cscd_detector *none, cscd_detector *prover, 
     const recording_data *r = t->recording;
     const double *start = recording_data_frame(r, i), *end = recording_data_frame(r, i + 1);
     cscd_contacts found;
-    if (cscd_detector_step(prover, start, end, &found) != CSCD_OK) return explain_failure(r, "single", error);
+    if (cscd_detector_step(prover, CSCD_DOUBLES(start, cscd_mesh_vertex_count(r->mesh)),
+                           CSCD_DOUBLES(end, cscd_mesh_vertex_count(r->mesh)), &found) != CSCD_OK)
+        return explain_failure(r, "single", error);
     t->proven[i] = all_proven(prover, r->mesh);
     t->proven_count += t->proven[i];
-    if (cscd_detector_step(none, start, end, &found) != CSCD_OK) return explain_failure(r, "none", error);
+    if (cscd_detector_step(none, CSCD_DOUBLES(start, cscd_mesh_vertex_count(r->mesh)),
+                           CSCD_DOUBLES(end, cscd_mesh_vertex_count(r->mesh)), &found) != CSCD_OK)
+        return explain_failure(r, "none", error);
     return keep_contacts(t, i, &found) || io_fail(error, "%s: out of memory", r->name);
 }
 
@@ -58,8 +63,8 @@ bool truth_find(const recording_data *r, truth *out, io_error *error) {
     for (uint32_t i = 0; good && i < r->model.triangle_count * 3; i++)
         t.vertex_components[r->model.triangles[i]] = cscd_mesh_triangle_component(r->mesh, i / 3);
     options.method = CSCD_METHOD_SINGLE;
-    if (good && (cscd_detector_create(r->mesh, NULL, NULL, &none) != CSCD_OK ||
-                 cscd_detector_create(r->mesh, NULL, &options, &prover) != CSCD_OK))
+    if (good && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &none) != CSCD_OK ||
+                 cscd_detector_create(r->context, r->mesh, NULL, &options, &prover) != CSCD_OK))
         good = explain_failure(r, "detectors", error);
     for (uint32_t i = 0; good && i < intervals; i++) good = find_interval(&t, none, prover, i, error);
     cscd_detector_destroy(none);
@@ -165,11 +170,13 @@ static bool make_detector(const truth *t, const entrant *e, cscd_detector **out,
         plan_options.method = CSCD_METHOD_KMEANS;
         plan_options.k = e->k;
         plan_options.seed = e->seed;
-        status = cscd_plan_create(r->mesh, r->model.positions, &plan_options, &kmeans);
+        status = cscd_plan_create(r->context, r->mesh,
+                                  CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)),
+                                  &plan_options, &kmeans);
         plan = kmeans;
     }
     if (e->method == CSCD_METHOD_CHARGE || e->method == CSCD_METHOD_PUBLISHED) plan = r->charge;
-    if (status == CSCD_OK) status = cscd_detector_create(r->mesh, plan, &options, out);
+    if (status == CSCD_OK) status = cscd_detector_create(r->context, r->mesh, plan, &options, out);
     cscd_plan_destroy(kmeans);
     return status == CSCD_OK || explain_failure(r, e->name, error);
 }
@@ -180,7 +187,9 @@ static bool replay_once(const truth *t, const entrant *e, cscd_detector *detecto
     for (uint32_t i = 0; i + 1 < r->frame_count; i++) {
         cscd_contacts found;
         score *s = &classes[t->proven[i] ? CLASS_PROVEN : CLASS_OTHER];
-        if (cscd_detector_step(detector, recording_data_frame(r, i), recording_data_frame(r, i + 1),
+        if (cscd_detector_step(detector,
+                               CSCD_DOUBLES(recording_data_frame(r, i), cscd_mesh_vertex_count(r->mesh)),
+                               CSCD_DOUBLES(recording_data_frame(r, i + 1), cscd_mesh_vertex_count(r->mesh)),
                                &found) != CSCD_OK)
             return explain_failure(r, e->name, error);
         add_step(s, detector, found.count);

@@ -78,7 +78,9 @@ static bool make_plan(recording_data *r, const char *folder, const char *cache, 
             return plan_file_read(paths[i], r->context, r->mesh, &r->charge, error);
     }
     if (!any_closed(r->mesh)) return true;
-    if (cscd_plan_create(r->mesh, r->model.positions, NULL, &r->charge) != CSCD_OK)
+    if (cscd_plan_create(r->context, r->mesh,
+                         CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), NULL,
+                         &r->charge) != CSCD_OK)
         return io_fail(error, "%s: %s", r->name, cscd_context_detail(r->context));
     uint8_t *colours = calloc(r->model.triangle_count, 3);
     bool written =
@@ -100,9 +102,10 @@ bool recording_data_open(const char *folder, const char *name, const char *cache
     good = good && mesh_file_read(model, &r.model, error) && read_frames(&r, frames, error);
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = thread_count;
-    const cscd_mesh_desc desc = {r.model.vertex_count, r.model.triangle_count, r.model.triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(r.model.vertex_count, r.model.triangle_count, r.model.triangles);
     if (good && (cscd_context_create(&options, &r.context) != CSCD_OK ||
-                 cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK))
+                 cscd_mesh_create(r.context, &desc, 1, &r.mesh) != CSCD_OK))
         good = io_fail(error, "%s: the mesh could not be made", model);
     timer_lap(&since, &ignored);
     good = good && make_plan(&r, folder, cache, error);

@@ -3,6 +3,7 @@
 
 #include "benchmarks/lib/sensor_trial.h"
 #include "cscd/cscd.h"
+#include "cscd/sensors.h"
 #include "models/shapes/catalogue.h"
 
 #include <math.h>
@@ -39,16 +40,18 @@ typedef struct contestants {
 } contestants;
 
 static bool create_contestants(const body *b, contestants *c, io_error *error) {
-    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     cscd_detector_options options = cscd_detector_defaults();
     cscd_sensor_options sensing = cscd_sensor_defaults();
     options.method = CSCD_METHOD_NONE;
     options.start = CSCD_START_UNKNOWN;
     return (cscd_context_create(NULL, &c->context) == CSCD_OK &&
-            cscd_mesh_create(c->context, &desc, &c->mesh) == CSCD_OK &&
-            cscd_partition_create(c->mesh, NULL, b->positions, NULL, &c->partition) == CSCD_OK &&
-            cscd_sensors_create(c->mesh, c->partition, &sensing, &c->sensors) == CSCD_OK &&
-            cscd_detector_create(c->mesh, NULL, &options, &c->detector) == CSCD_OK) ||
+            cscd_mesh_create(c->context, &desc, 1, &c->mesh) == CSCD_OK &&
+            cscd_partition_create(c->context, c->mesh, NULL,
+                                  CSCD_DOUBLES(b->positions, cscd_mesh_vertex_count(c->mesh)), NULL,
+                                  &c->partition) == CSCD_OK &&
+            cscd_sensors_create(c->context, c->mesh, c->partition, &sensing, &c->sensors) == CSCD_OK &&
+            cscd_detector_create(c->context, c->mesh, NULL, &options, &c->detector) == CSCD_OK) ||
            io_fail(error, "%s", cscd_context_detail(c->context));
 }
 
@@ -73,8 +76,12 @@ static bool measure_cost(const body *b, uint32_t vertices_each, cost *out, io_er
         cscd_contacts contacts;
         move_spheres(b, vertices_each, i, x);
         move_spheres(b, vertices_each, i + 1, x + size);
-        good = (cscd_sensors_step(c.sensors, x, x + size, &warnings) == CSCD_OK &&
-                cscd_detector_step(c.detector, x, x + size, &contacts) == CSCD_OK) ||
+        good = (cscd_sensors_step(c.sensors, CSCD_DOUBLES(x, cscd_mesh_vertex_count(c.mesh)),
+                                  CSCD_DOUBLES(x + size, cscd_mesh_vertex_count(c.mesh)),
+                                  &warnings) == CSCD_OK &&
+                cscd_detector_step(c.detector, CSCD_DOUBLES(x, cscd_mesh_vertex_count(c.mesh)),
+                                   CSCD_DOUBLES(x + size, cscd_mesh_vertex_count(c.mesh)),
+                                   &contacts) == CSCD_OK) ||
                io_fail(error, "%s", cscd_context_detail(c.context));
         if (!good || i == 0) continue;
         cscd_sensor_counters counters = cscd_sensors_counters(c.sensors);

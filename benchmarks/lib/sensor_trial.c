@@ -31,7 +31,9 @@ static bool find_intervals(const recording_data *r, cscd_detector *detector, con
     for (uint32_t k = 0; k < truth->interval_count; k++) {
         cscd_contacts contacts;
         truth->touching[k] = object_pairs_none();
-        if (cscd_detector_step(detector, recording_data_frame(r, k), recording_data_frame(r, k + 1),
+        if (cscd_detector_step(detector,
+                               CSCD_DOUBLES(recording_data_frame(r, k), cscd_mesh_vertex_count(r->mesh)),
+                               CSCD_DOUBLES(recording_data_frame(r, k + 1), cscd_mesh_vertex_count(r->mesh)),
                                &contacts) != CSCD_OK)
             return api_failed(r, error);
         ms[k] = cscd_detector_timings(detector).total_ms;
@@ -52,8 +54,10 @@ bool sensor_truth_find(const recording_data *r, sensor_truth *out, io_error *err
     object_map map = {NULL, NULL};
     double *ms = body_allocate(r->frame_count, sizeof *ms);
     truth.touching = body_allocate(r->frame_count, sizeof *truth.touching);
-    bool good = (cscd_detector_create(r->mesh, NULL, &options, &detector) == CSCD_OK &&
-                 cscd_partition_create(r->mesh, NULL, r->model.positions, NULL, &partition) == CSCD_OK) ||
+    bool good = (cscd_detector_create(r->context, r->mesh, NULL, &options, &detector) == CSCD_OK &&
+                 cscd_partition_create(r->context, r->mesh, NULL,
+                                       CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)),
+                                       NULL, &partition) == CSCD_OK) ||
                 api_failed(r, error);
     good = good && (object_map_make(r->mesh, partition, &map) || io_fail(error, "out of memory")) &&
            find_intervals(r, detector, &map, &truth, ms, error);
@@ -96,7 +100,9 @@ static bool make_sensors(const recording_data *r, const sensor_rules *rules, csc
     const cscd_plan *plan = rules->plan ? r->charge : NULL;
     cscd_partition_options cutting = cscd_partition_defaults();
     cutting.cells = rules->cells;
-    if (cscd_partition_create(r->mesh, plan, r->model.positions, &cutting, partition) != CSCD_OK)
+    if (cscd_partition_create(r->context, r->mesh, plan,
+                              CSCD_DOUBLES(r->model.positions, cscd_mesh_vertex_count(r->mesh)), &cutting,
+                              partition) != CSCD_OK)
         return api_failed(r, error);
     cscd_sensor_options options = cscd_sensor_defaults();
     options.method = rules->random ? CSCD_SENSORS_RANDOM : CSCD_SENSORS_CELLS;
@@ -107,7 +113,8 @@ static bool make_sensors(const recording_data *r, const sensor_rules *rules, csc
         options.particles = rules->as_cells ? (cells + objects - 1) / objects : rules->particles;
         options.seed = rules->seed;
     }
-    if (cscd_sensors_create(r->mesh, *partition, &options, sensors) != CSCD_OK) return api_failed(r, error);
+    if (cscd_sensors_create(r->context, r->mesh, *partition, &options, sensors) != CSCD_OK)
+        return api_failed(r, error);
     static const particle_rule forces[] = {PARTICLE_ATTRACTION, PARTICLE_ATTRACTION, PARTICLE_SCALAR,
                                            PARTICLE_STRONGEST};
     if (rules->rule != RULE_DEFAULT) (*sensors)->particles.rule = forces[rules->rule];
@@ -120,7 +127,9 @@ static bool renew_due(const recording_data *r, cscd_partition *partition, const 
     for (uint32_t p = 0; warnings->renewals_due > 0 && p < cscd_partition_part_count(partition); p++) {
         cscd_renewal why = cscd_sensors_renewal(sensors, p);
         if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
-        if (cscd_partition_renew(partition, recording_data_frame(r, frame), p) != CSCD_OK)
+        if (cscd_partition_renew(
+                partition, CSCD_DOUBLES(recording_data_frame(r, frame), cscd_mesh_vertex_count(r->mesh)),
+                p) != CSCD_OK)
             return api_failed(r, error);
     }
     return true;
@@ -157,8 +166,10 @@ static bool run_intervals(const recording_data *r, const sensor_truth *truth, co
     for (uint32_t k = 0; good && k < truth->interval_count; k++) {
         cscd_warnings warnings;
         set_reach(sensors, rules, cell);
-        good = cscd_sensors_step(sensors, recording_data_frame(r, k), recording_data_frame(r, k + 1),
-                                 &warnings) == CSCD_OK ||
+        good = cscd_sensors_step(
+                   sensors, CSCD_DOUBLES(recording_data_frame(r, k), cscd_mesh_vertex_count(r->mesh)),
+                   CSCD_DOUBLES(recording_data_frame(r, k + 1), cscd_mesh_vertex_count(r->mesh)),
+                   &warnings) == CSCD_OK ||
                api_failed(r, error);
         if (!good) break;
         ms[k] = cscd_sensors_timings(sensors).total_ms;
@@ -272,7 +283,9 @@ bool certified_trial_run(const recording_data *r, bool plan, certified_trial *ou
         const double *start = recording_data_frame(r, k), *end = recording_data_frame(r, k + 1);
         cscd_warnings warnings;
         double taken[2] = {0.0, 0.0};
-        good = cscd_sensors_step(sensors, start, end, &warnings) == CSCD_OK || api_failed(r, error);
+        good = cscd_sensors_step(sensors, CSCD_DOUBLES(start, cscd_mesh_vertex_count(r->mesh)),
+                                 CSCD_DOUBLES(end, cscd_mesh_vertex_count(r->mesh)), &warnings) == CSCD_OK ||
+               api_failed(r, error);
         if (!good) break;
         measure_interval(sensors, start, end, answers, &t, taken);
         for (int i = 0; i < 2; i++) ms[i][k] = taken[i];

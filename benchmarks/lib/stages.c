@@ -62,19 +62,21 @@ static cscd_status make_parts(const deforming_body *b, subject *s) {
     options.allocator = (cscd_allocator){count_allocate, count_release, s};
     cscd_status status = cscd_context_create(&options, &s->context);
     if (status != CSCD_OK) return status;
-    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
-    status = cscd_mesh_create(s->context, &desc, &s->mesh);
+    const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
+    status = cscd_mesh_create(s->context, &desc, 1, &s->mesh);
     size_t peak = s->peak;
     cscd_plan_options plan = cscd_plan_defaults();
     plan.method = s->options.method;
     if (status == CSCD_OK && (plan.method == CSCD_METHOD_CHARGE || plan.method == CSCD_METHOD_KMEANS))
-        status = cscd_plan_create(s->mesh, b->rest, &plan, &s->plan);
+        status = cscd_plan_create(s->context, s->mesh, CSCD_DOUBLES(b->rest, cscd_mesh_vertex_count(s->mesh)),
+                                  &plan, &s->plan);
     s->peak = peak > s->held ? peak : s->held;
     cscd_detector_options detector = cscd_detector_defaults();
     detector.method = s->options.method;
     detector.mode = s->options.mode;
     detector.volume = s->options.volume;
-    return status == CSCD_OK ? cscd_detector_create(s->mesh, s->plan, &detector, &s->detector) : status;
+    return status == CSCD_OK ? cscd_detector_create(s->context, s->mesh, s->plan, &detector, &s->detector)
+                             : status;
 }
 
 static bool explain_status(const subject *s, cscd_status status, io_error *error) {
@@ -123,7 +125,8 @@ static void add_sample(stage_samples *s, const cscd_detector *detector, size_t c
 
 bool subject_step(subject *s, const double *start, const double *end, bool counts, cscd_contacts *found,
                   io_error *error) {
-    cscd_status status = cscd_detector_step(s->detector, start, end, found);
+    cscd_status status = cscd_detector_step(s->detector, CSCD_DOUBLES(start, cscd_mesh_vertex_count(s->mesh)),
+                                            CSCD_DOUBLES(end, cscd_mesh_vertex_count(s->mesh)), found);
     if (status != CSCD_OK) return explain_status(s, status, error);
     if (counts) add_sample(&s->samples, s->detector, found->count);
     return true;

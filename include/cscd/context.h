@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-/* How a call ended. */
+/* How a call ended. Later versions may add values; cscd_status_string knows those of the library. */
 typedef enum cscd_status {
     CSCD_OK = 0,
     CSCD_OUT_OF_MEMORY,    /* an allocation failed */
@@ -28,10 +28,11 @@ typedef enum cscd_status {
                             * twice */
     CSCD_SYSTEM_ERROR,     /* the system refused a thread */
     CSCD_CANCELLED,        /* the callback in cscd_progress returned false */
-    CSCD_IN_CONTACT        /* no step is free of contact, because the start is not: cscd_detector_max_step */
+    CSCD_IN_CONTACT,       /* no step is free of contact, because the start is not: cscd_detector_max_step */
+    CSCD_STATUS_MAX_ENUM = 0x7fffffff
 } cscd_status;
 
-/* A short English phrase for a status; static storage, never NULL. */
+/* A short English phrase for a status, "unknown status" for any other value; static storage, never NULL. */
 CSCD_API const char *cscd_status_string(cscd_status status);
 
 /* ---- context: allocator, threads, progress ---------------------------------------------------------- */
@@ -48,12 +49,14 @@ typedef struct cscd_allocator {
     void *user;
 } cscd_allocator;
 
-/* Which vector instructions are used. Results are the same on every level, bit for bit. */
+/* Which vector instructions are used. Results are the same on every level, bit for bit. Later versions may
+ * add values. */
 typedef enum cscd_simd {
     CSCD_SIMD_AUTO,   /* the best that the processor has */
     CSCD_SIMD_SCALAR, /* what every processor of the architecture has */
     CSCD_SIMD_AVX2,
-    CSCD_SIMD_AVX512 /* AVX-512 F, VL, DQ and BW */
+    CSCD_SIMD_AVX512, /* AVX-512 F, VL, DQ and BW */
+    CSCD_SIMD_MAX_ENUM = 0x7fffffff
 } cscd_simd;
 
 /* The names are "auto", "scalar", "avx2" and "avx512"; static storage, never NULL. cscd_simd_from_name
@@ -93,13 +96,21 @@ typedef struct cscd_context_options {
     cscd_allocator allocator;       /* aligned_alloc and free by default */
     cscd_parallel_for parallel_for; /* none by default: the context has its own threads */
     cscd_progress progress;         /* none by default: nothing is shown, and nothing can be cancelled */
+    char *reason;                   /* where the sentence of a failed cscd_context_create is written, because
+                                     * there is no context then that could hold it; NULL by default */
+    size_t reason_size; /* bytes that fit there, the 0 at the end included; a longer sentence is cut */
 } cscd_context_options;
 
 /* The default options. */
-CSCD_API cscd_context_options cscd_context_defaults(void);
+CSCD_API void cscd_context_defaults_sized(cscd_context_options *out, size_t size);
+static inline cscd_context_options cscd_context_defaults(void) {
+    cscd_context_options options;
+    cscd_context_defaults_sized(&options, sizeof options);
+    return options;
+}
 
-/* Creates a context; options may be NULL. SYSTEM_ERROR: the system refused a thread. A failure has no
- * sentence, because there is no context that could hold it. */
+/* Creates a context; options may be NULL. SYSTEM_ERROR: the system refused a thread. The sentence of a
+ * failure is written where the options say. */
 CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
 
 /* Frees the context. Call it after everything that was created from it has been destroyed. */

@@ -6,8 +6,9 @@
  * touches on the way, and when it first does.
  *
  * What holds for every function:
- *   positions   packed doubles x, y, z, vertex_count * 3 of them. Each is 0 or has a magnitude from 2^-300 to
- *               2^300; a function that is given another one fails and names array, vertex and coordinate
+ *   positions   are given as views (cscd/view.h): floats or doubles, packed, in structs, or by columns. Each
+ *               coordinate is 0 or has a magnitude from 2^-300 to 2^300; a function that is given another one
+ *               fails and names array, vertex and coordinate
  *   units       any one unit of length; nothing inside depends on it. A length is 0 or from 2^-300 to 2^300
  *   time        fraction of the interval: 0 is its start, 1 its end. Timings are milliseconds of wall clock
  *   features    vertices, edges and faces (triangles), borders included; indices begin at 0
@@ -26,27 +27,31 @@
  *   unchecked   functions that do not return cscd_status are given a valid object and indices below its counts;
  *               they check nothing
  *   defaults    options come from the matching _defaults() function and are then changed; {0} is refused. A NULL
- *               options pointer means the defaults
+ *               options pointer means the defaults. Members of other structs that you do not need are 0
+ *   versions    structs that may grow are as large as your header says, whatever library is loaded: functions
+ *               that end in _sized take that size, and the functions without this ending pass it on. Bindings
+ *               call the _sized ones. Enumerations that may grow end in _MAX_ENUM; give a switch a default
  *   complete    a list is whole, or the call fails
  *   repeatable  one build and the same inputs give the same results in the same order, bit for bit, for any
  *               number of threads and on every instruction set
  *
- * What a solver needs, 27 of the functions:
- *   create      cscd_context_create(), cscd_mesh_create() or cscd_mesh_create_scene() for several objects,
- *               cscd_detector_defaults(), cscd_detector_create(); if the mesh is closed and deforms for long,
- *               cscd_plan_create() first, which makes steps faster
- *   contacts    cscd_detector_step(): all contacts of a motion; cscd_mesh_stencil(): the vertices and weights
- *               behind each
- *   barrier     cscd_detector_near(): all pairs within a distance at one moment
+ * What a solver needs, 26 of the functions:
+ *   create      cscd_context_create(), cscd_mesh_create(), cscd_detector_defaults(), cscd_detector_create(); if
+ *               the mesh is closed and deforms for long, cscd_plan_create() first, which makes steps faster
+ *   contacts    cscd_detector_step(): all contacts of a motion; cscd_mesh_stencil(): the weights behind each
+ *   barrier     cscd_detector_find_near(): all pairs within a distance at one moment
  *   certified   cscd_detector_max_step(): how far the vertices may go without contact;
  *               cscd_detector_set_separation()
- *   search      cscd_line_create(), cscd_line_begin(), cscd_line_max_step(), cscd_line_near(): the same two,
- *               many times along one line
+ *   search      cscd_line_search_create(), _begin(), _max_step(), _find_near(): the same two, many times along
+ *               one motion
  *   state       cscd_detector_check(): intersections at one moment; cscd_detector_guarantee(): what the last list
  *               promises; cscd_detector_timings()
- *   helpers     cscd_mesh_pack(), cscd_mesh_edge(), cscd_status_string(), cscd_context_detail()
- *   destroy     cscd_line_destroy(), cscd_detector_destroy(), cscd_plan_destroy(), cscd_mesh_destroy(),
- *               cscd_context_destroy()
+ *   helpers     cscd_view_doubles(), cscd_view_floats(), cscd_mesh_edge(), cscd_status_string(),
+ *               cscd_context_detail()
+ *   destroy     cscd_line_search_destroy(), cscd_detector_destroy(), cscd_plan_destroy(),
+ *               cscd_mesh_destroy(), cscd_context_destroy()
+ *
+ * cscd/research.h (methods to compare with) and cscd/sensors.h (particle sensors) are not included here.
  *
  * docs/guarantees.md has the promises and their reasons, docs/tutorials/ three complete programs.
  */
@@ -57,18 +62,18 @@
 #include <cscd/detector.h>
 #include <cscd/mesh.h>
 #include <cscd/plan.h>
-#include <cscd/sensors.h>
 #include <cscd/solver.h>
+#include <cscd/view.h>
 
-#define CSCD_VERSION_MAJOR 1
-#define CSCD_VERSION_MINOR 1
+#define CSCD_VERSION_MAJOR 2
+#define CSCD_VERSION_MINOR 0
 #define CSCD_VERSION_PATCH 0
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* The version of the library in use, as "1.1.0"; static storage. */
+/* The version of the library in use, as "2.0.0"; static storage. */
 CSCD_API const char *cscd_version_string(void);
 
 #ifdef __cplusplus

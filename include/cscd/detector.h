@@ -19,15 +19,16 @@ extern "C" {
 /* Finds the contacts of one mesh. */
 typedef struct cscd_detector cscd_detector;
 
-/* What a step promises. In both modes an empty list proves that there is no contact. Neither promise holds
+/* What a step promises. Later versions may add values. In both modes an empty list proves that there is no contact. Neither promise holds
  * for the published methods, nor after a start that was vouched for and is not embedded. */
 typedef enum cscd_mode {
-    CSCD_MODE_ALL,     /* every contact of the interval, on any mesh, whatever its state at the start */
-    CSCD_MODE_EARLIEST /* for a component that is embedded at the start: of its contacts with itself at
+    CSCD_MODE_ALL,      /* every contact of the interval, on any mesh, whatever its state at the start */
+    CSCD_MODE_EARLIEST, /* for a component that is embedded at the start: of its contacts with itself at
                         * least one that has the earliest time. All other contacts, and all contacts when
                         * there are pairs to leave out, as in ALL. After such a contact the whole next
                         * start is checked, so that over a recording ALL costs less. See
                         * cscd_detector_guarantee */
+    CSCD_MODE_MAX_ENUM = 0x7fffffff
 } cscd_mode;
 
 /* The names are "all" and "earliest"; static storage, never NULL. cscd_mode_from_name returns false for
@@ -43,13 +44,16 @@ CSCD_API bool cscd_mode_from_name(const char *name, cscd_mode *out);
 typedef enum cscd_start {
     CSCD_START_PROVE,   /* the step checks the triangles that are not known to be clean */
     CSCD_START_VOUCHED, /* you say that every start is embedded; if that is wrong, contacts may be lost */
-    CSCD_START_UNKNOWN  /* only what a cscd_detector_check of the start has shown to be clean is culled */
+    CSCD_START_UNKNOWN, /* only what a cscd_detector_check of the start has shown to be clean is culled */
+    CSCD_START_MAX_ENUM = 0x7fffffff
 } cscd_start;
 
-/* The bounding volumes of the trees. They differ in time only; boxes are mostly faster (docs/tuning.md). */
+/* The bounding volumes of the trees. They differ in time only; boxes are mostly faster (docs/tuning.md). Later
+ * versions may add values. */
 typedef enum cscd_volume {
-    CSCD_VOLUME_BOX,   /* three axes */
-    CSCD_VOLUME_KDOP14 /* seven axes, so 14 planes */
+    CSCD_VOLUME_BOX,    /* three axes */
+    CSCD_VOLUME_KDOP14, /* seven axes, so 14 planes */
+    CSCD_VOLUME_MAX_ENUM = 0x7fffffff
 } cscd_volume;
 
 /* The names are "box" and "kdop14"; static storage, never NULL. cscd_volume_from_name returns false for
@@ -97,25 +101,38 @@ typedef struct cscd_detector_options {
 } cscd_detector_options;
 
 /* The default options. */
-CSCD_API cscd_detector_options cscd_detector_defaults(void);
+CSCD_API void cscd_detector_defaults_sized(cscd_detector_options *out, size_t size);
+static inline cscd_detector_options cscd_detector_defaults(void) {
+    cscd_detector_options options;
+    cscd_detector_defaults_sized(&options, sizeof options);
+    return options;
+}
 
-/* Creates a detector. The mesh must live as long. plan: a plan of the same mesh, which may be destroyed
+/* Creates a detector, which allocates from `context` and fails into it; the mesh may be of another context.
+ * The mesh must live as long. plan: a plan of the same mesh, which may be destroyed
  * afterwards, or NULL; the methods CHARGE and KMEANS need one of their kind, the others take any or none.
  * options may be NULL. */
-CSCD_API cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
+CSCD_API cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 
-/* Frees the detector and its lists. Call it after its lines have been destroyed. */
+/* Frees the detector and its lists. Call it after its line searches have been destroyed. */
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
+/* The mesh that the detector was created for. */
+CSCD_API const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector);
+
 /* Changes min_separation and tolerance (see the options) from the next call on, for solvers that have to
- * go closer. If the change ends culling, what is known of the start is forgotten. A line that was begun
+ * go closer. If the change ends culling, what is known of the start is forgotten. A line search that was begun
  * with a smaller separation must begin again; until then its max_step returns INVALID_ARGUMENT. */
 CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
                                                   double tolerance);
 
-/* A vertex and a face, or two edges. */
-typedef enum cscd_contact_kind { CSCD_CONTACT_VF, CSCD_CONTACT_EE } cscd_contact_kind;
+/* A vertex and a face, or two edges. Later versions may add values. */
+typedef enum cscd_contact_kind {
+    CSCD_CONTACT_VF,
+    CSCD_CONTACT_EE,
+    CSCD_CONTACT_KIND_MAX_ENUM = 0x7fffffff
+} cscd_contact_kind;
 
 /* The names are "vf" and "ee"; static storage, never NULL. */
 CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
@@ -126,31 +143,36 @@ CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
  *   EE  a < b are edges; the points are (1-u) a0 + u a1 and (1-v) b0 + v b1 */
 typedef struct cscd_contact {
     cscd_contact_kind kind;
-    uint32_t a, b;    /* vertex and triangle, or two edges, in the numbering of the mesh */
-    double toi;       /* time of impact in [0,1], never after the true time; without min_separation it is
+    uint32_t a, b;        /* vertex and triangle, or two edges, in the numbering of the mesh */
+    bool bounded;         /* only with min_separation: the limit of work was reached, so toi is safe but may
+                           * be early, and the pair may stay farther apart than min_separation */
+    uint32_t vertices[4]; /* VF: the vertex, then the triangle's three; EE: the two of a, then those of b */
+    double toi;           /* time of impact in [0,1], never after the true time; without min_separation it is
                        * before it by less than 1e-9 */
-    double u, v;      /* in [0,1], up to rounding */
-    double point[3];  /* the middle between the two points at toi */
-    double normal[3]; /* unit vector across the features at toi, against the motion of a relative to b; 0
+    double u, v;          /* in [0,1], up to rounding */
+    double point[3];      /* the middle between the two points at toi */
+    double normal[3];     /* unit vector across the features at toi, against the motion of a relative to b; 0
                        * where there is none, as between parallel edges. With min_separation from b's
                        * nearest point to a's, unless the features touch */
-    bool bounded;     /* only with min_separation: the limit of work was reached, so toi is safe but may be
-                       * early, and the pair may stay farther apart than min_separation */
 } cscd_contact;
 
 /* Contacts, sorted by (toi, kind, a, b). The list belongs to the detector and lives until the next call of
- * it or of one of its lines. */
+ * it or of one of its line searches. */
 typedef struct cscd_contacts {
     const cscd_contact *items;
     size_t count;
 } cscd_contacts;
 
-/* Finds the contacts between start and end, two arrays of positions, as the mode promises. The first call
+/* Finds the contacts from positions x0 to positions x1, as the mode promises. The first call
  * builds the trees, so it is slower. Later calls allocate memory only when a list has to grow, when a long
  * deformation has made the trees so loose that they are built again, or in the first interval without
  * culling. CANCELLED: see cscd_progress. */
-CSCD_API cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
-                                        cscd_contacts *out);
+CSCD_API cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0,
+                                              const cscd_view *x1, cscd_contacts *out, size_t size);
+static inline cscd_status cscd_detector_step(cscd_detector *detector, const cscd_view *x0,
+                                             const cscd_view *x1, cscd_contacts *out) {
+    return cscd_detector_step_sized(detector, x0, x1, out, sizeof *out);
+}
 
 /* Two triangles a < b that intersect or touch at one moment: a vertex or an edge of one and the face of
  * the other, or edges of both, have a point in common. Features that share a vertex do not count, but
@@ -173,10 +195,15 @@ typedef struct cscd_intersections {
  * (docs/theory/static-check.md). A step that starts at positions that were checked need not check them
  * again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; the counters stay those of
  * the last step. */
-CSCD_API cscd_status cscd_detector_check(cscd_detector *detector, const double *positions,
-                                         cscd_intersections *out);
+CSCD_API cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
+                                               cscd_intersections *out, size_t size);
+static inline cscd_status cscd_detector_check(cscd_detector *detector, const cscd_view *positions,
+                                              cscd_intersections *out) {
+    return cscd_detector_check_sized(detector, positions, out, sizeof *out);
+}
 
-/* Why the contacts of a component with itself are complete, or why some may be missing. */
+/* Why the contacts of a component with itself are complete, or why some may be missing. Later versions
+ * may add values. */
 typedef enum cscd_reason {
     CSCD_REASON_METHOD,    /* complete: the method does not cull, or does not with min_separation */
     CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so it was not culled */
@@ -190,7 +217,8 @@ typedef enum cscd_reason {
     CSCD_REASON_CONTOUR,   /* complete: method ICCD, which needs no embedded start */
     CSCD_REASON_EARLIEST,  /* later contacts may be missing: the start is embedded, and the mode is
                             * EARLIEST */
-    CSCD_REASON_OBSTACLE   /* an obstacle: its contacts with itself are not looked for */
+    CSCD_REASON_OBSTACLE,  /* an obstacle: its contacts with itself are not looked for */
+    CSCD_REASON_MAX_ENUM = 0x7fffffff
 } cscd_reason;
 
 /* The reason as a part of a sentence, such as "open, non-manifold or inconsistently oriented"; static
@@ -207,7 +235,13 @@ typedef struct cscd_guarantee {
 
 /* The guarantee of the last step for a component; without meaning before the first step. Contacts between
  * two components are complete in every step. */
-CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component);
+CSCD_API void cscd_detector_guarantee_sized(const cscd_detector *detector, uint32_t component,
+                                            cscd_guarantee *out, size_t size);
+static inline cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
+    cscd_guarantee found;
+    cscd_detector_guarantee_sized(detector, component, &found, sizeof found);
+    return found;
+}
 
 /* How a triangle faced the detector point of its region during the whole last step: 1, away from it (S+);
  * -1, towards it (S-); 0, neither, or the triangle was not clean at the start. Without meaning after a
@@ -215,14 +249,14 @@ CSCD_API cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, u
 CSCD_API int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle);
 
 /* The number of regions that the detector culls by: those of its plan, or else the components; 0 if it
- * does not cull by orientation, because of its method or with min_separation. Since 1.1. */
+ * does not cull by orientation, because of its method or with min_separation. */
 CSCD_API uint32_t cscd_detector_region_count(const cscd_detector *detector);
 
 /* Writes where the detector point of a region was at the start and at the end of the last step, up to
  * rounding. In between it moved in a straight line. Without meaning before the first step and after a step
- * that failed. Since 1.1. */
-CSCD_API void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
-                                         double end[3]);
+ * that failed. */
+CSCD_API void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3],
+                                         double p1[3]);
 
 /* Milliseconds per pipeline stage of the last step. */
 typedef struct cscd_timings {
@@ -262,10 +296,20 @@ typedef struct cscd_counters {
 } cscd_counters;
 
 /* The timings of the last step, and of the last check. */
-CSCD_API cscd_timings cscd_detector_timings(const cscd_detector *detector);
+CSCD_API void cscd_detector_timings_sized(const cscd_detector *detector, cscd_timings *out, size_t size);
+static inline cscd_timings cscd_detector_timings(const cscd_detector *detector) {
+    cscd_timings found;
+    cscd_detector_timings_sized(detector, &found, sizeof found);
+    return found;
+}
 
 /* The counters of the last step. */
-CSCD_API cscd_counters cscd_detector_counters(const cscd_detector *detector);
+CSCD_API void cscd_detector_counters_sized(const cscd_detector *detector, cscd_counters *out, size_t size);
+static inline cscd_counters cscd_detector_counters(const cscd_detector *detector) {
+    cscd_counters found;
+    cscd_detector_counters_sized(detector, &found, sizeof found);
+    return found;
+}
 
 #ifdef __cplusplus
 }

@@ -4,7 +4,7 @@
 #ifndef CSCD_MESH_API_H
 #define CSCD_MESH_API_H
 
-#include <cscd/context.h>
+#include <cscd/view.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,49 +13,62 @@ extern "C" {
 /* The connectivity of one object or of a scene. */
 typedef struct cscd_mesh cscd_mesh;
 
-/* The triangles of one object. */
-typedef struct cscd_mesh_desc {
+/* An object of a mesh. Set members that you do not need to 0. */
+typedef struct cscd_object_desc {
     uint32_t vertex_count;     /* 1 or more, below 2^32 - 1 */
     uint32_t triangle_count;   /* 1 or more, at most (2^32 - 1) / 3 */
-    const uint32_t *triangles; /* triangle_count * 3 vertex indices, counter-clockwise from outside */
-} cscd_mesh_desc;
+    const uint32_t *triangles; /* triangle_count * 3 indices of the object's own vertices, from 0 on,
+                                * counter-clockwise from outside */
+    bool obstacle;             /* the caller moves it: pairs within it, and pairs with other obstacles, are
+                                * not looked at, neither for contacts nor for intersections nor for proximity */
+    uint8_t reserved[7];       /* 0 */
+} cscd_object_desc;
 
-/* Creates a mesh of one object. Vertices without a triangle are allowed and take no part in contacts.
- * Open, non-manifold and inconsistently oriented surfaces are allowed, too; they cost culling only (see
- * cscd_component). INVALID_MESH: the sentence names the triangle. */
-CSCD_API cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out);
+/* Describes a moving object of triangles; all other members are 0. */
+static inline cscd_object_desc cscd_object_of_triangles(uint32_t vertex_count, uint32_t triangle_count,
+                                                        const uint32_t *triangles) {
+    cscd_object_desc desc = {vertex_count, triangle_count, triangles, false, {0}};
+    return desc;
+}
+
+/* Creates a mesh of object_count objects, 1 or more. Vertices, edges and triangles are numbered object by
+ * object, in the given order. Vertices without a triangle are allowed and take no part in contacts. Open,
+ * non-manifold and inconsistently oriented surfaces are allowed, too; they cost culling only (see
+ * cscd_component). INVALID_MESH: the sentence names object and triangle. */
+CSCD_API cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc *objects,
+                                            size_t object_size, uint32_t object_count, cscd_mesh **out);
+static inline cscd_status cscd_mesh_create(cscd_context *context, const cscd_object_desc *objects,
+                                           uint32_t object_count, cscd_mesh **out) {
+    return cscd_mesh_create_sized(context, objects, sizeof *objects, object_count, out);
+}
 
 /* Frees the mesh. Call it after its plans, detectors, partitions and sensors have been destroyed. */
 CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 
-/* ---- several meshes as one scene --------------------------------------------------------------------- */
+/* The context that the mesh was created in. */
+CSCD_API cscd_context *cscd_mesh_context(const cscd_mesh *mesh);
 
-/* An object of a scene. */
-typedef struct cscd_object_desc {
-    cscd_mesh_desc mesh; /* its triangles name the object's own vertices, from 0 on */
-    bool obstacle;       /* the caller moves it: pairs within it, and pairs with other obstacles, are not
-                          * looked at, neither for contacts nor for intersections nor for proximity */
-} cscd_object_desc;
+/* ---- its objects --------------------------------------------------------------------------------------- */
 
-/* Creates one mesh of object_count objects, 1 or more. Vertices, edges and triangles are numbered object
- * by object, in the given order. INVALID_MESH: the sentence names object and triangle. */
-CSCD_API cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc *objects,
-                                            uint32_t object_count, cscd_mesh **out);
-
-/* Where an object's features lie in the numbering of the scene. Subtract the first index to have the
+/* Where an object's features lie in the numbering of the mesh. Subtract the first index to have the
  * object's own. */
 typedef struct cscd_object {
+    bool obstacle;
     uint32_t first_vertex, vertex_count;
     uint32_t first_edge, edge_count;
     uint32_t first_triangle, triangle_count;
-    bool obstacle;
 } cscd_object;
 
-/* The number of objects; 1 for a mesh that cscd_mesh_create made. */
+/* The number of objects. */
 CSCD_API uint32_t cscd_mesh_object_count(const cscd_mesh *mesh);
 
-/* An object, by its place among those given to cscd_mesh_create_scene. */
-CSCD_API cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object);
+/* An object, by its place among those given to cscd_mesh_create. */
+CSCD_API void cscd_mesh_object_sized(const cscd_mesh *mesh, uint32_t object, cscd_object *out, size_t size);
+static inline cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {
+    cscd_object found;
+    cscd_mesh_object_sized(mesh, object, &found, sizeof found);
+    return found;
+}
 
 /* The object that a vertex belongs to. */
 CSCD_API uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex);
@@ -90,6 +103,7 @@ CSCD_API const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_
  * object. Components are numbered in the order of their first triangles. Only components that are closed
  * manifolds are culled. */
 typedef struct cscd_component {
+    bool closed_manifold; /* closed, manifold and consistently oriented */
     uint32_t vertex_count, edge_count, triangle_count;
     uint32_t open_edges;            /* edges of one triangle only */
     uint32_t non_manifold_edges;    /* edges of three triangles or more */
@@ -100,14 +114,19 @@ typedef struct cscd_component {
     uint32_t first_non_manifold_vertex;
     uint32_t first_inconsistent_edge;
     int64_t euler_characteristic; /* V - E + F; a closed oriented component has genus 1 - euler / 2 */
-    bool closed_manifold;         /* closed, manifold and consistently oriented */
 } cscd_component;
 
 /* The number of components. */
 CSCD_API uint32_t cscd_mesh_component_count(const cscd_mesh *mesh);
 
 /* A component, its counts and its defects. */
-CSCD_API cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component);
+CSCD_API void cscd_mesh_component_sized(const cscd_mesh *mesh, uint32_t component, cscd_component *out,
+                                        size_t size);
+static inline cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
+    cscd_component found;
+    cscd_mesh_component_sized(mesh, component, &found, sizeof found);
+    return found;
+}
 
 /* The component that a triangle belongs to. */
 CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle);
@@ -115,26 +134,6 @@ CSCD_API uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t t
 /* A hash of the vertex count and of the triangles in their order. A plan that was saved fits a mesh with
  * the same hash. */
 CSCD_API uint64_t cscd_mesh_hash(const cscd_mesh *mesh);
-
-/* ---- positions as a solver has them ------------------------------------------------------------------ */
-
-/* The type of a coordinate. */
-typedef enum cscd_scalar { CSCD_SCALAR_DOUBLE, CSCD_SCALAR_FLOAT } cscd_scalar;
-
-/* Positions as a solver stores them: x of vertex i at byte i * stride, y and z coordinate_stride and twice
- * coordinate_stride bytes behind it. No alignment is needed. For a matrix with the columns x, y and z,
- * stride is the size of a scalar and coordinate_stride that of a column. */
-typedef struct cscd_view {
-    const void *data;
-    cscd_scalar scalar;
-    size_t stride;            /* in bytes; 0: that of three scalars */
-    size_t coordinate_stride; /* in bytes; 0: that of one scalar */
-} cscd_view;
-
-/* Copies positions from any layout to the packed doubles that all other functions take. views: one for
- * each object (a mesh of cscd_mesh_create is one object). positions: vertex_count * 3 doubles. Floats are
- * widened, which is exact. Coordinates are not checked here. */
-CSCD_API cscd_status cscd_mesh_pack(const cscd_mesh *mesh, const cscd_view *views, double *positions);
 
 #ifdef __cplusplus
 }

@@ -12,24 +12,20 @@ extern "C" {
 #endif
 
 /* How triangle pairs that need no test are found and left out. Methods differ in time only: every method
- * promises what the mode says, except the two published ones, which lose contacts. */
+ * promises what the mode says. Later versions may add values; cscd/research.h has methods to compare with. */
 typedef enum cscd_method {
-    CSCD_METHOD_AUTO,          /* the method of the plan, or NONE without a plan */
-    CSCD_METHOD_NONE,          /* bounding volumes only */
-    CSCD_METHOD_BRUTE,         /* none: every pair of features is tested. The reference, quadratic in time */
-    CSCD_METHOD_SINGLE,        /* culling by orientation, one region for each component */
-    CSCD_METHOD_KMEANS,        /* culling by orientation, regions by k-means */
-    CSCD_METHOD_CHARGE,        /* culling by orientation, regions by charge density */
-    CSCD_METHOD_PUBLISHED,     /* culling by orientation as published (Yeh 2012). Loses contacts: to compare
-                            * with */
-    CSCD_METHOD_ICCD,          /* culling by normal cones and contours (Tang et al. 2009), corrected: to
-                            * compare with */
-    CSCD_METHOD_ICCD_PUBLISHED /* the same as published. Loses contacts: to compare with */
+    CSCD_METHOD_AUTO,   /* the method of the plan, or NONE without a plan. A later version may choose better,
+                         * for each component and interval, with the same results */
+    CSCD_METHOD_NONE,   /* bounding volumes only */
+    CSCD_METHOD_SINGLE, /* culling by orientation, one region for each component */
+    CSCD_METHOD_KMEANS, /* culling by orientation, regions by k-means */
+    CSCD_METHOD_CHARGE, /* culling by orientation, regions by charge density */
+    CSCD_METHOD_MAX_ENUM = 0x7fffffff
 } cscd_method;
 
-/* The names are "auto", "none", "brute", "single", "kmeans", "charge", "published", "iccd" and
- * "iccd-published"; static storage, never NULL. cscd_method_from_name returns false for any other text and
- * then leaves *out untouched. */
+/* The names are "auto", "none", "single", "kmeans" and "charge", those of cscd/research.h, and "unknown";
+ * static storage, never NULL. cscd_method_from_name returns false for any other text and then leaves *out
+ * untouched. */
 CSCD_API const char *cscd_method_name(cscd_method method);
 CSCD_API bool cscd_method_from_name(const char *name, cscd_method *out);
 
@@ -38,26 +34,32 @@ typedef struct cscd_plan cscd_plan;
 
 /* Options of a plan; start from cscd_plan_defaults. */
 typedef struct cscd_plan_options {
-    uint32_t struct_size; /* set by cscd_plan_defaults */
-    cscd_method method;   /* CHARGE by default, or KMEANS, or SINGLE */
-    uint32_t k;           /* KMEANS: how many regions all components have together, 4 by default */
-    uint32_t seed;        /* KMEANS: of the random starts, 1 by default */
-    double threshold;     /* CHARGE: the share of the triangles, those of least density, from which cuts
+    uint32_t struct_size;  /* set by cscd_plan_defaults */
+    cscd_method method;    /* CHARGE by default, or KMEANS, or SINGLE */
+    uint32_t k;            /* KMEANS: how many regions all components have together, 4 by default */
+    uint32_t seed;         /* KMEANS: of the random starts, 1 by default */
+    double threshold;      /* CHARGE: the share of the triangles, those of least density, from which cuts
                            * grow; in (0,1), 0.1 by default */
-    bool published;       /* CHARGE: equalize densities with 256 bins, as published, instead of exact ranks */
-    size_t memory_limit;  /* CHARGE: bytes that the dense system may take; 0, the default: what the system
+    uint64_t variant;      /* 0 by default; cscd/research.h has others to compare with */
+    uint64_t memory_limit; /* CHARGE: bytes that the dense system may take; 0, the default: what the system
                            * has */
 } cscd_plan_options;
 
 /* The default options. */
-CSCD_API cscd_plan_options cscd_plan_defaults(void);
+CSCD_API void cscd_plan_defaults_sized(cscd_plan_options *out, size_t size);
+static inline cscd_plan_options cscd_plan_defaults(void) {
+    cscd_plan_options options;
+    cscd_plan_defaults_sized(&options, sizeof options);
+    return options;
+}
 
 /* Cuts a mesh into regions. positions: the mesh at rest. options may be NULL. CHARGE solves a dense
  * system: it takes 4 bytes for each pair of triangles of the largest component, and time with the cube of
  * their number. OUT_OF_MEMORY: the sentence gives the amount. CANCELLED: see cscd_progress. Obstacles are
  * left whole. */
-CSCD_API cscd_status cscd_plan_create(const cscd_mesh *mesh, const double *positions,
-                                      const cscd_plan_options *options, cscd_plan **out);
+CSCD_API cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh,
+                                      const cscd_view *positions, const cscd_plan_options *options,
+                                      cscd_plan **out);
 
 /* Frees the plan. Detectors made with it keep what they need, so it may go before them. */
 CSCD_API void cscd_plan_destroy(cscd_plan *plan);
@@ -82,8 +84,15 @@ typedef struct cscd_plan_parts {
 
 /* Creates a plan from the parts of an earlier one of the same mesh. positions: the mesh at rest.
  * INVALID_ARGUMENT: the sentence names what does not fit. */
-CSCD_API cscd_status cscd_plan_create_from_parts(const cscd_mesh *mesh, const double *positions,
-                                                 const cscd_plan_parts *parts, cscd_plan **out);
+CSCD_API cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
+                                                       const cscd_view *positions,
+                                                       const cscd_plan_parts *parts, size_t parts_size,
+                                                       cscd_plan **out);
+static inline cscd_status cscd_plan_create_from_parts(cscd_context *context, const cscd_mesh *mesh,
+                                                      const cscd_view *positions,
+                                                      const cscd_plan_parts *parts, cscd_plan **out) {
+    return cscd_plan_create_from_parts_sized(context, mesh, positions, parts, sizeof *parts, out);
+}
 
 /* The method that made the regions: CHARGE, KMEANS or SINGLE. */
 CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
@@ -92,7 +101,12 @@ CSCD_API cscd_method cscd_plan_method(const cscd_plan *plan);
 CSCD_API uint32_t cscd_plan_region_count(const cscd_plan *plan);
 
 /* A region. */
-CSCD_API cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region);
+CSCD_API void cscd_plan_region_sized(const cscd_plan *plan, uint32_t region, cscd_region *out, size_t size);
+static inline cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
+    cscd_region found;
+    cscd_plan_region_sized(plan, region, &found, sizeof found);
+    return found;
+}
 
 /* The region that a triangle belongs to. */
 CSCD_API uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle);
@@ -112,7 +126,12 @@ typedef struct cscd_preprocess_timings {
 } cscd_preprocess_timings;
 
 /* How long each stage of cscd_plan_create took. */
-CSCD_API cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan);
+CSCD_API void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out, size_t size);
+static inline cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
+    cscd_preprocess_timings timings;
+    cscd_plan_timings_sized(plan, &timings, sizeof timings);
+    return timings;
+}
 
 #ifdef __cplusplus
 }

@@ -24,6 +24,7 @@ typedef struct cscd_partition cscd_partition;
 /* Options of a partition; start from cscd_partition_defaults. */
 typedef struct cscd_partition_options {
     uint32_t struct_size; /* set by cscd_partition_defaults */
+    bool within;          /* parts of one object are watched for each other, too; false by default */
     uint32_t cells;       /* of each part: at most as many as it has vertices, and more than asked for only
                            * if these are not connected; 0, the default: as many as spheres of the size of
                            * the smallest part of another object fit around the sphere of the part's area
@@ -34,17 +35,21 @@ typedef struct cscd_partition_options {
                            * square of 1; from 0 to 1e6, 1 by default */
     double epsilon;       /* iterations end when the distortion falls by a smaller share; in [0,1), 1e-3 by
                            * default */
-    bool within;          /* parts of one object are watched for each other, too; false by default */
 } cscd_partition_options;
 
 /* The default options. */
-CSCD_API cscd_partition_options cscd_partition_defaults(void);
+CSCD_API void cscd_partition_defaults_sized(cscd_partition_options *out, size_t size);
+static inline cscd_partition_options cscd_partition_defaults(void) {
+    cscd_partition_options options;
+    cscd_partition_defaults_sized(&options, sizeof options);
+    return options;
+}
 
 /* Creates the partition of a mesh, which must live as long. plan: a plan of the same mesh, which may be
  * destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. */
-CSCD_API cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan,
-                                           const double *positions, const cscd_partition_options *options,
-                                           cscd_partition **out);
+CSCD_API cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh,
+                                           const cscd_plan *plan, const cscd_view *positions,
+                                           const cscd_partition_options *options, cscd_partition **out);
 
 /* Frees the partition. Call it after its sensors have been destroyed. */
 CSCD_API void cscd_partition_destroy(cscd_partition *partition);
@@ -52,15 +57,16 @@ CSCD_API void cscd_partition_destroy(cscd_partition *partition);
 /* Makes new cells for one part, or for all if part is UINT32_MAX, at the given positions; their number
  * follows from the area that the part has now. Other parts keep their cells, but the numbers of these may
  * change. Sensors of the partition use the new cells from their next step on. */
-CSCD_API cscd_status cscd_partition_renew(cscd_partition *partition, const double *positions, uint32_t part);
+CSCD_API cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions,
+                                          uint32_t part);
 
 /* A part of an object. */
 typedef struct cscd_part {
+    bool convex; /* the part is a whole object, and convex */
     uint32_t object;
     uint32_t first_cell, cell_count; /* cells are numbered part by part; a part has none if no vertex has
                                       * most of its triangles in it */
     double radius;                   /* of the sphere with the part's area, when its cells were made */
-    bool convex;                     /* the part is a whole object, and convex */
 } cscd_part;
 
 /* The number of objects. */
@@ -70,7 +76,13 @@ CSCD_API uint32_t cscd_partition_object_count(const cscd_partition *partition);
 CSCD_API uint32_t cscd_partition_part_count(const cscd_partition *partition);
 
 /* A part. */
-CSCD_API cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part);
+CSCD_API void cscd_partition_part_sized(const cscd_partition *partition, uint32_t part, cscd_part *out,
+                                        size_t size);
+static inline cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part) {
+    cscd_part found;
+    cscd_partition_part_sized(partition, part, &found, sizeof found);
+    return found;
+}
 
 /* The number of cells of all parts together. */
 CSCD_API uint32_t cscd_partition_cell_count(const cscd_partition *partition);
@@ -115,12 +127,18 @@ typedef struct cscd_sensor_options {
 } cscd_sensor_options;
 
 /* The default options. */
-CSCD_API cscd_sensor_options cscd_sensor_defaults(void);
+CSCD_API void cscd_sensor_defaults_sized(cscd_sensor_options *out, size_t size);
+static inline cscd_sensor_options cscd_sensor_defaults(void) {
+    cscd_sensor_options options;
+    cscd_sensor_defaults_sized(&options, sizeof options);
+    return options;
+}
 
 /* Creates sensors. The mesh and the partition, which is one of this mesh, must live as long. options may
  * be NULL. */
-CSCD_API cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition,
-                                         const cscd_sensor_options *options, cscd_sensors **out);
+CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh,
+                                         cscd_partition *partition, const cscd_sensor_options *options,
+                                         cscd_sensors **out);
 
 /* Frees the sensors and their lists. */
 CSCD_API void cscd_sensors_destroy(cscd_sensors *sensors);
@@ -151,13 +169,17 @@ typedef enum cscd_renewal {
 typedef struct cscd_warnings {
     const cscd_warning *items;
     size_t count;
-    uint32_t renewals_due; /* parts for which cscd_sensors_renewal is not NONE */
+    size_t renewals_due; /* parts for which cscd_sensors_renewal is not NONE */
 } cscd_warnings;
 
 /* Lets the particles walk, from where the last step has left them, at the start and then at the end of an
- * interval, and lists the parts that may touch. start, end: positions. */
-CSCD_API cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *start, const double *end,
-                                       cscd_warnings *out);
+ * interval, and lists the parts that may touch. x0, x1: positions at these moments. */
+CSCD_API cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                                             cscd_warnings *out, size_t size);
+static inline cscd_status cscd_sensors_step(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                                            cscd_warnings *out) {
+    return cscd_sensors_step_sized(sensors, x0, x1, out, sizeof *out);
+}
 
 /* Whether, and why, a part should have new cells (cscd_partition_renew). Ask after a step. */
 CSCD_API cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part);
@@ -192,10 +214,21 @@ typedef struct cscd_sensor_counters {
 } cscd_sensor_counters;
 
 /* The timings of the last step. */
-CSCD_API cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors);
+CSCD_API void cscd_sensors_timings_sized(const cscd_sensors *sensors, cscd_sensor_timings *out, size_t size);
+static inline cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors) {
+    cscd_sensor_timings found;
+    cscd_sensors_timings_sized(sensors, &found, sizeof found);
+    return found;
+}
 
 /* The counters of the last step. */
-CSCD_API cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors);
+CSCD_API void cscd_sensors_counters_sized(const cscd_sensors *sensors, cscd_sensor_counters *out,
+                                          size_t size);
+static inline cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors) {
+    cscd_sensor_counters found;
+    cscd_sensors_counters_sized(sensors, &found, sizeof found);
+    return found;
+}
 
 #ifdef __cplusplus
 }

@@ -39,8 +39,8 @@ typedef struct cscd_proximity {
                        * 0 */
 } cscd_proximity;
 
-/* Proximities, sorted by (kind, a, b). The list belongs to the detector, also when one of its lines was
- * asked, and lives until the next call of the detector or of one of its lines. */
+/* Proximities, sorted by (kind, a, b). The list belongs to the detector, also when one of its line
+ * searches was asked, and lives until the next call of the detector or of one of its line searches. */
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
@@ -52,65 +52,90 @@ typedef struct cscd_proximities {
  * part in it. Where a nearest point lies on the border of a feature, the features that share this border
  * are listed, too; u and v show it. CANCELLED: see cscd_progress. Timings, counters and guarantees stay
  * those of the last step. */
-CSCD_API cscd_status cscd_detector_near(cscd_detector *detector, const double *positions, double distance,
-                                        cscd_proximities *out);
+CSCD_API cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
+                                                   double distance, cscd_proximities *out, size_t size);
+static inline cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
+                                                  double distance, cscd_proximities *out) {
+    return cscd_detector_find_near_sized(detector, positions, distance, out, sizeof *out);
+}
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
 
 /* How far a motion may go without contact. */
 typedef struct cscd_free_step {
-    double length;      /* in (0,1]; with 1 the end is x1, bit for bit */
-    bool limited;       /* the length is below the longest that was asked for, because of this contact: */
-    cscd_contact limit; /* a first contact of the whole motion; length <= step_factor * limit.toi, unless
+    double fraction;    /* in (0,1]; with 1 the end is x1, bit for bit */
+    bool limited;       /* the fraction is below the longest that was asked for, because of this contact: */
+    cscd_contact limit; /* a first contact of the whole motion; fraction <= step_factor * limit.toi, unless
                          * toi is 0 or so small that rounding decides */
 } cscd_free_step;
 
 /* Finds how far the vertices may go from x0 towards x1 without any contact (with min_separation: without
- * coming within it), and certifies it. The positions reached, x0 + length (x1 - x0), rounded, are written
- * to `end`: vertex_count * 3 doubles, which may be x1 itself, or NULL if they are not wanted. It is the
- * motion to these very doubles that was searched: there is no contact on the way, both ends included. A
- * component that is embedded at x0 is therefore embedded at `end`, and the next step from there need not
- * prove its start. IN_CONTACT: the features of a pair, which the sentence names, touch at x0 or, with
+ * coming within it), and certifies it. The positions x0 + fraction (x1 - x0), rounded, are written to
+ * `reached`, which may be x1 itself, or NULL if they are not wanted. It is the motion to these very numbers
+ * that was searched: there is no contact on the way, both ends included. A component that is embedded at x0
+ * is therefore embedded at `reached`, and the next step from there need not prove its start. IN_CONTACT: the features of a pair, which the sentence names, touch at x0 or, with
  * min_separation, are not farther apart than that and its tolerance; nothing is written. INVALID_ARGUMENT
  * also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing. CANCELLED: see cscd_progress.
  * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
  * guarantees those of the motion that was certified. */
-CSCD_API cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, const double *x1,
-                                            double *end, cscd_free_step *out);
+CSCD_API cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0,
+                                                  const cscd_view *x1, const cscd_mutable_view *reached,
+                                                  cscd_free_step *out, size_t size);
+static inline cscd_status cscd_detector_max_step(cscd_detector *detector, const cscd_view *x0,
+                                                 const cscd_view *x1, const cscd_mutable_view *reached,
+                                                 cscd_free_step *out) {
+    return cscd_detector_max_step_sized(detector, x0, x1, reached, out, sizeof *out);
+}
 
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
 /* One motion that is asked about many times, as in the line search of an implicit solver (Li et al. 2020).
  * The feature pairs that can come near each other anywhere on it, the candidates, are collected once;
  * every shorter step and every moment on the line is then answered from them. Nothing is culled, so for a
- * single step cscd_detector_max_step is faster. A line uses the trees and options of its detector, so the
+ * single step cscd_detector_max_step is faster. A line search uses the trees and options of its detector, so the
  * two are never called at the same time. */
-typedef struct cscd_line cscd_line;
+typedef struct cscd_line_search cscd_line_search;
 
-/* Creates a line. The detector must live as long. */
-CSCD_API cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out);
+/* Creates a line search. The detector must live as long. */
+CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out);
 
-/* Frees the line. */
-CSCD_API void cscd_line_destroy(cscd_line *line);
+/* Frees the line search. */
+CSCD_API void cscd_line_search_destroy(cscd_line_search *search);
+
+/* The detector that the line search was created for. */
+CSCD_API const cscd_detector *cscd_line_search_detector(const cscd_line_search *search);
 
 /* Collects the candidates of the motion from x0 to x1, which are copied, in place of those before. reach:
- * the largest distance that cscd_line_near will be asked for, or 0. CANCELLED: see cscd_progress. */
-CSCD_API cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1, double reach);
+ * the largest distance that cscd_line_search_find_near will be asked for, or 0. CANCELLED: see cscd_progress. */
+CSCD_API cscd_status cscd_line_search_begin(cscd_line_search *search, const cscd_view *x0,
+                                            const cscd_view *x1, double reach);
 
 /* The number of candidates: VF and EE pairs whose volumes come near each other. */
-CSCD_API size_t cscd_line_candidate_count(const cscd_line *line);
+CSCD_API size_t cscd_line_search_candidate_count(const cscd_line_search *search);
 
-/* Writes the positions at `length` in [0,1], vertex_count * 3 doubles: x0 + length (x1 - x0), rounded; x0
- * and x1 themselves at 0 and 1. */
-CSCD_API cscd_status cscd_line_positions(const cscd_line *line, double length, double *positions);
+/* Writes the positions at `fraction` in [0,1]: x0 + fraction (x1 - x0), rounded; x0 and x1 themselves at 0
+ * and 1. */
+CSCD_API cscd_status cscd_line_search_positions(cscd_line_search *search, double fraction,
+                                                const cscd_mutable_view *positions);
 
 /* Does what cscd_detector_max_step does, for the motion of the line and no farther than `longest` in
- * (0,1]. end may be NULL. */
-CSCD_API cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out);
+ * (0,1]. reached may be NULL. */
+CSCD_API cscd_status cscd_line_search_max_step_sized(cscd_line_search *search, double longest,
+                                                     const cscd_mutable_view *reached, cscd_free_step *out,
+                                                     size_t size);
+static inline cscd_status cscd_line_search_max_step(cscd_line_search *search, double longest,
+                                                    const cscd_mutable_view *reached, cscd_free_step *out) {
+    return cscd_line_search_max_step_sized(search, longest, reached, out, sizeof *out);
+}
 
-/* Does what cscd_detector_near does, at the positions that cscd_line_positions gives for `length`.
+/* Does what cscd_detector_find_near does, at the positions that cscd_line_search_positions gives for `fraction`.
  * distance: above 0, and at most the reach of the line. */
-CSCD_API cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd_proximities *out);
+CSCD_API cscd_status cscd_line_search_find_near_sized(cscd_line_search *search, double fraction,
+                                                      double distance, cscd_proximities *out, size_t size);
+static inline cscd_status cscd_line_search_find_near(cscd_line_search *search, double fraction,
+                                                     double distance, cscd_proximities *out) {
+    return cscd_line_search_find_near_sized(search, fraction, distance, out, sizeof *out);
+}
 
 #ifdef __cplusplus
 }

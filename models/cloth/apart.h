@@ -1,4 +1,4 @@
-/* Contact and friction: turns the pairs of cscd_detector_near into constraints on positions. */
+/* Contact and friction: turns the pairs of cscd_detector_find_near into constraints on positions. */
 #pragma once
 
 #include "cscd/cscd.h"

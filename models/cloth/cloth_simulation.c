@@ -27,18 +27,19 @@ static bool explain_status(const cloth_simulation *c, cscd_status status, io_err
                    cscd_context_detail(c->context));
 }
 
-static cscd_mesh_desc describe_body(const body *b) {
-    return (cscd_mesh_desc){b->vertex_count, b->triangle_count, b->triangles};
+static cscd_object_desc describe_body(const body *b, bool obstacle) {
+    cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
+    desc.obstacle = obstacle;
+    return desc;
 }
 
 /* Creates a scene of the garment, which the detector tests, and of the obstacles, which have given
  * motions. */
 static cscd_status open_mesh(cloth_simulation *c) {
-    cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {{describe_body(&c->garment), false}};
+    cscd_object_desc objects[1 + CLOTH_OBSTACLES_MAX] = {describe_body(&c->garment, false)};
     uint32_t count = c->scene->obstacle_count;
-    for (uint32_t i = 0; i < count; i++)
-        objects[1 + i] = (cscd_object_desc){describe_body(&c->obstacles[i]), true};
-    return cscd_mesh_create_scene(c->context, objects, 1 + count, &c->mesh);
+    for (uint32_t i = 0; i < count; i++) objects[1 + i] = describe_body(&c->obstacles[i], true);
+    return cscd_mesh_create(c->context, objects, 1 + count, &c->mesh);
 }
 
 static void place_obstacles(const cloth_simulation *c, double time, double *positions) {
@@ -136,7 +137,8 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     double begin = clock_now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
     cscd_proximities near;
-    cscd_status status = cscd_detector_near(c->safe.detector, c->start, reach * c->spacing, &near);
+    cscd_status status = cscd_detector_find_near(
+        c->safe.detector, CSCD_DOUBLES(c->start, cscd_mesh_vertex_count(c->mesh)), reach * c->spacing, &near);
     s->near_ms += clock_now_ms() - begin;
     if (!explain_status(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);

@@ -10,7 +10,7 @@
 typedef struct cloth_statistics {
     uint32_t frames;
     double total_ms, near_ms, step_ms;
-    uint64_t near_pairs;  /* found by cscd_detector_near */
+    uint64_t near_pairs;  /* found by cscd_detector_find_near */
     uint64_t most_rounds; /* detector steps of one frame */
     double waited;        /* frames by which the obstacles are late */
     safe_motion_counts motion;

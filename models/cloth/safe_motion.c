@@ -37,7 +37,7 @@ cscd_status safe_motion_open(const cscd_mesh *mesh, double separation, const dou
     options.min_separation = separation;
     options.seams = seams;
     options.seam_count = seam_count;
-    cscd_status status = cscd_detector_create(mesh, NULL, &options, &s.detector);
+    cscd_status status = cscd_detector_create(cscd_mesh_context(mesh), mesh, NULL, &options, &s.detector);
     if (status != CSCD_OK) return status;
     s.vertex_count = cscd_mesh_vertex_count(mesh);
     s.parents = body_allocate(s.vertex_count, sizeof *s.parents);
@@ -198,7 +198,8 @@ static void move_together(safe_motion *s, const cscd_contacts *found, const doub
 }
 
 static cscd_status find_contacts(safe_motion *s, const double *x0, const double *x1, cscd_contacts *found) {
-    cscd_status status = cscd_detector_step(s->detector, x0, x1, found);
+    cscd_status status = cscd_detector_step(s->detector, CSCD_DOUBLES(x0, s->vertex_count),
+                                            CSCD_DOUBLES(x1, s->vertex_count), found);
     if (status != CSCD_OK) return status;
     s->counts.steps++;
     s->counts.contacts += found->count;
@@ -208,16 +209,22 @@ static cscd_status find_contacts(safe_motion *s, const double *x0, const double 
 /* What comes so near the separation goes nowhere: then the next one is taken. */
 static const double no_way = 1e-6;
 
+static cscd_status go_as_far(safe_motion *s, const double *x0, const double *x1, cscd_free_step *way) {
+    return cscd_detector_max_step(s->detector, CSCD_DOUBLES(x0, s->vertex_count),
+                                  CSCD_DOUBLES(x1, s->vertex_count),
+                                  CSCD_MUTABLE_DOUBLES(s->reached, s->vertex_count), way);
+}
+
 /* Shortens the whole motion. */
 static cscd_status fall_back(safe_motion *s, const double *x0, double *x1, double *length) {
-    cscd_free_step way = {.length = 0.0};
-    cscd_status status = cscd_detector_max_step(s->detector, x0, x1, s->reached, &way);
-    while (status == CSCD_OK && way.length < no_way && s->which + 1 < SAFE_MOTION_SEPARATIONS) {
+    cscd_free_step way = {.fraction = 0.0};
+    cscd_status status = go_as_far(s, x0, x1, &way);
+    while (status == CSCD_OK && way.fraction < no_way && s->which + 1 < SAFE_MOTION_SEPARATIONS) {
         status = take_separation(s, s->which + 1);
-        if (status == CSCD_OK) status = cscd_detector_max_step(s->detector, x0, x1, s->reached, &way);
+        if (status == CSCD_OK) status = go_as_far(s, x0, x1, &way);
     }
     s->counts.fallbacks++;
-    *length = way.length;
+    *length = way.fraction;
     bool waits = status == CSCD_IN_CONTACT;
     s->counts.waits += waits;
     if (status == CSCD_OK || waits)

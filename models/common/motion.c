@@ -60,7 +60,7 @@ cscd_status recording_motion_begin(const cscd_mesh *mesh, const double *first, r
     uint32_t vertex_count = cscd_mesh_vertex_count(mesh), edge_count = cscd_mesh_edge_count(mesh);
     size_t bytes = (size_t)vertex_count * 3 * sizeof *first;
     double low[3], high[3];
-    cscd_status status = cscd_detector_create(mesh, NULL, NULL, &m.detector);
+    cscd_status status = cscd_detector_create(cscd_mesh_context(mesh), mesh, NULL, NULL, &m.detector);
     if (status != CSCD_OK) return status;
     m.first = memcpy(body_allocate(bytes, 1), first, bytes);
     m.last = body_allocate(bytes, 1);
@@ -90,11 +90,14 @@ static cscd_status add_contacts(recording_motion *m, const double *frame) {
     cscd_contacts contacts = {NULL, 0};
     cscd_intersections intersections;
     if (m->frame_count > 0) {
-        cscd_status status = cscd_detector_step(m->detector, m->last, frame, &contacts);
+        cscd_status status =
+            cscd_detector_step(m->detector, CSCD_DOUBLES(m->last, cscd_mesh_vertex_count(m->mesh)),
+                               CSCD_DOUBLES(frame, cscd_mesh_vertex_count(m->mesh)), &contacts);
         if (status != CSCD_OK) return status;
         m->contact_intervals += contacts.count > 0;
     }
-    cscd_status status = cscd_detector_check(m->detector, frame, &intersections);
+    cscd_status status = cscd_detector_check(
+        m->detector, CSCD_DOUBLES(frame, cscd_mesh_vertex_count(m->mesh)), &intersections);
     if (status == CSCD_OK) m->intersecting_frames += intersections.count > 0;
     return status;
 }

@@ -11,14 +11,14 @@ static cscd_status open_detector(const ipc_object *objects, uint32_t count, cscd
     cscd_object_desc descs[IPC_OBJECTS_MAX];
     for (uint32_t i = 0; i < count; i++) {
         const body *b = &objects[i].shape;
-        descs[i] =
-            (cscd_object_desc){{b->vertex_count, b->triangle_count, b->triangles}, objects[i].obstacle};
+        descs[i] = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
+        descs[i].obstacle = objects[i].obstacle;
     }
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = p->scene->min_separation;
-    cscd_status status = cscd_mesh_create_scene(context, descs, count, &p->mesh);
-    if (status == CSCD_OK) status = cscd_detector_create(p->mesh, NULL, &options, &p->detector);
-    if (status == CSCD_OK) status = cscd_line_create(p->detector, &p->line);
+    cscd_status status = cscd_mesh_create(context, descs, count, &p->mesh);
+    if (status == CSCD_OK) status = cscd_detector_create(context, p->mesh, NULL, &options, &p->detector);
+    if (status == CSCD_OK) status = cscd_line_search_create(p->detector, &p->line);
     return status;
 }
 
@@ -50,7 +50,8 @@ static void allocate_arrays(ipc_solver *p) {
 static cscd_status find_first_contacts(ipc_solver *p) {
     const ipc_barrier_options *barrier = &p->scene->barrier;
     cscd_proximities near;
-    cscd_status status = cscd_detector_near(p->detector, p->positions, barrier->reach, &near);
+    cscd_status status = cscd_detector_find_near(
+        p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)), barrier->reach, &near);
     if (status == CSCD_OK)
         ipc_contacts_find(&p->contacts, p->mesh, p->shape.positions, p->positions, &near, barrier);
     return status;
@@ -82,7 +83,7 @@ cscd_status ipc_solver_make(const ipc_scene *scene, uint32_t triangle_count, csc
 }
 
 void ipc_solver_free(ipc_solver *p) {
-    cscd_line_destroy(p->line);
+    cscd_line_search_destroy(p->line);
     cscd_detector_destroy(p->detector);
     cscd_mesh_destroy(p->mesh);
     ipc_system_free(&p->system);

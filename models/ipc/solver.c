@@ -64,7 +64,7 @@ static double find_direction(ipc_solver *p) {
 static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) {
     cscd_proximities near;
     double since = clock_now_ms();
-    cscd_status status = cscd_line_near(p->line, length, p->scene->barrier.reach, &near);
+    cscd_status status = cscd_line_search_find_near(p->line, length, p->scene->barrier.reach, &near);
     add_detection(p, since, &p->statistics.near_ms);
     if (status != CSCD_OK) return status;
     ipc_contacts_find(&p->trial_contacts, p->mesh, p->shape.positions, p->trial, &near, &p->scene->barrier);
@@ -77,7 +77,8 @@ static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) 
 /* Steps along the line by at most `longest`; p->trial is the point that the library has verified. */
 static cscd_status step_along_line(ipc_solver *p, double longest, cscd_free_step *step) {
     double since = clock_now_ms();
-    cscd_status status = cscd_line_max_step(p->line, longest, p->trial, step);
+    cscd_status status = cscd_line_search_max_step(
+        p->line, longest, CSCD_MUTABLE_DOUBLES(p->trial, cscd_mesh_vertex_count(p->mesh)), step);
     add_detection(p, since, &p->statistics.certify_ms);
     return status;
 }
@@ -86,9 +87,11 @@ static cscd_status begin_line(ipc_solver *p) {
     for (uint32_t i = 0; i < p->shape.vertex_count * 3; i++)
         p->end[i] = p->inertia[i / 3] > 0.0 ? p->positions[i] + p->direction[i] : goal_of(p, i);
     double since = clock_now_ms();
-    cscd_status status = cscd_line_begin(p->line, p->positions, p->end, p->scene->barrier.reach);
+    cscd_status status = cscd_line_search_begin(
+        p->line, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)),
+        CSCD_DOUBLES(p->end, cscd_mesh_vertex_count(p->mesh)), p->scene->barrier.reach);
     add_detection(p, since, &p->statistics.begin_ms);
-    if (status == CSCD_OK) p->statistics.candidates += cscd_line_candidate_count(p->line);
+    if (status == CSCD_OK) p->statistics.candidates += cscd_line_search_candidate_count(p->line);
     return status;
 }
 
@@ -102,12 +105,12 @@ static cscd_status search_line(ipc_solver *p, double slope, bool *found) {
         cscd_free_step step;
         double energy = INFINITY;
         status = step_along_line(p, longest, &step);
-        if (status == CSCD_OK) status = evaluate_trial(p, step.length, &energy);
+        if (status == CSCD_OK) status = evaluate_trial(p, step.fraction, &energy);
         if (status != CSCD_OK) return status;
         p->statistics.cut += i == 0 && step.limited;
-        *found = !p->arrived || energy <= p->energy + least_gain * step.length * slope;
+        *found = !p->arrived || energy <= p->energy + least_gain * step.fraction * slope;
         if (*found) p->energy = energy;
-        longest = 0.5 * step.length;
+        longest = 0.5 * step.fraction;
     }
     return status;
 }

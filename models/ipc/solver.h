@@ -28,7 +28,7 @@ typedef struct ipc_solver {
     body shape; /* all objects as one mesh, as they begin, in single precision */
     cscd_mesh *mesh;
     cscd_detector *detector;
-    cscd_line *line;
+    cscd_line_search *line;
     double time;
     double *positions, *velocities; /* now; obstacles have velocity 0. The pointers change with steps */
     double *travels;                /* per vertex, 0 for bodies */

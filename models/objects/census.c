@@ -8,7 +8,7 @@
 
 cscd_status census_begin(const cscd_mesh *mesh, census *out) {
     census c = {.mesh = mesh, .object_count = cscd_mesh_component_count(mesh)};
-    cscd_status status = cscd_detector_create(mesh, NULL, NULL, &c.detector);
+    cscd_status status = cscd_detector_create(cscd_mesh_context(mesh), mesh, NULL, NULL, &c.detector);
     if (status != CSCD_OK) return status;
     c.last = body_allocate(cscd_mesh_vertex_count(mesh), 3 * sizeof *c.last);
     c.pairs = body_allocate((size_t)c.object_count * c.object_count, sizeof *c.pairs);
@@ -65,7 +65,9 @@ static double mean_edge(const cscd_mesh *mesh, const double *frame) {
 
 static cscd_status count_interval(census *c, const double *frame) {
     cscd_contacts found;
-    cscd_status status = cscd_detector_step(c->detector, c->last, frame, &found);
+    cscd_status status =
+        cscd_detector_step(c->detector, CSCD_DOUBLES(c->last, cscd_mesh_vertex_count(c->mesh)),
+                           CSCD_DOUBLES(frame, cscd_mesh_vertex_count(c->mesh)), &found);
     if (status != CSCD_OK) return status;
     count_contacts(c, &found);
     for (uint32_t v = 0; v < cscd_mesh_vertex_count(c->mesh); v++) {
@@ -83,7 +85,9 @@ cscd_status census_add(census *c, const double *frame) {
         c->edge_length = mean_edge(c->mesh, frame);
     else
         status = count_interval(c, frame);
-    if (status == CSCD_OK) status = cscd_detector_check(c->detector, frame, &intersections);
+    if (status == CSCD_OK)
+        status = cscd_detector_check(c->detector, CSCD_DOUBLES(frame, cscd_mesh_vertex_count(c->mesh)),
+                                     &intersections);
     if (status != CSCD_OK) return status;
     c->intersecting_frames += intersections.count > 0;
     memcpy(c->last, frame, (size_t)cscd_mesh_vertex_count(c->mesh) * 3 * sizeof *frame);

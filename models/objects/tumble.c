@@ -65,9 +65,10 @@ static bool explain_status(const tumble *t, cscd_status status, io_error *error)
 }
 
 static cscd_status open_detector(tumble *t) {
-    const cscd_mesh_desc desc = {t->shape.vertex_count, t->shape.triangle_count, t->shape.triangles};
-    cscd_status status = cscd_mesh_create(t->context, &desc, &t->mesh);
-    return status == CSCD_OK ? cscd_detector_create(t->mesh, NULL, NULL, &t->detector) : status;
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(t->shape.vertex_count, t->shape.triangle_count, t->shape.triangles);
+    cscd_status status = cscd_mesh_create(t->context, &desc, 1, &t->mesh);
+    return status == CSCD_OK ? cscd_detector_create(t->context, t->mesh, NULL, NULL, &t->detector) : status;
 }
 
 bool tumble_open(cscd_context *context, tumble *out, io_error *error) {
@@ -107,7 +108,11 @@ bool tumble_advance(tumble *t, io_error *error) {
         cscd_contacts found;
         memcpy(t->start, t->soft.vertices, bytes);
         simulation_advance(&t->soft, &t->around, &t->contacts, frame_seconds / CHECKS, SMALL_STEPS);
-        if (!explain_status(t, cscd_detector_step(t->detector, t->start, t->soft.vertices, &found), error))
+        if (!explain_status(
+                t,
+                cscd_detector_step(t->detector, CSCD_DOUBLES(t->start, cscd_mesh_vertex_count(t->mesh)),
+                                   CSCD_DOUBLES(t->soft.vertices, cscd_mesh_vertex_count(t->mesh)), &found),
+                error))
             return false;
         self_contacts_add(&t->contacts, &found, t->start, t->soft.vertices);
     }

@@ -13,14 +13,17 @@ static bool explain_status(const recorder *r, cscd_status status, io_error *erro
 
 /* Makes the plan at rest: regions are the parts that hardly bend. */
 static cscd_status open_detector(recorder *r, const double *rest) {
-    const cscd_mesh_desc desc = {r->shape.vertex_count, r->shape.triangle_count, r->shape.triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(r->shape.vertex_count, r->shape.triangle_count, r->shape.triangles);
     cscd_plan_options options = cscd_plan_defaults();
     options.method =
         CSCD_METHOD_KMEANS; /* ready a hundred times sooner than charge, and good enough for 300 steps */
     cscd_status status = r->own_context ? cscd_context_create(NULL, &r->context) : CSCD_OK;
-    if (status == CSCD_OK) status = cscd_mesh_create(r->context, &desc, &r->mesh);
-    if (status == CSCD_OK) status = cscd_plan_create(r->mesh, rest, &options, &r->plan);
-    if (status == CSCD_OK) status = cscd_detector_create(r->mesh, r->plan, NULL, &r->detector);
+    if (status == CSCD_OK) status = cscd_mesh_create(r->context, &desc, 1, &r->mesh);
+    if (status == CSCD_OK)
+        status = cscd_plan_create(r->context, r->mesh, CSCD_DOUBLES(rest, cscd_mesh_vertex_count(r->mesh)),
+                                  &options, &r->plan);
+    if (status == CSCD_OK) status = cscd_detector_create(r->context, r->mesh, r->plan, NULL, &r->detector);
     return status;
 }
 
@@ -70,7 +73,9 @@ bool recorder_advance(recorder *r, io_error *error) {
         cscd_contacts found = {NULL, 0};
         memcpy(r->start, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->start);
         simulation_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
-        cscd_status status = cscd_detector_step(r->detector, r->start, r->soft.vertices, &found);
+        cscd_status status =
+            cscd_detector_step(r->detector, CSCD_DOUBLES(r->start, cscd_mesh_vertex_count(r->mesh)),
+                               CSCD_DOUBLES(r->soft.vertices, cscd_mesh_vertex_count(r->mesh)), &found);
         if (!explain_status(r, status, error)) return false;
         r->detect_ms += cscd_detector_timings(r->detector).total_ms;
         self_contacts_add(&r->contacts, &found, r->start, r->soft.vertices);

@@ -3,23 +3,20 @@
 #include "preprocess/partition/convexity.h"
 #include "preprocess/partition/parts.h"
 #include "preprocess/partition/spheres.h"
+#include "src/core/struct_size.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
 static const double normal_weight_max = 1e6;
 
-cscd_partition_options cscd_partition_defaults(void) {
-    return (cscd_partition_options){.struct_size = sizeof(cscd_partition_options),
-                                    .cells_max = 64,
-                                    .normal_weight = 1.0,
-                                    .epsilon = 1e-3};
+static const cscd_partition_options default_options = {
+    .cells_max = 64, .normal_weight = 1.0, .epsilon = 1e-3};
+
+void cscd_partition_defaults_sized(cscd_partition_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_partition_options *options) {
-    if (options->struct_size != sizeof *options)
-        return context_fail(
-            context, CSCD_INVALID_ARGUMENT,
-            "partition options were not made by cscd_partition_defaults (struct_size %u, expected %zu)",
-            options->struct_size, sizeof *options);
     if (options->cells_max == 0)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cells_max is 0, expected 1 or more");
     if (!(options->normal_weight >= 0.0 && options->normal_weight <= normal_weight_max))
@@ -106,23 +103,20 @@ static cscd_status make_cells_of(cscd_partition *partition, const double *positi
 
 /* ---- the interface ----------------------------------------------------------------------------------- */
 
-cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
-                                  const cscd_partition_options *options, cscd_partition **out) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_context *context = mesh->context;
-    if (out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_partition_create: out is NULL");
-    cscd_partition_options chosen = options != NULL ? *options : cscd_partition_defaults();
-    cscd_status status = check_options(context, &chosen);
-    if (status == CSCD_OK && plan != NULL && plan->mesh_hash != cscd_mesh_hash(mesh))
-        status = context_fail(context, CSCD_INVALID_ARGUMENT,
-                              "the plan was made for another mesh (hash %016llx, this one has %016llx)",
-                              (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
-    if (status == CSCD_OK) status = positions_check(context, positions, mesh->vertex_count, "positions");
+static cscd_status check_plan(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan) {
+    if (plan == NULL || plan->mesh_hash == cscd_mesh_hash(mesh)) return CSCD_OK;
+    return context_fail(context, CSCD_INVALID_ARGUMENT,
+                        "the plan was made for another mesh (hash %016llx, this one has %016llx)",
+                        (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
+}
+
+static cscd_status partition_at(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                const cscd_partition_options *options, cscd_partition **out) {
+    cscd_status status = positions_check(mesh->context, positions, mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     cscd_partition *partition = partition_of_parts(mesh, plan);
-    if (partition == NULL) return context_out_of_memory(context);
-    partition->options = chosen;
+    if (partition == NULL) return context_out_of_memory(mesh->context);
+    partition->options = *options;
     status = make_cells_of(partition, positions, 0, partition->part_count);
     if (status == CSCD_OK)
         *out = partition;
@@ -131,15 +125,46 @@ cscd_status cscd_partition_create(const cscd_mesh *mesh, const cscd_plan *plan, 
     return status;
 }
 
-cscd_status cscd_partition_renew(cscd_partition *partition, const double *positions, uint32_t part) {
-    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
-    if (part != UINT32_MAX && part >= partition->part_count)
-        return context_fail(partition->context, CSCD_INVALID_ARGUMENT,
-                            "part is %u, but there are %u: expected one of them, or UINT32_MAX for all", part,
-                            partition->part_count);
+cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                  const cscd_view *positions, const cscd_partition_options *options,
+                                  cscd_partition **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_partition_create: out is NULL");
+    cscd_partition_options chosen = default_options;
+    double *buffer = NULL;
+    const double *x = NULL;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+                                     "cscd_partition_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status == CSCD_OK) status = check_plan(context, mesh, plan);
+    if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = partition_at(mesh, plan, x, &chosen, out);
+    context_free(context, buffer);
+    return status;
+}
+
+static cscd_status renew_at(cscd_partition *partition, const double *positions, uint32_t part) {
     cscd_status status =
         positions_check(partition->context, positions, partition->mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     bool all = part == UINT32_MAX;
     return make_cells_of(partition, positions, all ? 0 : part, all ? partition->part_count : part + 1);
+}
+
+cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
+    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = partition->context;
+    if (part != UINT32_MAX && part >= partition->part_count)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "part is %u, but there are %u: expected one of them, or UINT32_MAX for all", part,
+                            partition->part_count);
+    double *buffer = NULL;
+    const double *x = NULL;
+    cscd_status status = views_read(context, partition->mesh, positions, "positions", &buffer, &x);
+    if (status == CSCD_OK) status = renew_at(partition, x, part);
+    context_free(context, buffer);
+    return status;
 }

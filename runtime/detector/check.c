@@ -1,8 +1,10 @@
 /* The static check of the public API: which triangles intersect at one moment? */
 #include "runtime/detector/detector.h"
 #include "src/core/sort.h"
+#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
 static bool is_excluded(const exclusions *e, cscd_intersection pair, const double *positions) {
     return exclusions_any(e) && exclusions_cover_triangles(e, pair.a, pair.b, positions);
@@ -52,21 +54,30 @@ static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_check(cscd_detector *detector, const double *positions, cscd_intersections *out) {
+static cscd_status check_at(cscd_detector *d, const double *positions, cscd_intersections *out) {
+    double since = timer_now_ms(), spent = 0.0;
+    cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+
+    detector_begin_call(d);
+    progress_stage(&d->context->progress, "static check", 0.0, 1.0);
+    status = check_moment(d, positions, out);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
+    timer_lap(&since, &spent);
+    d->timings.check_ms = spent;
+    return CSCD_OK;
+}
+
+cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
+                                      cscd_intersections *out, size_t size) {
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_check: out is NULL");
-    double since = timer_now_ms(), spent = 0.0;
-    cscd_status status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
-    if (status != CSCD_OK) return status;
-
-    cscd_intersections result;
-    detector_begin_call(detector);
-    progress_stage(&context->progress, "static check", 0.0, 1.0);
-    status = check_moment(detector, positions, &result);
-    if (status != CSCD_OK) return detector_fail_call(detector, status);
-    timer_lap(&since, &spent);
-    detector->timings.check_ms = spent;
-    *out = result;
-    return CSCD_OK;
+    const double *x = NULL;
+    cscd_intersections found;
+    cscd_status status =
+        views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
+    if (status == CSCD_OK) status = check_at(detector, x, &found);
+    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    return status;
 }

@@ -102,17 +102,25 @@ static void add_contact(const cscd_contact *contact, cscd_counters *counters) {
 }
 
 typedef struct sorted_contacts {
+    const cscd_mesh *mesh;
     const contact_key *keys;
     cscd_contact *items;
     size_t count;
 } sorted_contacts;
 
+static void name_vertices(const cscd_mesh *mesh, cscd_contact *contact) {
+    cscd_stencil stencil = cscd_mesh_stencil(mesh, contact->kind, contact->a, contact->b, 0.0, 0.0);
+    memcpy(contact->vertices, stencil.vertices, sizeof contact->vertices);
+}
+
 static void copy_contacts(void *data, uint32_t index) {
     const sorted_contacts *s = data;
     size_t begin = (size_t)index * CONTACTS_PER_COPY, end = begin + CONTACTS_PER_COPY;
-    for (size_t i = begin; i < end && i < s->count; i++)
+    for (size_t i = begin; i < end && i < s->count; i++) {
         memcpy(&s->items[i], s->keys[i].contact,
                sizeof *s->items); /* with its padding: lists are compared bit for bit */
+        name_vertices(s->mesh, &s->items[i]);
+    }
 }
 
 cscd_status contact_list_collect(search_space *s, const exclusions *e, result_buffer *buffer,
@@ -127,7 +135,7 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
         add_contact(keys[i].contact, counters);
     }
     if (count > 1) sort_contacts(keys, buffer->spare_keys, count);
-    sorted_contacts sorted = {keys, buffer->items, count};
+    sorted_contacts sorted = {s->mesh, keys, buffer->items, count};
     uint32_t copies = (uint32_t)((count + CONTACTS_PER_COPY - 1) / CONTACTS_PER_COPY);
     parallel_run(s->context->threads, copies, copy_contacts, &sorted);
     *out = (cscd_contacts){buffer->items, count};

@@ -3,12 +3,15 @@
 
 #include "src/core/check.h"
 #include "src/core/methods.h"
+#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 
 #include <string.h>
 
-cscd_detector_options cscd_detector_defaults(void) {
-    return (cscd_detector_options){.struct_size = sizeof(cscd_detector_options), .step_factor = 0.8};
+static const cscd_detector_options default_options = {.step_factor = 0.8};
+
+void cscd_detector_defaults_sized(cscd_detector_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
 }
 
 static cscd_status check_separation(cscd_context *context, const cscd_detector_options *options) {
@@ -34,11 +37,6 @@ static separation limit_of(const cscd_detector_options *options) {
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_detector_options *options) {
-    if (options->struct_size != sizeof *options)
-        return context_fail(
-            context, CSCD_INVALID_ARGUMENT,
-            "detector options were not made by cscd_detector_defaults (struct_size %u, expected %zu)",
-            options->struct_size, sizeof *options);
     if (method_traits_of(options->method) == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown method %d", (int)options->method);
     if ((unsigned)options->mode > CSCD_MODE_EARLIEST)
@@ -113,16 +111,9 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     return status;
 }
 
-cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
-                                 const cscd_detector_options *options, cscd_detector **out) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_context *context = mesh->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_create: out is NULL");
-    cscd_detector_options chosen = options != NULL ? *options : cscd_detector_defaults();
-    cscd_status status = check_options(context, &chosen);
-    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
-    if (status != CSCD_OK) return status;
-
+/* Creates a detector with checked options. */
+static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                   cscd_detector_options chosen, cscd_detector **out) {
     cscd_detector *d = context_allocate(context, 1, sizeof *d);
     if (d == NULL) return context_out_of_memory(context);
     context_hold(context);
@@ -137,7 +128,7 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     d->rules = *d->stages->rules;
     d->limit = limit_of(&chosen);
     d->floor_ratio = 0.9;
-    status = exclusions_create(mesh, &chosen, &d->exclusions);
+    cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
@@ -145,6 +136,20 @@ cscd_status cscd_detector_create(const cscd_mesh *mesh, const cscd_plan *plan,
     }
     *out = d;
     return CSCD_OK;
+}
+
+cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                 const cscd_detector_options *options, cscd_detector **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_create: out is NULL");
+    cscd_detector_options chosen = default_options;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+                                     "cscd_detector_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
+    return status == CSCD_OK ? create_detector(context, mesh, plan, chosen, out) : status;
 }
 
 static void free_detector(cscd_detector *d) {
@@ -162,6 +167,8 @@ static void free_detector(cscd_detector *d) {
     result_buffer_free(context, &d->proximities);
     result_buffer_free(context, &d->intersections);
     context_free_all(context, list_arrays(d));
+    context_free(context, d->unpacked[0]);
+    context_free(context, d->unpacked[1]);
     context_free(context, d->reached);
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
@@ -236,27 +243,31 @@ cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
     return context_explain(d->context, status);
 }
 
-cscd_timings cscd_detector_timings(const cscd_detector *detector) {
-    return detector->timings;
+void cscd_detector_timings_sized(const cscd_detector *detector, cscd_timings *out, size_t size) {
+    struct_give(out, size, &detector->timings, sizeof detector->timings);
 }
 
-cscd_counters cscd_detector_counters(const cscd_detector *detector) {
-    return detector->counters;
+void cscd_detector_counters_sized(const cscd_detector *detector, cscd_counters *out, size_t size) {
+    struct_give(out, size, &detector->counters, sizeof detector->counters);
 }
 
-cscd_guarantee cscd_detector_guarantee(const cscd_detector *detector, uint32_t component) {
-    return detector->guarantees[component];
+void cscd_detector_guarantee_sized(const cscd_detector *detector, uint32_t component, cscd_guarantee *out,
+                                   size_t size) {
+    struct_give(out, size, &detector->guarantees[component], sizeof *detector->guarantees);
+}
+
+const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector) {
+    return mesh_of_creator(detector->mesh);
 }
 
 uint32_t cscd_detector_region_count(const cscd_detector *detector) {
     return detector_region_count(detector);
 }
 
-void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double start[3],
-                                double end[3]) {
+void cscd_detector_region_point(const cscd_detector *detector, uint32_t region, double p0[3], double p1[3]) {
     const double(*points)[3] = (const double(*)[3])detector->culling.detector_points[region];
-    memcpy(start, points[0], sizeof(double[3]));
-    memcpy(end, points[1], sizeof(double[3]));
+    memcpy(p0, points[0], sizeof(double[3]));
+    memcpy(p1, points[1], sizeof(double[3]));
 }
 
 int cscd_detector_orientation(const cscd_detector *detector, uint32_t triangle) {

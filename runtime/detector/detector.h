@@ -51,7 +51,8 @@ struct cscd_detector {
     cscd_guarantee *guarantees; /* per component, of the last step */
 
     result_buffer contacts, proximities, intersections;
-    double *reached; /* the positions that cscd_detector_max_step tries; NULL before its first call */
+    double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
+    double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
     void *
         pair_scratch; /* of displacement bounds and truncation, per near pair; NULL before their first call */
     size_t pair_scratch_size;

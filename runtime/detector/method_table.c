@@ -2,6 +2,9 @@
  * lines between the marks here, the detector has all other methods. */
 #include "runtime/detector/method_table.h"
 
+#include "src/core/methods.h"
+#include "src/core/struct_size.h"
+
 /* baselines: begin */
 #include "runtime/baselines/iccd/iccd.h"
 #include "runtime/baselines/published.h"
@@ -11,20 +14,36 @@ static const culling_rules tests_every_pair = {.by_orientation = false};
 static const culling_rules culls_by_orientation = {.by_orientation = true};
 
 static const method_stages stages[] = {
-    [CSCD_METHOD_NONE] = {.rules = &tests_every_pair},
-    [CSCD_METHOD_BRUTE] = {.rules = &tests_every_pair, .brute_force = true},
-    [CSCD_METHOD_SINGLE] = {.rules = &culls_by_orientation},
-    [CSCD_METHOD_KMEANS] = {.rules = &culls_by_orientation},
-    [CSCD_METHOD_CHARGE] = {.rules = &culls_by_orientation},
+    {CSCD_METHOD_NONE, .rules = &tests_every_pair},
+    {CSCD_METHOD_BRUTE, .rules = &tests_every_pair, .brute_force = true},
+    {CSCD_METHOD_SINGLE, .rules = &culls_by_orientation},
+    {CSCD_METHOD_KMEANS, .rules = &culls_by_orientation},
+    {CSCD_METHOD_CHARGE, .rules = &culls_by_orientation},
     /* baselines: begin */
-    [CSCD_METHOD_PUBLISHED] = {.rules = &published_culling},
-    [CSCD_METHOD_ICCD] = {.rules = &tests_every_pair, .hider = &iccd_hider},
-    [CSCD_METHOD_ICCD_PUBLISHED] = {.rules = &iccd_published_culling, .hider = &iccd_published_hider},
+    {CSCD_METHOD_PUBLISHED, .rules = &published_culling},
+    {CSCD_METHOD_ICCD, .rules = &tests_every_pair, .hider = &iccd_hider},
+    {CSCD_METHOD_ICCD_PUBLISHED, .rules = &iccd_published_culling, .hider = &iccd_published_hider},
     /* baselines: end */
 };
 
 static const method_stages absent;
 
 const method_stages *method_stages_of(cscd_method method) {
-    return (unsigned)method < sizeof stages / sizeof *stages ? &stages[method] : &absent;
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
+        if (stages[i].method == method) return &stages[i];
+    }
+    return &absent;
+}
+
+bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_t size) {
+    const method_traits *found = method_traits_of(method);
+    if (found == NULL) return false;
+    cscd_method_info info = {.name = found->name,
+                             .makes_plan = found->makes_plan,
+                             .needs_plan = found->needs_plan,
+                             .loses_contacts = found->loses_contacts,
+                             .available =
+                                 method == CSCD_METHOD_AUTO || method_stages_of(method)->rules != NULL};
+    struct_give(out, size, &info, sizeof info);
+    return true;
 }

@@ -1,9 +1,11 @@
 /* Says how each method goes through the pipeline. */
 #pragma once
 
+#include "cscd/research.h"
 #include "runtime/culling/culling_rules.h"
 
 typedef struct method_stages {
+    cscd_method method;
     const culling_rules *rules; /* NULL: this build does not have the method */
     const pair_hider *hider;    /* NULL: no pairs are hidden */
     bool brute_force;           /* tests every pair of features, without trees */

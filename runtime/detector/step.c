@@ -4,8 +4,10 @@
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/interval_search.h"
+#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
 /* ---- one interval ---------------------------------------------------------------------------------- */
 
@@ -303,38 +305,48 @@ void step_withdraw(cscd_detector *d) {
 
 /* The positions that were seen last were checked at that time. From here on the states are those of the start;
  * without culling they matter only if a static check has left some. */
-cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
-                                 const char *start_name, const char *end_name) {
+cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end) {
     uint32_t vertices = d->mesh->vertex_count;
     cscd_status status = CSCD_OK;
-    if (end == NULL || start == NULL || !start_states_hold(&d->starts, start)) {
-        status = positions_check(d->context, start, vertices, start_name);
-        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, end_name);
+    if (!start_states_hold(&d->starts, start)) {
+        status = positions_check(d->context, start, vertices, "x0");
+        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "x1");
         if (status == CSCD_OK && (detector_culls(d) || d->starts.known))
             start_states_begin(&d->starts, start);
         return status;
     }
-    return positions_check(d->context, end, vertices, end_name);
+    return positions_check(d->context, end, vertices, "x1");
 }
 
-cscd_status cscd_detector_step(cscd_detector *detector, const double *start, const double *end,
-                               cscd_contacts *out) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_context *context = detector->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
+static cscd_status step_between(cscd_detector *d, const double *x0, const double *x1, cscd_contacts *out) {
     double since = timer_now_ms();
-    cscd_status status = step_check_positions(detector, start, end, "start", "end");
+    cscd_status status = step_check_positions(d, x0, x1);
     if (status != CSCD_OK) return status;
 
     step_outcome found;
-    detector_begin_call(detector);
-    status = step_find(detector, start, end, detector->options.mode, false, &found);
-    if (status != CSCD_OK) return detector_fail_call(detector, status);
-    step_take(detector, end);
+    detector_begin_call(d);
+    status = step_find(d, x0, x1, d->options.mode, false, &found);
+    if (status != CSCD_OK) return detector_fail_call(d, status);
+    step_take(d, x1);
     timer_lap(&since, &found.timings.total_ms);
-    found.timings.check_ms = detector->timings.check_ms;
-    detector->timings = found.timings;
-    detector->counters = found.counters;
+    found.timings.check_ms = d->timings.check_ms;
+    d->timings = found.timings;
+    d->counters = found.counters;
     *out = found.contacts;
     return CSCD_OK;
+}
+
+cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                     cscd_contacts *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
+    const double *from = NULL, *to = NULL;
+    cscd_contacts found;
+    cscd_status status = views_read(context, detector->mesh, x0, "x0", &detector->unpacked[0], &from);
+    if (status == CSCD_OK)
+        status = views_read(context, detector->mesh, x1, "x1", &detector->unpacked[1], &to);
+    if (status == CSCD_OK) status = step_between(detector, from, to, &found);
+    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    return status;
 }

@@ -10,10 +10,8 @@ typedef struct step_outcome {
     cscd_counters counters;
 } step_outcome;
 
-/* Checks both arrays, under the names of the caller's arguments, and forgets what is known of triangles at other
- * positions than the start. */
-cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end,
-                                 const char *start_name, const char *end_name);
+/* Checks both arrays, and forgets what is known of triangles at other positions than x0. */
+cscd_status step_check_positions(cscd_detector *d, const double *x0, const double *x1);
 
 /* Finds the contacts between x0 and x1, both checked, that the mode promises, and fills in the guarantees. Then the
  * caller either takes the step or, only after a rehearsal, withdraws it. */

@@ -3,8 +3,10 @@
 
 #include "runtime/sensors/cell_particles.h"
 #include "src/core/check.h"
+#include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,13 +14,11 @@
 /* When attractions are added, particles nearer than this share of a typical edge pull no harder. */
 static const double closest_share = 1e-3;
 
-cscd_sensor_options cscd_sensor_defaults(void) {
-    return (cscd_sensor_options){.struct_size = sizeof(cscd_sensor_options),
-                                 .step_limit = 256,
-                                 .exact = true,
-                                 .area_factor = 2.0,
-                                 .particles = 5,
-                                 .seed = 1};
+static const cscd_sensor_options default_options = {
+    .step_limit = 256, .exact = true, .area_factor = 2.0, .particles = 5, .seed = 1};
+
+void cscd_sensor_defaults_sized(cscd_sensor_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
 }
 
 /* ---- options ------------------------------------------------------------------------------------------ */
@@ -42,11 +42,6 @@ static cscd_status check_lengths(cscd_context *context, const cscd_sensor_option
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_sensor_options *options) {
-    if (options->struct_size != sizeof *options)
-        return context_fail(
-            context, CSCD_INVALID_ARGUMENT,
-            "sensor options were not made by cscd_sensor_defaults (struct_size %u, expected %zu)",
-            options->struct_size, sizeof *options);
     if ((unsigned)options->method > CSCD_SENSORS_RANDOM)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown sensor method %d", (int)options->method);
     if (options->step_limit == 0)
@@ -90,17 +85,20 @@ static cscd_status create_parts(cscd_sensors *s) {
     return status;
 }
 
-cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition,
+cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
                                 const cscd_sensor_options *options, cscd_sensors **out) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_context *context = mesh->context;
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
     if (partition == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: partition is NULL");
     if (!mesh_is_same(partition->mesh, mesh))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "the partition was made for another mesh");
-    cscd_sensor_options chosen = options != NULL ? *options : cscd_sensor_defaults();
-    cscd_status status = check_options(context, &chosen);
+    cscd_sensor_options chosen = default_options;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+                                     "cscd_sensor_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status != CSCD_OK) return status;
 
     cscd_sensors *s = context_allocate(context, 1, sizeof *s);
@@ -122,6 +120,8 @@ cscd_status cscd_sensors_create(const cscd_mesh *mesh, cscd_partition *partition
 
 void cscd_sensors_destroy(cscd_sensors *s) {
     if (s == NULL || !reference_destroy(&s->references)) return;
+    context_free(s->context, s->unpacked[0]);
+    context_free(s->context, s->unpacked[1]);
     cscd_context *context = s->context;
     particles_free(&s->particles);
     random_particles_free(context, &s->random);
@@ -236,31 +236,41 @@ static cscd_status run_step(cscd_sensors *s, const double *start, const double *
     return CSCD_OK;
 }
 
-cscd_status cscd_sensors_step(cscd_sensors *sensors, const double *start, const double *end,
-                              cscd_warnings *out) {
-    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_context *context = sensors->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_step: out is NULL");
+static cscd_status step_between(cscd_sensors *s, const double *x0, const double *x1, cscd_warnings *out) {
     double since = timer_now_ms();
-    uint32_t vertices = sensors->mesh->vertex_count;
-    cscd_status status = positions_check(context, start, vertices, "start");
-    if (status == CSCD_OK) status = positions_check(context, end, vertices, "end");
+    uint32_t vertices = s->mesh->vertex_count;
+    cscd_status status = positions_check(s->context, x0, vertices, "x0");
+    if (status == CSCD_OK) status = positions_check(s->context, x1, vertices, "x1");
     if (status != CSCD_OK) return status;
 
     cscd_sensor_timings timings = {0};
     cscd_sensor_counters counters = {0};
     cscd_warnings found = {0};
-    status = run_step(sensors, start, end, &timings, &counters, &found);
-    if (status != CSCD_OK) return context_explain(context, status);
-    const particle_counters *walked = &sensors->particles.counters;
+    status = run_step(s, x0, x1, &timings, &counters, &found);
+    if (status != CSCD_OK) return context_explain(s->context, status);
+    const particle_counters *walked = &s->particles.counters;
     counters.rounds = walked->rounds;
     counters.vertices = walked->vertices;
     counters.particle_pairs = walked->pairs;
     timer_lap(&since, &timings.total_ms);
-    sensors->timings = timings;
-    sensors->counters = counters;
+    s->timings = timings;
+    s->counters = counters;
     *out = found;
     return CSCD_OK;
+}
+
+cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                                    cscd_warnings *out, size_t size) {
+    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = sensors->context;
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_step: out is NULL");
+    const double *from = NULL, *to = NULL;
+    cscd_warnings found;
+    cscd_status status = views_read(context, sensors->mesh, x0, "x0", &sensors->unpacked[0], &from);
+    if (status == CSCD_OK) status = views_read(context, sensors->mesh, x1, "x1", &sensors->unpacked[1], &to);
+    if (status == CSCD_OK) status = step_between(sensors, from, to, &found);
+    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    return status;
 }
 
 /* ---- results of the last step ------------------------------------------------------------------------- */
@@ -286,10 +296,10 @@ uint32_t cscd_sensors_particle(const cscd_sensors *sensors, uint32_t particle) {
     return sensors->particles.vertices[particle];
 }
 
-cscd_sensor_timings cscd_sensors_timings(const cscd_sensors *sensors) {
-    return sensors->timings;
+void cscd_sensors_timings_sized(const cscd_sensors *sensors, cscd_sensor_timings *out, size_t size) {
+    struct_give(out, size, &sensors->timings, sizeof sensors->timings);
 }
 
-cscd_sensor_counters cscd_sensors_counters(const cscd_sensors *sensors) {
-    return sensors->counters;
+void cscd_sensors_counters_sized(const cscd_sensors *sensors, cscd_sensor_counters *out, size_t size) {
+    struct_give(out, size, &sensors->counters, sizeof sensors->counters);
 }

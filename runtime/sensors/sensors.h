@@ -38,6 +38,7 @@ struct cscd_sensors {
     size_t warning_capacity;
     cscd_sensor_timings timings;
     cscd_sensor_counters counters;
+    double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
 };
 
 /* Writes the warnings of the step's pairs to s->warnings, sorted, and their number to *count; with the exact

@@ -60,13 +60,13 @@ static void round_to_floats(const straight_motion *m, double *x) {
     }
 }
 
-void motion_at(const straight_motion *m, double length, double *out) {
+void motion_at(const straight_motion *m, double fraction, double *out) {
     size_t count = coordinates_of(m);
-    if (length == 0.0 || length == 1.0) {
-        memmove(out, length == 0.0 ? m->x0 : m->x1, count * sizeof *out);
+    if (fraction == 0.0 || fraction == 1.0) {
+        memmove(out, fraction == 0.0 ? m->x0 : m->x1, count * sizeof *out);
     } else {
         for (size_t i = 0; i < count; i++) {
-            double x = m->x0[i] + length * (m->x1[i] - m->x0[i]);
+            double x = m->x0[i] + fraction * (m->x1[i] - m->x0[i]);
             out[i] = stored_coordinate(x, CSCD_SCALAR_DOUBLE);
         }
     }
@@ -148,7 +148,7 @@ static cscd_status fail_to_round(cscd_detector *d, const cscd_contact *at) {
 
 /* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own,
  * or the time is 0, steps shrink ever faster. */
-static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *length) {
+static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, double *fraction) {
     cscd_status status = CSCD_OK;
     bool start_checked = false;
     for (double shrink = 0.25;; shrink *= shrink) {
@@ -156,11 +156,12 @@ static cscd_status shorten_step(cscd_detector *d, trial *t, double *reached, dou
         if (at_once && !start_checked) status = check_start(d, t);
         if (status != CSCD_OK) return status;
         start_checked |= at_once;
-        motion_at(t->of, *length, reached);
+        motion_at(t->of, *fraction, reached);
         status = try_between(t, t->of->x0, reached);
         if (status != CSCD_OK || !t->touches) return status;
-        if (*length == shortest && (start_checked || t->first.toi > 0.0)) return fail_to_round(d, &t->first);
-        *length = max_of(*length * min_of(cut_for(d, t->first.toi), shrink), shortest);
+        if (*fraction == shortest && (start_checked || t->first.toi > 0.0))
+            return fail_to_round(d, &t->first);
+        *fraction = max_of(*fraction * min_of(cut_for(d, t->first.toi), shrink), shortest);
     }
 }
 
@@ -175,15 +176,15 @@ static cscd_status find_step(cscd_detector *d, trial *t, double longest, double 
     double cut = longest * cut_for(d, 0.0);
     if (t->first.toi > 0.0)
         cut = d->options.step_factor * step->limit.toi; /* rounding must not make it larger */
-    step->length = max_of(cut, shortest);
-    status = shorten_step(d, t, reached, &step->length);
+    step->fraction = max_of(cut, shortest);
+    status = shorten_step(d, t, reached, &step->fraction);
     if (status == CSCD_IN_CONTACT) *step = (cscd_free_step){.limited = true, .limit = t->first};
     return status;
 }
 
 cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
                            void *of, double *reached, free_step *out) {
-    free_step found = {.result.length = longest};
+    free_step found = {.result.fraction = longest};
     trial t = {.of = m, .test = test, .data = of};
     cscd_status status = motion_check(d->context, m);
     if (status == CSCD_OK) status = find_step(d, &t, longest, reached, &found.result);

@@ -13,9 +13,9 @@ typedef struct straight_motion {
 /* Returns INVALID_ARGUMENT, with a sentence, if x0 or x1 would be infinite as the floats that they are to become. */
 cscd_status motion_check(cscd_context *context, const straight_motion *m);
 
-/* Writes x0 + length (x1 - x0), rounded, and where that is asked for rounded to floats; at 0 and 1 x0 and x1 themselves.
+/* Writes x0 + fraction (x1 - x0), rounded, and where that is asked for rounded to floats; at 0 and 1 x0 and x1 themselves.
  * A coordinate that is nearer to 0 than positions may be becomes 0. */
-void motion_at(const straight_motion *m, double length, double *out);
+void motion_at(const straight_motion *m, double fraction, double *out);
 
 /* Bounds how far rounding changes the distance of two points on the motion. */
 double motion_rounding(const straight_motion *m);

@@ -4,10 +4,12 @@
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
 #include "src/core/check.h"
+#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
-struct cscd_line {
+struct cscd_line_search {
     reference_count references; /* the caller alone */
     cscd_detector *detector;    /* held, and with it the context */
     double *x0, *x1, *reached;  /* positions */
@@ -20,24 +22,25 @@ struct cscd_line {
     bool states_known, vouched; /* as in start_states */
 };
 
-static straight_motion motion_of(const cscd_line *line) {
+static straight_motion motion_of(const cscd_line_search *line) {
     return (straight_motion){.mesh = line->detector->mesh, .x0 = line->x0, .x1 = line->x1};
 }
 
 /* ---- life ---------------------------------------------------------------------------------------------- */
 
-static array_list list_arrays(cscd_line *line) {
+static array_list list_arrays(cscd_line_search *line) {
     const cscd_mesh *mesh = line->detector->mesh;
     size_t coordinates = (size_t)mesh->vertex_count * 3;
     return (array_list){{ARRAY(line->x0, coordinates), ARRAY(line->x1, coordinates),
                          ARRAY(line->reached, coordinates), ARRAY(line->states, mesh->triangle_count)}};
 }
 
-cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
+cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out) {
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_line_create: out is NULL");
-    cscd_line *line = context_allocate(context, 1, sizeof *line);
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_line_search_create: out is NULL");
+    cscd_line_search *line = context_allocate(context, 1, sizeof *line);
     if (line == NULL) return context_out_of_memory(context);
     line->detector = detector;
     if (!context_allocate_all(context, list_arrays(line))) {
@@ -50,7 +53,7 @@ cscd_status cscd_line_create(cscd_detector *detector, cscd_line **out) {
     return CSCD_OK;
 }
 
-void cscd_line_destroy(cscd_line *line) {
+void cscd_line_search_destroy(cscd_line_search *line) {
     if (line == NULL || !reference_destroy(&line->references)) return;
     cscd_detector *detector = line->detector;
     candidates_free(detector->context, &line->candidates);
@@ -63,7 +66,7 @@ void cscd_line_destroy(cscd_line *line) {
 
 /* Remembers what the detector knows of the triangles at x0, because it will hold where a step of the
  * line ends. */
-static void remember_states(cscd_line *line) {
+static void remember_states(cscd_line_search *line) {
     start_states *s = &line->detector->starts;
     line->states_known = detector_culls(line->detector) && start_states_hold(s, line->x0);
     line->vouched = s->vouched;
@@ -73,15 +76,14 @@ static void remember_states(cscd_line *line) {
 static cscd_status check_reach(cscd_context *context, double reach) {
     if (is_length(reach)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
-                        "cscd_line_begin: reach is %g, expected 0 or a length from 2^-300 to 2^300", reach);
+                        "cscd_line_search_begin: reach is %g, expected 0 or a length from 2^-300 to 2^300",
+                        reach);
 }
 
-cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1, double reach) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status begin_between(cscd_line_search *line, const double *x0, const double *x1, double reach) {
     cscd_detector *d = line->detector;
     uint32_t vertices = d->mesh->vertex_count;
-    cscd_status status = check_reach(d->context, reach);
-    if (status == CSCD_OK) status = positions_check(d->context, x0, vertices, "x0");
+    cscd_status status = positions_check(d->context, x0, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
     if (status != CSCD_OK) return status;
     line->begun = false;
@@ -100,57 +102,79 @@ cscd_status cscd_line_begin(cscd_line *line, const double *x0, const double *x1,
     return CSCD_OK;
 }
 
-static cscd_status check_begun(const cscd_line *line, const char *function) {
-    if (line->begun) return CSCD_OK;
-    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
-                        "%s: the line has no motion; call cscd_line_begin first", function);
+cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
+                                   double reach) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_detector *d = line->detector;
+    const double *from = NULL, *to = NULL;
+    cscd_status status = check_reach(d->context, reach);
+    if (status == CSCD_OK) status = views_read(d->context, d->mesh, x0, "x0", &d->unpacked[0], &from);
+    if (status == CSCD_OK) status = views_read(d->context, d->mesh, x1, "x1", &d->unpacked[1], &to);
+    return status == CSCD_OK ? begin_between(line, from, to, reach) : status;
 }
 
-size_t cscd_line_candidate_count(const cscd_line *line) {
+static cscd_status check_begun(const cscd_line_search *line, const char *function) {
+    if (line->begun) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "%s: the line has no motion; call cscd_line_search_begin first", function);
+}
+
+const cscd_detector *cscd_line_search_detector(const cscd_line_search *line) {
+    return line->detector;
+}
+
+size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
     const candidate_list *lists = line->candidates.lists;
     return line->begun ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
 }
 
 /* ---- moments ------------------------------------------------------------------------------------------- */
 
-static cscd_status check_length(const cscd_line *line, double length, const char *function) {
-    if (length >= 0.0 && length <= 1.0) return check_begun(line, function);
+static cscd_status check_fraction(const cscd_line_search *line, double fraction, const char *function) {
+    if (fraction >= 0.0 && fraction <= 1.0) return check_begun(line, function);
     return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
-                        "%s: length is %g, expected a number in [0,1]", function, length);
+                        "%s: fraction is %g, expected a number in [0,1]", function, fraction);
 }
 
-cscd_status cscd_line_positions(const cscd_line *line, double length, double *positions) {
+cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
+                                       const cscd_mutable_view *positions) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
-    cscd_status status = check_length(line, length, "cscd_line_positions");
+    cscd_detector *d = line->detector;
+    cscd_status status = check_fraction(line, fraction, "cscd_line_search_positions");
+    if (status == CSCD_OK && positions == NULL)
+        status =
+            context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_positions: positions is NULL");
+    if (status == CSCD_OK) status = views_check_mutable(d->context, d->mesh, positions, "positions");
     if (status != CSCD_OK) return status;
-    if (positions == NULL)
-        return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_line_positions: positions is NULL");
     straight_motion m = motion_of(line);
-    motion_at(&m, length, positions);
+    motion_at(&m, fraction, line->reached);
+    views_write(d->mesh, positions, line->reached);
     return CSCD_OK;
 }
 
-cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd_proximities *out) {
+cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
+                                             cscd_proximities *out, size_t size) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
-    cscd_status status = check_length(line, length, "cscd_line_near");
+    cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
     if (status != CSCD_OK) return status;
-    if (out == NULL) return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_near: out is NULL");
+    if (out == NULL)
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_find_near: out is NULL");
     if (distance > line->reach)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_line_near: distance is %g, but the line was begun with a reach of %g",
-                            distance, line->reach);
+        return context_fail(
+            d->context, CSCD_INVALID_ARGUMENT,
+            "cscd_line_search_find_near: distance is %g, but the line was begun with a reach of %g", distance,
+            line->reach);
     detector_begin_call(d);
     straight_motion m = motion_of(line);
-    motion_at(&m, length, line->reached);
+    motion_at(&m, fraction, line->reached);
     interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, &found);
     if (status != CSCD_OK) return detector_fail_call(d, status);
-    *out = found;
+    struct_give(out, size, &found, sizeof found);
     return CSCD_OK;
 }
 
@@ -158,7 +182,7 @@ cscd_status cscd_line_near(cscd_line *line, double length, double distance, cscd
 
 static cscd_status test_candidates_on_motion(void *of, const double *from, const double *to,
                                              cscd_contacts *out) {
-    cscd_line *line = of;
+    cscd_line_search *line = of;
     cscd_detector *d = line->detector;
     cscd_counters counters = {.vf = 0};
     progress_part(&d->context->progress, line->done, 0.5 + 0.5 * line->done);
@@ -177,7 +201,7 @@ static bool lanes_are_empty(const search_space *s) {
 }
 
 /* Without any contact, contacts that the caller ignores included, the states of triangles are what they were. */
-static void carry_states_over(cscd_line *line) {
+static void carry_states_over(cscd_line_search *line) {
     cscd_detector *d = line->detector;
     if (!line->states_known || !detector_culls(d) || !lanes_are_empty(&d->space)) return;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->incomplete[c] = false;
@@ -190,37 +214,40 @@ static void carry_states_over(cscd_line *line) {
 
 /* Do the candidates still cover the separation? cscd_detector_set_separation may have been called since the line
  * began. */
-static cscd_status check_covered(const cscd_line *line) {
+static cscd_status check_covered(const cscd_line_search *line) {
     const cscd_detector *d = line->detector;
     double beyond = detector_floors_beyond(d, d->limit.distance, line->x0, line->x1);
     bool covered = d->limit.distance + beyond <= line->covered + line->beyond;
     if (covered && (!detector_thick(d) || beyond <= line->beyond)) return CSCD_OK;
     return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                        "cscd_line_max_step: min_separation is %g since the line was begun, and its "
-                        "candidates reach to %g only; call cscd_line_begin again",
+                        "cscd_line_search_max_step: min_separation is %g since the line was begun, and its "
+                        "candidates reach to %g only; call cscd_line_search_begin again",
                         d->limit.distance, line->covered);
 }
 
-cscd_status cscd_line_max_step(cscd_line *line, double longest, double *end, cscd_free_step *out) {
+cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longest,
+                                            const cscd_mutable_view *reached, cscd_free_step *out,
+                                            size_t size) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_detector *d = line->detector;
-    cscd_status status = check_begun(line, "cscd_line_max_step");
+    cscd_status status = check_begun(line, "cscd_line_search_max_step");
     if (status == CSCD_OK) status = check_covered(line);
+    if (status == CSCD_OK) status = views_check_mutable(d->context, d->mesh, reached, "reached");
     if (status != CSCD_OK) return status;
     if (out == NULL)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_max_step: out is NULL");
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_max_step: out is NULL");
     if (!(longest > 0.0 && longest <= 1.0))
         return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_line_max_step: longest is %g, expected a number in (0,1]", longest);
+                            "cscd_line_search_max_step: longest is %g, expected a number in (0,1]", longest);
     detector_begin_call(d);
     line->done = 0.0;
     straight_motion m = motion_of(line);
     free_step step;
     status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
-    if (status == CSCD_IN_CONTACT) *out = step.result;
+    if (status == CSCD_IN_CONTACT) struct_give(out, size, &step.result, sizeof step.result);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
-    if (end != NULL) memcpy(end, line->reached, d->mesh->vertex_count * sizeof(double[3]));
-    *out = step.result;
+    views_write(d->mesh, reached, line->reached);
+    struct_give(out, size, &step.result, sizeof step.result);
     return CSCD_OK;
 }

@@ -2,7 +2,9 @@
 #include "runtime/solver/max_step.h"
 
 #include "runtime/detector/step.h"
+#include "src/core/struct_size.h"
 #include "src/core/timer.h"
+#include "src/mesh/views.h"
 
 #include <string.h>
 
@@ -64,15 +66,11 @@ static cscd_status try_motion(void *of, const double *from, const double *to, cs
     return CSCD_OK;
 }
 
-static cscd_status check_arguments(cscd_detector *d, const double *x0, const double *x1,
-                                   const cscd_free_step *out) {
-    if (out == NULL)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
-    if (d->traits->loses_contacts)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_detector_max_step: method %s loses contacts and certifies nothing",
-                            d->traits->name);
-    return step_check_positions(d, x0, x1, "x0", "x1");
+static cscd_status check_method(const cscd_detector *d) {
+    if (!d->traits->loses_contacts) return CSCD_OK;
+    return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                        "cscd_detector_max_step: method %s loses contacts and certifies nothing",
+                        d->traits->name);
 }
 
 static cscd_status reserve_reached(cscd_detector *d) {
@@ -101,19 +99,33 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step 
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_max_step(cscd_detector *detector, const double *x0, const double *x1, double *end,
-                                   cscd_free_step *out) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status max_step_between(cscd_detector *d, const double *x0, const double *x1, free_step *out) {
     double since = timer_now_ms(), check_ms = 0.0;
-    cscd_status status = check_arguments(detector, x0, x1, out);
+    cscd_status status = step_check_positions(d, x0, x1);
     if (status != CSCD_OK) return status;
-    straight_motion m = {.mesh = detector->mesh, .x0 = x0, .x1 = x1};
-    free_step step;
+    straight_motion m = {.mesh = d->mesh, .x0 = x0, .x1 = x1};
     timer_lap(&since, &check_ms);
-    status = max_step_find(detector, &m, &step);
-    if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = step.result;
-    if (status != CSCD_OK) return status;
-    if (end != NULL) memcpy(end, detector->reached, detector->mesh->vertex_count * sizeof(double[3]));
-    detector->timings.total_ms += check_ms;
-    return CSCD_OK;
+    status = max_step_find(d, &m, out);
+    if (status == CSCD_OK) d->timings.total_ms += check_ms;
+    return status;
+}
+
+cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                         const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    const cscd_mesh *mesh = detector->mesh;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
+    const double *from = NULL, *to = NULL;
+    free_step step;
+    cscd_status status = check_method(detector);
+    if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &from);
+    if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &to);
+    if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
+    if (status == CSCD_OK) status = max_step_between(detector, from, to, &step);
+    if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT)
+        struct_give(out, size, &step.result, sizeof step.result);
+    return status;
 }

@@ -4,8 +4,10 @@
 #include "runtime/detector/contact_list.h"
 #include "src/core/check.h"
 #include "src/core/sort.h"
+#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 #include "src/mesh/positions.h"
+#include "src/mesh/views.h"
 
 #include <string.h>
 
@@ -111,19 +113,27 @@ cscd_status proximity_find(cscd_detector *d, const double *positions, double dis
     return status == CSCD_OK ? proximity_collect(d, positions, out) : status;
 }
 
-cscd_status cscd_detector_near(cscd_detector *detector, const double *positions, double distance,
-                               cscd_proximities *out) {
+static cscd_status find_near_at(cscd_detector *d, const double *positions, double distance,
+                                cscd_proximities *out) {
+    cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
+    if (status != CSCD_OK) return status;
+    detector_begin_call(d);
+    status = proximity_find(d, positions, distance, out);
+    return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
+}
+
+cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
+                                          double distance, cscd_proximities *out, size_t size) {
     if (detector == NULL) return CSCD_INVALID_ARGUMENT;
     cscd_context *context = detector->context;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_near: out is NULL");
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_near: out is NULL");
+    const double *x = NULL;
+    cscd_proximities found;
     cscd_status status = proximity_check_distance(context, distance);
     if (status == CSCD_OK)
-        status = positions_check(context, positions, detector->mesh->vertex_count, "positions");
-    if (status != CSCD_OK) return status;
-    cscd_proximities found;
-    detector_begin_call(detector);
-    status = proximity_find(detector, positions, distance, &found);
-    if (status != CSCD_OK) return detector_fail_call(detector, status);
-    *out = found;
-    return CSCD_OK;
+        status = views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
+    if (status == CSCD_OK) status = find_near_at(detector, x, distance, &found);
+    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    return status;
 }

@@ -4,21 +4,24 @@
 #include <string.h>
 
 static const method_traits traits[] = {
-    [CSCD_METHOD_AUTO] = {.name = "auto"},
-    [CSCD_METHOD_NONE] = {.name = "none"},
-    [CSCD_METHOD_BRUTE] = {.name = "brute"},
-    [CSCD_METHOD_SINGLE] = {.name = "single", .makes_plan = true},
-    [CSCD_METHOD_KMEANS] = {.name = "kmeans", .makes_plan = true, .needs_plan = true},
-    [CSCD_METHOD_CHARGE] = {.name = "charge", .makes_plan = true, .needs_plan = true},
-    [CSCD_METHOD_PUBLISHED] = {.name = "published", .loses_contacts = true},
-    [CSCD_METHOD_ICCD] = {.name = "iccd"},
-    [CSCD_METHOD_ICCD_PUBLISHED] = {.name = "iccd-published", .loses_contacts = true},
+    {CSCD_METHOD_AUTO, .name = "auto"},
+    {CSCD_METHOD_NONE, .name = "none"},
+    {CSCD_METHOD_BRUTE, .name = "brute"},
+    {CSCD_METHOD_SINGLE, .name = "single", .makes_plan = true},
+    {CSCD_METHOD_KMEANS, .name = "kmeans", .makes_plan = true, .needs_plan = true},
+    {CSCD_METHOD_CHARGE, .name = "charge", .makes_plan = true, .needs_plan = true},
+    {CSCD_METHOD_PUBLISHED, .name = "published", .loses_contacts = true},
+    {CSCD_METHOD_ICCD, .name = "iccd"},
+    {CSCD_METHOD_ICCD_PUBLISHED, .name = "iccd-published", .loses_contacts = true},
 };
 
 enum { METHOD_COUNT = sizeof traits / sizeof *traits };
 
 const method_traits *method_traits_of(cscd_method method) {
-    return (unsigned)method < METHOD_COUNT ? &traits[method] : NULL;
+    for (int i = 0; i < METHOD_COUNT; i++) {
+        if (traits[i].method == method) return &traits[i];
+    }
+    return NULL;
 }
 
 const char *cscd_method_name(cscd_method method) {
@@ -29,8 +32,16 @@ const char *cscd_method_name(cscd_method method) {
 bool cscd_method_from_name(const char *name, cscd_method *out) {
     for (int i = 0; name != NULL && i < METHOD_COUNT; i++) {
         if (strcmp(traits[i].name, name) != 0) continue;
-        *out = (cscd_method)i;
+        *out = traits[i].method;
         return true;
     }
     return false;
+}
+
+uint32_t cscd_method_count(void) {
+    return METHOD_COUNT;
+}
+
+cscd_method cscd_method_at(uint32_t place) {
+    return traits[place].method;
 }

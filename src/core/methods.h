@@ -1,9 +1,10 @@
 /* Facts about each method that are known without running it. */
 #pragma once
 
-#include "cscd/cscd.h"
+#include "cscd/research.h"
 
 typedef struct method_traits {
+    cscd_method method;
     const char *name;
     bool makes_plan;     /* preprocessing makes plans by this method */
     bool needs_plan;     /* a detector needs a plan that was made by this method */

@@ -26,8 +26,9 @@ const char *cscd_status_string(cscd_status status) {
         return "cancelled";
     case CSCD_IN_CONTACT:
         return "in contact at the start";
+    default:
+        return "unknown status";
     }
-    return "unknown status";
 }
 
 const char *cscd_contact_kind_name(cscd_contact_kind kind) {
@@ -36,8 +37,9 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
         return "vf";
     case CSCD_CONTACT_EE:
         return "ee";
+    default:
+        return "unknown";
     }
-    return "unknown kind";
 }
 
 static const char *const volume_names[] = {[CSCD_VOLUME_BOX] = "box", [CSCD_VOLUME_KDOP14] = "kdop14"};

@@ -293,7 +293,10 @@ static bool create_plan(const plan_reader *p, const cscd_context *context, cscd_
                              .detector_points = p->points,
                              .charges = p->charges,
                              .capacitances = p->capacitances};
-    if (cscd_plan_create_from_parts(p->mesh, p->positions, &parts, out) == CSCD_OK) return true;
+    if (cscd_plan_create_from_parts(cscd_mesh_context(p->mesh), p->mesh,
+                                    CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)), &parts,
+                                    out) == CSCD_OK)
+        return true;
     return file_reader_fail(p->data.reader, "%s", cscd_context_detail(context));
 }
 

@@ -1,6 +1,8 @@
 /* The mesh of the public API: checks what it is given, copies it, and answers questions about it. */
 #include "src/mesh/mesh.h"
 
+#include "src/core/struct_size.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -28,7 +30,7 @@ static object_name name_of(uint32_t object, uint32_t object_count) {
     return name;
 }
 
-static cscd_status check_triangle(cscd_context *context, const cscd_mesh_desc *desc, uint32_t triangle,
+static cscd_status check_triangle(cscd_context *context, const cscd_object_desc *desc, uint32_t triangle,
                                   const char *object) {
     const uint32_t *v = desc->triangles + (size_t)triangle * 3;
     for (int i = 0; i < 3; i++) {
@@ -44,12 +46,12 @@ static cscd_status check_triangle(cscd_context *context, const cscd_mesh_desc *d
     return CSCD_OK;
 }
 
-static cscd_status check_desc(cscd_context *context, const cscd_mesh_desc *desc, const char *object) {
+static cscd_status check_desc(cscd_context *context, const cscd_object_desc *desc, const char *object) {
     if (desc->vertex_count == 0 || desc->triangle_count == 0)
         return context_fail(context, CSCD_INVALID_MESH, "%sthe mesh is empty: %u vertices, %u triangles",
                             object, desc->vertex_count, desc->triangle_count);
     if (desc->triangles == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "%scscd_mesh_desc.triangles is NULL", object);
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%striangles is NULL", object);
     return CSCD_OK;
 }
 
@@ -75,16 +77,16 @@ static cscd_status check_objects(cscd_context *context, const cscd_object_desc *
     uint64_t vertices = 0, triangles = 0;
     for (uint32_t i = 0; i < count; i++) {
         object_name name = name_of(i, count);
-        cscd_status status = check_desc(context, &objects[i].mesh, name.text);
+        cscd_status status = check_desc(context, &objects[i], name.text);
         if (status != CSCD_OK) return status;
-        vertices += objects[i].mesh.vertex_count;
-        triangles += objects[i].mesh.triangle_count;
+        vertices += objects[i].vertex_count;
+        triangles += objects[i].triangle_count;
     }
     cscd_status status = check_totals(context, vertices, triangles);
     for (uint32_t i = 0; i < count && status == CSCD_OK; i++) {
         object_name name = name_of(i, count);
-        for (uint32_t t = 0; t < objects[i].mesh.triangle_count && status == CSCD_OK; t++)
-            status = check_triangle(context, &objects[i].mesh, t, name.text);
+        for (uint32_t t = 0; t < objects[i].triangle_count && status == CSCD_OK; t++)
+            status = check_triangle(context, &objects[i], t, name.text);
     }
     return status;
 }
@@ -96,12 +98,12 @@ static cscd_status join_objects(cscd_mesh *mesh, const cscd_object_desc *objects
     mesh->objects = context_allocate(mesh->context, count, sizeof *mesh->objects);
     if (mesh->objects == NULL) return CSCD_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < count; i++) {
-        const cscd_mesh_desc *desc = &objects[i].mesh;
+        const cscd_object_desc *desc = &objects[i];
         mesh->objects[i] = (cscd_object){.first_vertex = mesh->vertex_count,
                                          .vertex_count = desc->vertex_count,
                                          .first_triangle = mesh->triangle_count,
                                          .triangle_count = desc->triangle_count,
-                                         .obstacle = objects[i].obstacle};
+                                         .obstacle = desc->obstacle};
         mesh->vertex_count += desc->vertex_count;
         mesh->triangle_count += desc->triangle_count;
     }
@@ -109,7 +111,7 @@ static cscd_status join_objects(cscd_mesh *mesh, const cscd_object_desc *objects
     if (mesh->triangles == NULL) return CSCD_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < count; i++) {
         const cscd_object *object = &mesh->objects[i];
-        const uint32_t *from = objects[i].mesh.triangles;
+        const uint32_t *from = objects[i].triangles;
         uint32_t *to = mesh->triangles[object->first_triangle];
         for (size_t k = 0; k < (size_t)object->triangle_count * 3; k++)
             to[k] = object->first_vertex + from[k];
@@ -172,21 +174,30 @@ static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *ob
     return CSCD_OK;
 }
 
-cscd_status cscd_mesh_create(cscd_context *context, const cscd_mesh_desc *desc, cscd_mesh **out) {
-    if (context == NULL) return CSCD_INVALID_ARGUMENT;
-    if (desc == NULL || out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: desc or out is NULL");
-    return create_mesh(context, &(cscd_object_desc){.mesh = *desc}, 1, out);
+/* Copies descriptions of the caller's size to descriptions of this library's. */
+static cscd_status take_objects(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
+                                uint32_t count, cscd_object_desc *out) {
+    const char *bytes = (const char *)objects;
+    cscd_status status = CSCD_OK;
+    for (uint32_t i = 0; i < count && status == CSCD_OK; i++)
+        status = struct_take(context, &out[i], sizeof *out, sizeof *out, bytes + i * object_size, object_size,
+                             "cscd_object_desc");
+    return status;
 }
 
-cscd_status cscd_mesh_create_scene(cscd_context *context, const cscd_object_desc *objects,
+cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
                                    uint32_t object_count, cscd_mesh **out) {
     if (context == NULL) return CSCD_INVALID_ARGUMENT;
     if (objects == NULL || out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create_scene: objects or out is NULL");
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: objects or out is NULL");
     if (object_count == 0)
-        return context_fail(context, CSCD_INVALID_MESH, "the scene is empty: object_count is 0");
-    return create_mesh(context, objects, object_count, out);
+        return context_fail(context, CSCD_INVALID_MESH, "the mesh is empty: object_count is 0");
+    cscd_object_desc *taken = context_allocate(context, object_count, sizeof *taken);
+    if (taken == NULL) return context_out_of_memory(context);
+    cscd_status status = take_objects(context, objects, object_size, object_count, taken);
+    if (status == CSCD_OK) status = create_mesh(context, taken, object_count, out);
+    context_free(context, taken);
+    return status;
 }
 
 /* The arrays are allocated one stage after the other, since the size of one follows from what another
@@ -204,6 +215,10 @@ static void free_mesh(shared_mesh *shared) {
     context_free_all(context, mesh_arrays(&shared->mesh));
     context_free(context, shared);
     context_release(context);
+}
+
+const cscd_mesh *mesh_of_creator(const cscd_mesh *mesh) {
+    return mesh->shared != NULL ? &mesh->shared->mesh : mesh;
 }
 
 void mesh_hold(const cscd_mesh *mesh) {
@@ -225,6 +240,10 @@ cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh) {
     cscd_mesh view = *mesh;
     view.context = context;
     return view;
+}
+
+cscd_context *cscd_mesh_context(const cscd_mesh *mesh) {
+    return mesh->context;
 }
 
 uint32_t cscd_mesh_vertex_count(const cscd_mesh *mesh) {
@@ -265,8 +284,8 @@ uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
     return mesh->component_count;
 }
 
-cscd_component cscd_mesh_component(const cscd_mesh *mesh, uint32_t component) {
-    return mesh->components[component];
+void cscd_mesh_component_sized(const cscd_mesh *mesh, uint32_t component, cscd_component *out, size_t size) {
+    struct_give(out, size, &mesh->components[component], sizeof *mesh->components);
 }
 
 uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
@@ -277,8 +296,8 @@ uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
     return mesh->object_count;
 }
 
-cscd_object cscd_mesh_object(const cscd_mesh *mesh, uint32_t object) {
-    return mesh->objects[object];
+void cscd_mesh_object_sized(const cscd_mesh *mesh, uint32_t object, cscd_object *out, size_t size) {
+    struct_give(out, size, &mesh->objects[object], sizeof *mesh->objects);
 }
 
 uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {

@@ -36,6 +36,9 @@ void mesh_release(const cscd_mesh *mesh);
 /* The mesh as an object of the given context sees it, for as long as the mesh is held. */
 cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh);
 
+/* The mesh that its creator has. */
+const cscd_mesh *mesh_of_creator(const cscd_mesh *mesh);
+
 /* Are these views of one mesh? */
 static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
     return a->shared == b->shared;

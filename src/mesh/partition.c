@@ -2,6 +2,8 @@
  * it. */
 #include "src/mesh/partition.h"
 
+#include "src/core/struct_size.h"
+
 static array_list list_arrays(cscd_partition *p) {
     size_t vertices = p->mesh->vertex_count, triangles = p->mesh->triangle_count, parts = p->part_count;
     return (array_list){
@@ -60,8 +62,8 @@ uint32_t cscd_partition_part_count(const cscd_partition *partition) {
     return partition->part_count;
 }
 
-cscd_part cscd_partition_part(const cscd_partition *partition, uint32_t part) {
-    return partition->parts[part];
+void cscd_partition_part_sized(const cscd_partition *partition, uint32_t part, cscd_part *out, size_t size) {
+    struct_give(out, size, &partition->parts[part], sizeof(cscd_part));
 }
 
 uint32_t cscd_partition_cell_count(const cscd_partition *partition) {

@@ -2,6 +2,7 @@
  * it. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/mesh/mesh.h"
 
 enum { PARTITION_NONE = UINT32_MAX };

@@ -1,6 +1,8 @@
 /* The plan: what preprocessing hands to the runtime. */
 #include "src/mesh/plan.h"
 
+#include "src/core/struct_size.h"
+
 static uint64_t hash_word(uint64_t hash, uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (word >> shift & 0xff)) * 0x100000001b3u;
     return hash;
@@ -59,8 +61,8 @@ uint32_t cscd_plan_region_count(const cscd_plan *plan) {
     return plan->region_count;
 }
 
-cscd_region cscd_plan_region(const cscd_plan *plan, uint32_t region) {
-    return plan->regions[region];
+void cscd_plan_region_sized(const cscd_plan *plan, uint32_t region, cscd_region *out, size_t size) {
+    struct_give(out, size, &plan->regions[region], sizeof *plan->regions);
 }
 
 uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle) {
@@ -75,6 +77,6 @@ double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component) {
     return plan->capacitances != NULL ? plan->capacitances[component] : 0.0;
 }
 
-cscd_preprocess_timings cscd_plan_timings(const cscd_plan *plan) {
-    return plan->timings;
+void cscd_plan_timings_sized(const cscd_plan *plan, cscd_preprocess_timings *out, size_t size) {
+    struct_give(out, size, &plan->timings, sizeof plan->timings);
 }

@@ -1,8 +1,7 @@
-/* Checks the coordinates of positions, and packs positions of other layouts. */
+/* Checks the coordinates of positions. */
 #include "src/mesh/positions.h"
 
 #include "src/core/check.h"
-#include "src/mesh/mesh.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -53,49 +52,5 @@ cscd_status positions_check(cscd_context *context, const double *positions, uint
                             "%s: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
                             name, i / 3, "xyz"[i % 3], positions[i]);
     }
-    return CSCD_OK;
-}
-
-/* ---- other layouts ----------------------------------------------------------------------------------- */
-
-static double load_scalar(const char *at, cscd_scalar scalar) {
-    if (scalar == CSCD_SCALAR_FLOAT) {
-        float value;
-        memcpy(&value, at, sizeof value);
-        return (double)value;
-    }
-    double value;
-    memcpy(&value, at, sizeof value);
-    return value;
-}
-
-static void pack_view(const cscd_view *view, uint32_t vertex_count, double *out) {
-    size_t size = view->scalar == CSCD_SCALAR_FLOAT ? sizeof(float) : sizeof(double);
-    size_t step = view->coordinate_stride != 0 ? view->coordinate_stride : size;
-    size_t stride = view->stride != 0 ? view->stride : 3 * size;
-    const char *at = view->data;
-    for (uint32_t v = 0; v < vertex_count; v++, at += stride) {
-        for (size_t k = 0; k < 3; k++) *out++ = load_scalar(at + k * step, view->scalar);
-    }
-}
-
-cscd_status cscd_mesh_pack(const cscd_mesh *mesh, const cscd_view *views, double *positions) {
-    if (mesh == NULL) return CSCD_INVALID_ARGUMENT;
-    if (views == NULL || positions == NULL)
-        return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
-                            "cscd_mesh_pack: views or positions is NULL");
-    for (uint32_t i = 0; i < mesh->object_count; i++) {
-        if (views[i].data == NULL)
-            return context_fail(mesh->context, CSCD_INVALID_ARGUMENT,
-                                "cscd_mesh_pack: views[%u].data is NULL", i);
-        if ((unsigned)views[i].scalar > CSCD_SCALAR_FLOAT)
-            return context_fail(
-                mesh->context, CSCD_INVALID_ARGUMENT,
-                "cscd_mesh_pack: views[%u].scalar is %d, expected CSCD_SCALAR_DOUBLE or _FLOAT", i,
-                (int)views[i].scalar);
-    }
-    for (uint32_t i = 0; i < mesh->object_count; i++)
-        pack_view(&views[i], mesh->objects[i].vertex_count,
-                  positions + (size_t)mesh->objects[i].first_vertex * 3);
     return CSCD_OK;
 }

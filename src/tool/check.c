@@ -84,7 +84,9 @@ static void write_frame(check_run *c, uint32_t frame, const cscd_intersections *
 static bool check_frame(check_run *c, uint32_t frame, io_error *error) {
     cscd_intersections found;
     if (!recording_read(&c->recording, frame, c->positions, error)) return false;
-    if (cscd_detector_check(c->detector, c->positions, &found) != CSCD_OK)
+    if (cscd_detector_check(c->detector,
+                            CSCD_DOUBLES(c->positions, cscd_mesh_vertex_count(c->recording.mesh)),
+                            &found) != CSCD_OK)
         return io_fail(error, "frame %u: %s", frame, cscd_context_detail(c->recording.context));
     c->frames_checked++;
     if (found.count > 0 && !frame_list_add(&c->intersecting, frame)) return io_fail(error, "out of memory");
@@ -107,7 +109,8 @@ static bool prepare_check(check_run *c, io_error *error) {
     if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
         return false;
     if (o->ignore_rest && !ignore_pairs_add_rest(&c->ignored, &c->recording, error)) return false;
-    if (cscd_detector_create(c->recording.mesh, NULL, &options, &c->detector) != CSCD_OK)
+    if (cscd_detector_create(c->recording.context, c->recording.mesh, NULL, &options, &c->detector) !=
+        CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));
     c->positions = malloc((size_t)cscd_mesh_vertex_count(c->recording.mesh) * 3 * sizeof *c->positions);
     if (c->positions == NULL) return io_fail(error, "out of memory");

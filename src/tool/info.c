@@ -65,8 +65,9 @@ static bool print_zero_area(recording *r, io_error *error) {
     double *positions = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *positions);
     bool checked = positions != NULL || io_fail(error, "out of memory");
     checked = checked && recording_read(r, 0, positions, error);
-    if (checked && (cscd_detector_create(r->mesh, NULL, NULL, &detector) != CSCD_OK ||
-                    cscd_detector_check(detector, positions, &found) != CSCD_OK))
+    if (checked && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK ||
+                    cscd_detector_check(detector, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
+                                        &found) != CSCD_OK))
         checked = io_fail(error, "%s", cscd_context_detail(r->context));
     if (checked) {
         printf(

@@ -1,4 +1,5 @@
 /* `cscd preprocess`: makes the plan of a mesh, prints what it found and saves it. */
+#include "cscd/research.h"
 #include "src/io/path_name.h"
 #include "src/io/plan_file.h"
 #include "src/tool/common/command.h"
@@ -21,6 +22,7 @@ enum { LINES_MAX = 50 };
 typedef struct preprocess_options {
     recording_options source;
     cscd_plan_options plan;
+    bool published;
     const char *output_path;
     report_request report;
     int argument_count; /* the command line, for the provenance */
@@ -54,7 +56,7 @@ static const option_row rows[] = {
     {"seed", "N", read_unsigned, offsetof(preprocess_options, plan.seed), "of kmeans (default 1)"},
     {"threshold", "X", read_share, offsetof(preprocess_options, plan.threshold),
      "charge: the share of the triangles that cuts start from (default 0.1)"},
-    {"published", NULL, read_flag, offsetof(preprocess_options, plan.published),
+    {"published", NULL, read_flag, offsetof(preprocess_options, published),
      "charge: equalize with 256 bins, as published, instead of exact ranks"},
     {"weld", "exact|EPS", read_weld, offsetof(preprocess_options, source),
      "join vertices that coincide, or lie within EPS; replay needs the same"},
@@ -150,7 +152,10 @@ static bool show_progress(void *user, const char *stage, double fraction) {
 
 static bool make_plan(const preprocess_options *o, recording *r, const double *positions, io_error *error) {
     cscd_plan *plan = NULL;
-    cscd_status status = cscd_plan_create(r->mesh, positions, &o->plan, &plan);
+    cscd_plan_options options = o->plan;
+    options.variant = o->published ? CSCD_PLAN_VARIANT_PUBLISHED : 0;
+    cscd_status status = cscd_plan_create(
+        r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)), &options, &plan);
     terminal_progress_end(o->source.progress.user);
     if (status == CSCD_CANCELLED)
         return io_fail(error, "%s: interrupted; no plan was written", o->source.model_path);

@@ -1,5 +1,6 @@
 /* Method iccd in cases that are easily wrong: each scene breaks one condition of the theorem in
  * docs/theory/iccd.md, and has contacts that a test without that condition would lose. */
+#include "cscd/research.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 

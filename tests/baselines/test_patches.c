@@ -27,10 +27,10 @@ typedef struct patch_subject {
     patches patches;
 } patch_subject;
 
-static patch_subject subject_create(cscd_mesh_desc desc, const double *positions) {
+static patch_subject subject_create(cscd_object_desc desc, const double *positions) {
     patch_subject f = {0};
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
     f.regions = calloc(desc.triangle_count, sizeof *f.regions);
     f.weights = calloc(desc.triangle_count, sizeof *f.weights);
     assert_true(f.regions != NULL && f.weights != NULL);
@@ -187,7 +187,7 @@ static void check_node(const patch_subject *f, reference_patches *r, uint32_t no
     sum->disks += disk;
 }
 
-static patch_tally check_mesh(cscd_mesh_desc desc, const double *positions) {
+static patch_tally check_mesh(cscd_object_desc desc, const double *positions) {
     patch_tally sum = {0};
     patch_subject f = subject_create(desc, positions);
     reference_patches r = {.mesh = f.mesh};
@@ -220,7 +220,7 @@ static void disks_of_scenes(void **state) {
         for (uint32_t seed = 0; seed < SCENES_PER_FAMILY; seed++) {
             scene_make((scene_family)family, seed + 800, &s);
             patch_tally own =
-                check_mesh((cscd_mesh_desc){s.vertex_count, s.triangle_count, s.triangles}, s.x0);
+                check_mesh(cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles), s.x0);
             sum.nodes += own.nodes;
             sum.disks += own.disks;
         }
@@ -236,7 +236,7 @@ static void disks_of_bodies(void **state) {
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         body b = body_of(kinds[i], body_nearest_count(kinds[i], BODY_TRIANGLES));
         patch_tally sum =
-            check_mesh((cscd_mesh_desc){b.vertex_count, b.triangle_count, b.triangles}, b.positions);
+            check_mesh(cscd_object_of_triangles(b.vertex_count, b.triangle_count, b.triangles), b.positions);
         print_message("  %-14s %6u nodes, %6u disks\n", body_kind_name(kinds[i]), sum.nodes, sum.disks);
         assert_true(sum.disks > sum.nodes / 2 && sum.disks < sum.nodes);
         body_free(&b);
@@ -250,7 +250,8 @@ static void check_shape(const shape *given, uint32_t seed) {
     assert_true(given->vertex_count <= 400);
     for (uint32_t i = 0; i < given->vertex_count * 3; i++)
         positions[i] = (double)((i + 1 + seed * 977) * 2654435761u >> 8) * 0x1p-24;
-    check_mesh((cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
+    check_mesh(cscd_object_of_triangles(given->vertex_count, given->triangle_count, given->triangles[0]),
+               positions);
 }
 
 static void patches_of_any_shape(void **state) {
@@ -279,7 +280,7 @@ static void patches_of_any_shape(void **state) {
 static bool root_is_disk(const shape *given) {
     double positions[3 * 400] = {0};
     patch_subject f = subject_create(
-        (cscd_mesh_desc){given->vertex_count, given->triangle_count, given->triangles[0]}, positions);
+        cscd_object_of_triangles(given->vertex_count, given->triangle_count, given->triangles[0]), positions);
     bool disk = f.patches.disks[0];
     subject_destroy(&f);
     return disk;

@@ -1,7 +1,9 @@
 /* The published culling loses first contacts, which the detector's own rules do not (test_culling.c),
  * reports that it may, and culls nothing with a minimum separation. */
+#include "cscd/research.h"
 #include "tests/support/culling/first_contacts.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -81,12 +83,12 @@ static void no_step_is_certified(void **state) {
     scene_make(SCENE_TWO_SPHERES, 1, &interval);
     for (int i = 0; i < 2; i++) {
         cscd_contacts found;
-        cscd_free_step out = {.length = -1.0};
+        cscd_free_step out = {.fraction = -1.0};
         rig r = step_by(methods[i], 0.0, &found);
-        assert_int_equal(cscd_detector_max_step(r.detector, interval.x0, interval.x1, NULL, &out),
+        assert_int_equal(max_step_packed(r.detector, interval.x0, interval.x1, NULL, &out),
                          CSCD_INVALID_ARGUMENT);
         assert_non_null(strstr(cscd_context_detail(r.context), cscd_method_name(methods[i])));
-        assert_true(out.length == -1.0);
+        assert_true(out.fraction == -1.0);
         rig_destroy(&r);
     }
 }

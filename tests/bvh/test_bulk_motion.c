@@ -1,5 +1,6 @@
 /* Bodies that fly a hundred times their length within an interval have the same pairs and contacts as at
  * rest. */
+#include "cscd/research.h"
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/methods.h"
 #include "tests/support/rig.h"

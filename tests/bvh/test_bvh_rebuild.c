@@ -1,6 +1,7 @@
 /* Trees that decay over a long deformation are rebuilt once, with the same result for any number of
  * threads. */
 #include "cscd/cscd.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -46,16 +47,16 @@ typedef struct rebuild_run {
     cscd_detector *detector;
 } rebuild_run;
 
-static void open_run_on(rebuild_run *r, uint32_t threads, cscd_mesh_desc desc) {
+static void open_run_on(rebuild_run *r, uint32_t threads, cscd_object_desc desc) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = threads;
     assert_int_equal(cscd_context_create(&options, &r->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r->context, &desc, &r->mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r->mesh, NULL, NULL, &r->detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r->context, &desc, 1, &r->mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, NULL, NULL, &r->detector), CSCD_OK);
 }
 
 static void open_run(rebuild_run *r, uint32_t threads) {
-    open_run_on(r, threads, (cscd_mesh_desc){VERTICES, TRIANGLES, &triangles[0][0]});
+    open_run_on(r, threads, cscd_object_of_triangles(VERTICES, TRIANGLES, &triangles[0][0]));
 }
 
 static void close_run(rebuild_run *r) {
@@ -66,7 +67,7 @@ static void close_run(rebuild_run *r) {
 
 static cscd_counters step_run(rebuild_run *r) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(r->detector, &before[0][0], &after[0][0], &found), CSCD_OK);
+    assert_int_equal(step_packed(r->detector, &before[0][0], &after[0][0], &found), CSCD_OK);
     return cscd_detector_counters(r->detector);
 }
 
@@ -102,15 +103,15 @@ static void pulled_flat(void **state) {
 /* Line searches alone also rebuild the trees. */
 static void lines_build_anew(void **state) {
     rebuild_run r, rebuilt;
-    cscd_line *line = NULL;
+    cscd_line_search *line = NULL;
     (void)state;
     make_strip();
     open_run(&r, 1);
-    assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
+    assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
     for (uint32_t frame = 0; frame < FRAMES; frame++) {
         pose_at((double)frame / FRAMES, before);
         pose_at((frame + 1.0) / FRAMES, after);
-        assert_int_equal(cscd_line_begin(line, &before[0][0], &after[0][0], 0.01), CSCD_OK);
+        assert_int_equal(line_begin_packed(line, &before[0][0], &after[0][0], 0.01), CSCD_OK);
     }
     cscd_counters last = step_run(&r);
     open_run(&rebuilt, 1);
@@ -119,7 +120,7 @@ static void lines_build_anew(void **state) {
                   (unsigned long long)best.boxes_tested);
     assert_int_equal(last.rebuilds, 0);
     assert_true(last.boxes_tested * 4 <= best.boxes_tested * 5);
-    cscd_line_destroy(line);
+    cscd_line_search_destroy(line);
     close_run(&r);
     close_run(&rebuilt);
 }
@@ -170,13 +171,13 @@ static void place_bodies(double flown, double out[BODIES][4][3]) {
 
 static cscd_counters step_bodies(rebuild_run *r) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(r->detector, &rest[0][0][0], &moved[0][0][0], &found), CSCD_OK);
+    assert_int_equal(step_packed(r->detector, &rest[0][0][0], &moved[0][0][0], &found), CSCD_OK);
     return cscd_detector_counters(r->detector);
 }
 
 /* Bodies that change places put the blocks of the trees into disorder, though no tree changes. */
 static void bodies_change_places(void **state) {
-    const cscd_mesh_desc desc = {BODIES * 4, BODIES * 4, &faces[0][0]};
+    const cscd_object_desc desc = cscd_object_of_triangles(BODIES * 4, BODIES * 4, &faces[0][0]);
     rebuild_run r, rebuilt;
     (void)state;
     make_bodies();

@@ -3,6 +3,7 @@
 #include "runtime/ccd/ccd_kernels.h"
 #include "runtime/ccd/min_separation.h"
 #include "tests/support/levels.h"
+#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -122,21 +123,22 @@ static void same_bits_on_every_level(void **state) {
         scene_make((scene_family)family, 3, &interval);
         for (int level = 0; level < LEVEL_COUNT; level++) {
             if (contexts[level] == NULL) continue;
-            const cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+            const cscd_object_desc desc =
+                cscd_object_of_triangles(interval.vertex_count, interval.triangle_count, interval.triangles);
             cscd_mesh *mesh;
             cscd_detector *detector;
             cscd_contacts found;
             cscd_proximities near;
-            assert_int_equal(cscd_mesh_create(contexts[level], &desc, &mesh), CSCD_OK);
-            assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_OK);
-            assert_int_equal(cscd_detector_step(detector, interval.x0, interval.x1, &found), CSCD_OK);
+            assert_int_equal(cscd_mesh_create(contexts[level], &desc, 1, &mesh), CSCD_OK);
+            assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+            assert_int_equal(step_packed(detector, interval.x0, interval.x1, &found), CSCD_OK);
             assert_true(found.count <= 1 << 17);
             if (count == SIZE_MAX && found.count > 0)
                 memcpy(expected, found.items, found.count * sizeof *expected);
             if (count == SIZE_MAX) count = found.count;
             assert_int_equal(found.count, count);
             if (count > 0) assert_memory_equal(found.items, expected, count * sizeof *expected);
-            assert_int_equal(cscd_detector_near(detector, interval.x1, 0.05, &near), CSCD_OK);
+            assert_int_equal(find_near_packed(detector, interval.x1, 0.05, &near), CSCD_OK);
             if (near_count == 0 && near.count > 0)
                 memcpy(expected_near, near.items, near.count * sizeof *expected_near);
             if (near_count == 0) near_count = near.count;

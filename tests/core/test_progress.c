@@ -1,10 +1,12 @@
 /* Progress and cancellation: a call that was cancelled anywhere gives, when repeated, the result that it
  * would have given. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "src/core/context.h"
 #include "src/core/timer.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 #include "tests/support/workload.h"
 
@@ -237,12 +239,13 @@ static void plans_leave_nothing_behind(void **state) {
     (void)state;
     scene_clear(&q.shape);
     scene_add_capsule(&q.shape, 5.0, 0.5, 20, 14);
-    cscd_mesh_desc desc = {q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles);
     cscd_context *context = make_context(2, &host, &counter);
     context->progress.interval_ms = 0.0;
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     size_t bytes = cscd_context_bytes(context);
-    while (cancel_later(&host, context, cscd_plan_create(mesh, q.shape.x0, NULL, &plan))) {
+    while (cancel_later(&host, context, plan_create_packed(mesh, q.shape.x0, NULL, &plan))) {
         assert_null(plan);
         assert_int_equal(host.bytes, bytes);
     }
@@ -264,11 +267,12 @@ static void reports_come_now_and_then(void **state) {
     (void)state;
     scene_clear(&q.shape);
     scene_add_capsule(&q.shape, 5.0, 0.5, 44, 22);
-    cscd_mesh_desc desc = {q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles);
     cscd_context *context = make_context(1, &host, &counter);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     next_call(&host, 0);
-    assert_int_equal(cscd_plan_create(mesh, q.shape.x0, NULL, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(mesh, q.shape.x0, NULL, &plan), CSCD_OK);
     expect_good(&host);
     assert_true(host.reports > 1);
     assert_true(host.closest_ms >= context->progress.interval_ms);

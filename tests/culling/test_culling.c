@@ -1,6 +1,7 @@
 /* Culling by orientation on random intervals: mode all equals the method that culls nothing, and mode
  * earliest loses no first contact of an embedded component; the published rules do (test_published.c). */
 #include "tests/support/culling/first_contacts.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -28,11 +29,11 @@ typedef struct reference {
 
 static reference reference_create(const scene *s) {
     reference r = {0};
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
-    assert_int_equal(cscd_detector_step(r.detector, s->x0, s->x1, &r.contacts), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+    assert_int_equal(step_packed(r.detector, s->x0, s->x1, &r.contacts), CSCD_OK);
     return r;
 }
 
@@ -96,7 +97,7 @@ static cscd_plan *make_plan(const reference *r, const scene *s, variant v, uint3
     options.method = CSCD_METHOD_KMEANS;
     options.k = v.k;
     options.seed = seed;
-    assert_int_equal(cscd_plan_create(r->mesh, s->x0, &options, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(r->mesh, s->x0, &options, &plan), CSCD_OK);
     return plan;
 }
 
@@ -115,8 +116,8 @@ static void run_variant(const reference *r, const scene *s, variant v, cscd_mode
     cscd_contacts found;
     options.method = v.method;
     options.mode = mode;
-    assert_int_equal(cscd_detector_create(r->mesh, plan, &options, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_step(detector, s->x0, s->x1, &found), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(step_packed(detector, s->x0, s->x1, &found), CSCD_OK);
     if (mode == CSCD_MODE_ALL)
         check_complete(&found, &r->contacts);
     else
@@ -194,8 +195,8 @@ static void ignored_contacts_hide_none(void **state) {
         for (int i = 0; i < 2; i++) {
             options.method = i == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
             options.mode = i == 0 ? CSCD_MODE_ALL : CSCD_MODE_EARLIEST;
-            assert_int_equal(cscd_detector_create(r.mesh, NULL, &options, &detectors[i]), CSCD_OK);
-            assert_int_equal(cscd_detector_step(detectors[i], interval.x0, interval.x1, &found[i]), CSCD_OK);
+            assert_int_equal(detector_create_here(r.mesh, NULL, &options, &detectors[i]), CSCD_OK);
+            assert_int_equal(step_packed(detectors[i], interval.x0, interval.x1, &found[i]), CSCD_OK);
         }
         check_complete(&found[1], &found[0]);
         kept += found[0].count;

@@ -2,6 +2,7 @@
  * quarter of the triangle pairs, and one static check serves the whole recording. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -30,9 +31,10 @@ static void pose_at(const body *shape, double t, double *out) {
 static int record_poses(void **state) {
     static share_recording r;
     r.shape = body_of(BODY_FIGURE, TRIANGLE_COUNT);
-    cscd_mesh_desc desc = {r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(r.shape.vertex_count, r.shape.triangle_count, r.shape.triangles);
     if (cscd_context_create(NULL, &r.context) != CSCD_OK) return -1;
-    if (cscd_mesh_create(r.context, &desc, &r.mesh) != CSCD_OK) return -1;
+    if (cscd_mesh_create(r.context, &desc, 1, &r.mesh) != CSCD_OK) return -1;
     for (int i = 0; i < FRAME_COUNT; i++) {
         r.frames[i] = malloc(r.shape.vertex_count * sizeof(double[3]));
         if (r.frames[i] == NULL) return -1;
@@ -66,11 +68,11 @@ static totals replay_poses(const share_recording *r, cscd_method method, cscd_mo
     plan_options.method = options.method = method;
     options.mode = mode;
     if (method != CSCD_METHOD_NONE)
-        assert_int_equal(cscd_plan_create(r->mesh, r->shape.positions, &plan_options, &plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r->mesh, plan, &options, &detector), CSCD_OK);
+        assert_int_equal(plan_create_packed(r->mesh, r->shape.positions, &plan_options, &plan), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, plan, &options, &detector), CSCD_OK);
     for (int i = 0; i + 1 < FRAME_COUNT; i++) {
         cscd_contacts found;
-        assert_int_equal(cscd_detector_step(detector, r->frames[i], r->frames[i + 1], &found), CSCD_OK);
+        assert_int_equal(step_packed(detector, r->frames[i], r->frames[i + 1], &found), CSCD_OK);
         sum.contacts += found.count;
         sum.pairs += cscd_detector_counters(detector).pcp;
         sum.checks += cscd_detector_counters(detector).static_checks;

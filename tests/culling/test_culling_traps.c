@@ -1,7 +1,9 @@
 /* Culling by orientation in cases that are easily wrong: surfaces without an inside, degenerate first
  * contacts, starts that are not embedded, minimum separation. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "runtime/detector/detector.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -55,9 +57,9 @@ static trap_result run_trap(cscd_detector_options options, uint32_t k) {
     cscd_plan_options plan_options = cscd_plan_defaults();
     plan_options.method = k > 0 ? CSCD_METHOD_KMEANS : CSCD_METHOD_SINGLE;
     plan_options.k = k;
-    assert_int_equal(cscd_plan_create(r.mesh, s.x0, &plan_options, &plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(r.mesh, plan, &options, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_step(detector, s.x0, s.x1, &found), CSCD_OK);
+    assert_int_equal(plan_create_packed(r.mesh, s.x0, &plan_options, &plan), CSCD_OK);
+    assert_int_equal(detector_create_here(r.mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(step_packed(detector, s.x0, s.x1, &found), CSCD_OK);
     out.count = found.count;
     if (found.count > 0) out.earliest = found.items[0].toi;
     out.guarantee = cscd_detector_guarantee(detector, 0);
@@ -262,7 +264,7 @@ typedef struct chain {
 
 static void step_trap(chain *c, const double *start, const double *end, cscd_reason expected) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(c->detector, start, end, &found), CSCD_OK);
+    assert_int_equal(step_packed(c->detector, start, end, &found), CSCD_OK);
     c->checks += cscd_detector_counters(c->detector).static_checks;
     assert_int_equal(cscd_detector_guarantee(c->detector, 0).reason, expected);
 }
@@ -271,7 +273,7 @@ static chain start_chain(cscd_start start) {
     chain c = {.r = rig_create(&s, 1, NULL)};
     cscd_detector_options options = with_mode(CSCD_METHOD_SINGLE, CSCD_MODE_ALL);
     options.start = start;
-    assert_int_equal(cscd_detector_create(c.r.mesh, NULL, &options, &c.detector), CSCD_OK);
+    assert_int_equal(detector_create_here(c.r.mesh, NULL, &options, &c.detector), CSCD_OK);
     return c;
 }
 
@@ -330,7 +332,7 @@ static void without_a_proof_nothing_is_culled(void **state) {
     chain c = start_chain(CSCD_START_UNKNOWN);
     step_trap(&c, s.x0, s.x1, CSCD_REASON_UNPROVEN);
     assert_int_equal(cscd_detector_counters(c.detector).plus, 0);
-    assert_int_equal(cscd_detector_check(c.detector, s.x0, &found), CSCD_OK);
+    assert_int_equal(check_packed(c.detector, s.x0, &found), CSCD_OK);
     step_trap(&c, s.x0, s.x1, CSCD_REASON_CLEAN);
     assert_true(cscd_detector_counters(c.detector).plus > 0);
     assert_int_equal(c.checks, 0);

@@ -6,6 +6,7 @@
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 #include "tests/support/bvh/direction_gap.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/sequences.h"
 #include "tests/support/test.h"
@@ -70,7 +71,7 @@ static cscd_plan *scatter_regions(const cscd_mesh *mesh, random_stream *random) 
     }
     cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points[0], NULL, NULL};
     cscd_plan *plan = NULL;
-    assert_int_equal(cscd_plan_create_from_parts(mesh, q.shape.x0, &parts, &plan), CSCD_OK);
+    assert_int_equal(plan_from_parts_packed(mesh, q.shape.x0, &parts, &plan), CSCD_OK);
     return plan;
 }
 
@@ -83,7 +84,7 @@ static cscd_detector *culling_detector(const ways *w, int way) {
     if (way == ALL_SCATTERED || way == EARLIEST_SCATTERED) plan = w->scattered;
     if (way == ALL_PLANNED) plan = w->planned;
     if (plan == NULL) options.method = CSCD_METHOD_SINGLE;
-    assert_int_equal(cscd_detector_create(w->mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(w->mesh, plan, &options, &detector), CSCD_OK);
     if (way != ALL_SINGLE) detector->starts.share_worth_it = 0.0; /* however few triangles are clean */
     return detector;
 }
@@ -93,15 +94,16 @@ static ways ways_create(uint64_t seed) {
     random_stream random = stream_start(seed ^ 0x5eed);
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = 1 + (uint32_t)(seed % 3);
-    cscd_mesh_desc desc = {q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(q.shape.vertex_count, q.shape.triangle_count, q.shape.triangles);
     cscd_plan_options plan_options = cscd_plan_defaults();
     plan_options.method = seed % 2 == 0 ? CSCD_METHOD_CHARGE : CSCD_METHOD_KMEANS;
     plan_options.k = 3;
     assert_int_equal(cscd_context_create(&options, &w.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(w.context, &desc, &w.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(w.mesh, NULL, NULL, &w.none), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(w.context, &desc, 1, &w.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(w.mesh, NULL, NULL, &w.none), CSCD_OK);
     w.scattered = scatter_regions(w.mesh, &random);
-    assert_int_equal(cscd_plan_create(w.mesh, q.shape.x0, &plan_options, &w.planned), CSCD_OK);
+    assert_int_equal(plan_create_packed(w.mesh, q.shape.x0, &plan_options, &w.planned), CSCD_OK);
     for (int i = 0; i < CULLING_COUNT; i++) w.culling[i] = culling_detector(&w, i);
     return w;
 }
@@ -286,10 +288,10 @@ static void check_clean(const cscd_detector *d, const double *x, uint64_t *windi
 
 static void check_interval(ways *w, const double *start, const double *end, local_tally *sum) {
     cscd_contacts truth, found;
-    assert_int_equal(cscd_detector_step(w->none, start, end, &truth), CSCD_OK);
+    assert_int_equal(step_packed(w->none, start, end, &truth), CSCD_OK);
     for (int i = 0; i < CULLING_COUNT; i++) {
         cscd_detector *d = w->culling[i];
-        assert_int_equal(cscd_detector_step(d, start, end, &found), CSCD_OK);
+        assert_int_equal(step_packed(d, start, end, &found), CSCD_OK);
         check_contacts(w, d, &found, &truth);
         if (i != EARLIEST_SCATTERED) assert_int_equal(found.count, truth.count);
         cscd_counters n = cscd_detector_counters(d);
@@ -317,7 +319,7 @@ static void check_sequence(uint64_t seed, local_tally *sum) {
     for (uint32_t f = 0; f + 1 < q.frame_count; f++) {
         cscd_intersections crossing;
         if (stream_below(&random, 4) == 0)
-            assert_int_equal(cscd_detector_check(w.culling[UNKNOWN_SINGLE], q.frames[f], &crossing), CSCD_OK);
+            assert_int_equal(check_packed(w.culling[UNKNOWN_SINGLE], q.frames[f], &crossing), CSCD_OK);
         /* a solver takes a step back now and then */
         uint32_t from = f > 0 && stream_below(&random, 10) == 0 ? f - 1 : f;
         check_interval(&w, q.frames[from], q.frames[f + 1], sum);

@@ -1,7 +1,9 @@
 /* The detector points that a detector reports are the moved means of their regions' triangles, and the
  * reported orientations are relative to them. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -46,7 +48,7 @@ static void without_a_plan_points_are_means(void **state) {
         rig r = rig_create(&interval, 1, &options);
         rig_step(&r, &interval);
         cscd_intersections crossing;
-        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK); /* no trace */
+        assert_int_equal(check_packed(r.detector, interval.x0, &crossing), CSCD_OK); /* no trace */
         uint32_t count = cscd_mesh_component_count(r.mesh);
         assert_int_equal(cscd_detector_region_count(r.detector), count);
         for (uint32_t c = 0; c < count; c++) {
@@ -106,10 +108,10 @@ static void orientations_are_seen_from_these_points(void **state) {
         rig r = rig_create(&interval, 1, NULL);
         cscd_plan *plan;
         cscd_contacts contacts;
-        assert_int_equal(cscd_plan_create(r.mesh, interval.x0, &plan_options, &plan), CSCD_OK);
+        assert_int_equal(plan_create_packed(r.mesh, interval.x0, &plan_options, &plan), CSCD_OK);
         cscd_detector_destroy(r.detector);
-        assert_int_equal(cscd_detector_create(r.mesh, plan, &options, &r.detector), CSCD_OK);
-        assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, &contacts), CSCD_OK);
+        assert_int_equal(detector_create_here(r.mesh, plan, &options, &r.detector), CSCD_OK);
+        assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &contacts), CSCD_OK);
         assert_int_equal(cscd_detector_region_count(r.detector), cscd_plan_region_count(plan));
         for (uint32_t i = 0; i < cscd_plan_region_count(plan); i++) { /* at rest they are those of the plan */
             double start[3], end[3];

@@ -1,6 +1,7 @@
 /* Objects hold what they need: they may be destroyed in any order, and what is left goes on working. */
 #include "cscd/cscd.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <pthread.h>
@@ -29,25 +30,25 @@ static cscd_status member_create(void *const members[KINDS], int kind, counting_
                                  uint32_t thread_count, void **made) {
     cscd_context_options options = cscd_context_defaults();
     cscd_plan_options by_single = cscd_plan_defaults();
-    cscd_mesh_desc desc = {8, 8, triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(8, 8, triangles);
     switch (kind) {
     case CONTEXT:
         options.allocator = counting_allocator_interface(counter);
         options.thread_count = thread_count;
         return cscd_context_create(&options, (cscd_context **)made);
     case MESH:
-        return cscd_mesh_create(members[CONTEXT], &desc, (cscd_mesh **)made);
+        return cscd_mesh_create(members[CONTEXT], &desc, 1, (cscd_mesh **)made);
     case PLAN:
         by_single.method = CSCD_METHOD_SINGLE;
-        return cscd_plan_create(members[MESH], x0, &by_single, (cscd_plan **)made);
+        return plan_create_packed(members[MESH], x0, &by_single, (cscd_plan **)made);
     case DETECTOR:
-        return cscd_detector_create(members[MESH], members[PLAN], NULL, (cscd_detector **)made);
+        return detector_create_here(members[MESH], members[PLAN], NULL, (cscd_detector **)made);
     case LINE:
-        return cscd_line_create(members[DETECTOR], (cscd_line **)made);
+        return cscd_line_search_create(members[DETECTOR], (cscd_line_search **)made);
     case PARTITION:
-        return cscd_partition_create(members[MESH], members[PLAN], x0, NULL, (cscd_partition **)made);
+        return partition_create_packed(members[MESH], members[PLAN], x0, NULL, (cscd_partition **)made);
     default:
-        return cscd_sensors_create(members[MESH], members[PARTITION], NULL, (cscd_sensors **)made);
+        return sensors_create_here(members[MESH], members[PARTITION], NULL, (cscd_sensors **)made);
     }
 }
 
@@ -57,7 +58,7 @@ static void family_create(family *f, uint32_t thread_count, int end) {
     for (int kind = 0; kind < end; kind++) {
         void **member = &f->members[kind];
         assert_int_equal(member_create(f->members, kind, &f->counter, thread_count, member), CSCD_OK);
-        if (kind == LINE) assert_int_equal(cscd_line_begin(*member, x0, x1, 0.5), CSCD_OK);
+        if (kind == LINE) assert_int_equal(line_begin_packed(*member, x0, x1, 0.5), CSCD_OK);
     }
 }
 
@@ -79,19 +80,19 @@ static void member_use(void *const members[KINDS], int kind) {
         assert_int_equal(cscd_plan_region_count(member), 2);
         break;
     case DETECTOR:
-        assert_int_equal(cscd_detector_step(member, x0, x1, &contacts), CSCD_OK);
+        assert_int_equal(step_packed(member, x0, x1, &contacts), CSCD_OK);
         assert_int_equal(contacts.count, 1);
         break;
     case LINE:
-        assert_int_equal(cscd_line_max_step(member, 1.0, reached, &step), CSCD_OK);
+        assert_int_equal(line_max_step_packed(member, 1.0, reached, &step), CSCD_OK);
         assert_true(step.limited);
         break;
     case PARTITION:
-        assert_int_equal(cscd_partition_renew(member, x0, UINT32_MAX), CSCD_OK);
+        assert_int_equal(partition_renew_packed(member, x0, UINT32_MAX), CSCD_OK);
         assert_int_equal(cscd_partition_part_count(member), 2);
         break;
     default:
-        assert_int_equal(cscd_sensors_step(member, x0, x1, &warnings), CSCD_OK);
+        assert_int_equal(sensors_step_packed(member, x0, x1, &warnings), CSCD_OK);
     }
 }
 
@@ -112,7 +113,7 @@ static void member_destroy(void *members[KINDS], int kind) {
         cscd_detector_destroy(member);
         break;
     case LINE:
-        cscd_line_destroy(member);
+        cscd_line_search_destroy(member);
         break;
     case PARTITION:
         cscd_partition_destroy(member);

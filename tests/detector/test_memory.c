@@ -1,7 +1,9 @@
 /* Every allocation fails once without a leak, and a steady state allocates nothing. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -19,11 +21,11 @@ typedef struct memory_outcome {
 static cscd_status use_detector(cscd_detector *detector, memory_outcome *out) {
     cscd_contacts contacts = {NULL, 4711};
     cscd_intersections crossing = {NULL, 4711, 0, 0};
-    cscd_status status = cscd_detector_step(detector, s.x0, s.x1, &contacts);
+    cscd_status status = step_packed(detector, s.x0, s.x1, &contacts);
     assert_true(status == CSCD_OK || contacts.count == 4711);
     if (status != CSCD_OK) return status;
     out->contacts = contacts.count;
-    status = cscd_detector_check(detector, s.x1, &crossing);
+    status = check_packed(detector, s.x1, &crossing);
     assert_true(status == CSCD_OK || crossing.count == 4711);
     out->intersections = crossing.count;
     return status;
@@ -43,13 +45,13 @@ static memory_outcome run_library(counting_allocator *counter, uint32_t thread_c
     cscd_plan_options plan_options = cscd_plan_defaults();
     plan_options.method = CSCD_METHOD_KMEANS;
     plan_options.k = 2;
-    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
     out.status = cscd_context_create(&options, &context);
-    if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, &mesh);
-    if (out.status == CSCD_OK) out.status = cscd_plan_create(mesh, s.x0, &plan_options, &plan);
+    if (out.status == CSCD_OK) out.status = cscd_mesh_create(context, &desc, 1, &mesh);
+    if (out.status == CSCD_OK) out.status = plan_create_packed(mesh, s.x0, &plan_options, &plan);
     cscd_detector_options detector_options = cscd_detector_defaults();
     detector_options.method = method;
-    if (out.status == CSCD_OK) out.status = cscd_detector_create(mesh, plan, &detector_options, &detector);
+    if (out.status == CSCD_OK) out.status = detector_create_here(mesh, plan, &detector_options, &detector);
     if (out.status == CSCD_OK) {
         out.status = use_detector(detector, &out);
         if (out.status == CSCD_OUT_OF_MEMORY) {
@@ -112,11 +114,11 @@ static void expect_steady_state(cscd_method method) {
     cscd_detector_options detector_options = cscd_detector_defaults();
     detector_options.method = method;
     scene_make(SCENE_NESTED_SPHERES, 2, &s);
-    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
     memory_outcome out;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, NULL, &detector_options, &detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &detector_options, &detector), CSCD_OK);
     assert_int_equal(use_detector(detector, &out), CSCD_OK);
     size_t calls = counter.calls;
     for (int i = 0; i < 20; i++) assert_int_equal(use_detector(detector, &out), CSCD_OK);

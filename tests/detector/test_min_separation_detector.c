@@ -2,6 +2,7 @@
  * bits, and a larger distance only adds pairs. */
 #include "cscd/cscd.h"
 #include "tests/support/oracle.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solver/free_step_check.h"
@@ -184,7 +185,7 @@ static void expect_refused(const rig *r, double min_separation, double tolerance
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = min_separation;
     options.tolerance = tolerance;
-    assert_int_equal(cscd_detector_create(r->mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(r->mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_null(detector);
     if (strstr(cscd_context_detail(r->context), word) == NULL)
         fail_msg("%s", cscd_context_detail(r->context));
@@ -220,9 +221,9 @@ static void the_static_check_is_not_concerned(void **state) {
         cscd_detector_options options = options_within(0.2, CSCD_METHOD_NONE);
         rig plain = rig_create(&interval, 1, NULL), wide = rig_create(&interval, 1, &options);
         cscd_intersections expected, found;
-        assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &expected), CSCD_OK);
+        assert_int_equal(check_packed(plain.detector, interval.x1, &expected), CSCD_OK);
         rig_step(&wide, &interval);
-        assert_int_equal(cscd_detector_check(wide.detector, interval.x1, &found), CSCD_OK);
+        assert_int_equal(check_packed(wide.detector, interval.x1, &found), CSCD_OK);
         assert_int_equal(found.count, expected.count);
         if (found.count > 0)
             assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
@@ -268,25 +269,25 @@ static void lines_follow_what_they_can(void **state) {
         scene_make((scene_family)family, 6, &interval);
         cscd_detector_options options = options_within(family % 2 == 0 ? 0.03 : 0.0, CSCD_METHOD_SINGLE);
         rig r = rig_create(&interval, 1, &options);
-        cscd_line *line = NULL;
-        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
-        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03),
+        cscd_line_search *line = NULL;
+        assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, family % 2 == 0 ? 1e-3 : 0.03),
                          CSCD_OK);
         for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
             options.min_separation = changes[i];
             assert_int_equal(cscd_detector_set_separation(r.detector, changes[i], 0.0), CSCD_OK);
             free_step_prepare(interval.x0, interval.x1, 1.0, options.step_factor, &call);
-            call.status = cscd_line_max_step(line, 1.0, call.end, &call.step);
+            call.status = line_max_step_packed(line, 1.0, call.end, &call.step);
             assert_true((call.status == CSCD_INVALID_ARGUMENT) == (changes[i] > 0.03));
             if (call.status == CSCD_INVALID_ARGUMENT) {
-                assert_non_null(strstr(cscd_context_detail(r.context), "cscd_line_begin again"));
+                assert_non_null(strstr(cscd_context_detail(r.context), "cscd_line_search_begin again"));
                 continue;
             }
             rig reference = free_step_reference(&interval, &options);
             free_step_check(&reference, r.context, &call);
             rig_destroy(&reference);
         }
-        cscd_line_destroy(line);
+        cscd_line_search_destroy(line);
         rig_destroy(&r);
     }
 }
@@ -309,20 +310,20 @@ static void a_start_behind_a_wall_is_not_clean(void **state) {
         cscd_detector_options options = options_within(0.0, CSCD_METHOD_SINGLE);
         options.ignore = ignore_all;
         rig r = rig_create(&interval, 1, &options), plain = rig_create(&interval, 1, NULL);
-        cscd_line *line = NULL;
-        assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &crossing), CSCD_OK);
+        cscd_line_search *line = NULL;
+        assert_int_equal(check_packed(plain.detector, interval.x1, &crossing), CSCD_OK);
         through += crossing.count > 0;
         bool embedded = crossing.count == 0;
-        assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
-        assert_int_equal(cscd_detector_check(r.detector, interval.x0, &crossing), CSCD_OK);
-        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, 1e-6), CSCD_OK);
+        assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(check_packed(r.detector, interval.x0, &crossing), CSCD_OK);
+        assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, 1e-6), CSCD_OK);
         assert_int_equal(cscd_detector_set_separation(r.detector, 1e-6, 0.0), CSCD_OK);
-        assert_int_equal(cscd_line_max_step(line, 1.0, NULL, &step), CSCD_OK);
+        assert_int_equal(line_max_step_packed(line, 1.0, NULL, &step), CSCD_OK);
         assert_false(step.limited);
         assert_int_equal(cscd_detector_set_separation(r.detector, 0.0, 0.0), CSCD_OK);
-        assert_int_equal(cscd_detector_step(r.detector, interval.x1, interval.x1, &found), CSCD_OK);
+        assert_int_equal(step_packed(r.detector, interval.x1, interval.x1, &found), CSCD_OK);
         assert_true(embedded || !cscd_detector_guarantee(r.detector, 0).start_embedded);
-        cscd_line_destroy(line);
+        cscd_line_search_destroy(line);
         rig_destroy(&plain);
         rig_destroy(&r);
     }

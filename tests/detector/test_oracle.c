@@ -1,6 +1,8 @@
 /* Every method in mode all equals brute force over features, on hundreds of random intervals. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/oracle.h"
+#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -18,12 +20,12 @@ typedef struct method_tally {
 
 static cscd_detector *make_detector(cscd_context *context, const scene *s, cscd_method method,
                                     cscd_mesh **mesh) {
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     cscd_detector_options options = cscd_detector_defaults();
     cscd_detector *detector = NULL;
     options.method = method;
-    assert_int_equal(cscd_mesh_create(context, &desc, mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(*mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(*mesh, NULL, &options, &detector), CSCD_OK);
     return detector;
 }
 
@@ -34,7 +36,7 @@ static void compare_with_oracle(const scene *s, const oracle_list *truth, cscd_m
     cscd_contacts found;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
     cscd_detector *detector = make_detector(context, s, method, &mesh);
-    assert_int_equal(cscd_detector_step(detector, s->x0, s->x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(detector, s->x0, s->x1, &found), CSCD_OK);
     if (found.count != truth->count)
         print_error("%s, seed %u, method %s: %zu contacts, brute force has %zu\n", scene_family_name(family),
                     (unsigned)seed, cscd_method_name(method), found.count, truth->count);

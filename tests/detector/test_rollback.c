@@ -22,9 +22,10 @@ static bool comes_back(bool cancellable) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     scene_make(SCENE_TWO_SPHERES, 1, &shape);
-    cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     start_states s;
     rollback r = {.triangles = NULL};
     bvh_rebuild trees = {.intervals_unmeasured = 7};

@@ -1,8 +1,10 @@
 /* Contacts and counters are the same, bit for bit, for any number of threads, whichever thread does the
  * work. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "src/core/context.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -44,7 +46,7 @@ static void run_intervals(uint32_t thread_count, const cscd_detector_options *op
     for (int i = 0; i <= INTERVALS; i++) tube_at(&s, 0.3 * i, x[i]);
     for (int i = 0; i < INTERVALS; i++) {
         cscd_contacts found;
-        assert_int_equal(cscd_detector_step(r.detector, x[i], x[i + 1], &found), CSCD_OK);
+        assert_int_equal(step_packed(r.detector, x[i], x[i + 1], &found), CSCD_OK);
         out[i].count = found.count;
         out[i].counters = cscd_detector_counters(r.detector);
         out[i].contacts = malloc((found.count + 1) * sizeof *found.items);

@@ -1,6 +1,7 @@
 /* Connectivity that changes while the context lives: sheets that tear, regions carried over, memory. */
 #include "cscd/cscd.h"
 #include "tests/support/oracle.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -29,9 +30,9 @@ static cscd_context *make_context(uint32_t thread_count) {
 
 static objects make_objects(cscd_context *context, const scene *s, const cscd_detector_options *options) {
     objects o = {NULL, NULL, NULL};
-    const cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
-    assert_int_equal(cscd_mesh_create(context, &desc, &o.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(o.mesh, NULL, options, &o.detector), CSCD_OK);
+    const cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &o.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(o.mesh, NULL, options, &o.detector), CSCD_OK);
     return o;
 }
 
@@ -43,7 +44,7 @@ static void destroy_objects(objects *o) {
 
 static cscd_contacts step_topology(const objects *o, const scene *s) {
     cscd_contacts found = {NULL, 0};
-    assert_int_equal(cscd_detector_step(o->detector, s->x0, s->x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(o->detector, s->x0, s->x1, &found), CSCD_OK);
     return found;
 }
 
@@ -228,7 +229,7 @@ static cscd_plan *carry_over(const cscd_plan *old, const cscd_mesh *mesh, const 
     }
     const cscd_plan_parts parts = {CSCD_METHOD_KMEANS, count, regions, points, NULL, NULL};
     cscd_plan *plan = NULL;
-    assert_int_equal(cscd_plan_create_from_parts(mesh, torn.x0, &parts, &plan), CSCD_OK);
+    assert_int_equal(plan_from_parts_packed(mesh, torn.x0, &parts, &plan), CSCD_OK);
     free(number);
     free(points);
     return plan;
@@ -258,14 +259,15 @@ static carried carry_once(cscd_context *context, uint64_t seed) {
     make_bodies(seed);
     objects old = make_objects(context, &whole, NULL);
     assert_int_equal(cscd_mesh_component_count(old.mesh), 2);
-    assert_int_equal(cscd_plan_create(old.mesh, whole.x0, &options, &old.plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(old.mesh, whole.x0, &options, &old.plan), CSCD_OK);
 
     remove_and_renumber(old.mesh, &random, origin);
     objects plain = make_objects(context, &torn, NULL), planned = {NULL, NULL, NULL};
-    const cscd_mesh_desc desc = {torn.vertex_count, torn.triangle_count, torn.triangles};
-    assert_int_equal(cscd_mesh_create(context, &desc, &planned.mesh), CSCD_OK);
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(torn.vertex_count, torn.triangle_count, torn.triangles);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &planned.mesh), CSCD_OK);
     planned.plan = carry_over(old.plan, planned.mesh, origin);
-    assert_int_equal(cscd_detector_create(planned.mesh, planned.plan, NULL, &planned.detector), CSCD_OK);
+    assert_int_equal(detector_create_here(planned.mesh, planned.plan, NULL, &planned.detector), CSCD_OK);
     cscd_contacts found = step_topology(&planned, &torn);
     carried result = {check_against_brute_force(&torn, found), 0};
     assert_same_contacts(found, step_topology(&plain, &torn));

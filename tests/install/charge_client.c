@@ -15,7 +15,7 @@ static void print_plan(const char *name, cscd_context *context, cscd_status stat
 }
 
 int main(void) {
-    const cscd_mesh_desc desc = {4, 4, triangles};
+    const cscd_object_desc object = cscd_object_of_triangles(4, 4, triangles);
     const uint32_t regions[4] = {0, 0, 0, 0};
     const double point[3] = {0.5, 0.5, 0.5}, charges[4] = {1, 2, 3, 4}, capacitance = 5;
     const cscd_plan_parts parts = {CSCD_METHOD_CHARGE, 1, regions, point, charges, &capacitance};
@@ -23,16 +23,17 @@ int main(void) {
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
-    if (cscd_context_create(NULL, &context) != CSCD_OK || cscd_mesh_create(context, &desc, &mesh) != CSCD_OK)
+    if (cscd_context_create(NULL, &context) != CSCD_OK ||
+        cscd_mesh_create(context, &object, 1, &mesh) != CSCD_OK)
         return 1;
-    cscd_status status = cscd_plan_create(mesh, corners, &options, &plan);
+    cscd_status status = cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 4), &options, &plan);
     print_plan("solved", context, status, plan);
     plan = NULL;
-    status = cscd_plan_create_from_parts(mesh, corners, &parts, &plan);
+    status = cscd_plan_create_from_parts(context, mesh, CSCD_DOUBLES(corners, 4), &parts, &plan);
     print_plan("from parts", context, status, plan);
     plan = NULL;
     options.method = CSCD_METHOD_KMEANS;
-    status = cscd_plan_create(mesh, corners, &options, &plan);
+    status = cscd_plan_create(context, mesh, CSCD_DOUBLES(corners, 4), &options, &plan);
     print_plan("k-means", context, status, plan);
     cscd_mesh_destroy(mesh);
     cscd_context_destroy(context);

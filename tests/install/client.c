@@ -13,16 +13,19 @@ static const double start[VERTEX_COUNT * 3] = {0, 0, 0,  4, 0, 0,  0, 4, 0,  0, 
 /* Makes regions, which needs the linear algebra libraries, and prints the contacts of one step. */
 static cscd_status print_contacts(cscd_context *context) {
     double end[VERTEX_COUNT * 3];
-    const cscd_mesh_desc desc = {VERTEX_COUNT, TRIANGLE_COUNT, triangles};
+    const cscd_object_desc object = cscd_object_of_triangles(VERTEX_COUNT, TRIANGLE_COUNT, triangles);
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
     cscd_contacts contacts = {NULL, 0};
     for (int i = 0; i < VERTEX_COUNT * 3; i++) end[i] = start[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
-    cscd_status status = cscd_mesh_create(context, &desc, &mesh);
-    if (status == CSCD_OK) status = cscd_plan_create(mesh, start, NULL, &plan);
-    if (status == CSCD_OK) status = cscd_detector_create(mesh, plan, NULL, &detector);
-    if (status == CSCD_OK) status = cscd_detector_step(detector, start, end, &contacts);
+    cscd_status status = cscd_mesh_create(context, &object, 1, &mesh);
+    if (status == CSCD_OK)
+        status = cscd_plan_create(context, mesh, CSCD_DOUBLES(start, VERTEX_COUNT), NULL, &plan);
+    if (status == CSCD_OK) status = cscd_detector_create(context, mesh, plan, NULL, &detector);
+    if (status == CSCD_OK)
+        status = cscd_detector_step(detector, CSCD_DOUBLES(start, VERTEX_COUNT),
+                                    CSCD_DOUBLES(end, VERTEX_COUNT), &contacts);
     for (size_t i = 0; i < contacts.count; i++) {
         const cscd_contact *contact = &contacts.items[i];
         printf("%s %u %u at t = %.3f\n", cscd_contact_kind_name(contact->kind), contact->a, contact->b,

@@ -37,17 +37,21 @@ void print_contacts() {
     options.thread_count = 2;
     const auto context =
         make<context_owner>(nullptr, [&](auto out) { return cscd_context_create(&options, out); });
-    const cscd_mesh_desc desc{8, 8, triangles.data()};
-    const auto mesh = make<mesh_owner>(context.get(),
-                                       [&](auto out) { return cscd_mesh_create(context.get(), &desc, out); });
-    const auto plan = make<plan_owner>(
-        context.get(), [&](auto out) { return cscd_plan_create(mesh.get(), start.data(), nullptr, out); });
-    const auto detector = make<detector_owner>(
-        context.get(), [&](auto out) { return cscd_detector_create(mesh.get(), plan.get(), nullptr, out); });
+    const cscd_object_desc object = cscd_object_of_triangles(8, 8, triangles.data());
+    const auto mesh = make<mesh_owner>(
+        context.get(), [&](auto out) { return cscd_mesh_create(context.get(), &object, 1, out); });
+    const cscd_view x0 = cscd_view_doubles(start.data(), 8);
+    const auto plan = make<plan_owner>(context.get(), [&](auto out) {
+        return cscd_plan_create(context.get(), mesh.get(), &x0, nullptr, out);
+    });
+    const auto detector = make<detector_owner>(context.get(), [&](auto out) {
+        return cscd_detector_create(context.get(), mesh.get(), plan.get(), nullptr, out);
+    });
     auto end = start;
     for (std::size_t z = 14; z < end.size(); z += 3) end[z] += 1.5;
+    const cscd_view x1 = cscd_view_doubles(end.data(), 8);
     cscd_contacts contacts{};
-    if (cscd_detector_step(detector.get(), start.data(), end.data(), &contacts) != CSCD_OK)
+    if (cscd_detector_step(detector.get(), &x0, &x1, &contacts) != CSCD_OK)
         throw std::runtime_error(cscd_context_detail(context.get()));
     for (std::size_t i = 0; i < contacts.count; i++) {
         const cscd_contact &contact = contacts.items[i];

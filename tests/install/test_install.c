@@ -81,8 +81,8 @@ static void files_are_where_they_belong(void **state) {
     const char *version = cscd_version_string();
     snprintf(expected, sizeof expected,
              "bin/cscd\ninclude/cscd/context.h\ninclude/cscd/cscd.h\ninclude/cscd/detector.h\n"
-             "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/sensors.h\n"
-             "include/cscd/solver.h\n"
+             "include/cscd/mesh.h\ninclude/cscd/plan.h\ninclude/cscd/research.h\ninclude/cscd/sensors.h\n"
+             "include/cscd/solver.h\ninclude/cscd/view.h\n"
              "lib/cmake/cscd/cscdConfig.cmake\nlib/cmake/cscd/cscdConfigVersion.cmake\n"
              "lib/libcscd-charge.so.%d\nlib/libcscd-charge.so.%s\n"
              "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"
@@ -142,7 +142,7 @@ static void shared_library_exports_the_api(void **state) {
         "soname",
         shell_output(0, "readelf -d '%s/lib/libcscd.so' | sed -n 's/.*SONAME.*\\[\\(.*\\)\\]/\\1/p'", prefix),
         soname);
-    char *declared = api_names("*.h");
+    char *declared = api_symbols("*.h");
     expect_output(
         "declared (<) and exported (>)",
         shell_output(0,

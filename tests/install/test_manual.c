@@ -76,8 +76,8 @@ static void no_option_is_made_up(void **state) {
 
 static void functions_are_those_of_the_headers(void **state) {
     (void)state;
-    static const char *const headers[] = {"context.h", "mesh.h",    "plan.h", "detector.h",
-                                          "solver.h",  "sensors.h", "cscd.h"};
+    static const char *const headers[] = {"context.h", "mesh.h",     "plan.h",    "detector.h",
+                                          "solver.h",  "research.h", "sensors.h", "cscd.h"};
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
         expect_equal(headers[i],
                      shell_output(0,
@@ -85,7 +85,7 @@ static void functions_are_those_of_the_headers(void **state) {
                                   "docs/man/cscd.3 | "
                                   "sed -n 's/^\\\\fB\\(cscd_[a-z_0-9]*\\)\\\\fR(.*/\\1/p' | LC_ALL=C sort",
                                   headers[i]),
-                     api_names(headers[i]));
+                     api_functions(headers[i]));
     }
 }
 

@@ -3,6 +3,7 @@
 #include "cscd/cscd.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -23,7 +24,7 @@ static uint32_t count_zero_area(const scene *shape) {
 static size_t compare_with_all_pairs(uint32_t thread_count) {
     rig r = rig_create(&s, thread_count, NULL);
     cscd_intersections found;
-    assert_int_equal(cscd_detector_check(r.detector, s.x0, &found), CSCD_OK);
+    assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
     size_t next = 0;
     for (uint32_t a = 0; a < s.triangle_count; a++) {
         for (uint32_t b = a + 1; b < s.triangle_count; b++) {

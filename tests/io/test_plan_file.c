@@ -2,6 +2,7 @@
 #include "src/io/growable.h"
 #include "src/io/mesh_file.h"
 #include "src/io/plan_file.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 #include "tests/support/tool/run_tool.h"
 #include "tests/support/tool/tool_fixture.h"
@@ -45,8 +46,9 @@ static int remove_folder(void **state) {
 
 static cscd_mesh *mesh_of(cscd_context *context, const recorded *shape) {
     cscd_mesh *mesh = NULL;
-    cscd_mesh_desc desc = {shape->vertex_count, shape->triangle_count, shape->triangles};
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape->vertex_count, shape->triangle_count, shape->triangles);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     return mesh;
 }
 
@@ -56,7 +58,7 @@ static saved save_plan(recorded shape, cscd_method method) {
     s.mesh = mesh_of(s.context, &shape);
     cscd_plan_options options = cscd_plan_defaults();
     options.method = method;
-    assert_int_equal(cscd_plan_create(s.mesh, shape.frames, &options, &s.plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(s.mesh, shape.frames, &options, &s.plan), CSCD_OK);
     uint8_t *colours = calloc(shape.triangle_count, 3);
     io_error error = {""};
     for (uint32_t i = 0; i < shape.triangle_count * 3; i++) colours[i] = (uint8_t)(i * 7);

@@ -3,6 +3,7 @@
 #include "models/cloth/cloth_scene.h"
 #include "models/cloth/garment.h"
 #include "models/cloth/safe_motion.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -31,12 +32,14 @@ static press make_press(double below, double above) {
     press p = {0};
     garment_add_sheet(&p.sheet, SIDE, 1.0);
     garment_add_box(&p.box, 2.0);
-    const cscd_mesh_desc sheet = {p.sheet.vertex_count, p.sheet.triangle_count, p.sheet.triangles};
-    const cscd_mesh_desc box = {p.box.vertex_count, p.box.triangle_count, p.box.triangles};
-    const cscd_object_desc objects[3] = {{sheet, false}, {box, true}, {box, true}};
+    cscd_object_desc objects[3] = {
+        cscd_object_of_triangles(p.sheet.vertex_count, p.sheet.triangle_count, p.sheet.triangles),
+        cscd_object_of_triangles(p.box.vertex_count, p.box.triangle_count, p.box.triangles),
+        cscd_object_of_triangles(p.box.vertex_count, p.box.triangle_count, p.box.triangles)};
+    objects[1].obstacle = objects[2].obstacle = true;
     assert_int_equal(cscd_context_create(NULL, &p.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create_scene(p.context, objects, 3, &p.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(p.mesh, NULL, NULL, &p.judge), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(p.context, objects, 3, &p.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(p.mesh, NULL, NULL, &p.judge), CSCD_OK);
     p.vertex_count = cscd_mesh_vertex_count(p.mesh);
     p.floor = p.sheet.vertex_count;
     p.lid = p.floor + p.box.vertex_count;
@@ -73,9 +76,9 @@ static double go_on(press *p) {
     cscd_intersections intersections;
     assert_int_equal(safe_motion_find(&p->safe, p->x0, p->x1, &length), CSCD_OK);
     assert_true(length >= 0.0 && length <= 1.0);
-    assert_int_equal(cscd_detector_step(p->judge, p->x0, p->x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(p->judge, p->x0, p->x1, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
-    assert_int_equal(cscd_detector_check(p->judge, p->x1, &intersections), CSCD_OK);
+    assert_int_equal(check_packed(p->judge, p->x1, &intersections), CSCD_OK);
     assert_int_equal(intersections.count, 0);
     memcpy(p->x0, p->x1, p->vertex_count * 3 * sizeof *p->x0);
     return length;

@@ -16,9 +16,9 @@ static const fabric_material cotton = {
 static cscd_component only_component(const body *b) {
     cscd_context *context;
     cscd_mesh *mesh;
-    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     assert_int_equal(cscd_mesh_component_count(mesh), 1);
     cscd_component component = cscd_mesh_component(mesh, 0);
     cscd_mesh_destroy(mesh);

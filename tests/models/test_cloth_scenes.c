@@ -1,6 +1,8 @@
 /* The cloth scenes, whole and small: there is no contact in any step, and yet much happens. */
+#include "cscd/research.h"
 #include "models/cloth/cloth_simulation.h"
 #include "models/common/vec3.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>
@@ -38,7 +40,7 @@ static cscd_detector *make_detector(const cloth_simulation *run, cscd_method met
     options.method = method;
     options.seams = run->seams;
     options.seam_count = run->seam_count;
-    assert_int_equal(cscd_detector_create(run->mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(run->mesh, NULL, &options, &detector), CSCD_OK);
     return detector;
 }
 
@@ -80,7 +82,7 @@ static void advance_trial(cloth_trial *t) {
 
 static void expect_nothing(cscd_detector *detector, const double *from, const double *to, uint32_t frame) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(detector, from, to, &found), CSCD_OK);
+    assert_int_equal(step_packed(detector, from, to, &found), CSCD_OK);
     if (found.count > 0)
         fail_msg("frame %u: %zu contacts, the first of %s %u and %u at %g", frame, found.count,
                  cscd_contact_kind_name(found.items[0].kind), found.items[0].a, found.items[0].b,
@@ -89,7 +91,7 @@ static void expect_nothing(cscd_detector *detector, const double *from, const do
 
 static void expect_embedded(cscd_detector *detector, const double *positions) {
     cscd_intersections intersections;
-    assert_int_equal(cscd_detector_check(detector, positions, &intersections), CSCD_OK);
+    assert_int_equal(check_packed(detector, positions, &intersections), CSCD_OK);
     assert_int_equal(intersections.count, 0);
     assert_int_equal(intersections.zero_area_triangles, 0);
 }
@@ -104,7 +106,7 @@ static meetings count_meetings(cloth_trial *t) {
     meetings m = {0};
     cscd_proximities near;
     const double reach = 1.2 * cloth_thickness(&t->run);
-    assert_int_equal(cscd_detector_near(t->judge, t->run.positions, reach, &near), CSCD_OK);
+    assert_int_equal(find_near_packed(t->judge, t->run.positions, reach, &near), CSCD_OK);
     for (size_t i = 0; i < near.count; i++) {
         const cscd_proximity *p = &near.items[i];
         cscd_stencil s = cscd_mesh_stencil(t->run.mesh, p->kind, p->a, p->b, p->u, p->v);
@@ -223,12 +225,13 @@ static void expect_reason(const char *name, cscd_reason reason, bool culls) {
     cscd_plan *plan;
     cscd_detector *detector;
     const body *garment = &t.run.garment;
-    const cscd_mesh_desc desc = {garment->vertex_count, garment->triangle_count, garment->triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(garment->vertex_count, garment->triangle_count, garment->triangles);
     cscd_plan_options options = cscd_plan_defaults();
     options.method = CSCD_METHOD_KMEANS;
-    assert_int_equal(cscd_mesh_create(t.context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_plan_create(mesh, garment->positions, &options, &plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, plan, NULL, &detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(t.context, &desc, 1, &mesh), CSCD_OK);
+    assert_int_equal(plan_create_packed(mesh, garment->positions, &options, &plan), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, plan, NULL, &detector), CSCD_OK);
     for (uint32_t frame = 1; frame < 40; frame++) {
         advance_trial(&t);
         expect_nothing(detector, t.before, t.after, frame);

@@ -5,6 +5,7 @@
 #include "models/ipc/contact_energy.h"
 #include "models/ipc/springs.h"
 #include "models/shapes/catalogue.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -190,11 +191,11 @@ static const ipc_barrier_options barrier = {.reach = 0.3, .stiffness = 2.0};
 static near_fixture proximity_make(uint64_t seed, bool edges, double lean) {
     static const double shape[12] = {-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0};
     random_stream random = stream_start(seed);
-    const cscd_mesh_desc desc = {8, 8, tetrahedra};
+    const cscd_object_desc desc = cscd_object_of_triangles(8, 8, tetrahedra);
     near_fixture f;
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(f.mesh, NULL, NULL, &f.detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(f.mesh, NULL, NULL, &f.detector), CSCD_OK);
     for (int i = 0; i < 12; i++) f.x[i] = shape[i];
     for (int v = 0; v < 4; v++) { /* turned over; the upper edge lies along (cos, sin) of the lean */
         const double *p = shape + v * 3;
@@ -215,7 +216,7 @@ static void proximity_free(near_fixture *f) {
 
 static void find_contacts(near_fixture *f, const double *x, ipc_contacts *contacts) {
     cscd_proximities near;
-    assert_int_equal(cscd_detector_near(f->detector, x, barrier.reach, &near), CSCD_OK);
+    assert_int_equal(find_near_packed(f->detector, x, barrier.reach, &near), CSCD_OK);
     ipc_contacts_find(contacts, f->mesh, f->x, x, &near, &barrier);
 }
 
@@ -283,7 +284,7 @@ static void near_pairs_have_their_curvature(void **state) {
             double distance[2] = {-1.0, -1.0};
             for (int side = 0; side < 2; side++) {
                 for (int i = 0; i < 24; i++) there[i] = f.x[i] + (side == 0 ? -h : h) * direction[i];
-                assert_int_equal(cscd_detector_near(f.detector, there, 2.0 * barrier.reach, &near), CSCD_OK);
+                assert_int_equal(find_near_packed(f.detector, there, 2.0 * barrier.reach, &near), CSCD_OK);
                 for (size_t n = 0; n < near.count; n++) {
                     const cscd_proximity *p = &near.items[n];
                     cscd_stencil s = cscd_mesh_stencil(f.mesh, p->kind, p->a, p->b, p->u, p->v);

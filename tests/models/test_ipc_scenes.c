@@ -1,7 +1,9 @@
 /* The scenes of the IPC solver, small: another detector finds no contact in any step, the energy falls,
  * links hold each other, and the motion is repeatable. */
+#include "cscd/research.h"
 #include "models/common/vec3.h"
 #include "models/ipc/solver.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/test.h"
 
@@ -50,12 +52,12 @@ typedef struct judges {
 static judges call_judges(const ipc_solver *p) {
     judges j = {.judged = 0};
     cscd_detector_options options = cscd_detector_defaults();
-    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.touching), CSCD_OK);
+    assert_int_equal(detector_create_here(p->mesh, NULL, &options, &j.touching), CSCD_OK);
     options.method = CSCD_METHOD_BRUTE;
-    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.brute), CSCD_OK);
+    assert_int_equal(detector_create_here(p->mesh, NULL, &options, &j.brute), CSCD_OK);
     options.method = CSCD_METHOD_NONE;
     options.min_separation = p->scene->min_separation;
-    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &j.apart), CSCD_OK);
+    assert_int_equal(detector_create_here(p->mesh, NULL, &options, &j.apart), CSCD_OK);
     return j;
 }
 
@@ -67,7 +69,7 @@ static void dismiss_judges(judges *j) {
 
 static void expect_none(cscd_detector *detector, const double *from, const double *to) {
     cscd_contacts contacts;
-    assert_int_equal(cscd_detector_step(detector, from, to, &contacts), CSCD_OK);
+    assert_int_equal(step_packed(detector, from, to, &contacts), CSCD_OK);
     if (contacts.count > 0)
         fail_msg("%zu contacts, the first %s %u %u at %g", contacts.count,
                  cscd_contact_kind_name(contacts.items[0].kind), contacts.items[0].a, contacts.items[0].b,
@@ -80,7 +82,7 @@ static void judge_interval(judges *j, const double *from, const double *to) {
     expect_none(j->touching, from, to);
     expect_none(j->apart, from, to);
     if (j->judged++ % 40 == 0) expect_none(j->brute, from, to);
-    assert_int_equal(cscd_detector_check(j->touching, to, &intersections), CSCD_OK);
+    assert_int_equal(check_packed(j->touching, to, &intersections), CSCD_OK);
     assert_int_equal(intersections.count, 0);
 }
 
@@ -89,7 +91,7 @@ static void judge_interval(judges *j, const double *from, const double *to) {
 static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     cscd_proximities near;
     ipc_contacts contacts = {0};
-    assert_int_equal(cscd_detector_near(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
+    assert_int_equal(find_near_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
     ipc_contacts_find(&contacts, p->mesh, p->shape.positions, p->positions, &near, &p->scene->barrier);
     assert_int_equal(contacts.count, p->contacts.count);
     assert_true(contacts.least_distance == p->contacts.least_distance);

@@ -1,7 +1,10 @@
 /* Scenes of several objects: numbering, obstacles that have contacts only with other objects, positions in
  * any layout. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "src/mesh/views.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
@@ -50,16 +53,18 @@ typedef struct object_setting {
 static object_setting set_up(unsigned obstacles, cscd_method method, uint32_t thread_count) {
     object_setting s;
     cscd_object_desc descs[OBJECTS];
-    for (int i = 0; i < OBJECTS; i++)
-        descs[i] = (cscd_object_desc){
-            {objects[i].vertex_count, objects[i].triangle_count, objects[i].triangles}, obstacles >> i & 1};
+    for (int i = 0; i < OBJECTS; i++) {
+        descs[i] = cscd_object_of_triangles(objects[i].vertex_count, objects[i].triangle_count,
+                                            objects[i].triangles);
+        descs[i].obstacle = obstacles >> i & 1;
+    }
     cscd_context_options context_options = cscd_context_defaults();
     cscd_detector_options options = cscd_detector_defaults();
     context_options.thread_count = thread_count;
     options.method = method;
     assert_int_equal(cscd_context_create(&context_options, &s.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create_scene(s.context, descs, OBJECTS, &s.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(s.mesh, NULL, &options, &s.detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(s.context, descs, OBJECTS, &s.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(s.mesh, NULL, &options, &s.detector), CSCD_OK);
     return s;
 }
 
@@ -109,9 +114,9 @@ static void a_mesh_is_one_object(void **state) {
     cscd_context *context;
     cscd_mesh *mesh;
     const uint32_t triangles[] = {0, 1, 2};
-    const cscd_mesh_desc desc = {4, 1, triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(4, 1, triangles);
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     cscd_object o = cscd_mesh_object(mesh, 0);
     assert_int_equal(cscd_mesh_object_count(mesh), 1);
     assert_true(o.vertex_count == 4 && o.edge_count == 3 && o.triangle_count == 1 && !o.obstacle);
@@ -125,23 +130,23 @@ static void mistakes_name_the_object(void **state) {
     cscd_context *context;
     cscd_mesh *mesh = NULL;
     const uint32_t good[] = {0, 1, 2}, outside[] = {0, 1, 3}, repeated[] = {2, 1, 2};
-    cscd_object_desc o[2] = {{{3, 1, good}, false}, {{3, 1, outside}, false}};
+    cscd_object_desc o[2] = {cscd_object_of_triangles(3, 1, good), cscd_object_of_triangles(3, 1, outside)};
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create_scene(context, o, 2, &mesh), CSCD_INVALID_MESH);
+    assert_int_equal(cscd_mesh_create(context, o, 2, &mesh), CSCD_INVALID_MESH);
     assert_string_equal(cscd_context_detail(context),
                         "object 1: triangle 0 names vertex 3, but there are 3 vertices");
-    o[1].mesh.triangles = repeated;
-    assert_int_equal(cscd_mesh_create_scene(context, o, 2, &mesh), CSCD_INVALID_MESH);
+    o[1].triangles = repeated;
+    assert_int_equal(cscd_mesh_create(context, o, 2, &mesh), CSCD_INVALID_MESH);
     assert_non_null(strstr(cscd_context_detail(context), "object 1: triangle 0 (2 1 2) repeats a vertex"));
-    o[1].mesh = (cscd_mesh_desc){3, 0, good};
-    assert_int_equal(cscd_mesh_create_scene(context, o, 2, &mesh), CSCD_INVALID_MESH);
+    o[1] = cscd_object_of_triangles(3, 0, good);
+    assert_int_equal(cscd_mesh_create(context, o, 2, &mesh), CSCD_INVALID_MESH);
     assert_non_null(strstr(cscd_context_detail(context), "object 1: the mesh is empty"));
-    o[1].mesh = (cscd_mesh_desc){UINT32_MAX, 1, good};
-    assert_int_equal(cscd_mesh_create_scene(context, o, 2, &mesh), CSCD_INVALID_MESH);
+    o[1] = cscd_object_of_triangles(UINT32_MAX, 1, good);
+    assert_int_equal(cscd_mesh_create(context, o, 2, &mesh), CSCD_INVALID_MESH);
     assert_non_null(strstr(cscd_context_detail(context), "too many"));
-    assert_int_equal(cscd_mesh_create_scene(context, o, 0, &mesh), CSCD_INVALID_MESH);
-    assert_int_equal(cscd_mesh_create_scene(context, NULL, 1, &mesh), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_mesh_create_scene(NULL, o, 1, &mesh), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_mesh_create(context, o, 0, &mesh), CSCD_INVALID_MESH);
+    assert_int_equal(cscd_mesh_create(context, NULL, 1, &mesh), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_mesh_create(NULL, o, 1, &mesh), CSCD_INVALID_ARGUMENT);
     assert_null(mesh);
     cscd_context_destroy(context);
 }
@@ -160,8 +165,8 @@ static bool between_obstacles(const cscd_mesh *mesh, unsigned obstacles, const c
 static size_t compare_contacts(const object_setting *all, const object_setting *some, unsigned obstacles) {
     cscd_contacts truth, found;
     size_t next = 0;
-    assert_int_equal(cscd_detector_step(all->detector, joined.x0, joined.x1, &truth), CSCD_OK);
-    assert_int_equal(cscd_detector_step(some->detector, joined.x0, joined.x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(all->detector, joined.x0, joined.x1, &truth), CSCD_OK);
+    assert_int_equal(step_packed(some->detector, joined.x0, joined.x1, &found), CSCD_OK);
     for (size_t i = 0; i < truth.count; i++) {
         if (between_obstacles(all->mesh, obstacles, &truth.items[i])) continue;
         assert_true(next < found.count);
@@ -174,8 +179,8 @@ static size_t compare_contacts(const object_setting *all, const object_setting *
 static void compare_checks(const object_setting *all, const object_setting *some, unsigned obstacles) {
     cscd_intersections truth, found;
     size_t next = 0;
-    assert_int_equal(cscd_detector_check(all->detector, joined.x0, &truth), CSCD_OK);
-    assert_int_equal(cscd_detector_check(some->detector, joined.x0, &found), CSCD_OK);
+    assert_int_equal(check_packed(all->detector, joined.x0, &truth), CSCD_OK);
+    assert_int_equal(check_packed(some->detector, joined.x0, &found), CSCD_OK);
     for (size_t i = 0; i < truth.count; i++) {
         uint32_t a[3], b[3];
         cscd_mesh_triangle(all->mesh, truth.items[i].a, a);
@@ -227,7 +232,7 @@ static void obstacles_cost_nothing(void **state) {
     make_objects(3);
     cscd_contacts found;
     object_setting s = set_up(7, CSCD_METHOD_NONE, 1);
-    assert_int_equal(cscd_detector_step(s.detector, joined.x0, joined.x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(s.detector, joined.x0, joined.x1, &found), CSCD_OK);
     cscd_counters counters = cscd_detector_counters(s.detector);
     assert_true(found.count == 0 && counters.boxes_tested == 0 && counters.pcp == 0);
     tear_down(&s);
@@ -246,8 +251,8 @@ static void obstacles_are_not_planned(void **state) {
     }
     object_setting s = set_up(2, CSCD_METHOD_NONE, 1), all = set_up(0, CSCD_METHOD_NONE, 1);
     cscd_plan *plan = NULL, *whole = NULL;
-    assert_int_equal(cscd_plan_create(s.mesh, x, NULL, &plan), CSCD_OK);
-    assert_int_equal(cscd_plan_create(all.mesh, x, NULL, &whole), CSCD_OK);
+    assert_int_equal(plan_create_packed(s.mesh, x, NULL, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(all.mesh, x, NULL, &whole), CSCD_OK);
     for (uint32_t i = 0; i < OBJECTS; i++) {
         cscd_object o = cscd_mesh_object(s.mesh, i);
         assert_true((cscd_plan_capacitance(plan, i) > 0.0) == !o.obstacle);
@@ -263,7 +268,7 @@ static void obstacles_are_not_planned(void **state) {
     tear_down(&s);
     tear_down(&all);
     object_setting none = set_up(7, CSCD_METHOD_NONE, 1);
-    assert_int_equal(cscd_plan_create(none.mesh, x, NULL, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(none.mesh, x, NULL, &plan), CSCD_OK);
     assert_int_equal(cscd_plan_region_count(plan), OBJECTS);
     cscd_plan_destroy(plan);
     tear_down(&none);
@@ -277,7 +282,7 @@ static void positions_come_in_any_layout(void **state) {
     make_objects(5);
     object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
     static char floats[SCENE_VERTICES_MAX * 28 + 1];
-    static double columns[3][SCENE_VERTICES_MAX], packed[SCENE_VERTICES_MAX * 3];
+    static double columns[3][SCENE_VERTICES_MAX];
     for (uint32_t v = 0; v < objects[0].vertex_count; v++) {
         for (uint32_t k = 0; k < 3; k++) {
             float x = (float)objects[0].x0[v * 3 + k];
@@ -287,31 +292,54 @@ static void positions_come_in_any_layout(void **state) {
     for (uint32_t v = 0; v < objects[1].vertex_count; v++) {
         for (uint32_t k = 0; k < 3; k++) columns[k][v] = objects[1].x0[v * 3 + k];
     }
-    const cscd_view views[OBJECTS] = {{floats + 1, CSCD_SCALAR_FLOAT, 28, 0},
-                                      {columns, CSCD_SCALAR_DOUBLE, sizeof(double), sizeof *columns},
-                                      {objects[2].x0, CSCD_SCALAR_DOUBLE, 0, 0}};
-    assert_int_equal(cscd_mesh_pack(s.mesh, views, packed), CSCD_OK);
+    const cscd_view views[OBJECTS] = {
+        {floats + 1, sizeof floats - 1, 28, 0, CSCD_SCALAR_FLOAT, 1},
+        {columns, sizeof columns, sizeof(double), sizeof *columns, CSCD_SCALAR_DOUBLE, 1},
+        {objects[2].x0, objects[2].vertex_count * sizeof(double[3]), 0, 0, CSCD_SCALAR_DOUBLE, 1}};
+    double *buffer = NULL;
+    const double *packed = NULL;
+    assert_int_equal(views_read(s.context, s.mesh, views, "x0", &buffer, &packed), CSCD_OK);
     for (uint32_t i = 0; i < joined.vertex_count * 3; i++) {
         bool rounded = i < objects[0].vertex_count * 3;
         assert_true(packed[i] == (rounded ? (double)(float)joined.x0[i] : joined.x0[i]));
     }
+    context_free(s.context, buffer);
     tear_down(&s);
+}
+
+static void expect_refused(const object_setting *s, const cscd_view *views, const char *sentence) {
+    cscd_intersections found;
+    assert_int_equal(cscd_detector_check(s->detector, views, &found), CSCD_INVALID_ARGUMENT);
+    assert_non_null(strstr(cscd_context_detail(s->context), sentence));
 }
 
 static void bad_views_are_named(void **state) {
     (void)state;
     make_objects(5);
     object_setting s = set_up(0, CSCD_METHOD_NONE, 1);
-    static double packed[SCENE_VERTICES_MAX * 3];
-    cscd_view views[OBJECTS] = {{.data = objects[0].x0}, {.data = objects[1].x0}, {.data = NULL}};
-    assert_int_equal(cscd_mesh_pack(s.mesh, views, packed), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(s.context), "views[2].data is NULL"));
-    views[2] = (cscd_view){.data = objects[2].x0, .scalar = (cscd_scalar)2};
-    assert_int_equal(cscd_mesh_pack(s.mesh, views, packed), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(s.context), "views[2].scalar is 2"));
-    assert_int_equal(cscd_mesh_pack(s.mesh, NULL, packed), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_mesh_pack(s.mesh, views, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_mesh_pack(NULL, views, packed), CSCD_INVALID_ARGUMENT);
+    cscd_view views[OBJECTS];
+    for (int i = 0; i < OBJECTS; i++) {
+        views[i] = cscd_view_doubles(objects[i].x0, objects[i].vertex_count);
+        views[i].object_count = 1;
+    }
+    cscd_view last = views[OBJECTS - 1];
+    cscd_intersections found;
+    assert_int_equal(cscd_detector_check(s.detector, views, &found), CSCD_OK);
+    views[2].data = NULL;
+    expect_refused(&s, views, "positions[2].data is NULL");
+    views[2] = last;
+    views[2].scalar = (cscd_scalar)2;
+    expect_refused(&s, views, "positions[2].scalar is 2");
+    views[2] = last;
+    views[2].size--;
+    expect_refused(&s, views, "the array is too short");
+    views[2].size++;
+    views[2].object_count = 2;
+    expect_refused(&s, views, "positions[2] is to hold 2 objects, but only 1");
+    views[2].object_count = 0;
+    views[0].object_count = 0; /* so it would hold the vertices of all objects */
+    expect_refused(&s, views, "positions[0] has");
+    expect_refused(&s, NULL, "positions is NULL");
     tear_down(&s);
 }
 

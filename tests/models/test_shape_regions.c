@@ -1,6 +1,7 @@
 /* The regions of the three bodies are as expected with the default procedure. The number of regions hardly
  * depends on that of the triangles, and the time grows with its cube, so a few small counts suffice. */
 #include "cscd/cscd.h"
+#include "tests/support/packed.h"
 #include "tests/support/preprocess/region_check.h"
 #include "tests/support/test.h"
 
@@ -10,7 +11,7 @@ static void check_counts(body_kind kind, uint32_t triangle_count, uint32_t least
     cscd_mesh *mesh = body_mesh(&b, 2);
     cscd_plan *plan;
     double area = 0.0, seen = 0.0;
-    assert_int_equal(cscd_plan_create(mesh, b.positions, NULL, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(mesh, b.positions, NULL, &plan), CSCD_OK);
     assert_int_equal(cscd_plan_method(plan), CSCD_METHOD_CHARGE);
     uint32_t count = cscd_plan_region_count(plan);
     for (uint32_t r = 0; r < count; r++) {

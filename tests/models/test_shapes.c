@@ -2,6 +2,7 @@
  * similar size, and have the intended shape. */
 #include "cscd/cscd.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -62,8 +63,8 @@ static double component_volume(const body *b, const cscd_mesh *mesh, uint32_t co
 static void check_embedded(const body *b, const cscd_mesh *mesh) {
     cscd_detector *detector;
     cscd_intersections found;
-    assert_int_equal(cscd_detector_create(mesh, NULL, NULL, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_check(detector, b->positions, &found), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(check_packed(detector, b->positions, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
     assert_int_equal(found.zero_area_triangles, 0);
     cscd_detector_destroy(detector);
@@ -71,10 +72,10 @@ static void check_embedded(const body *b, const cscd_mesh *mesh) {
 
 static void check_body(body_kind kind, const body *b) {
     const struct expectation *e = &expected[kind];
-    cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     cscd_mesh *mesh;
     uint32_t vertices = 0;
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     assert_int_equal(cscd_mesh_component_count(mesh), e->components);
     for (uint32_t c = 0; c < e->components; c++) {
         cscd_component component = cscd_mesh_component(mesh, c);

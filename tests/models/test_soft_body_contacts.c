@@ -5,6 +5,7 @@
 #include "models/softbody/simulation.h"
 #include "tests/support/models/body_of.h"
 #include "tests/support/models/soft_fixture.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>
@@ -45,12 +46,13 @@ static body parts_surface(double block[3][3], uint32_t *lowest) {
 static two_parts make_parts(double block[3][3]) {
     two_parts p = {0};
     p.surface = parts_surface(block, &p.lowest);
-    const cscd_mesh_desc desc = {p.surface.vertex_count, p.surface.triangle_count, p.surface.triangles};
+    const cscd_object_desc desc =
+        cscd_object_of_triangles(p.surface.vertex_count, p.surface.triangle_count, p.surface.triangles);
     p.soft = soft_body_of(&p.surface, spacing, &rubber);
     p.start = body_allocate(p.surface.vertex_count, 3 * sizeof *p.start);
     assert_int_equal(cscd_context_create(NULL, &p.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(p.context, &desc, &p.mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(p.mesh, NULL, NULL, &p.detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(p.context, &desc, 1, &p.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(p.mesh, NULL, NULL, &p.detector), CSCD_OK);
     p.contacts = self_contacts_make(p.mesh, p.surface.positions, near);
     return p;
 }
@@ -99,7 +101,7 @@ static void place_block(two_parts *p, double above, double x, double y) {
 
 static cscd_contacts find_contacts(two_parts *p, const double *start, const double *end) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(p->detector, start, end, &found), CSCD_OK);
+    assert_int_equal(step_packed(p->detector, start, end, &found), CSCD_OK);
     return found;
 }
 
@@ -277,7 +279,7 @@ static void throw_block(two_parts *p, const double velocity[3]) {
 
 static uint32_t count_intersections(two_parts *p) {
     cscd_intersections intersections;
-    assert_int_equal(cscd_detector_check(p->detector, p->soft.vertices, &intersections), CSCD_OK);
+    assert_int_equal(check_packed(p->detector, p->soft.vertices, &intersections), CSCD_OK);
     return (uint32_t)intersections.count;
 }
 

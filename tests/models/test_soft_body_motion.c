@@ -95,9 +95,9 @@ static void mirror_images_are_no_motions(void **state) {
 
 static cscd_mesh *mesh_of(cscd_context *context, uint32_t vertex_count, uint32_t triangle_count,
                           const uint32_t *triangles) {
-    const cscd_mesh_desc desc = {vertex_count, triangle_count, triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(vertex_count, triangle_count, triangles);
     cscd_mesh *mesh;
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     return mesh;
 }
 

@@ -1,5 +1,7 @@
 /* Pairs to leave out: a list does what the callback does, and seams make a split surface whole again. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -67,8 +69,8 @@ static size_t compare_with_callback(const ignored_pairs *list, cscd_method metho
     by_callback.ignore_user = (void *)list;
     rig l = rig_create(&whole, 1, &by_list), c = rig_create(&whole, 1, &by_callback);
     cscd_intersections crossing_l, crossing_c;
-    assert_int_equal(cscd_detector_check(l.detector, whole.x1, &crossing_l), CSCD_OK);
-    assert_int_equal(cscd_detector_check(c.detector, whole.x1, &crossing_c), CSCD_OK);
+    assert_int_equal(check_packed(l.detector, whole.x1, &crossing_l), CSCD_OK);
+    assert_int_equal(check_packed(c.detector, whole.x1, &crossing_c), CSCD_OK);
     assert_int_equal(crossing_l.count, crossing_c.count);
     if (crossing_l.count > 0)
         assert_memory_equal(crossing_l.items, crossing_c.items, crossing_l.count * sizeof *crossing_l.items);
@@ -187,8 +189,8 @@ static size_t compare_split(cscd_method method, const ignored_pairs *seams) {
     options.seam_count = seams->count;
     rig sewn = rig_create(&split, 2, &options);
     cscd_intersections truth, listed;
-    assert_int_equal(cscd_detector_check(one.detector, whole.x1, &truth), CSCD_OK);
-    assert_int_equal(cscd_detector_check(sewn.detector, split.x1, &listed), CSCD_OK);
+    assert_int_equal(check_packed(one.detector, whole.x1, &truth), CSCD_OK);
+    assert_int_equal(check_packed(sewn.detector, split.x1, &listed), CSCD_OK);
     assert_int_equal(listed.count, truth.count);
     if (truth.count > 0) assert_memory_equal(listed.items, truth.items, truth.count * sizeof *truth.items);
     size_t expected_count, found_count;
@@ -225,7 +227,7 @@ static void seams_make_a_split_surface_whole(void **state) {
 static void a_seam_may_gape(void **state) {
     (void)state;
     const uint32_t triangles[] = {0, 1, 2, 3, 4, 5}, seams[] = {0, 3, 1, 4};
-    const cscd_mesh_desc desc = {6, 2, triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(6, 2, triangles);
     const double x[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.01, 1, 0, 0.01, 0, -1, 0};
     cscd_context *context;
     cscd_mesh *mesh;
@@ -233,15 +235,15 @@ static void a_seam_may_gape(void **state) {
     cscd_detector_options options = cscd_detector_defaults();
     cscd_proximities near;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_near(detector, x, 0.05, &near), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(find_near_packed(detector, x, 0.05, &near), CSCD_OK);
     assert_true(near.count > 0);
     cscd_detector_destroy(detector);
     options.seams = seams;
     options.seam_count = 2;
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_near(detector, x, 0.05, &near), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(find_near_packed(detector, x, 0.05, &near), CSCD_OK);
     assert_int_equal(near.count, 0);
     cscd_detector_destroy(detector);
     cscd_mesh_destroy(mesh);
@@ -251,24 +253,24 @@ static void a_seam_may_gape(void **state) {
 static void mistakes_are_named(void **state) {
     (void)state;
     const uint32_t triangles[] = {0, 1, 2}, pairs[] = {0, 0, 0, 3};
-    const cscd_mesh_desc desc = {3, 1, triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(3, 1, triangles);
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector = NULL;
     cscd_detector_options options = cscd_detector_defaults();
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     options.ignored = pairs;
     options.ignored_count = 2;
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_string_equal(cscd_context_detail(context), "pair 1 of ignored names triangle 3, but there are 1");
     options.ignored_count = 0;
     options.seams = pairs;
     options.seam_count = 2;
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_string_equal(cscd_context_detail(context), "pair 1 of seams names vertex 3, but there are 3");
     options.seams = NULL;
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_string_equal(cscd_context_detail(context), "seams is NULL, but there are to be 2 pairs");
     assert_null(detector);
     cscd_mesh_destroy(mesh);

@@ -1,5 +1,6 @@
 /* The kernels behind the feature queue: lane by lane what the scalar functions say, on every level that this
  * machine has; and whole intervals, the same on all levels and for all thread counts. */
+#include "cscd/research.h"
 #include "runtime/ccd/ccd_kernels.h"
 #include "runtime/ccd/coplanarity.h"
 #include "runtime/ccd/cubic.h"
@@ -7,6 +8,7 @@
 #include "runtime/ccd/separating_axis.h"
 #include "tests/support/ccd/elementary_generator.h"
 #include "tests/support/levels.h"
+#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -227,7 +229,8 @@ static scene interval;
 static answer detect_contacts(cscd_simd simd, uint32_t threads, cscd_method method, double distance) {
     cscd_context_options options = cscd_context_defaults();
     cscd_detector_options wanted = cscd_detector_defaults();
-    cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(interval.vertex_count, interval.triangle_count, interval.triangles);
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     cscd_detector *detector = NULL;
@@ -237,9 +240,9 @@ static answer detect_contacts(cscd_simd simd, uint32_t threads, cscd_method meth
     wanted.method = method;
     wanted.min_separation = distance;
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(mesh, NULL, &wanted, &detector), CSCD_OK);
-    assert_int_equal(cscd_detector_step(detector, interval.x0, interval.x1, &found), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &wanted, &detector), CSCD_OK);
+    assert_int_equal(step_packed(detector, interval.x0, interval.x1, &found), CSCD_OK);
     answer out = {malloc((found.count + 1) * sizeof *out.contacts), found.count,
                   cscd_detector_counters(detector)};
     assert_non_null(out.contacts);

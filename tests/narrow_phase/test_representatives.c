@@ -80,9 +80,9 @@ static size_t check_mesh(const cscd_mesh *mesh) {
 
 static size_t check_triangles(cscd_context *context, uint32_t vertex_count, uint32_t count,
                               const uint32_t (*triangles)[3]) {
-    const cscd_mesh_desc desc = {vertex_count, count, triangles[0]};
+    const cscd_object_desc desc = cscd_object_of_triangles(vertex_count, count, triangles[0]);
     cscd_mesh *mesh = NULL;
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     size_t orphans = check_mesh(mesh);
     cscd_mesh_destroy(mesh);
     return orphans;
@@ -138,11 +138,11 @@ static void fans_have_too_many(void **state) {
         triangles[t][1] = 1 + t;
         triangles[t][2] = 2 + t;
     }
-    const cscd_mesh_desc desc = {FAN + 2, FAN, triangles[0]};
+    const cscd_object_desc desc = cscd_object_of_triangles(FAN + 2, FAN, triangles[0]);
     orphan_pairs orphans;
     bool too_many = false;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     assert_int_equal(orphan_pairs_create(mesh, &orphans, &too_many), CSCD_OK);
     assert_true(too_many && orphans.vf_count == 0 && orphans.ee_count == 0);
     cscd_mesh_destroy(mesh);

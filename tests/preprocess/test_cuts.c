@@ -23,11 +23,11 @@ typedef struct field {
 static field f;
 
 static void open_field(const shape *s) {
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles[0]};
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
     memset(&f, 0, sizeof f);
     for (uint32_t t = 0; t < TRIANGLES_MAX; t++) f.areas[t] = 1.0;
     assert_int_equal(cscd_context_create(NULL, &f.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f.context, &desc, &f.mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(f.context, &desc, 1, &f.mesh), CSCD_OK);
     assert_int_equal(dual_graph_build(f.mesh, &f.graph), CSCD_OK);
     assert_int_equal(growth_create(f.mesh, &f.graph, f.areas, &f.growth), CSCD_OK);
 }

@@ -27,8 +27,8 @@ static int close_context(void **state) {
 
 static cscd_mesh *mesh_of(const shape *s) {
     cscd_mesh *mesh = NULL;
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles[0]};
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles[0]);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     return mesh;
 }
 

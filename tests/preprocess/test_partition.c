@@ -1,5 +1,6 @@
 /* Partitions: parts, how many cells each gets, and cells that are connected and hold every vertex once. */
 #include "src/mesh/partition.h"
+#include "tests/support/packed.h"
 #include "tests/support/preprocess/partition_check.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
@@ -91,13 +92,13 @@ static void random_scenes(void **state) {
             cscd_plan *plan = NULL;
             plan_options.method = CSCD_METHOD_KMEANS;
             plan_options.k = (uint32_t)random_integer(1, 60);
-            assert_int_equal(cscd_plan_create(mesh, b.positions, &plan_options, &plan), CSCD_OK);
+            assert_int_equal(plan_create_packed(mesh, b.positions, &plan_options, &plan), CSCD_OK);
             cscd_partition_options options = with_cells((uint32_t)random_integer(0, 20));
             options.within = random_integer(0, 1) == 1;
             options.normal_weight = random_between(0.0, 3.0);
             cscd_partition *partition = partition_of(mesh, plan, b.positions, &options);
             assert_int_equal(cscd_partition_part_count(partition), cscd_plan_region_count(plan));
-            assert_int_equal(cscd_partition_renew(partition, s.x1, UINT32_MAX), CSCD_OK);
+            assert_int_equal(partition_renew_packed(partition, s.x1, UINT32_MAX), CSCD_OK);
             check_partition(partition);
             cscd_partition_destroy(partition);
             cscd_plan_destroy(plan);
@@ -189,7 +190,7 @@ static void renewing_one_part(void **state) {
     for (uint32_t v = 0; v < r.b.vertex_count; v++) {
         if (r.partition->vertex_parts[v] == 1) r.b.positions[v * 3 + 2] *= 5.0;
     }
-    assert_int_equal(cscd_partition_renew(r.partition, r.b.positions, 1), CSCD_OK);
+    assert_int_equal(partition_renew_packed(r.partition, r.b.positions, 1), CSCD_OK);
     check_partition(r.partition);
     cscd_part after = cscd_partition_part(r.partition, 1), last = cscd_partition_part(r.partition, 2);
     assert_true(after.cell_count > before[1].cell_count && after.radius > before[1].radius);
@@ -202,7 +203,7 @@ static void renewing_one_part(void **state) {
     assert_true(r.partition->generation == 2 && r.partition->part_generations[1] == 2);
     assert_true(r.partition->part_generations[0] == 1 && r.partition->part_generations[2] == 1);
     cscd_partition *fresh = partition_of(r.mesh, NULL, r.b.positions, NULL);
-    assert_int_equal(cscd_partition_renew(r.partition, r.b.positions, UINT32_MAX), CSCD_OK);
+    assert_int_equal(partition_renew_packed(r.partition, r.b.positions, UINT32_MAX), CSCD_OK);
     assert_memory_equal(fresh->vertex_cells, r.partition->vertex_cells, r.b.vertex_count * sizeof *cells);
     cscd_partition_destroy(fresh);
     free(cells);
@@ -218,14 +219,15 @@ static void objects_of_scenes(void **state) {
     const body *bodies[4] = {&chain, &ball, &ball, &ball};
     cscd_object_desc descs[4];
     for (uint32_t i = 0; i < 4; i++) {
-        descs[i] = (cscd_object_desc){
-            {bodies[i]->vertex_count, bodies[i]->triangle_count, bodies[i]->triangles}, i >= 2};
+        descs[i] = cscd_object_of_triangles(bodies[i]->vertex_count, bodies[i]->triangle_count,
+                                            bodies[i]->triangles);
+        descs[i].obstacle = i >= 2;
         body_append(&all, bodies[i], (double[3]){0, 5.0 * i, 0});
     }
     cscd_context *context = NULL;
     cscd_mesh *mesh = NULL;
     assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create_scene(context, descs, 4, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, descs, 4, &mesh), CSCD_OK);
     cscd_partition_options options = cscd_partition_defaults();
     options.within = true;
     cscd_partition *partition = partition_of(mesh, NULL, all.positions, &options);
@@ -251,7 +253,7 @@ static void objects_of_scenes(void **state) {
 static void check_refused(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                           const cscd_partition_options *options, const char *word) {
     cscd_partition *partition = NULL;
-    assert_int_equal(cscd_partition_create(mesh, plan, positions, options, &partition),
+    assert_int_equal(partition_create_packed(mesh, plan, positions, options, &partition),
                      CSCD_INVALID_ARGUMENT);
     assert_null(partition);
     if (strstr(cscd_context_detail(mesh->context), word) == NULL)
@@ -265,7 +267,7 @@ static void bad_arguments(void **state) {
     cscd_plan_options plan_options = cscd_plan_defaults();
     cscd_plan *plan = NULL;
     plan_options.method = CSCD_METHOD_SINGLE;
-    assert_int_equal(cscd_plan_create(other_mesh, other.positions, &plan_options, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(other_mesh, other.positions, &plan_options, &plan), CSCD_OK);
     const double weights[] = {NAN, -1.0, INFINITY, 2e6}, shares[] = {NAN, -1e-3, 1.0, INFINITY};
     for (int i = 0; i < 4; i++) {
         cscd_partition_options options = cscd_partition_defaults();
@@ -283,15 +285,16 @@ static void bad_arguments(void **state) {
     check_refused(mesh, plan, b.positions, NULL, "another mesh");
     check_refused(mesh, NULL, NULL, NULL, "positions is NULL");
     cscd_partition *partition = NULL;
-    assert_int_equal(cscd_partition_create(NULL, NULL, b.positions, NULL, &partition), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_partition_create(mesh, NULL, b.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_create_packed(NULL, NULL, b.positions, NULL, &partition),
+                     CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_create_packed(mesh, NULL, b.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
     partition = partition_of(mesh, NULL, b.positions, NULL);
-    assert_int_equal(cscd_partition_renew(NULL, b.positions, 0), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_partition_renew(partition, b.positions, 1), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_renew_packed(NULL, b.positions, 0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_renew_packed(partition, b.positions, 1), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(mesh->context), "part is 1"));
-    assert_int_equal(cscd_partition_renew(partition, NULL, 0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_renew_packed(partition, NULL, 0), CSCD_INVALID_ARGUMENT);
     b.positions[4] = NAN;
-    assert_int_equal(cscd_partition_renew(partition, b.positions, 0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_renew_packed(partition, b.positions, 0), CSCD_INVALID_ARGUMENT);
     check_partition(partition);
     check_refused(mesh, NULL, b.positions, NULL, "vertex 1 has y");
     b.positions[4] = 0x1p301;

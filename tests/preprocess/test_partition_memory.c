@@ -1,5 +1,6 @@
 /* Partitions: every allocation fails once; nothing leaks, and a partition that cannot be renewed stays. */
 #include "tests/support/counting_allocator.h"
+#include "tests/support/packed.h"
 #include "tests/support/preprocess/partition_check.h"
 #include "tests/support/test.h"
 
@@ -18,12 +19,13 @@ static void fixture_begin(fixture *f) {
     f->counter = counting_allocator_start();
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(&f->counter);
-    cscd_mesh_desc desc = {f->shape.vertex_count, f->shape.triangle_count, f->shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(f->shape.vertex_count, f->shape.triangle_count, f->shape.triangles);
     cscd_plan_options plan_options = cscd_plan_defaults();
     plan_options.method = CSCD_METHOD_KMEANS;
     assert_int_equal(cscd_context_create(&options, &f->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(f->context, &desc, &f->mesh), CSCD_OK);
-    assert_int_equal(cscd_plan_create(f->mesh, f->shape.positions, &plan_options, &f->plan), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(f->context, &desc, 1, &f->mesh), CSCD_OK);
+    assert_int_equal(plan_create_packed(f->mesh, f->shape.positions, &plan_options, &f->plan), CSCD_OK);
 }
 
 static void fixture_end(fixture *f) {
@@ -55,7 +57,7 @@ static void create_without_memory(void **state) {
     for (;; failures++) {
         cscd_partition *partition = NULL;
         f.counter.fail_at = f.counter.calls + failures;
-        cscd_status status = cscd_partition_create(f.mesh, f.plan, f.shape.positions, &options, &partition);
+        cscd_status status = partition_create_packed(f.mesh, f.plan, f.shape.positions, &options, &partition);
         if (status == CSCD_OK) {
             check_partition(partition);
             cscd_partition_destroy(partition);
@@ -75,13 +77,14 @@ static void renew_without_memory(void **state) {
     fixture_begin(&f);
     cscd_partition_options options = watched_within();
     cscd_partition *partition = NULL;
-    assert_int_equal(cscd_partition_create(f.mesh, f.plan, f.shape.positions, &options, &partition), CSCD_OK);
+    assert_int_equal(partition_create_packed(f.mesh, f.plan, f.shape.positions, &options, &partition),
+                     CSCD_OK);
     uint32_t cells = cscd_partition_cell_count(partition);
     size_t bytes = cscd_context_bytes(f.context), failures = 0;
     for (uint32_t v = 0; v < f.shape.vertex_count; v++) f.shape.positions[v * 3] *= 3.0;
     for (;; failures++) {
         f.counter.fail_at = f.counter.calls + failures;
-        cscd_status status = cscd_partition_renew(partition, f.shape.positions, 1);
+        cscd_status status = partition_renew_packed(partition, f.shape.positions, 1);
         if (status == CSCD_OK) break;
         check_failure(&f, status, bytes);
         assert_true(cscd_partition_cell_count(partition) == cells && partition->generation == 1);

@@ -1,6 +1,8 @@
 /* Plans through the public API: every method, parts and their errors, the mesh's hash, refusals. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/models/body_of.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -14,9 +16,10 @@ static cscd_mesh *mesh;
 static int make_body(void **state) {
     (void)state;
     shape = body_of(BODY_DUMBBELL, 1500);
-    cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
     if (cscd_context_create(NULL, &context) != CSCD_OK) return -1;
-    return cscd_mesh_create(context, &desc, &mesh) == CSCD_OK ? 0 : -1;
+    return cscd_mesh_create(context, &desc, 1, &mesh) == CSCD_OK ? 0 : -1;
 }
 
 static int destroy_body(void **state) {
@@ -32,7 +35,7 @@ static cscd_plan *plan_by(cscd_method method, uint32_t k) {
     cscd_plan_options options = cscd_plan_defaults();
     options.method = method;
     options.k = k;
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_OK);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_OK);
     return plan;
 }
 
@@ -95,7 +98,7 @@ static void from_parts(void **state) {
     uint32_t *regions = regions_of(plan);
     double *points = points_of(plan);
     cscd_plan_parts parts = {CSCD_METHOD_KMEANS, cscd_plan_region_count(plan), regions, points, NULL, NULL};
-    assert_int_equal(cscd_plan_create_from_parts(mesh, shape.positions, &parts, &again), CSCD_OK);
+    assert_int_equal(plan_from_parts_packed(mesh, shape.positions, &parts, &again), CSCD_OK);
     for (uint32_t r = 0; r < cscd_plan_region_count(plan); r++) {
         cscd_region a = cscd_plan_region(plan, r), b = cscd_plan_region(again, r);
         assert_true(a.component == b.component && a.triangle_count == b.triangle_count && a.area == b.area &&
@@ -110,7 +113,7 @@ static void from_parts(void **state) {
 
 static void expect_refusal(const cscd_plan_parts *parts, const char *word) {
     cscd_plan *plan = NULL;
-    assert_int_equal(cscd_plan_create_from_parts(mesh, shape.positions, parts, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_from_parts_packed(mesh, shape.positions, parts, &plan), CSCD_INVALID_ARGUMENT);
     assert_null(plan);
     assert_non_null(strstr(cscd_context_detail(context), word));
 }
@@ -158,24 +161,24 @@ static void bad_options(void **state) {
     (void)state;
     cscd_plan *plan = NULL;
     cscd_plan_options options = {0};
-    assert_int_equal(cscd_plan_create(NULL, shape.positions, NULL, &plan), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_plan_create(mesh, NULL, NULL, &plan), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(NULL, shape.positions, NULL, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, NULL, NULL, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(context), "cscd_plan_defaults"));
     options = cscd_plan_defaults();
     options.method = CSCD_METHOD_NONE;
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
     options = cscd_plan_defaults();
     options.threshold = NAN;
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
     options = cscd_plan_defaults();
     options.method = CSCD_METHOD_KMEANS;
     options.k = 0;
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);
     options = cscd_plan_defaults();
     options.memory_limit = 1000;
-    assert_int_equal(cscd_plan_create(mesh, shape.positions, &options, &plan), CSCD_OUT_OF_MEMORY);
+    assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_OUT_OF_MEMORY);
     assert_non_null(strstr(cscd_context_detail(context), "GiB"));
     assert_null(plan);
 }
@@ -183,21 +186,21 @@ static void bad_options(void **state) {
 static void plans_fit_their_mesh(void **state) {
     static const uint32_t tetrahedron[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
     (void)state;
-    cscd_mesh_desc desc = {4, 4, tetrahedron};
+    cscd_object_desc desc = cscd_object_of_triangles(4, 4, tetrahedron);
     cscd_mesh *other = NULL;
     cscd_detector *detector = NULL;
     cscd_detector_options options = cscd_detector_defaults();
     cscd_plan *plan = plan_by(CSCD_METHOD_SINGLE, 0);
-    assert_int_equal(cscd_mesh_create(context, &desc, &other), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &other), CSCD_OK);
     assert_true(cscd_mesh_hash(other) != cscd_mesh_hash(mesh));
-    assert_int_equal(cscd_detector_create(other, plan, NULL, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(other, plan, NULL, &detector), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(context), "another mesh"));
     options.method = CSCD_METHOD_CHARGE;
-    assert_int_equal(cscd_detector_create(mesh, plan, &options, &detector), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_detector_create(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(mesh, plan, &options, &detector), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_INVALID_ARGUMENT);
     assert_null(detector);
     options.method = CSCD_METHOD_NONE;
-    assert_int_equal(cscd_detector_create(mesh, plan, &options, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, plan, &options, &detector), CSCD_OK);
     cscd_detector_destroy(detector);
     cscd_plan_destroy(plan);
     cscd_mesh_destroy(other);

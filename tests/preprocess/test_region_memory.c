@@ -69,9 +69,10 @@ static void every_allocation_may_fail(void **state) {
         cscd_mesh *mesh = NULL;
         cscd_context_options options = cscd_context_defaults();
         options.allocator = counting_allocator_interface(&counter);
-        cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+        cscd_object_desc desc =
+            cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
         assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+        assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
         size_t bytes = cscd_context_bytes(context), failures = 0;
         cscd_status status = CSCD_OUT_OF_MEMORY;
         for (size_t n = 0; status != CSCD_OK; n++) {

@@ -1,5 +1,6 @@
 /* The parts of a replay that a report keeps: contacts, orientations, detector points, and every n-th frame
  * of long recordings. */
+#include "tests/support/packed.h"
 #include "tests/support/report/page_reader.h"
 #include "tests/support/report/report_rig.h"
 #include "tests/support/test.h"
@@ -104,8 +105,8 @@ static void expect_replay(const report_rig *rig) {
     found.points = malloc(triangles * intervals * sizeof(double[6]));
     for (uint32_t k = 0; k < intervals; k++) {
         cscd_contacts contacts;
-        assert_int_equal(cscd_detector_step(rig->detector, recorded_position(&rig->shape, k, 0),
-                                            recorded_position(&rig->shape, k + 1, 0), &contacts),
+        assert_int_equal(step_packed(rig->detector, recorded_position(&rig->shape, k, 0),
+                                     recorded_position(&rig->shape, k + 1, 0), &contacts),
                          CSCD_OK);
         for (size_t i = 0; i < contacts.count; i++) expect_contact(rig, k, &contacts.items[i]);
         expect_marks(rig);

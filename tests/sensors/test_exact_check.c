@@ -258,9 +258,10 @@ static void every_allocation_fails_once(void **state) {
     cscd_context_options options = cscd_context_defaults();
     options.allocator = counting_allocator_interface(&counter);
     options.thread_count = 1;
-    cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(interval.vertex_count, interval.triangle_count, interval.triangles);
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     cscd_partition *p = hand_partition_create(mesh, interval.x0, NULL, 2, 9);
     for (uint32_t i = 0; i < 128; i++) cells[i] = i;
     uint32_t count = p->parts[0].cell_count;

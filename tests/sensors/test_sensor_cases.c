@@ -1,4 +1,5 @@
 /* The cases of the thesis's proofs: two and more, convex and concave, of equal and unequal size. */
+#include "tests/support/packed.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -77,7 +78,7 @@ static bool contact_between(const cscd_mesh *mesh, const cscd_contact *c, uint32
 static bool detector_contact(cscd_detector *detector, const cscd_mesh *mesh, const double *x0,
                              const double *x1, uint32_t a, uint32_t b, double *toi) {
     cscd_contacts contacts;
-    assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
+    assert_int_equal(step_packed(detector, x0, x1, &contacts), CSCD_OK);
     bool any = false;
     for (size_t i = 0; i < contacts.count; i++) {
         if (!contact_between(mesh, &contacts.items[i], a, b)) continue;
@@ -92,7 +93,7 @@ static first_frames run_meeting(const meeting *m, const sensor_setup *setup, uin
     first_frames first = {-1, -1, 0.0, 0.0};
     sensor_rig r = sensor_rig_create(&s, setup);
     cscd_detector *detector;
-    assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &detector), CSCD_OK);
     for (int f = 0; f < FRAMES && first.truly < 0; f++) {
         positions_at(m, 1.1 * f / FRAMES, x0);
         positions_at(m, 1.1 * (f + 1) / FRAMES, x1);

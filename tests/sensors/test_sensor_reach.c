@@ -1,6 +1,7 @@
 /* Checks the default mu: two parts that touch have two vertices nearer than mu at the start or at the end,
  * and no smaller bound would do. Also checks how far around them particles look. */
 #include "runtime/sensors/sensors.h"
+#include "tests/support/packed.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -62,7 +63,7 @@ static cscd_detector *detector_of(const sensor_rig *r) {
     cscd_detector *detector = NULL;
     options.method = CSCD_METHOD_NONE;
     options.start = CSCD_START_UNKNOWN;
-    assert_int_equal(cscd_detector_create(r->mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, NULL, &options, &detector), CSCD_OK);
     return detector;
 }
 
@@ -72,7 +73,7 @@ static double largest_in_mu(const sensor_rig *r, size_t *count) {
     cscd_detector *detector = detector_of(r);
     cscd_contacts contacts;
     double largest = 0.0;
-    assert_int_equal(cscd_detector_step(detector, s.x0, s.x1, &contacts), CSCD_OK);
+    assert_int_equal(step_packed(detector, s.x0, s.x1, &contacts), CSCD_OK);
     for (size_t i = 0; i < contacts.count; i++)
         largest = fmax(largest, nearest_in_mu(r, &reach, &contacts.items[i]));
     *count += contacts.count;

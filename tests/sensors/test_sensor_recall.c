@@ -1,6 +1,7 @@
 /* Compares the contacts that sensors find with those of the detector, on random scenes. Every contact that
  * sensors report must be one. They do not promise to report all; the test prints the share that they reach,
  * and asserts a smaller one. */
+#include "tests/support/packed.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -49,7 +50,7 @@ static bool between_objects(const cscd_mesh *mesh, const cscd_contact *c) {
 static double true_toi(const sensor_rig *r, cscd_detector *detector) {
     cscd_contacts contacts;
     double first = INFINITY;
-    assert_int_equal(cscd_detector_step(detector, x0, x1, &contacts), CSCD_OK);
+    assert_int_equal(step_packed(detector, x0, x1, &contacts), CSCD_OK);
     for (size_t i = 0; i < contacts.count; i++)
         if (between_objects(r->mesh, &contacts.items[i])) first = fmin(first, contacts.items[i].toi);
     return first;
@@ -118,7 +119,7 @@ static void count_family(scene_family family, const sensor_setup *setup, const c
         cscd_detector *detector;
         scene_make(family, seed, &s);
         sensor_rig r = sensor_rig_create(&s, setup);
-        assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &detector), CSCD_OK);
+        assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &detector), CSCD_OK);
         for (int f = 0; f < FRAMES; f++) {
             positions_at(f, FRAMES, x0);
             positions_at(f + 1, FRAMES, x1);
@@ -153,7 +154,7 @@ static void most_contacts_are_found_and_all_are_true(void **state) {
 /* With a particle on every vertex, the default mu misses no contact, however fast objects fly. */
 static bool expect_found(const sensor_rig *r) {
     cscd_detector *detector;
-    assert_int_equal(cscd_detector_create(r->mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, NULL, NULL, &detector), CSCD_OK);
     double toi = true_toi(r, detector);
     cscd_warnings warnings = sensor_rig_step(r, x0, x1);
     const cscd_warning *warning = find_warning(&warnings, 0, 1), *found = find_contact(&warnings, 0, 1);

@@ -37,9 +37,9 @@ static object_stage stage_of(const char *name) {
 }
 
 static cscd_mesh *mesh_of(const body *b) {
-    const cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    const cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     cscd_mesh *mesh;
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     return mesh;
 }
 

@@ -1,4 +1,5 @@
 /* Particle sensors: options, cells, repetition, mu and R_eff, renewal, and what is found on random scenes. */
+#include "tests/support/packed.h"
 #include "tests/support/sensors/sensor_rig.h"
 #include "tests/support/test.h"
 
@@ -28,7 +29,7 @@ static double vertex_distance(const double *x, uint32_t a, uint32_t b) {
 
 static void expect_refused(const sensor_rig *r, const cscd_sensor_options *options, const char *name) {
     cscd_sensors *made = NULL;
-    assert_int_equal(cscd_sensors_create(r->mesh, r->partition, options, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(r->mesh, r->partition, options, &made), CSCD_INVALID_ARGUMENT);
     assert_null(made);
     assert_non_null(strstr(cscd_context_detail(r->context), name));
 }
@@ -69,17 +70,17 @@ static void bad_arguments_are_named(void **state) {
     sensor_rig r = sensor_rig_create(&s, NULL), other = sensor_rig_create(&s, NULL);
     cscd_sensors *made = NULL;
     cscd_warnings found;
-    assert_int_equal(cscd_sensors_create(NULL, r.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_sensors_create(r.mesh, NULL, NULL, &made), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_sensors_create(r.mesh, r.partition, NULL, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_sensors_create(r.mesh, other.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(NULL, r.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(r.mesh, NULL, NULL, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(r.mesh, r.partition, NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(r.mesh, other.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(r.context), "another mesh"));
-    assert_int_equal(cscd_sensors_step(NULL, s.x0, s.x0, &found), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x0, NULL), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_sensors_step(r.sensors, NULL, s.x0, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_step_packed(NULL, s.x0, s.x0, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x0, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_step_packed(r.sensors, NULL, s.x0, &found), CSCD_INVALID_ARGUMENT);
     s.x1[7] = NAN;
-    assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x1, &found), CSCD_INVALID_ARGUMENT);
-    assert_non_null(strstr(cscd_context_detail(r.context), "end"));
+    assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x1, &found), CSCD_INVALID_ARGUMENT);
+    assert_non_null(strstr(cscd_context_detail(r.context), "x1"));
     sensor_rig_destroy(&other);
     sensor_rig_destroy(&r);
 }
@@ -319,7 +320,7 @@ static void new_cells_are_taken_up(void **state) {
     for (uint32_t p = 0; p < cscd_partition_part_count(r.partition); p++) {
         if (cscd_sensors_renewal(r.sensors, p) == CSCD_RENEWAL_NONE) continue;
         due++;
-        assert_int_equal(cscd_partition_renew(r.partition, s.x1, p), CSCD_OK);
+        assert_int_equal(partition_renew_packed(r.partition, s.x1, p), CSCD_OK);
         assert_false(cscd_sensors_apart(r.sensors, 0, 1)); /* renewed cells have no bounds yet */
     }
     assert_int_equal(due, found.renewals_due);

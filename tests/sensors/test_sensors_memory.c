@@ -3,6 +3,7 @@
 #include "cscd/cscd.h"
 #include "cscd/sensors.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/packed.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -23,12 +24,12 @@ static cscd_status create_sensed(counting_allocator *counter, cscd_sensor_method
     options.thread_count = 1;
     cscd_sensor_options sensor_options = cscd_sensor_defaults();
     sensor_options.method = method;
-    cscd_mesh_desc desc = {s.vertex_count, s.triangle_count, s.triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
     cscd_status status = cscd_context_create(&options, &out->context);
-    if (status == CSCD_OK) status = cscd_mesh_create(out->context, &desc, &out->mesh);
-    if (status == CSCD_OK) status = cscd_partition_create(out->mesh, NULL, s.x0, NULL, &out->partition);
+    if (status == CSCD_OK) status = cscd_mesh_create(out->context, &desc, 1, &out->mesh);
+    if (status == CSCD_OK) status = partition_create_packed(out->mesh, NULL, s.x0, NULL, &out->partition);
     if (status == CSCD_OK)
-        status = cscd_sensors_create(out->mesh, out->partition, &sensor_options, &out->sensors);
+        status = sensors_create_here(out->mesh, out->partition, &sensor_options, &out->sensors);
     return status;
 }
 
@@ -44,11 +45,11 @@ static void destroy_sensed(sensed *r) {
  * given. */
 static cscd_status step_twice(const sensed *r, cscd_warning *warning) {
     cscd_warnings found = {NULL, 4711, 0};
-    cscd_status status = cscd_sensors_step(r->sensors, s.x0, s.x1, &found);
+    cscd_status status = sensors_step_packed(r->sensors, s.x0, s.x1, &found);
     if (status == CSCD_OUT_OF_MEMORY) {
         assert_int_equal(found.count, 4711);
         assert_non_null(strstr(cscd_context_detail(r->context), "out of memory"));
-        assert_int_equal(cscd_sensors_step(r->sensors, s.x0, s.x1, &found), CSCD_OK);
+        assert_int_equal(sensors_step_packed(r->sensors, s.x0, s.x1, &found), CSCD_OK);
     }
     assert_int_equal(found.count, 1);
     *warning = found.items[0];
@@ -100,7 +101,7 @@ static void steady_steps_allocate_nothing(void **state) {
         for (int frame = 0; frame < 40; frame++) {
             size_t before = counter.calls;
             const double *start = frame % 2 ? s.x1 : s.x0, *end = frame % 2 ? s.x0 : s.x1;
-            assert_int_equal(cscd_sensors_step(r.sensors, start, end, &found), CSCD_OK);
+            assert_int_equal(sensors_step_packed(r.sensors, start, end, &found), CSCD_OK);
             if (frame > 20) assert_int_equal(counter.calls, before);
         }
         destroy_sensed(&r);
@@ -122,7 +123,7 @@ static cscd_sensor_counters work_of(int pairs) {
         for (uint32_t v = first; v < s.vertex_count; v++) s.x1[v * 3] -= i % 2 ? 0.2 : 0.0;
     }
     assert_int_equal(create_sensed(&counter, CSCD_SENSORS_CELLS, &r), CSCD_OK);
-    assert_int_equal(cscd_sensors_step(r.sensors, s.x0, s.x1, &found), CSCD_OK);
+    assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x1, &found), CSCD_OK);
     assert_int_equal(found.count, pairs);
     cscd_sensor_counters counters = cscd_sensors_counters(r.sensors);
     destroy_sensed(&r);

@@ -2,6 +2,7 @@
 #include "runtime/detector/contact_list.h"
 #include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -23,7 +24,7 @@ static size_t compare_share(const rig *r, const rig *reference, const candidates
     interval_search search = interval_search_begin(&d->space, interval.x0, end, d->limit);
     assert_int_equal(candidates_test(c, &search), CSCD_OK);
     assert_int_equal(contact_list_collect(&d->space, &d->exclusions, buffer, &counters, &found), CSCD_OK);
-    assert_int_equal(cscd_detector_step(reference->detector, interval.x0, end, &expected), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, interval.x0, end, &expected), CSCD_OK);
     assert_int_equal(found.count, expected.count);
     if (found.count > 0) assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
     return found.count;

@@ -1,6 +1,7 @@
 /* Displacement bounds: motions into the corners of what they allow keep all pairs apart, by rational numbers. */
 #include "runtime/solver/displacement_bounds.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
@@ -126,7 +127,7 @@ static void check_bounds(const rig *r, double radius, double apart, cscd_scalar 
     size_t listed = find_bounds(r, radius, scalar, bounds).count, blocked = 0;
     double half = half_of(radius, scalar);
     cscd_proximities near;
-    assert_int_equal(cscd_detector_near(r->detector, interval.x0, (radius + apart) * (1.0 + 0x1p-16), &near),
+    assert_int_equal(find_near_packed(r->detector, interval.x0, (radius + apart) * (1.0 + 0x1p-16), &near),
                      CSCD_OK);
     find_nearest(r, &near);
     memset(explained, 0, sizeof explained);
@@ -223,11 +224,14 @@ static void obstacles_have_bounds_for_what_they_may_touch(void **state) {
     make_two_triangles(0.25);
     static const uint32_t triangle[] = {0, 1, 2};
     for (int obstacles = 1; obstacles < 3; obstacles++) {
-        cscd_object_desc objects[2] = {{{3, 1, triangle}, obstacles == 2}, {{3, 1, triangle}, true}};
+        cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
+                                       cscd_object_of_triangles(3, 1, triangle)};
+        objects[0].obstacle = obstacles == 2;
+        objects[1].obstacle = true;
         rig r = {NULL, NULL, NULL};
         assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create_scene(r.context, objects, 2, &r.mesh), CSCD_OK);
-        assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+        assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
+        assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
         find_bounds(&r, 1.0, CSCD_SCALAR_DOUBLE, bounds);
         for (int v = 0; v < 6; v++) assert_true(obstacles == 2 ? bounds[v] == 0.5 : bounds[v] < 0.125);
         rig_destroy(&r);

@@ -1,5 +1,6 @@
 /* Starts nearer than min_separation: pressed together they lose no more than a rung, torn apart they go on. */
 #include "runtime/solver/max_step.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
@@ -41,14 +42,14 @@ static void place_panels(panels *p, double height) {
 
 static void open_panels(panels *p, double min_separation, double height) {
     uint32_t triangles[TRIANGLES * 3];
-    cscd_mesh_desc desc = {VERTICES, TRIANGLES, triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(VERTICES, TRIANGLES, triangles);
     cscd_detector_options options = cscd_detector_defaults();
     options.min_separation = min_separation;
     fill_triangles(triangles);
     place_panels(p, height);
     assert_int_equal(cscd_context_create(NULL, &p->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(p->context, &desc, &p->mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(p->mesh, NULL, &options, &p->detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(p->context, &desc, 1, &p->mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(p->mesh, NULL, &options, &p->detector), CSCD_OK);
 }
 
 static void close_panels(panels *p) {
@@ -61,7 +62,7 @@ static void close_panels(panels *p) {
 static double distance_of(const panels *p) {
     cscd_proximities near;
     double least = INFINITY;
-    assert_int_equal(cscd_detector_near(p->detector, p->x0, 0.3, &near), CSCD_OK);
+    assert_int_equal(find_near_packed(p->detector, p->x0, 0.3, &near), CSCD_OK);
     for (size_t i = 0; i < near.count; i++) {
         cscd_stencil s =
             cscd_mesh_stencil(p->mesh, near.items[i].kind, near.items[i].a, near.items[i].b, 0.5, 0.5);
@@ -129,10 +130,10 @@ static void torn_panels_part(void **state) {
         open_panels(&p, 0.01, 0.01 * shares[i]);
         aim_panels(&p, -0.001, 0.0, &random);
         free_step step = go_on(&p);
-        assert_true(step.result.length == 1.0 && !step.result.limited && step.moved);
+        assert_true(step.result.fraction == 1.0 && !step.result.limited && step.moved);
         while (p.x0[VERTICES * 3 - 1] < 0.02) {
             aim_panels(&p, -0.001, 0.0, &random);
-            assert_true(go_on(&p).result.length == 1.0);
+            assert_true(go_on(&p).result.fraction == 1.0);
         }
         assert_true(distance_of(&p) > 0.01);
         close_panels(&p);
@@ -153,7 +154,7 @@ static void torn_panels_move_on(void **state) {
         for (int c = 0; c < VERTICES * 3; c++) p.x1[c] += flight[c % 3];
         for (int v = PANEL; v < VERTICES; v++) p.x1[3 * v + 2] += 1e-4 * stream_between(&random, 0.0, 1.0);
         free_step step = go_on(&p);
-        lost += !step.moved || step.result.length < 1.0;
+        lost += !step.moved || step.result.fraction < 1.0;
     }
     assert_int_equal(lost, 0);
     assert_true(distance_of(&p) > 0.01);
@@ -166,17 +167,17 @@ static void torn_panels_move_on(void **state) {
 static void only_touching_is_in_contact(void **state) {
     (void)state;
     panels p;
-    cscd_free_step step = {.length = -1.0};
+    cscd_free_step step = {.fraction = -1.0};
     open_panels(&p, 0.01, 1e-80);
     memcpy(p.x1, p.x0, sizeof p.x1);
-    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
-    assert_true(step.length == 1.0 && !step.limited);
+    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
+    assert_true(step.fraction == 1.0 && !step.limited);
     for (int v = PANEL; v < VERTICES; v++) p.x1[3 * v + 2] = 1e-3;
-    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
-    assert_true(step.length == 1.0 && !step.limited);
+    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
+    assert_true(step.fraction == 1.0 && !step.limited);
     p.x0[3 * PANEL + 2] = 0.0; /* a corner on the lower panel */
-    assert_int_equal(cscd_detector_max_step(p.detector, p.x0, p.x1, NULL, &step), CSCD_IN_CONTACT);
-    assert_true(step.limited && step.length == 0.0 && step.limit.toi == 0.0);
+    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, NULL, &step), CSCD_IN_CONTACT);
+    assert_true(step.limited && step.fraction == 0.0 && step.limit.toi == 0.0);
     assert_int_equal(step.limit.kind, CSCD_CONTACT_VF);
     assert_int_equal(step.limit.a, PANEL);
     assert_non_null(strstr(cscd_context_detail(p.context), "vertex 9 and triangle"));

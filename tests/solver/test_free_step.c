@@ -1,5 +1,6 @@
 /* The search for a free step, which shortens steps until one is free, on motions that the test makes up. */
 #include "runtime/solver/free_step.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -42,10 +43,10 @@ static void free_motions_are_whole_steps(void **state) {
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.result.length == 1.0 && !out.result.limited && out.moved && nowhere.tests == 1);
+    assert_true(out.result.fraction == 1.0 && !out.result.limited && out.moved && nowhere.tests == 1);
     assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
     assert_int_equal(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.result.length == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
+    assert_true(out.result.fraction == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
     rig_destroy(&r);
 }
 
@@ -59,24 +60,24 @@ static void limited_steps_end_before_the_wall(void **state) {
         assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_OK);
         assert_true(out.result.limited && out.result.limit.a == 4 && out.result.limit.b == 9);
         assert_true(fabs(out.result.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.result.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(fabs(out.result.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
         w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
         assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
         assert_true(out.result.limited && fabs(out.result.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.result.length - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(fabs(out.result.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }
     rig_destroy(&r);
 }
 
 static void no_step_is_free_from_within(void **state) {
     straight_motion m;
-    free_step out = {.result.length = -1.0};
+    free_step out = {.result.fraction = -1.0};
     (void)state;
     rig r = make_flight(&m);
     wall w = {.at = shape.x0[0]};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_IN_CONTACT);
-    assert_true(out.result.length == 0.0 && out.result.limited && w.tests < 10);
+    assert_true(out.result.fraction == 0.0 && out.result.limited && w.tests < 10);
     assert_true(out.result.limit.a == 4 && out.result.limit.b == 9 && out.result.limit.toi == 0.0);
     rig_destroy(&r);
 }

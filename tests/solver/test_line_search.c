@@ -1,9 +1,11 @@
 /* The steps of line searches are compared with brute force, their candidates and proximity with the
  * detector's. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"
+#include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
 #include "tests/support/solver/free_step_check.h"
 #include "tests/support/test.h"
@@ -23,7 +25,7 @@ enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 /* A detector with a line search. */
 typedef struct step_search {
     rig r;
-    cscd_line *line;
+    cscd_line_search *line;
     cscd_detector_options options;
 } step_search;
 
@@ -32,22 +34,22 @@ static step_search search_create(cscd_method method, double min_separation, uint
     s.options.method = method_or_none(method);
     s.options.min_separation = min_separation;
     s.r = rig_create(&interval, threads, &s.options);
-    assert_int_equal(cscd_line_create(s.r.detector, &s.line), CSCD_OK);
+    assert_int_equal(cscd_line_search_create(s.r.detector, &s.line), CSCD_OK);
     return s;
 }
 
 static void search_destroy(step_search *s) {
-    cscd_line_destroy(s->line);
+    cscd_line_search_destroy(s->line);
     rig_destroy(&s->r);
 }
 
 static void begin_line(const step_search *s, const double *x0, const double *x1, double reach) {
-    assert_int_equal(cscd_line_begin(s->line, x0, x1, reach), CSCD_OK);
+    assert_int_equal(line_begin_packed(s->line, x0, x1, reach), CSCD_OK);
 }
 
-static void step_on(cscd_line *line, const double *x0, const double *x1, double longest) {
+static void step_on(cscd_line_search *line, const double *x0, const double *x1, double longest) {
     free_step_prepare(x0, x1, longest, 0.8, &call);
-    call.status = cscd_line_max_step(line, longest, call.end, &call.step);
+    call.status = line_max_step_packed(line, longest, call.end, &call.step);
 }
 
 static void far_from_the_origin(void) {
@@ -108,15 +110,15 @@ static void steps_are_certified(void **state) {
 static size_t check_near(const step_search *s, const rig *other, const rig *brute, double length,
                          double distance) {
     cscd_proximities on_line, by_trees, truth;
-    assert_int_equal(cscd_line_positions(s->line, length, moment), CSCD_OK);
+    assert_int_equal(line_positions_packed(s->line, length, moment), CSCD_OK);
     free_step_positions(&s->r, interval.x0, interval.x1, length, exact);
     assert_memory_equal(moment, exact, interval.vertex_count * sizeof(double[3]));
-    assert_int_equal(cscd_detector_near(other->detector, moment, distance, &by_trees), CSCD_OK);
-    assert_int_equal(cscd_detector_near(brute->detector, moment, distance, &truth), CSCD_OK);
-    assert_int_equal(cscd_line_near(s->line, length, distance, &on_line), CSCD_OK);
+    assert_int_equal(find_near_packed(other->detector, moment, distance, &by_trees), CSCD_OK);
+    assert_int_equal(find_near_packed(brute->detector, moment, distance, &truth), CSCD_OK);
+    assert_int_equal(cscd_line_search_find_near(s->line, length, distance, &on_line), CSCD_OK);
     assert_int_equal(on_line.count, by_trees.count);
     assert_int_equal(on_line.count, truth.count);
-    assert_true(cscd_line_candidate_count(s->line) >= truth.count);
+    assert_true(cscd_line_search_candidate_count(s->line) >= truth.count);
     size_t bytes = truth.count * sizeof *truth.items;
     if (bytes == 0) return 0;
     assert_memory_equal(on_line.items, by_trees.items, bytes);
@@ -197,10 +199,10 @@ static void make_limited(scene_family family, uint64_t seed) {
 
 static void expect_known(const step_search *s, const rig *reference, const double *x0, const double *x1) {
     cscd_contacts found, truth;
-    assert_int_equal(cscd_detector_step(s->r.detector, x0, x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(s->r.detector, x0, x1, &found), CSCD_OK);
     assert_int_equal(cscd_detector_counters(s->r.detector).static_checks, 0);
     assert_int_equal(cscd_detector_counters(s->r.detector).clean, interval.triangle_count);
-    assert_int_equal(cscd_detector_step(reference->detector, x0, x1, &truth), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, x0, x1, &truth), CSCD_OK);
     assert_int_equal(found.count, truth.count);
     if (found.count > 0) assert_memory_equal(found.items, truth.items, found.count * sizeof *found.items);
 }
@@ -217,7 +219,7 @@ static void the_detector_knows_the_end(void **state) {
         step_search s = search_create(CSCD_METHOD_SINGLE, 0.0, 2);
         rig reference = free_step_reference(&interval, &s.options);
         cscd_contacts found;
-        assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+        assert_int_equal(step_packed(s.r.detector, interval.x0, interval.x0, &found), CSCD_OK);
         begin_line(&s, interval.x0, interval.x1, 0.0);
         for (size_t i = 0; i < sizeof longest / sizeof *longest; i++) {
             step_on(s.line, interval.x0, interval.x1, longest[i]);
@@ -238,7 +240,7 @@ static void what_is_not_known_stays_so(void **state) {
     begin_line(&s, interval.x0, interval.x1, 0.0);
     step_on(s.line, interval.x0, interval.x1, 1.0);
     assert_int_equal(call.status, CSCD_OK);
-    assert_int_equal(cscd_detector_step(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(s.r.detector, call.end, interval.x1, &found), CSCD_OK);
     assert_int_equal(cscd_detector_counters(s.r.detector).static_checks, 1);
     search_destroy(&s);
 }
@@ -258,9 +260,9 @@ static void make_cut_off(void) {
 static uint64_t clean_when_checked(cscd_detector *d, const double *x) {
     cscd_contacts found;
     cscd_intersections crossing;
-    assert_int_equal(cscd_detector_check(d, x, &crossing), CSCD_OK);
+    assert_int_equal(check_packed(d, x, &crossing), CSCD_OK);
     assert_true(crossing.count > 0);
-    assert_int_equal(cscd_detector_step(d, x, x, &found), CSCD_OK);
+    assert_int_equal(step_packed(d, x, x, &found), CSCD_OK);
     return cscd_detector_counters(d).clean;
 }
 
@@ -272,17 +274,17 @@ static void a_word_stays_a_word(void **state) {
     options.method = CSCD_METHOD_SINGLE;
     options.start = CSCD_START_VOUCHED;
     rig r = rig_create(&interval, 1, &options), other = rig_create(&interval, 1, &options);
-    cscd_line *line = NULL;
+    cscd_line_search *line = NULL;
     cscd_contacts found;
-    assert_int_equal(cscd_line_create(r.detector, &line), CSCD_OK);
-    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
-    assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, 0.0), CSCD_OK);
+    assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, 0.0), CSCD_OK);
     clean_when_checked(r.detector, interval.x0);
     step_on(line, interval.x0, interval.x1, 1.0);
     assert_true(call.status == CSCD_OK && !call.step.limited);
     assert_int_equal(clean_when_checked(r.detector, interval.x1),
                      clean_when_checked(other.detector, interval.x1));
-    cscd_line_destroy(line);
+    cscd_line_search_destroy(line);
     rig_destroy(&other);
     rig_destroy(&r);
 }
@@ -301,28 +303,27 @@ static void lines_and_steps_take_turns(void **state) {
             x2[i] = 0.5 * (interval.x0[i] + interval.x1[i]);
         step_search s = search_create(methods[family % 3], 0.0, 1);
         rig reference = free_step_reference(&interval, &s.options);
-        cscd_line *second = NULL;
+        cscd_line_search *second = NULL;
         cscd_contacts found, truth;
         cscd_free_step ignored;
-        assert_int_equal(cscd_line_create(s.r.detector, &second), CSCD_OK);
+        assert_int_equal(cscd_line_search_create(s.r.detector, &second), CSCD_OK);
         begin_line(&s, interval.x0, interval.x1, 0.01);
-        assert_int_equal(cscd_line_begin(second, x2, interval.x1, 0.0), CSCD_OK);
+        assert_int_equal(line_begin_packed(second, x2, interval.x1, 0.0), CSCD_OK);
         for (int round = 0; round < 1 + (family == SCENE_SPIKE); round++) {
             step_on(second, x2, interval.x1, 1.0);
             free_step_check(&reference, s.r.context, &call);
-            assert_int_equal(cscd_detector_step(s.r.detector, x2, interval.x1, &found), CSCD_OK);
-            assert_int_equal(cscd_detector_step(reference.detector, x2, interval.x1, &truth), CSCD_OK);
+            assert_int_equal(step_packed(s.r.detector, x2, interval.x1, &found), CSCD_OK);
+            assert_int_equal(step_packed(reference.detector, x2, interval.x1, &truth), CSCD_OK);
             assert_int_equal(found.count, truth.count);
             step_on(s.line, interval.x0, interval.x1, 1.0);
             free_step_check(&reference, s.r.context, &call);
-            cscd_status status =
-                cscd_detector_max_step(s.r.detector, interval.x0, interval.x1, NULL, &ignored);
+            cscd_status status = max_step_packed(s.r.detector, interval.x0, interval.x1, NULL, &ignored);
             assert_int_equal(status, call.status);
-            assert_int_equal(cscd_detector_step(s.r.detector, interval.x0, x2, &found), CSCD_OK);
-            assert_int_equal(cscd_detector_step(reference.detector, interval.x0, x2, &truth), CSCD_OK);
+            assert_int_equal(step_packed(s.r.detector, interval.x0, x2, &found), CSCD_OK);
+            assert_int_equal(step_packed(reference.detector, interval.x0, x2, &truth), CSCD_OK);
             assert_int_equal(found.count, truth.count);
         }
-        cscd_line_destroy(second);
+        cscd_line_search_destroy(second);
         rig_destroy(&reference);
         search_destroy(&s);
     }
@@ -343,35 +344,35 @@ static void misuse_is_named(void **state) {
     scene_make(SCENE_SPIKE, 1, &interval);
     step_search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
     cscd_proximities near = {NULL, 4711};
-    cscd_free_step step = {.length = -1.0};
-    assert_int_equal(cscd_line_create(NULL, NULL), CSCD_INVALID_ARGUMENT);
-    expect_words(&s, cscd_line_create(s.r.detector, NULL), "out is NULL");
-    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1, &near), "cscd_line_begin first");
-    expect_words(&s, cscd_line_max_step(s.line, 1.0, NULL, &step), "cscd_line_begin first");
-    expect_words(&s, cscd_line_positions(s.line, 1.0, moment), "cscd_line_begin first");
-    assert_int_equal(cscd_line_candidate_count(s.line), 0);
-    expect_words(&s, cscd_line_begin(s.line, NULL, interval.x1, 0.1), "x0 is NULL");
-    expect_words(&s, cscd_line_begin(s.line, interval.x0, NULL, 0.1), "x1 is NULL");
+    cscd_free_step step = {.fraction = -1.0};
+    assert_int_equal(cscd_line_search_create(NULL, NULL), CSCD_INVALID_ARGUMENT);
+    expect_words(&s, cscd_line_search_create(s.r.detector, NULL), "out is NULL");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, &near), "cscd_line_search_begin first");
+    expect_words(&s, line_max_step_packed(s.line, 1.0, NULL, &step), "cscd_line_search_begin first");
+    expect_words(&s, line_positions_packed(s.line, 1.0, moment), "cscd_line_search_begin first");
+    assert_int_equal(cscd_line_search_candidate_count(s.line), 0);
+    expect_words(&s, line_begin_packed(s.line, NULL, interval.x1, 0.1), "x0 is NULL");
+    expect_words(&s, line_begin_packed(s.line, interval.x0, NULL, 0.1), "x1 is NULL");
     begin_line(&s, interval.x0, interval.x1, 0.1);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        expect_words(&s, cscd_line_near(s.line, bad[i], 0.1, &near), "length is ");
-        expect_words(&s, cscd_line_max_step(s.line, bad[i], NULL, &step), "longest is ");
-        expect_words(&s, cscd_line_positions(s.line, bad[i], moment), "length is ");
+        expect_words(&s, cscd_line_search_find_near(s.line, bad[i], 0.1, &near), "fraction is ");
+        expect_words(&s, line_max_step_packed(s.line, bad[i], NULL, &step), "longest is ");
+        expect_words(&s, line_positions_packed(s.line, bad[i], moment), "fraction is ");
         if (bad[i] < 1.0 || bad[i] > 2.0 || isnan(bad[i]))
-            expect_words(&s, cscd_line_begin(s.line, interval.x0, interval.x1, bad[i]), "reach is ");
+            expect_words(&s, line_begin_packed(s.line, interval.x0, interval.x1, bad[i]), "reach is ");
     }
-    expect_words(&s, cscd_line_max_step(s.line, 0.0, NULL, &step), "longest is 0");
-    expect_words(&s, cscd_line_max_step(s.line, 1.0, NULL, NULL), "out is NULL");
-    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1 + 1e-12, &near), "reach of 0.1");
-    expect_words(&s, cscd_line_near(s.line, 0.5, 0.0, &near), "distance is 0");
-    expect_words(&s, cscd_line_near(s.line, 0.5, 0.1, NULL), "out is NULL");
-    expect_words(&s, cscd_line_positions(s.line, 0.5, NULL), "positions is NULL");
-    assert_true(near.count == 4711 && step.length == -1.0);
-    assert_int_equal(cscd_line_near(s.line, 0.5, 0.1, &near), CSCD_OK);
+    expect_words(&s, line_max_step_packed(s.line, 0.0, NULL, &step), "longest is 0");
+    expect_words(&s, line_max_step_packed(s.line, 1.0, NULL, NULL), "out is NULL");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1 + 1e-12, &near), "reach of 0.1");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.0, &near), "distance is 0");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, NULL), "out is NULL");
+    expect_words(&s, line_positions_packed(s.line, 0.5, NULL), "positions is NULL");
+    assert_true(near.count == 4711 && step.fraction == -1.0);
+    assert_int_equal(cscd_line_search_find_near(s.line, 0.5, 0.1, &near), CSCD_OK);
     begin_line(&s, interval.x0, interval.x1, 0.0);
-    expect_words(&s, cscd_line_near(s.line, 0.5, 0x1p-300, &near), "reach of 0");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0x1p-300, &near), "reach of 0");
     search_destroy(&s);
-    cscd_line_destroy(NULL);
+    cscd_line_search_destroy(NULL);
 }
 
 int main(void) {

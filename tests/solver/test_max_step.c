@@ -1,6 +1,8 @@
 /* Steps that are certified free of contact, by brute force and by marches of many steps. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/sequences.h"
 #include "tests/support/solver/free_step_check.h"
 #include "tests/support/test.h"
@@ -49,8 +51,8 @@ static tested tested_create(const scene *s, const setting *chosen) {
     cscd_plan_options plan_options = cscd_plan_defaults();
     plan_options.method = options.method = chosen->method;
     cscd_detector_destroy(t.r.detector);
-    assert_int_equal(cscd_plan_create(t.r.mesh, s->x0, &plan_options, &t.plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(t.r.mesh, t.plan, &options, &t.r.detector), CSCD_OK);
+    assert_int_equal(plan_create_packed(t.r.mesh, s->x0, &plan_options, &t.plan), CSCD_OK);
+    assert_int_equal(detector_create_here(t.r.mesh, t.plan, &options, &t.r.detector), CSCD_OK);
     return t;
 }
 
@@ -63,7 +65,7 @@ static void tested_destroy(tested *t) {
 
 static void step_from(const rig *r, const double *x0, const double *x1, const setting *s) {
     free_step_prepare(x0, x1, 1.0, s->step_factor, &call);
-    call.status = cscd_detector_max_step(r->detector, x0, x1, call.end, &call.step);
+    call.status = max_step_packed(r->detector, x0, x1, call.end, &call.step);
 }
 
 static bool all_closed(const rig *r) {
@@ -85,8 +87,8 @@ static bool is_culling(const setting *s) {
  * that brute force finds. */
 static void check_next(const rig *r, const rig *reference, const setting *s, bool embedded) {
     cscd_contacts truth, found;
-    assert_int_equal(cscd_detector_step(reference->detector, call.end, call.x1, &truth), CSCD_OK);
-    assert_int_equal(cscd_detector_step(r->detector, call.end, call.x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, call.end, call.x1, &truth), CSCD_OK);
+    assert_int_equal(step_packed(r->detector, call.end, call.x1, &found), CSCD_OK);
     cscd_counters counters = cscd_detector_counters(r->detector);
     if (embedded && is_culling(s)) {
         assert_int_equal(counters.static_checks, 0);
@@ -171,9 +173,9 @@ static void march_to(const rig *r, const rig *reference, const setting *s, uint3
 /* Returns whether closed surfaces start embedded, or apart, and end in contact. */
 static bool starts_well(const rig *reference) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(reference->detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, interval.x0, interval.x0, &found), CSCD_OK);
     if (found.count > 0 || !free_step_embedded(reference, interval.x0)) return false;
-    assert_int_equal(cscd_detector_step(reference->detector, interval.x0, interval.x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, interval.x0, interval.x1, &found), CSCD_OK);
     return found.count > 0;
 }
 
@@ -274,18 +276,18 @@ static void end_may_be_nowhere_or_an_argument(void **state) {
     assert_int_equal(call.status, CSCD_OK);
     assert_true(call.step.limited);
     cscd_free_step nowhere, into_x1, into_x0;
-    assert_int_equal(cscd_detector_max_step(r.detector, interval.x0, interval.x1, NULL, &nowhere), CSCD_OK);
+    assert_int_equal(max_step_packed(r.detector, interval.x0, interval.x1, NULL, &nowhere), CSCD_OK);
     memcpy(x0, interval.x0, bytes);
     memcpy(x1, interval.x1, bytes);
-    assert_int_equal(cscd_detector_max_step(r.detector, x0, x1, x1, &into_x1), CSCD_OK);
+    assert_int_equal(max_step_packed(r.detector, x0, x1, x1, &into_x1), CSCD_OK);
     assert_memory_equal(x1, call.end, bytes);
-    assert_int_equal(cscd_detector_max_step(r.detector, x0, interval.x1, x0, &into_x0), CSCD_OK);
+    assert_int_equal(max_step_packed(r.detector, x0, interval.x1, x0, &into_x0), CSCD_OK);
     assert_memory_equal(x0, call.end, bytes);
-    assert_true(nowhere.length == call.step.length && into_x1.length == call.step.length &&
-                into_x0.length == call.step.length);
+    assert_true(nowhere.fraction == call.step.fraction && into_x1.fraction == call.step.fraction &&
+                into_x0.fraction == call.step.fraction);
     step_from(&r, x0, x0, &plain);
     assert_int_equal(call.status, CSCD_OK);
-    assert_true(call.step.length == 1.0 && !call.step.limited);
+    assert_true(call.step.fraction == 1.0 && !call.step.limited);
     rig_destroy(&r);
 }
 
@@ -300,16 +302,16 @@ static void step_factor_is_honoured(void **state) {
         rig r = rig_create(&interval, 1, &options);
         step_from(&r, interval.x0, interval.x1, &s);
         assert_int_equal(call.status, CSCD_OK);
-        assert_true(call.step.length <= factors[i] * call.step.limit.toi);
+        assert_true(call.step.fraction <= factors[i] * call.step.limit.toi);
         if (i + 1 < sizeof factors / sizeof *factors)
-            assert_true(call.step.length == factors[i] * call.step.limit.toi);
+            assert_true(call.step.fraction == factors[i] * call.step.limit.toi);
         rig_destroy(&r);
     }
 }
 
 static void expect_refused(const rig *r, const double *x0, const double *x1, cscd_free_step *out,
                            const char *words) {
-    assert_int_equal(cscd_detector_max_step(r->detector, x0, x1, call.end, out), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(max_step_packed(r->detector, x0, x1, call.end, out), CSCD_INVALID_ARGUMENT);
     if (strstr(cscd_context_detail(r->context), words) == NULL)
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
 }
@@ -317,20 +319,19 @@ static void expect_refused(const rig *r, const double *x0, const double *x1, csc
 static void bad_arguments_are_named(void **state) {
     (void)state;
     static double bad[SCENE_VERTICES_MAX * 3];
-    cscd_free_step out = {.length = -1.0};
+    cscd_free_step out = {.fraction = -1.0};
     make_limited();
     memcpy(bad, interval.x0, sizeof bad);
     bad[4] = NAN;
     rig r = rig_create(&interval, 1, NULL);
-    assert_int_equal(cscd_detector_max_step(NULL, interval.x0, interval.x1, NULL, &out),
-                     CSCD_INVALID_ARGUMENT);
+    assert_int_equal(max_step_packed(NULL, interval.x0, interval.x1, NULL, &out), CSCD_INVALID_ARGUMENT);
     expect_refused(&r, NULL, interval.x1, &out, "x0 is NULL");
     expect_refused(&r, interval.x0, NULL, &out, "x1 is NULL");
     expect_refused(&r, interval.x0, interval.x1, NULL, "out is NULL");
     expect_refused(&r, bad, interval.x1, &out, "x0: vertex 1 has y");
     expect_refused(&r, interval.x0, bad, &out, "x1: vertex 1 has y");
     rig_destroy(&r);
-    assert_true(out.length == -1.0);
+    assert_true(out.fraction == -1.0);
 }
 
 int main(void) {

@@ -1,9 +1,11 @@
 /* Proximity at one moment: the pairs are compared with brute force, their distances with long double. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "runtime/solver/proximity.h"
 #include "tests/support/ccd/feature_distance.h"
 #include "tests/support/methods.h"
 #include "tests/support/oracle.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -126,7 +128,7 @@ static long double check_proximity(const rig *r, const cscd_proximity *p, const 
 
 static cscd_proximities find_near(const rig *r, const double *x, double distance) {
     cscd_proximities found = {NULL, 4711};
-    assert_int_equal(cscd_detector_near(r->detector, x, distance, &found), CSCD_OK);
+    assert_int_equal(find_near_packed(r->detector, x, distance, &found), CSCD_OK);
     return found;
 }
 
@@ -276,10 +278,8 @@ static void steps_do_not_notice(void **state) {
             rig plain = rig_of(&interval, of_steps[m], 1), asked = rig_of(&interval, of_steps[m], 1);
             for (int f = 0; f < 3; f++) {
                 cscd_contacts expected, found;
-                assert_int_equal(cscd_detector_step(plain.detector, frames[f], frames[f + 1], &expected),
-                                 CSCD_OK);
-                assert_int_equal(cscd_detector_step(asked.detector, frames[f], frames[f + 1], &found),
-                                 CSCD_OK);
+                assert_int_equal(step_packed(plain.detector, frames[f], frames[f + 1], &expected), CSCD_OK);
+                assert_int_equal(step_packed(asked.detector, frames[f], frames[f + 1], &found), CSCD_OK);
                 assert_int_equal(found.count, expected.count);
                 if (found.count > 0)
                     assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
@@ -319,7 +319,7 @@ static void same_bits_for_any_thread_count(void **state) {
 
 static void expect_refused(const rig *r, const double *x, double distance, cscd_proximities *out,
                            const char *words) {
-    assert_int_equal(cscd_detector_near(r->detector, x, distance, out), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(find_near_packed(r->detector, x, distance, out), CSCD_INVALID_ARGUMENT);
     if (strstr(cscd_context_detail(r->context), words) == NULL)
         fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
 }
@@ -330,7 +330,7 @@ static void bad_arguments_are_named(void **state) {
     cscd_proximities out = {NULL, 4711};
     scene_make(SCENE_SPIKE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
-    assert_int_equal(cscd_detector_near(NULL, interval.x0, 0.1, &out), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(find_near_packed(NULL, interval.x0, 0.1, &out), CSCD_INVALID_ARGUMENT);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect_refused(&r, interval.x0, bad[i], &out, "distance is ");
     expect_refused(&r, NULL, 0.1, &out, "positions is NULL");

@@ -1,7 +1,9 @@
 /* Every allocation of the calls that solvers use fails once, and a steady state allocates nothing. */
 #include "cscd/cscd.h"
+#include "cscd/research.h"
 #include "tests/support/counting_allocator.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/rig.h"
 #include "tests/support/test.h"
 
@@ -39,10 +41,11 @@ static void counted_create(counted *c, cscd_method method, uint32_t threads) {
     context_options.progress.report = go_on;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method_or_none(method);
-    cscd_mesh_desc desc = {interval.vertex_count, interval.triangle_count, interval.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(interval.vertex_count, interval.triangle_count, interval.triangles);
     assert_int_equal(cscd_context_create(&context_options, &c->context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(c->context, &desc, &c->mesh), CSCD_OK);
-    assert_int_equal(cscd_detector_create(c->mesh, NULL, &options, &c->detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(c->context, &desc, 1, &c->mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(c->mesh, NULL, &options, &c->detector), CSCD_OK);
 }
 
 static void counted_destroy(counted *c) {
@@ -74,39 +77,39 @@ typedef cscd_status question(counted *c, solver_answer *out);
 
 static cscd_status ask_near(counted *c, solver_answer *out) {
     cscd_proximities found = {NULL, 4711};
-    cscd_status status = cscd_detector_near(c->detector, interval.x0, distance, &found);
+    cscd_status status = find_near_packed(c->detector, interval.x0, distance, &found);
     assert_true(status == CSCD_OK || found.count == 4711);
     out->near = found.count;
     return status;
 }
 
 static cscd_status ask_max_step(counted *c, solver_answer *out) {
-    return cscd_detector_max_step(c->detector, interval.x0, interval.x1, out->end, &out->step);
+    return max_step_packed(c->detector, interval.x0, interval.x1, out->end, &out->step);
 }
 
 /* Runs the whole life of a line search. A call that fails is repeated at once, and must then succeed. */
 static cscd_status ask_line(counted *c, solver_answer *out) {
-    cscd_line *line = NULL;
+    cscd_line_search *line = NULL;
     cscd_proximities found = {NULL, 4711};
-    cscd_status status = cscd_line_create(c->detector, &line), first = status;
+    cscd_status status = cscd_line_search_create(c->detector, &line), first = status;
     assert_true(status == CSCD_OK || line == NULL);
     if (status != CSCD_OK) return status;
-    status = cscd_line_begin(line, interval.x0, interval.x1, distance);
+    status = line_begin_packed(line, interval.x0, interval.x1, distance);
     if (status != CSCD_OK) {
-        assert_int_equal(cscd_line_max_step(line, 1.0, NULL, &out->step), CSCD_INVALID_ARGUMENT);
-        assert_int_equal(cscd_line_begin(line, interval.x0, interval.x1, distance), CSCD_OK);
+        assert_int_equal(line_max_step_packed(line, 1.0, NULL, &out->step), CSCD_INVALID_ARGUMENT);
+        assert_int_equal(line_begin_packed(line, interval.x0, interval.x1, distance), CSCD_OK);
         first = status;
     }
-    out->candidates = cscd_line_candidate_count(line);
-    status = cscd_line_near(line, 0.25, distance, &found);
+    out->candidates = cscd_line_search_candidate_count(line);
+    status = cscd_line_search_find_near(line, 0.25, distance, &found);
     if (status != CSCD_OK) {
         assert_true(found.count == 4711);
-        assert_int_equal(cscd_line_near(line, 0.25, distance, &found), CSCD_OK);
+        assert_int_equal(cscd_line_search_find_near(line, 0.25, distance, &found), CSCD_OK);
         first = status;
     }
     out->near = found.count;
-    status = cscd_line_max_step(line, 1.0, out->end, &out->step);
-    cscd_line_destroy(line);
+    status = line_max_step_packed(line, 1.0, out->end, &out->step);
+    cscd_line_search_destroy(line);
     return first == CSCD_OK ? status : first;
 }
 
@@ -129,7 +132,7 @@ static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
             assert_int_equal(status, CSCD_OUT_OF_MEMORY);
             assert_int_equal(ask(&c, &other), CSCD_OK);
         }
-        assert_true(other.step.length == good.step.length && other.near == good.near &&
+        assert_true(other.step.fraction == good.step.fraction && other.near == good.near &&
                     other.candidates == good.candidates);
         assert_memory_equal(other.end, good.end, sizeof good.end);
         counted_destroy(&c);
@@ -162,12 +165,12 @@ static void states_outlast_a_failure(void **state) {
         cscd_intersections crossing;
         cscd_free_step step;
         counted_create(&c, CSCD_METHOD_SINGLE, 1);
-        assert_int_equal(cscd_detector_check(c.detector, interval.x0, &crossing), CSCD_OK);
+        assert_int_equal(check_packed(c.detector, interval.x0, &crossing), CSCD_OK);
         c.counter.fail_at = c.counter.calls + n;
-        failed = cscd_detector_max_step(c.detector, interval.x0, interval.x1, end, &step) != CSCD_OK;
+        failed = max_step_packed(c.detector, interval.x0, interval.x1, end, &step) != CSCD_OK;
         const double *at = failed ? interval.x0 : end;
         c.counter.fail_at = SIZE_MAX;
-        assert_int_equal(cscd_detector_step(c.detector, at, interval.x1, &found), CSCD_OK);
+        assert_int_equal(step_packed(c.detector, at, interval.x1, &found), CSCD_OK);
         assert_true(found.count > 0);
         assert_int_equal(cscd_detector_counters(c.detector).static_checks, 0);
         assert_int_equal(cscd_detector_counters(c.detector).clean, interval.triangle_count);
@@ -183,19 +186,19 @@ static void a_failed_check_tells_nothing(void **state) {
     rig plain = rig_create(&interval, 1, NULL);
     cscd_contacts expected;
     cscd_intersections crossing;
-    assert_int_equal(cscd_detector_check(plain.detector, interval.x1, &crossing), CSCD_OK);
+    assert_int_equal(check_packed(plain.detector, interval.x1, &crossing), CSCD_OK);
     assert_true(crossing.count > 0);
-    assert_int_equal(cscd_detector_step(plain.detector, interval.x1, interval.x0, &expected), CSCD_OK);
+    assert_int_equal(step_packed(plain.detector, interval.x1, interval.x0, &expected), CSCD_OK);
     bool failed = true;
     for (size_t n = 0; failed; n++) {
         counted c;
         cscd_contacts found;
         counted_create(&c, CSCD_METHOD_SINGLE, 1);
-        assert_int_equal(cscd_detector_check(c.detector, interval.x0, &crossing), CSCD_OK);
+        assert_int_equal(check_packed(c.detector, interval.x0, &crossing), CSCD_OK);
         c.counter.fail_at = c.counter.calls + n;
-        failed = cscd_detector_check(c.detector, interval.x1, &crossing) != CSCD_OK;
+        failed = check_packed(c.detector, interval.x1, &crossing) != CSCD_OK;
         c.counter.fail_at = SIZE_MAX;
-        assert_int_equal(cscd_detector_step(c.detector, interval.x1, interval.x0, &found), CSCD_OK);
+        assert_int_equal(step_packed(c.detector, interval.x1, interval.x0, &found), CSCD_OK);
         assert_false(cscd_detector_guarantee(c.detector, 0).start_embedded);
         assert_int_equal(found.count, expected.count);
         assert_memory_equal(found.items, expected.items, found.count * sizeof *found.items);
@@ -205,16 +208,16 @@ static void a_failed_check_tells_nothing(void **state) {
 }
 
 /* Makes one round of calls as a solver does. */
-static void ask_all(counted *c, cscd_line *line, double *x) {
+static void ask_all(counted *c, cscd_line_search *line, double *x) {
     cscd_free_step step;
     cscd_proximities found;
     memcpy(x, interval.x0, interval.vertex_count * sizeof(double[3]));
     for (int i = 0; i < 6; i++) {
-        assert_int_equal(cscd_detector_near(c->detector, x, distance, &found), CSCD_OK);
-        assert_int_equal(cscd_detector_max_step(c->detector, x, interval.x1, NULL, &step), CSCD_OK);
-        assert_int_equal(cscd_line_begin(line, x, interval.x1, distance), CSCD_OK);
-        assert_int_equal(cscd_line_near(line, 0.5, 0.5 * distance, &found), CSCD_OK);
-        assert_int_equal(cscd_line_max_step(line, 0.7, x, &step), CSCD_OK);
+        assert_int_equal(find_near_packed(c->detector, x, distance, &found), CSCD_OK);
+        assert_int_equal(max_step_packed(c->detector, x, interval.x1, NULL, &step), CSCD_OK);
+        assert_int_equal(line_begin_packed(line, x, interval.x1, distance), CSCD_OK);
+        assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.5 * distance, &found), CSCD_OK);
+        assert_int_equal(line_max_step_packed(line, 0.7, x, &step), CSCD_OK);
     }
 }
 
@@ -224,16 +227,16 @@ static void steady_state_allocates_nothing(void **state) {
     make_limited();
     for (int m = 0; m < METHOD_COUNT; m++) {
         counted c;
-        cscd_line *line = NULL;
+        cscd_line_search *line = NULL;
         size_t calls = 0;
         counted_create(&c, methods[m], 2);
-        assert_int_equal(cscd_line_create(c.detector, &line), CSCD_OK);
+        assert_int_equal(cscd_line_search_create(c.detector, &line), CSCD_OK);
         for (int round = 0; round < 10; round++) {
             ask_all(&c, line, x);
             if (round == 1) calls = c.counter.calls;
         }
         assert_int_equal(c.counter.calls, calls);
-        cscd_line_destroy(line);
+        cscd_line_search_destroy(line);
         counted_destroy(&c);
     }
 }

@@ -2,6 +2,7 @@
 #include "runtime/solver/division_planes.h"
 #include "runtime/solver/truncation.h"
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
@@ -109,7 +110,7 @@ static void check_no_contact(const truncation_outcome *out) {
 /* A pair that was farther apart than the separation is so at the end; one that was not has come no nearer. */
 static void check_separation(const rig *r, double apart, double radius) {
     cscd_proximities near;
-    assert_int_equal(cscd_detector_near(r->detector, interval.x0, radius + apart, &near), CSCD_OK);
+    assert_int_equal(find_near_packed(r->detector, interval.x0, radius + apart, &near), CSCD_OK);
     for (size_t i = 0; i < near.count; i++) {
         const cscd_proximity *p = &near.items[i];
         cscd_stencil s = stencil_of(r, p);
@@ -294,11 +295,13 @@ static void obstacles_come_first(void **state) {
         make_two_triangles(0.25);
         move_triangle(0, 0.2);
         move_triangle(1, -0.2);
-        cscd_object_desc objects[2] = {{{3, 1, triangle}, obstacle == 0}, {{3, 1, triangle}, obstacle == 1}};
+        cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
+                                       cscd_object_of_triangles(3, 1, triangle)};
+        objects[obstacle].obstacle = true;
         rig r = {NULL, NULL, NULL};
         assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-        assert_int_equal(cscd_mesh_create_scene(r.context, objects, 2, &r.mesh), CSCD_OK);
-        assert_int_equal(cscd_detector_create(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
+        assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
+        assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
         truncation_outcome out = truncate_motion(&r, 1.0, NULL);
         assert_true(out.obstacle_fraction == 1.0 && fabs(out.fraction - 0.25) < 1e-5);
         assert_int_equal(out.shortened, 3);
@@ -352,13 +355,13 @@ static void the_end_is_known(void **state) {
         scene_make(SCENE_BENT_CAPSULE, seed, &interval);
         rig r = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
         cscd_contacts found;
-        assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+        assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
         assert_int_equal(found.count, 0);
         for (int i = 0; i < 3; i++) {
             truncate_motion(&r, 0.1, NULL);
             memcpy(interval.x0, end, sizeof end);
         }
-        assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
+        assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
         assert_int_equal(cscd_detector_counters(r.detector).static_checks, 0);
         assert_int_equal(cscd_detector_counters(r.detector).clean, interval.triangle_count);
         rig fresh = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
@@ -384,11 +387,11 @@ static void pairs_left_out_leave_nothing_known(void **state) {
     options.ignore = ignore_all;
     rig r = rig_create(&interval, 1, &options);
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
     truncation_outcome out = truncate_motion(&r, 4.0, NULL);
     assert_int_equal(out.shortened, 0);
     memcpy(interval.x0, end, sizeof end);
-    assert_int_equal(cscd_detector_step(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
+    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
     assert_true(cscd_detector_counters(r.detector).static_checks > 0);
     rig_destroy(&r);
 }

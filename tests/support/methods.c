@@ -1,6 +1,8 @@
 /* The methods that this build has: without runtime/baselines there are no ICCD, ICCD_PUBLISHED and PUBLISHED. */
 #include "tests/support/methods.h"
+#include "tests/support/packed.h"
 
+#include "cscd/research.h"
 #include "tests/support/test.h"
 
 #include <string.h>
@@ -23,17 +25,17 @@ cscd_method method_or_none(cscd_method method) {
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
-    cscd_mesh_desc desc = {4, 4, triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(4, 4, triangles);
     cscd_plan_options plan_options = cscd_plan_defaults();
     cscd_detector_options options = cscd_detector_defaults();
     cscd_context_options context_options = cscd_context_defaults();
     context_options.thread_count = 1;
     assert_int_equal(cscd_context_create(&context_options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     plan_options.method = options.method = method;
     if (method == CSCD_METHOD_KMEANS || method == CSCD_METHOD_CHARGE)
-        assert_int_equal(cscd_plan_create(mesh, corners, &plan_options, &plan), CSCD_OK);
-    cscd_status status = cscd_detector_create(mesh, plan, &options, &detector);
+        assert_int_equal(plan_create_packed(mesh, corners, &plan_options, &plan), CSCD_OK);
+    cscd_status status = detector_create_here(mesh, plan, &options, &detector);
     bool present = has_baselines || !is_baseline(method);
     assert_int_equal(status, present ? CSCD_OK : CSCD_INVALID_ARGUMENT);
     if (!present) {

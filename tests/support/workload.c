@@ -1,6 +1,7 @@
 /* Runs every call of the API that may take long, one after the other, and computes a digest of each
  * result. */
 #include "tests/support/workload.h"
+#include "tests/support/packed.h"
 
 #include "src/core/methods.h"
 
@@ -29,7 +30,7 @@ typedef struct workload_state {
     cscd_mesh *mesh;
     cscd_plan *plan;
     cscd_detector *detector;
-    cscd_line *line;
+    cscd_line_search *line;
     workload_result result;
 } workload_state;
 
@@ -65,7 +66,7 @@ static void make_plan(workload_state *r) {
     options.method = r->w->plan;
     cscd_status status;
     do {
-        status = cscd_plan_create(r->mesh, r->w->sequence->shape.x0, &options, &r->plan);
+        status = plan_create_packed(r->mesh, r->w->sequence->shape.x0, &options, &r->plan);
     } while (call_again(r, status));
     for (uint32_t t = 0; status == CSCD_OK && t < r->w->sequence->shape.triangle_count; t++) {
         double charge = cscd_plan_triangle_charge(r->plan, t);
@@ -80,7 +81,7 @@ static void run_step(workload_state *r, const double *x0, const double *x1) {
     cscd_contacts found = {NULL, 0};
     cscd_status status;
     do {
-        status = cscd_detector_step(r->detector, x0, x1, &found);
+        status = step_packed(r->detector, x0, x1, &found);
     } while (call_again(r, status));
     add_digest(r, found.items, found.count * sizeof *found.items);
     digest_counters(r);
@@ -97,7 +98,7 @@ static void run_check(workload_state *r, const double *x) {
     cscd_intersections found = {NULL, 0, 0, 0};
     cscd_status status;
     do {
-        status = cscd_detector_check(r->detector, x, &found);
+        status = check_packed(r->detector, x, &found);
     } while (call_again(r, status));
     add_digest(r, found.items, found.count * sizeof *found.items);
     add_digest(r, &found.zero_area_triangles, sizeof found.zero_area_triangles);
@@ -108,7 +109,7 @@ static void run_near(workload_state *r, const double *x) {
     cscd_proximities found = {NULL, 0};
     cscd_status status;
     do {
-        status = cscd_detector_near(r->detector, x, 0.05, &found);
+        status = find_near_packed(r->detector, x, 0.05, &found);
     } while (call_again(r, status));
     add_digest(r, found.items, found.count * sizeof *found.items);
     end_call(r, status);
@@ -116,13 +117,13 @@ static void run_near(workload_state *r, const double *x) {
 
 static void max_step(workload_state *r, const double *x0, const double *x1) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
-    cscd_free_step found = {.length = 0.0};
+    cscd_free_step found = {.fraction = 0.0};
     cscd_status status;
     if (method_traits_of(r->w->options.method)->loses_contacts) return; /* it refuses to certify steps */
     do {
-        status = cscd_detector_max_step(r->detector, x0, x1, end, &found);
+        status = max_step_packed(r->detector, x0, x1, end, &found);
     } while (call_again(r, status));
-    add_digest(r, &found.length, sizeof found.length);
+    add_digest(r, &found.fraction, sizeof found.fraction);
     if (status == CSCD_OK) {
         digest_counters(r);
         add_digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
@@ -133,9 +134,9 @@ static void max_step(workload_state *r, const double *x0, const double *x1) {
 static void begin_line(workload_state *r, const double *x0, const double *x1) {
     cscd_status status;
     do {
-        status = cscd_line_begin(r->line, x0, x1, 0.05);
+        status = line_begin_packed(r->line, x0, x1, 0.05);
     } while (call_again(r, status));
-    size_t count = cscd_line_candidate_count(r->line);
+    size_t count = cscd_line_search_candidate_count(r->line);
     add_digest(r, &count, sizeof count);
     end_call(r, status);
 }
@@ -144,18 +145,18 @@ static void begin_line(workload_state *r, const double *x0, const double *x1) {
 static void ask_line(workload_state *r) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     for (int i = 0; i < 2; i++) {
-        cscd_free_step step = {.length = 0.0};
+        cscd_free_step step = {.fraction = 0.0};
         cscd_proximities found = {NULL, 0};
         cscd_status status;
         do {
-            status = cscd_line_max_step(r->line, i == 0 ? 1.0 : 0.3, end, &step);
+            status = line_max_step_packed(r->line, i == 0 ? 1.0 : 0.3, end, &step);
         } while (call_again(r, status));
-        add_digest(r, &step.length, sizeof step.length);
+        add_digest(r, &step.fraction, sizeof step.fraction);
         if (status == CSCD_OK)
             add_digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
         end_call(r, status);
         do {
-            status = cscd_line_near(r->line, 0.6 * i, 0.05, &found);
+            status = cscd_line_search_find_near(r->line, 0.6 * i, 0.05, &found);
         } while (call_again(r, status));
         add_digest(r, found.items, found.count * sizeof *found.items);
         end_call(r, status);
@@ -180,14 +181,15 @@ static void run_intervals(workload_state *r) {
 workload_result workload_run(cscd_context *context, const workload *w) {
     workload_state r = {.w = w, .context = context};
     const scene *shape = &w->sequence->shape;
-    cscd_mesh_desc desc = {shape->vertex_count, shape->triangle_count, shape->triangles};
-    r.result.failed = cscd_mesh_create(context, &desc, &r.mesh) != CSCD_OK;
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape->vertex_count, shape->triangle_count, shape->triangles);
+    r.result.failed = cscd_mesh_create(context, &desc, 1, &r.mesh) != CSCD_OK;
     if (!r.result.failed && w->plan != CSCD_METHOD_AUTO) make_plan(&r);
     if (!r.result.failed)
-        r.result.failed = cscd_detector_create(r.mesh, r.plan, &w->options, &r.detector) != CSCD_OK ||
-                          cscd_line_create(r.detector, &r.line) != CSCD_OK;
+        r.result.failed = detector_create_here(r.mesh, r.plan, &w->options, &r.detector) != CSCD_OK ||
+                          cscd_line_search_create(r.detector, &r.line) != CSCD_OK;
     if (!r.result.failed) run_intervals(&r);
-    cscd_line_destroy(r.line);
+    cscd_line_search_destroy(r.line);
     cscd_detector_destroy(r.detector);
     cscd_plan_destroy(r.plan);
     cscd_mesh_destroy(r.mesh);

@@ -46,7 +46,7 @@ static void expect_out(const char *text, const char *const *arguments) {
 
 static void says_its_version(void **state) {
     (void)state;
-    EXPECT_OUT("cscd 1.1.0 (", "--version");
+    EXPECT_OUT("cscd 2.0.0 (", "--version");
 }
 
 static void helps_on_every_command(void **state) {

@@ -175,7 +175,7 @@ static void check_summary(const json_node *root, const contact_rows *rows) {
     assert_near(json_node_number(json_node_member(total, "pcp"), "mean"),
                 sum_of(intervals, "pcp") / (double)intervals->count, 1e-9);
     const json_node *provenance = json_node_member(root, "provenance");
-    assert_string_equal(json_node_string(provenance, "version"), "1.1.0");
+    assert_string_equal(json_node_string(provenance, "version"), "2.0.0");
     assert_true(strlen(json_node_string(provenance, "commit")) > 0);
     assert_true(strlen(json_node_string(provenance, "date")) == 20);
     assert_int_equal(json_node_member(provenance, "machine")->kind, JSON_OBJECT);

@@ -99,7 +99,10 @@ bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path
 
 static bool add_intersections(ignore_pairs *pairs, cscd_detector *detector, const double *positions) {
     cscd_intersections found;
-    if (cscd_detector_check(detector, positions, &found) != CSCD_OK) return false;
+    if (cscd_detector_check(detector,
+                            CSCD_DOUBLES(positions, cscd_mesh_vertex_count(cscd_detector_mesh(detector))),
+                            &found) != CSCD_OK)
+        return false;
     for (size_t i = 0; i < found.count; i++) {
         if (!append_pair(&pairs->triangles, &pairs->triangle_count, &pairs->triangle_capacity,
                          found.items[i].a, found.items[i].b))
@@ -114,7 +117,7 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
     cscd_detector *detector = NULL;
     bool added = positions != NULL || io_fail(error, "out of memory");
     added = added && recording_read(r, 0, positions, error);
-    if (added && (cscd_detector_create(r->mesh, NULL, NULL, &detector) != CSCD_OK ||
+    if (added && (cscd_detector_create(r->context, r->mesh, NULL, NULL, &detector) != CSCD_OK ||
                   !add_intersections(pairs, detector, positions)))
         added = io_fail(error, "frame 0: %s", cscd_context_detail(r->context));
     cscd_detector_destroy(detector);

@@ -1,6 +1,7 @@
 /* What the commands need to know of each method. */
 #include "src/tool/common/methods.h"
 
+#include "cscd/research.h"
 static const method_facts facts[] = {
     [CSCD_METHOD_AUTO] = {.by_regions = true},
     [CSCD_METHOD_NONE] = {.by_regions = false},

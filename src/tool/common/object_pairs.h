@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
+#include "cscd/sensors.h"
 #include "src/io/growable.h"
 
 typedef struct object_pairs {

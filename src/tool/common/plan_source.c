@@ -95,7 +95,9 @@ static bool make_plan(const plan_request *request, cscd_method method, const rec
     if (positions == NULL) return io_fail(error, "out of memory");
     cscd_plan *plan = NULL;
     recording_rest(r, positions);
-    bool made = cscd_plan_create(r->mesh, positions, &options, &plan) == CSCD_OK;
+    bool made =
+        cscd_plan_create(r->context, r->mesh, CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->mesh)),
+                         &options, &plan) == CSCD_OK;
     if (made) {
         choose_plan(choice, request, plan, NULL);
         choice->made_ms = cscd_plan_timings(plan).total_ms;

@@ -48,9 +48,11 @@ static bool create_mesh(const recording_options *options, recording *r, io_error
         return io_fail(error, "this processor does not have %s; leave --simd at auto",
                        cscd_simd_name(options->simd));
     if (status != CSCD_OK) return io_fail(error, "%s", cscd_status_string(status));
-    cscd_mesh_desc desc = {r->file.vertex_count, r->file.triangle_count, r->file.triangles};
-    if (r->welded) desc = (cscd_mesh_desc){r->weld.vertex_count, r->weld.triangle_count, r->weld.triangles};
-    status = cscd_mesh_create(r->context, &desc, &r->mesh);
+    cscd_object_desc desc =
+        cscd_object_of_triangles(r->file.vertex_count, r->file.triangle_count, r->file.triangles);
+    if (r->welded)
+        desc = cscd_object_of_triangles(r->weld.vertex_count, r->weld.triangle_count, r->weld.triangles);
+    status = cscd_mesh_create(r->context, &desc, 1, &r->mesh);
     if (status == CSCD_OK) return true;
     return io_fail(error, "%s: %s", options->model_path, cscd_context_detail(r->context));
 }

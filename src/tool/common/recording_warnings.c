@@ -52,8 +52,9 @@ static bool welding_closes(recording *r) {
                      NULL))
         return false;
     cscd_mesh *mesh = NULL;
-    cscd_mesh_desc desc = {welded.vertex_count, welded.triangle_count, welded.triangles};
-    bool closes = cscd_mesh_create(r->context, &desc, &mesh) == CSCD_OK && count_open_edges(mesh) == 0;
+    cscd_object_desc desc =
+        cscd_object_of_triangles(welded.vertex_count, welded.triangle_count, welded.triangles);
+    bool closes = cscd_mesh_create(r->context, &desc, 1, &mesh) == CSCD_OK && count_open_edges(mesh) == 0;
     cscd_mesh_destroy(mesh);
     weld_free(&welded);
     return closes;

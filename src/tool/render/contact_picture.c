@@ -76,14 +76,16 @@ static bool place_markers(contact_picture *p, const cscd_contacts *contacts, io_
 static bool create_detector(contact_picture *p, const recording *r, io_error *error) {
     if (p->detector != NULL) return true;
     p->end = malloc((size_t)cscd_mesh_vertex_count(r->mesh) * 3 * sizeof *p->end);
-    return (p->end != NULL && cscd_detector_create(r->mesh, NULL, NULL, &p->detector) == CSCD_OK) ||
+    return (p->end != NULL &&
+            cscd_detector_create(r->context, r->mesh, NULL, NULL, &p->detector) == CSCD_OK) ||
            io_fail(error, "out of memory");
 }
 
 static bool mark_contacts(contact_picture *p, recording *r, uint32_t frame, io_error *error) {
     cscd_contacts contacts;
     if (!create_detector(p, r, error) || !recording_read(r, frame + 1, p->end, error)) return false;
-    if (cscd_detector_step(p->detector, p->positions, p->end, &contacts) != CSCD_OK)
+    if (cscd_detector_step(p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(r->mesh)),
+                           CSCD_DOUBLES(p->end, cscd_mesh_vertex_count(r->mesh)), &contacts) != CSCD_OK)
         return io_fail(error, "frame %u: %s", frame, cscd_context_detail(r->context));
     cscd_counters counters = cscd_detector_counters(p->detector);
     p->vf_count = counters.vf;

@@ -86,7 +86,8 @@ static bool prepare_detector(replay *r, io_error *error) {
         options.ignore = ignore_pairs_contain;
         options.ignore_user = &r->ignored;
     }
-    if (cscd_detector_create(r->recording.mesh, r->plan.plan, &options, &r->detector) != CSCD_OK)
+    if (cscd_detector_create(r->recording.context, r->recording.mesh, r->plan.plan, &options, &r->detector) !=
+        CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->recording.context));
     size_t size = (size_t)cscd_mesh_vertex_count(r->recording.mesh) * 3 * sizeof *r->x0;
     r->x0 = malloc(size);
@@ -129,7 +130,9 @@ static bool check_frame(replay *r, uint32_t frame, const double *positions, fram
     *state = FRAME_UNCHECKED;
     if (!r->options->no_check) {
         cscd_intersections found;
-        if (cscd_detector_check(r->detector, positions, &found) != CSCD_OK)
+        if (cscd_detector_check(r->detector,
+                                CSCD_DOUBLES(positions, cscd_mesh_vertex_count(r->recording.mesh)),
+                                &found) != CSCD_OK)
             return api_failed(r, frame, error);
         *state = found.count > 0 ? FRAME_CROSSING : FRAME_EMBEDDED;
         r->totals.frames_checked++;
@@ -175,7 +178,10 @@ static bool write_contacts(replay *r, uint32_t frame, const cscd_contacts *conta
 static bool run_interval(replay *r, uint32_t k, io_error *error) {
     cscd_contacts contacts;
     if (!read_frame(r, k + 1, r->x1, error)) return false;
-    if (cscd_detector_step(r->detector, r->x0, r->x1, &contacts) != CSCD_OK) return api_failed(r, k, error);
+    if (cscd_detector_step(r->detector, CSCD_DOUBLES(r->x0, cscd_mesh_vertex_count(r->recording.mesh)),
+                           CSCD_DOUBLES(r->x1, cscd_mesh_vertex_count(r->recording.mesh)),
+                           &contacts) != CSCD_OK)
+        return api_failed(r, k, error);
     interval_result result = {.frame = k,
                               .contact_count = contacts.count,
                               .earliest_toi = contacts.count > 0 ? contacts.items[0].toi : 0.0,

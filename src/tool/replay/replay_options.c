@@ -1,6 +1,7 @@
 /* The options of `cscd replay`. */
 #include "src/tool/replay/replay_options.h"
 
+#include "cscd/research.h"
 #include "src/io/contact_file.h"
 #include "src/tool/common/command.h"
 #include "src/tool/common/option_values.h"

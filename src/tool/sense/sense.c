@@ -74,8 +74,11 @@ static bool prepare_sensors(sense *s, io_error *error) {
     s->x1 = malloc(size);
     if (s->x0 == NULL || s->x1 == NULL) return io_fail(error, "out of memory");
     recording_rest(&s->recording, s->x0);
-    if (cscd_partition_create(mesh, s->plan.plan, s->x0, &s->options->partition, &s->partition) != CSCD_OK ||
-        cscd_sensors_create(mesh, s->partition, &s->options->sensors, &s->sensors) != CSCD_OK)
+    if (cscd_partition_create(s->recording.context, mesh, s->plan.plan,
+                              CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(mesh)), &s->options->partition,
+                              &s->partition) != CSCD_OK ||
+        cscd_sensors_create(s->recording.context, mesh, s->partition, &s->options->sensors, &s->sensors) !=
+            CSCD_OK)
         return api_failed(s, error);
     return object_map_make(mesh, s->partition, &s->map) || io_fail(error, "out of memory");
 }
@@ -85,7 +88,8 @@ static bool prepare_detector(sense *s, io_error *error) {
     cscd_detector_options options = cscd_detector_defaults();
     options.method = CSCD_METHOD_NONE;
     options.start = CSCD_START_UNKNOWN;
-    return cscd_detector_create(s->recording.mesh, NULL, &options, &s->detector) == CSCD_OK ||
+    return cscd_detector_create(s->recording.context, s->recording.mesh, NULL, &options, &s->detector) ==
+               CSCD_OK ||
            api_failed(s, error);
 }
 
@@ -111,7 +115,10 @@ static bool read_frame(sense *s, uint32_t frame, double *positions, io_error *er
 static bool compare_with_detector(sense *s, sense_interval *interval, io_error *error) {
     cscd_contacts contacts;
     if (s->detector == NULL) return true;
-    if (cscd_detector_step(s->detector, s->x0, s->x1, &contacts) != CSCD_OK) return api_failed(s, error);
+    if (cscd_detector_step(s->detector, CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(s->recording.mesh)),
+                           CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
+                           &contacts) != CSCD_OK)
+        return api_failed(s, error);
     interval->trees_ms = cscd_detector_timings(s->detector).total_ms;
     if (!object_pairs_of_contacts(s->recording.mesh, &s->map, &contacts, s->options->partition.within,
                                   &s->touching))
@@ -137,7 +144,9 @@ static bool renew_cells(sense *s, sense_interval *interval, io_error *error) {
         cscd_renewal why = cscd_sensors_renewal(s->sensors, p);
         if (why == CSCD_RENEWAL_EDGE) tell_edge(s, interval->frame + 1, p);
         if (why == CSCD_RENEWAL_NONE || why == CSCD_RENEWAL_EDGE) continue;
-        if (cscd_partition_renew(s->partition, s->x1, p) != CSCD_OK) return api_failed(s, error);
+        if (cscd_partition_renew(s->partition, CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
+                                 p) != CSCD_OK)
+            return api_failed(s, error);
         if (!s->options->quiet)
             printf("frame %u: part %u has new cells, %u now (%s)\n", interval->frame + 1, p,
                    cscd_partition_part(s->partition, p).cell_count, sense_renewal_name(why));
@@ -169,7 +178,9 @@ static bool count_warnings(sense *s, sense_interval *interval, io_error *error) 
 static bool run_interval(sense *s, uint32_t k, io_error *error) {
     cscd_warnings warnings;
     if (!read_frame(s, k + 1, s->x1, error)) return false;
-    if (cscd_sensors_step(s->sensors, s->x0, s->x1, &warnings) != CSCD_OK)
+    if (cscd_sensors_step(s->sensors, CSCD_DOUBLES(s->x0, cscd_mesh_vertex_count(s->recording.mesh)),
+                          CSCD_DOUBLES(s->x1, cscd_mesh_vertex_count(s->recording.mesh)),
+                          &warnings) != CSCD_OK)
         return io_fail(error, "frame %u: %s", k, cscd_context_detail(s->recording.context));
     sense_interval interval = {.frame = k,
                                .warnings = &warnings,

@@ -1,6 +1,7 @@
 /* The options of `cscd sense`. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/tool/common/frame_range.h"
 #include "src/tool/common/recording.h"
 #include "src/tool/picture/scene.h"

@@ -1,6 +1,7 @@
 /* A picture of cells, particles and the vertices that these have visited. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/io/growable.h"
 #include "src/tool/sense/sense_options.h"
 

@@ -1,6 +1,7 @@
 /* Results of `cscd sense`, for each interval and in all, as a table and as files. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/io/json.h"
 #include "src/tool/common/plan_source.h"
 #include "src/tool/sense/sense_options.h"

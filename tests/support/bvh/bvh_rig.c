@@ -39,8 +39,8 @@ bool bvh_rig_create(const scene *s, bvh_setup setup, bvh_rig *out) {
         return false;
     }
     assert_int_equal(status, CSCD_OK);
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
-    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
     choose_regions(&r, setup.region_count);
     build_trees(&r, s->x0, setup.axis_count);
     *out = r;

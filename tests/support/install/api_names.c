@@ -3,10 +3,15 @@
 
 #include "tests/support/shell.h"
 
-char *api_names(const char *header) {
-    /* A declaration may go over several lines, but its name and the parenthesis after it stand together. */
-    return shell_output(0,
-                        "cat include/cscd/%s | tr '\\n' ' ' | grep -oE 'CSCD_API [^;(]*cscd_[a-z_0-9]+\\(' | "
-                        "grep -oE 'cscd_[a-z_0-9]+\\($' | tr -d '(' | LC_ALL=C sort",
-                        header);
+/* A declaration may go over several lines, but its name and the parenthesis after it stand together. */
+#define NAMES                                                                                                \
+    "cat include/cscd/%s | tr '\\n' ' ' | grep -oE 'CSCD_API [^;(]*cscd_[a-z_0-9]+\\(' | "                   \
+    "grep -oE 'cscd_[a-z_0-9]+\\($' | tr -d '(' | "
+
+char *api_symbols(const char *header) {
+    return shell_output(0, NAMES "LC_ALL=C sort", header);
+}
+
+char *api_functions(const char *header) {
+    return shell_output(0, NAMES "sed 's/_sized$//' | LC_ALL=C sort", header);
 }

@@ -7,11 +7,11 @@
 charge_rig charge_rig_create(const conductor *s, uint32_t thread_count, const cscd_allocator *allocator) {
     charge_rig r = {NULL, NULL, NULL, NULL};
     cscd_context_options options = cscd_context_defaults();
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     options.thread_count = thread_count;
     if (allocator != NULL) options.allocator = *allocator;
     assert_int_equal(cscd_context_create(&options, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
     uint32_t components = cscd_mesh_component_count(r.mesh);
     r.density = malloc(s->triangle_count * sizeof *r.density);
     r.capacitance = malloc(components * sizeof *r.capacitance);

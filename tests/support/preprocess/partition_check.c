@@ -1,5 +1,6 @@
 /* Asserts what holds for every partition, and makes bodies to divide. */
 #include "tests/support/preprocess/partition_check.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -104,7 +105,7 @@ void check_partition(const cscd_partition *partition) {
 cscd_partition *partition_of(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                              const cscd_partition_options *options) {
     cscd_partition *partition = NULL;
-    assert_int_equal(cscd_partition_create(mesh, plan, positions, options, &partition), CSCD_OK);
+    assert_int_equal(partition_create_packed(mesh, plan, positions, options, &partition), CSCD_OK);
     check_partition(partition);
     return partition;
 }

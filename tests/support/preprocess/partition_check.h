@@ -1,6 +1,7 @@
 /* Asserts the invariants of every partition, and makes bodies to divide. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/mesh/partition.h"
 #include "tests/support/preprocess/region_check.h"
 

@@ -31,9 +31,9 @@ cscd_mesh *body_mesh(const body *b, uint32_t thread_count) {
     cscd_mesh *mesh = NULL;
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = thread_count;
-    cscd_mesh_desc desc = {b->vertex_count, b->triangle_count, b->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles);
     assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(context, &desc, &mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &desc, 1, &mesh), CSCD_OK);
     return mesh;
 }
 

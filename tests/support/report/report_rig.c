@@ -1,17 +1,19 @@
 /* A recording with a plan and a detector, and the report of its replay. */
 #include "tests/support/report/report_rig.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 report_rig report_rig_create(recorded shape, cscd_method method) {
     report_rig rig = {.shape = shape};
-    cscd_mesh_desc desc = {shape.vertex_count, shape.triangle_count, shape.triangles};
+    cscd_object_desc desc =
+        cscd_object_of_triangles(shape.vertex_count, shape.triangle_count, shape.triangles);
     cscd_plan_options plan_options = cscd_plan_defaults();
     cscd_detector_options options = cscd_detector_defaults();
     plan_options.method = options.method = method;
     assert_int_equal(cscd_context_create(NULL, &rig.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(rig.context, &desc, &rig.mesh), CSCD_OK);
-    assert_int_equal(cscd_plan_create(rig.mesh, shape.frames, &plan_options, &rig.plan), CSCD_OK);
-    assert_int_equal(cscd_detector_create(rig.mesh, rig.plan, &options, &rig.detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(rig.context, &desc, 1, &rig.mesh), CSCD_OK);
+    assert_int_equal(plan_create_packed(rig.mesh, shape.frames, &plan_options, &rig.plan), CSCD_OK);
+    assert_int_equal(detector_create_here(rig.mesh, rig.plan, &options, &rig.detector), CSCD_OK);
     return rig;
 }
 
@@ -39,7 +41,7 @@ bool report_rig_replay(const report_rig *rig, report *r, io_error *error) {
         cscd_contacts contacts;
         const double *start = recorded_position(&rig->shape, k, 0),
                      *end = recorded_position(&rig->shape, k + 1, 0);
-        assert_int_equal(cscd_detector_step(rig->detector, start, end, &contacts), CSCD_OK);
+        assert_int_equal(step_packed(rig->detector, start, end, &contacts), CSCD_OK);
         if (!report_add_interval(r, rig->detector, &contacts, end, error)) return false;
     }
     return true;

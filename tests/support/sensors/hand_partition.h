@@ -1,6 +1,7 @@
 /* Partitions made by hand: triangles may be in any part, and cells lie about random vertices. */
 #pragma once
 
+#include "cscd/sensors.h"
 #include "src/mesh/partition.h"
 
 /* Makes a partition of generation 1 whose parts all belong to different objects. A part has the vertices

@@ -1,5 +1,6 @@
 /* A context, a mesh, a plan, a partition and sensors for a scene; any failure to make them fails the test. */
 #include "tests/support/sensors/sensor_rig.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <assert.h>
@@ -9,17 +10,17 @@ sensor_rig sensor_rig_create(const scene *s, const sensor_setup *setup) {
     static const sensor_setup defaults = {0, NULL, NULL};
     if (setup == NULL) setup = &defaults;
     sensor_rig r = {NULL, NULL, NULL, NULL, NULL};
-    cscd_mesh_desc desc = {s->vertex_count, s->triangle_count, s->triangles};
+    cscd_object_desc desc = cscd_object_of_triangles(s->vertex_count, s->triangle_count, s->triangles);
     assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
-    assert_int_equal(cscd_mesh_create(r.context, &desc, &r.mesh), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r.context, &desc, 1, &r.mesh), CSCD_OK);
     if (setup->regions > 0) {
         cscd_plan_options options = cscd_plan_defaults();
         options.method = CSCD_METHOD_KMEANS;
         options.k = setup->regions;
-        assert_int_equal(cscd_plan_create(r.mesh, s->x0, &options, &r.plan), CSCD_OK);
+        assert_int_equal(plan_create_packed(r.mesh, s->x0, &options, &r.plan), CSCD_OK);
     }
-    assert_int_equal(cscd_partition_create(r.mesh, r.plan, s->x0, setup->partition, &r.partition), CSCD_OK);
-    assert_int_equal(cscd_sensors_create(r.mesh, r.partition, setup->sensors, &r.sensors), CSCD_OK);
+    assert_int_equal(partition_create_packed(r.mesh, r.plan, s->x0, setup->partition, &r.partition), CSCD_OK);
+    assert_int_equal(sensors_create_here(r.mesh, r.partition, setup->sensors, &r.sensors), CSCD_OK);
     return r;
 }
 
@@ -33,7 +34,7 @@ void sensor_rig_destroy(sensor_rig *r) {
 
 cscd_warnings sensor_rig_step(const sensor_rig *r, const double *start, const double *end) {
     cscd_warnings found;
-    assert_int_equal(cscd_sensors_step(r->sensors, start, end, &found), CSCD_OK);
+    assert_int_equal(sensors_step_packed(r->sensors, start, end, &found), CSCD_OK);
     return found;
 }
 

@@ -1,7 +1,9 @@
 /* Checks by brute force everything that a step certified free of contact promises. */
 #include "tests/support/solver/free_step_check.h"
+#include "cscd/research.h"
 #include "runtime/detector/detector.h"
 #include "src/core/vec3.h"
+#include "tests/support/packed.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -19,7 +21,7 @@ void free_step_prepare(const double *x0, const double *x1, double longest, doubl
     call->x1 = x1;
     call->longest = longest;
     call->step_factor = step_factor;
-    call->step = (cscd_free_step){.length = untouched};
+    call->step = (cscd_free_step){.fraction = untouched};
     for (size_t i = 0; i < sizeof call->end / sizeof *call->end; i++) call->end[i] = untouched;
 }
 
@@ -42,13 +44,13 @@ void free_step_positions(const rig *r, const double *x0, const double *x1, doubl
 
 static cscd_contacts contacts_between(const rig *reference, const double *x0, const double *x1) {
     cscd_contacts found;
-    assert_int_equal(cscd_detector_step(reference->detector, x0, x1, &found), CSCD_OK);
+    assert_int_equal(step_packed(reference->detector, x0, x1, &found), CSCD_OK);
     return found;
 }
 
 bool free_step_embedded(const rig *reference, const double *positions) {
     cscd_intersections found;
-    assert_int_equal(cscd_detector_check(reference->detector, positions, &found), CSCD_OK);
+    assert_int_equal(check_packed(reference->detector, positions, &found), CSCD_OK);
     return found.count == 0 && found.zero_area_triangles == 0;
 }
 
@@ -66,7 +68,7 @@ static void check_refused(const rig *reference, const cscd_context *called, cons
     const cscd_contact *limit = &call->step.limit;
     bool listed = false;
     assert_int_equal(call->status, CSCD_IN_CONTACT);
-    assert_true(call->step.length == 0.0 && call->step.limited && limit->toi == 0.0);
+    assert_true(call->step.fraction == 0.0 && call->step.limited && limit->toi == 0.0);
     for (size_t i = 0; i < touching.count; i++)
         listed |= same_pair(&touching.items[i], limit->kind, limit->a, limit->b);
     assert_true(listed);
@@ -85,7 +87,7 @@ static void check_limit(const free_step_call *call, cscd_contacts truth) {
         listed |= same && t->toi * call->longest == limit->toi && t->u == limit->u && t->v == limit->v;
     }
     assert_true(listed);
-    if (limit->toi > early) assert_true(call->step.length <= call->step_factor * limit->toi);
+    if (limit->toi > early) assert_true(call->step.fraction <= call->step_factor * limit->toi);
 }
 
 /* Without min_separation: the step ends before the first contact. */
@@ -113,7 +115,7 @@ typedef struct near_pairs {
 
 static near_pairs pairs_near(const rig *reference, const double *x, double distance) {
     cscd_proximities found;
-    assert_int_equal(cscd_detector_near(reference->detector, x, distance, &found), CSCD_OK);
+    assert_int_equal(find_near_packed(reference->detector, x, distance, &found), CSCD_OK);
     near_pairs copy = {malloc((found.count + 1) * sizeof *copy.items), found.count};
     assert_non_null(copy.items);
     if (found.count > 0) memcpy(copy.items, found.items, found.count * sizeof *copy.items);
@@ -159,7 +161,7 @@ static void check_limit_above_floors(const rig *reference, const free_step_call 
         listed |= same_pair(&truth.items[i], limit->kind, limit->a, limit->b);
     if (call->step.limited) assert_true(listed);
     if (call->step.limited && limit->toi > early)
-        assert_true(call->step.length <= call->step_factor * limit->toi);
+        assert_true(call->step.fraction <= call->step_factor * limit->toi);
 }
 
 static void check_floors(const rig *reference, const free_step_call *call, double distance) {
@@ -176,9 +178,9 @@ static void check_floors(const rig *reference, const free_step_call *call, doubl
 static void check_free(const rig *reference, const free_step_call *call, double distance) {
     static double end[SCENE_VERTICES_MAX * 3];
     assert_int_equal(call->status, CSCD_OK);
-    assert_true(call->step.length > 0.0 && call->step.length <= call->longest);
-    assert_int_equal(call->step.limited, call->step.length < call->longest);
-    free_step_positions(reference, call->x0, call->x1, call->step.length, end);
+    assert_true(call->step.fraction > 0.0 && call->step.fraction <= call->longest);
+    assert_int_equal(call->step.limited, call->step.fraction < call->longest);
+    free_step_positions(reference, call->x0, call->x1, call->step.fraction, end);
     assert_memory_equal(end, call->end, coordinates_of(reference) * sizeof(double));
     assert_int_equal(contacts_between(reference, call->x0, call->end).count, 0);
     if (distance == 0.0)

@@ -1,0 +1,21 @@
+/* Structs of the public API that may grow are as large as the caller's header says, which may be older or newer
+ * than the library. */
+#pragma once
+
+#include "src/core/context.h"
+
+/* Copies as much of `from` as the caller's struct holds, and zeroes what the library does not know. */
+void struct_give(void *out, size_t out_size, const void *from, size_t size);
+
+/* Writes default options to a caller's struct: the same, and its first member, a uint32_t, becomes its size. */
+void struct_give_options(void *out, size_t out_size, const void *from, size_t size);
+
+/* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. INVALID_ARGUMENT: the
+ * caller's struct is smaller than that of version 2.0, or has members that this library does not know and that
+ * are not 0; the sentence calls the struct `name`. */
+cscd_status struct_take(cscd_context *context, void *into, size_t size, size_t least_size, const void *from,
+                        size_t from_size, const char *name);
+
+/* The same for options, whose size is their first member, a uint32_t. maker: the name of their _defaults() function. */
+cscd_status struct_take_options(cscd_context *context, void *into, size_t size, size_t least_size,
+                                const void *from, const char *maker);

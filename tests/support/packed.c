@@ -1,0 +1,113 @@
+/* The functions of the API for tests, whose positions are packed doubles, one array for all objects, and whose
+ * objects are all of the mesh's context. NULL goes on as NULL. */
+#include "tests/support/packed.h"
+
+#include "runtime/sensors/sensors.h"
+#include "src/mesh/mesh.h"
+#include "src/mesh/partition.h"
+
+static const cscd_view *view_of(const cscd_mesh *mesh, const double *x, cscd_view *view) {
+    *view = cscd_view_doubles(x, mesh != NULL ? mesh->vertex_count : 0);
+    return x != NULL ? view : NULL;
+}
+
+static const cscd_mutable_view *mutable_view_of(const cscd_mesh *mesh, double *x, cscd_mutable_view *view) {
+    *view = cscd_mutable_view_doubles(x, mesh != NULL ? mesh->vertex_count : 0);
+    return x != NULL ? view : NULL;
+}
+
+static cscd_context *context_of(const cscd_mesh *mesh) {
+    return mesh != NULL ? mesh->context : NULL;
+}
+
+static const cscd_mesh *mesh_of(const cscd_detector *detector) {
+    return detector != NULL ? cscd_detector_mesh(detector) : NULL;
+}
+
+static const cscd_mesh *mesh_of_line(const cscd_line_search *line) {
+    return line != NULL ? mesh_of(cscd_line_search_detector(line)) : NULL;
+}
+
+cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
+                               const cscd_plan_options *options, cscd_plan **out) {
+    cscd_view x;
+    return cscd_plan_create(context_of(mesh), mesh, view_of(mesh, positions, &x), options, out);
+}
+
+cscd_status plan_from_parts_packed(const cscd_mesh *mesh, const double *positions,
+                                   const cscd_plan_parts *parts, cscd_plan **out) {
+    cscd_view x;
+    return cscd_plan_create_from_parts(context_of(mesh), mesh, view_of(mesh, positions, &x), parts, out);
+}
+
+cscd_status detector_create_here(const cscd_mesh *mesh, const cscd_plan *plan,
+                                 const cscd_detector_options *options, cscd_detector **out) {
+    return cscd_detector_create(context_of(mesh), mesh, plan, options, out);
+}
+
+cscd_status step_packed(cscd_detector *detector, const double *x0, const double *x1, cscd_contacts *out) {
+    const cscd_mesh *mesh = mesh_of(detector);
+    cscd_view from, to;
+    return cscd_detector_step(detector, view_of(mesh, x0, &from), view_of(mesh, x1, &to), out);
+}
+
+cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_intersections *out) {
+    cscd_view x;
+    return cscd_detector_check(detector, view_of(mesh_of(detector), positions, &x), out);
+}
+
+cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
+                             cscd_proximities *out) {
+    cscd_view x;
+    return cscd_detector_find_near(detector, view_of(mesh_of(detector), positions, &x), distance, out);
+}
+
+cscd_status max_step_packed(cscd_detector *detector, const double *x0, const double *x1, double *reached,
+                            cscd_free_step *out) {
+    const cscd_mesh *mesh = mesh_of(detector);
+    cscd_view from, to;
+    cscd_mutable_view end;
+    return cscd_detector_max_step(detector, view_of(mesh, x0, &from), view_of(mesh, x1, &to),
+                                  mutable_view_of(mesh, reached, &end), out);
+}
+
+cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach) {
+    const cscd_mesh *mesh = mesh_of_line(line);
+    cscd_view from, to;
+    return cscd_line_search_begin(line, view_of(mesh, x0, &from), view_of(mesh, x1, &to), reach);
+}
+
+cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions) {
+    cscd_mutable_view x;
+    return cscd_line_search_positions(line, fraction, mutable_view_of(mesh_of_line(line), positions, &x));
+}
+
+cscd_status line_max_step_packed(cscd_line_search *line, double longest, double *reached,
+                                 cscd_free_step *out) {
+    cscd_mutable_view end;
+    return cscd_line_search_max_step(line, longest, mutable_view_of(mesh_of_line(line), reached, &end), out);
+}
+
+cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                    const cscd_partition_options *options, cscd_partition **out) {
+    cscd_view x;
+    return cscd_partition_create(context_of(mesh), mesh, plan, view_of(mesh, positions, &x), options, out);
+}
+
+cscd_status partition_renew_packed(cscd_partition *partition, const double *positions, uint32_t part) {
+    cscd_view x;
+    return cscd_partition_renew(partition, view_of(partition != NULL ? partition->mesh : NULL, positions, &x),
+                                part);
+}
+
+cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition,
+                                const cscd_sensor_options *options, cscd_sensors **out) {
+    return cscd_sensors_create(context_of(mesh), mesh, partition, options, out);
+}
+
+cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
+                                cscd_warnings *out) {
+    const cscd_mesh *mesh = sensors != NULL ? sensors->mesh : NULL;
+    cscd_view from, to;
+    return cscd_sensors_step(sensors, view_of(mesh, x0, &from), view_of(mesh, x1, &to), out);
+}

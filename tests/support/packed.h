@@ -1,0 +1,34 @@
+/* The functions of the API for tests, whose positions are packed doubles, one array for all objects, and whose
+ * objects are all of the mesh's context. NULL goes on as NULL. */
+#pragma once
+
+#include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "cscd/sensors.h"
+
+cscd_status plan_create_packed(const cscd_mesh *mesh, const double *positions,
+                               const cscd_plan_options *options, cscd_plan **out);
+cscd_status plan_from_parts_packed(const cscd_mesh *mesh, const double *positions,
+                                   const cscd_plan_parts *parts, cscd_plan **out);
+cscd_status detector_create_here(const cscd_mesh *mesh, const cscd_plan *plan,
+                                 const cscd_detector_options *options, cscd_detector **out);
+
+cscd_status step_packed(cscd_detector *detector, const double *x0, const double *x1, cscd_contacts *out);
+cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_intersections *out);
+cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
+                             cscd_proximities *out);
+cscd_status max_step_packed(cscd_detector *detector, const double *x0, const double *x1, double *reached,
+                            cscd_free_step *out);
+
+cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach);
+cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions);
+cscd_status line_max_step_packed(cscd_line_search *line, double longest, double *reached,
+                                 cscd_free_step *out);
+
+cscd_status partition_create_packed(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
+                                    const cscd_partition_options *options, cscd_partition **out);
+cscd_status partition_renew_packed(cscd_partition *partition, const double *positions, uint32_t part);
+cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition,
+                                const cscd_sensor_options *options, cscd_sensors **out);
+cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
+                                cscd_warnings *out);
