@@ -41,8 +41,9 @@ LEVEL_avx2   := -DSIMD_LEVEL=1 -mavx2
 LEVEL_avx512 := -DSIMD_LEVEL=2 -mavx512f -mavx512vl -mavx512dq -mavx512bw
 
 # -ffp-contract=off: error bounds are derived for separate multiplications and additions. -fPIC: both libraries are
-# made of the same objects, which run no slower for it.
-CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC \
+# made of the same objects, which run no slower for it. -fexceptions: a callback of the host may throw a C++ exception
+# through the library, whose frames then unwind on every machine and run the cleanups of src/core/entry.h.
+CFLAGS_ALL := -std=c11 -D_GNU_SOURCE $(OPTIMISE_$(CONFIG)) $(WARNINGS) -ffp-contract=off -fvisibility=hidden -fPIC -fexceptions \
               -Wno-psabi -pthread -MMD -MP -Iinclude -I. $(CORE_DEFINITIONS) $(CFLAGS)
 LINK_ALL   := $(OPTIMISE_$(CONFIG)) -pthread $(LDFLAGS)
 # libcscd.so opens libcscd-charge.so when it needs it; libcscd.a has it inside, unless CHARGE=0. (Where dlopen is in libc,
@@ -116,9 +117,9 @@ TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
 SLOW_baselines     := contour iccd
 SLOW_bvh           := traversal
 SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_degenerate elementary_exact elementary_oracle min_separation_random root_finders
-SLOW_core          := parallel_for progress
+SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_culling       := culling local_culling
-SLOW_detector      := min_separation_detector oracle threads
+SLOW_detector      := min_separation_detector oracle threads reentry
 SLOW_install       := embedding install
 SLOW_intersections := static_check_kernel
 SLOW_mesh          := predicates triangle_intersection
@@ -224,7 +225,7 @@ test-without-baselines: packages
 
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
-                  core/test_parallel_for core/test_contexts detector/test_lifetimes)
+                  core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry detector/test_lifetimes)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 
@@ -380,6 +381,10 @@ $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 
+# A host in C++, which throws.
+$(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o
+$(BUILD)/tests/core/test_exceptions: TEST_LIBS += -lstdc++
+
 # Elementary tests go through the same batches in tests and benchmarks.
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c)
 	@mkdir -p $(@D)
@@ -404,6 +409,11 @@ $(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)
 	$(say) '  CC $<'
 	$(Q)$(CC) $(CFLAGS_ALL) -c -o $@ $<
+
+$(OBJECTS)/%.o: %.cpp
+	@mkdir -p $(@D)
+	$(say) '  CXX $<'
+	$(Q)$(CXX) -std=c++11 $(OPTIMISE_$(CONFIG)) -Wall -Wextra -fPIC -pthread -MMD -MP -Iinclude -I. -c -o $@ $<
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math

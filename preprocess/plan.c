@@ -154,6 +154,7 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
     cscd_plan *plan = plan_allocate(mesh, parts->method, parts->region_count);
     if (plan == NULL) return context_out_of_memory(mesh->context);
     cscd_status status = fill_plan(plan, mesh, positions, parts);
+    if (status == CSCD_OK) status = context_loop_status(mesh->context);
     if (status != CSCD_OK) {
         cscd_plan_destroy(plan);
         return status;
@@ -208,9 +209,9 @@ static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *posi
     return status;
 }
 
-cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
-                             const cscd_plan_options *options, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status create_plan(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
+                               const cscd_plan_options *options, cscd_plan **out) {
+    const cscd_mesh seen = mesh_seen_from(context, mesh);
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create: out is NULL");
     cscd_plan_options chosen = default_options;
     cscd_status status = CSCD_OK;
@@ -223,9 +224,17 @@ cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const
     double *buffer = NULL;
     const double *x = NULL;
     status = views_read(context, mesh, positions, "positions", &buffer, &x);
-    if (status == CSCD_OK) status = plan_from_positions(mesh, x, &chosen, out);
+    if (status == CSCD_OK) status = plan_from_positions(&seen, x, &chosen, out);
     context_free(context, buffer);
     return status;
+}
+
+cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
+                             const cscd_plan_options *options, cscd_plan **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_plan(context, mesh, positions, options, out));
 }
 
 /* ---- from parts ------------------------------------------------------------------------------------ */
@@ -280,10 +289,9 @@ static cscd_status plan_from_parts(const cscd_mesh *mesh, const double *position
     return make_plan(mesh, positions, parts, out);
 }
 
-cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
-                                              const cscd_view *positions, const cscd_plan_parts *parts,
-                                              size_t parts_size, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status create_from_parts(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
+                                     const cscd_plan_parts *parts, size_t parts_size, cscd_plan **out) {
+    const cscd_mesh seen = mesh_seen_from(context, mesh);
     if (parts == NULL || out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "cscd_plan_create_from_parts: parts or out is NULL");
@@ -293,7 +301,16 @@ cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_
     cscd_status status =
         struct_take(context, &taken, sizeof taken, sizeof taken, parts, parts_size, "cscd_plan_parts");
     if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
-    if (status == CSCD_OK) status = plan_from_parts(mesh, x, &taken, out);
+    if (status == CSCD_OK) status = plan_from_parts(&seen, x, &taken, out);
     context_free(context, buffer);
     return status;
+}
+
+cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
+                                              const cscd_view *positions, const cscd_plan_parts *parts,
+                                              size_t parts_size, cscd_plan **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_from_parts(context, mesh, positions, parts, parts_size, out));
 }

@@ -26,9 +26,11 @@ typedef enum cscd_status {
     CSCD_INVALID_ARGUMENT, /* NULL, out of range, not finite, or options that no _defaults() function made */
     CSCD_INVALID_MESH,     /* no triangle, too many, an index beyond vertex_count, a triangle with a vertex
                             * twice */
-    CSCD_SYSTEM_ERROR,     /* the system refused a thread */
+    CSCD_SYSTEM_ERROR,     /* the system refused a thread, or has no libcscd-charge.so: cscd_plan_create */
     CSCD_CANCELLED,        /* the callback in cscd_progress returned false */
     CSCD_IN_CONTACT,       /* no step is free of contact, because the start is not: cscd_detector_max_step */
+    CSCD_BUSY,             /* another call with this context is running: see the rules of callbacks */
+    CSCD_BROKEN,           /* a callback has left a call with this context by an exception or longjmp */
     CSCD_STATUS_MAX_ENUM = 0x7fffffff
 } cscd_status;
 
@@ -39,6 +41,25 @@ CSCD_API const char *cscd_status_string(cscd_status status);
 
 /* Allocator, threads, instruction set and the last failure's sentence. */
 typedef struct cscd_context cscd_context;
+
+/* What holds for callbacks: the allocator, parallel_for and its tasks, progress and ignore.
+ *   calls     A call that creates, changes or uses an object of a context in which a call is running fails with
+ *             CSCD_BUSY and changes nothing, whether it comes from a callback or from another thread. Functions of
+ *             a mesh that return no status may be called at any time, from any thread
+ *   destroy   A _destroy function may be called at any time; objects of a context in which a call is running live
+ *             until that call ends
+ *   floats    The library computes with rounding to nearest, without flushing to zero and without traps, whatever
+ *             the caller's floating-point environment is. Every call gives the caller's back, flags included, and
+ *             callbacks run in it; so do allocator calls on threads of the library. Tasks of parallel_for give the
+ *             environment of the thread that runs them back
+ *   leaving   A callback should return. If it leaves the library by a C++ exception or longjmp, the context is
+ *             broken: every call fails with CSCD_BROKEN, cscd_context_detail names the callback, and the objects can
+ *             only be destroyed, which frees everything. After an exception all threads see this. A longjmp is
+ *             noticed by the next call of the same thread that comes from no deeper on its stack than the
+ *             callback; until then, and on fibers, calls fail with CSCD_BUSY, and destroyed objects stay. release
+ *             must always return; so must the allocator on threads of the library, as nobody could catch there, and
+ *             in cscd_context_create, which would lose what it has allocated. OpenBLAS may be left with one
+ *             thread if a plan by charge is left */
 
 /* The host's allocator. Set both functions, or neither for aligned_alloc and free. allocate returns NULL
  * when it fails; alignment is a power of two. release is given the size that was asked for. The context
@@ -67,8 +88,10 @@ CSCD_API bool cscd_simd_from_name(const char *name, cscd_simd *out);
 /* The host's own parallel loop, for hosts that have a thread pool: cscd then starts no threads. run calls
  * task(data, index) once for every index below task_count, in any order, on any threads, and returns when
  * all of these calls have returned. Tasks never wait for each other, so calling them one after the other
- * is correct. While a thread waits in run, the pool must not give it work that calls cscd with objects of
- * the same context. */
+ * is correct. A call whose tasks were left out, repeated, or still running when run returned fails with
+ * INVALID_ARGUMENT and their numbers; it may be repeated. While a thread waits in run, the pool may give it
+ * work that calls cscd with objects of other contexts. An exception that a task passes on from a callback
+ * may be thrown by run when all tasks have ended. */
 typedef struct cscd_parallel_for {
     void (*run)(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index), void *data);
     void *user;
@@ -78,8 +101,7 @@ typedef struct cscd_parallel_for {
  * _check, _near and _max_step, and cscd_line_begin, _near and _max_step call it every few milliseconds, on
  * the thread that called them; calls that end sooner do not call it at all. stage: a word or two, static
  * storage. fraction: an estimate in [0,1] of how much of the call is done, which never falls during a
- * call. When report returns false, the call ends with CSCD_CANCELLED. report must not call cscd with
- * objects of the same context. */
+ * call. When report returns false, the call ends with CSCD_CANCELLED. */
 typedef struct cscd_progress {
     bool (*report)(void *user, const char *stage, double fraction);
     void *user;

@@ -17,8 +17,8 @@
  *   ownership   the library copies what it is given. What a _create function makes, one _destroy call frees;
  *               destroy in the reverse order of creation. Destroying NULL does nothing
  *   results     lists that a function gives out belong to the object that was asked; each says how long they live
- *   threads     one thread at a time uses a context and all that was created from it. Separate contexts are
- *               independent
+ *   threads     one call at a time works in a context: another one fails with CSCD_BUSY, as calls from callbacks do.
+ *               Separate contexts are independent. cscd/context.h has the rules of callbacks
  *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
  *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do. (A NULL context,
  *               mesh, detector or line has no place for a sentence.) All may return CSCD_INVALID_ARGUMENT and

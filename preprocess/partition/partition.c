@@ -125,10 +125,10 @@ static cscd_status partition_at(const cscd_mesh *mesh, const cscd_plan *plan, co
     return status;
 }
 
-cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
-                                  const cscd_view *positions, const cscd_partition_options *options,
-                                  cscd_partition **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                    const cscd_view *positions, const cscd_partition_options *options,
+                                    cscd_partition **out) {
+    const cscd_mesh seen = mesh_seen_from(context, mesh);
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_partition_create: out is NULL");
     cscd_partition_options chosen = default_options;
@@ -141,9 +141,18 @@ cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, 
     if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status == CSCD_OK) status = check_plan(context, mesh, plan);
     if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
-    if (status == CSCD_OK) status = partition_at(mesh, plan, x, &chosen, out);
+    if (status == CSCD_OK) status = partition_at(&seen, plan, x, &chosen, out);
     context_free(context, buffer);
     return status;
+}
+
+cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                  const cscd_view *positions, const cscd_partition_options *options,
+                                  cscd_partition **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_partition(context, mesh, plan, positions, options, out));
 }
 
 static cscd_status renew_at(cscd_partition *partition, const double *positions, uint32_t part) {
@@ -154,8 +163,7 @@ static cscd_status renew_at(cscd_partition *partition, const double *positions, 
     return make_cells_of(partition, positions, all ? 0 : part, all ? partition->part_count : part + 1);
 }
 
-cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
-    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status renew_partition(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
     cscd_context *context = partition->context;
     if (part != UINT32_MAX && part >= partition->part_count)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -167,4 +175,11 @@ cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *pos
     if (status == CSCD_OK) status = renew_at(partition, x, part);
     context_free(context, buffer);
     return status;
+}
+
+cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
+    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(partition->context, &entry)) return entry.status;
+    return context_leave(&entry, renew_partition(partition, positions, part));
 }

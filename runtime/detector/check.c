@@ -62,15 +62,15 @@ static cscd_status check_at(cscd_detector *d, const double *positions, cscd_inte
     detector_begin_call(d);
     progress_stage(&d->context->progress, "static check", 0.0, 1.0);
     status = check_moment(d, positions, out);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     timer_lap(&since, &spent);
     d->timings.check_ms = spent;
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
-                                      cscd_intersections *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status check_views(cscd_detector *detector, const cscd_view *positions, cscd_intersections *out,
+                               size_t size) {
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_check: out is NULL");
     const double *x = NULL;
@@ -80,4 +80,12 @@ cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *
     if (status == CSCD_OK) status = check_at(detector, x, &found);
     if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
     return status;
+}
+
+cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
+                                      cscd_intersections *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, check_views(detector, positions, out, size));
 }

@@ -111,50 +111,8 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     return status;
 }
 
-/* Creates a detector with checked options. */
-static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
-                                   cscd_detector_options chosen, cscd_detector **out) {
-    cscd_detector *d = context_allocate(context, 1, sizeof *d);
-    if (d == NULL) return context_out_of_memory(context);
-    context_hold(context);
-    mesh_hold(mesh);
-    reference_begin(&d->references);
-    d->context = context;
-    d->seen = mesh_seen_from(context, mesh);
-    d->mesh = mesh = &d->seen;
-    d->options = chosen;
-    d->traits = method_traits_of(chosen.method);
-    d->stages = method_stages_of(chosen.method);
-    d->rules = *d->stages->rules;
-    d->limit = limit_of(&chosen);
-    d->floor_ratio = 0.9;
-    cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
-    if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
-    if (status != CSCD_OK) {
-        cscd_detector_destroy(d);
-        return status;
-    }
-    *out = d;
-    return CSCD_OK;
-}
-
-cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
-                                 const cscd_detector_options *options, cscd_detector **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
-    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_create: out is NULL");
-    cscd_detector_options chosen = default_options;
-    cscd_status status = CSCD_OK;
-    if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
-                                     "cscd_detector_defaults");
-    if (status == CSCD_OK) status = check_options(context, &chosen);
-    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
-    return status == CSCD_OK ? create_detector(context, mesh, plan, chosen, out) : status;
-}
-
-static void free_detector(cscd_detector *d) {
+static void free_memory(cscd_detector *d) {
     cscd_context *context = d->context;
-    cscd_mesh mesh = d->seen;
     if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
@@ -173,8 +131,62 @@ static void free_detector(cscd_detector *d) {
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
     context_free(context, d);
+}
+
+static void free_detector(reference_count *references) {
+    cscd_detector *d = (cscd_detector *)references;
+    cscd_context *context = d->context;
+    cscd_mesh mesh = d->seen;
+    if (!context_broken(context)) free_memory(d);
     mesh_release(&mesh);
     context_release(context);
+}
+
+/* Creates a detector with checked options. */
+static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                   cscd_detector_options chosen, cscd_detector **out) {
+    cscd_detector *d = context_allocate(context, 1, sizeof *d);
+    if (d == NULL) return context_out_of_memory(context);
+    mesh_hold(mesh);
+    d->context = context;
+    d->seen = mesh_seen_from(context, mesh);
+    d->mesh = mesh = &d->seen;
+    context_add_object(context, &d->references, free_detector);
+    d->options = chosen;
+    d->traits = method_traits_of(chosen.method);
+    d->stages = method_stages_of(chosen.method);
+    d->rules = *d->stages->rules;
+    d->limit = limit_of(&chosen);
+    d->floor_ratio = 0.9;
+    cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
+    if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
+    if (status != CSCD_OK) {
+        cscd_detector_destroy(d);
+        return status;
+    }
+    *out = d;
+    return CSCD_OK;
+}
+
+static cscd_status take_options(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                const cscd_detector_options *options, cscd_detector **out) {
+    if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_create: out is NULL");
+    cscd_detector_options chosen = default_options;
+    cscd_status status = CSCD_OK;
+    if (options != NULL)
+        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+                                     "cscd_detector_defaults");
+    if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
+    return status == CSCD_OK ? create_detector(context, mesh, plan, chosen, out) : status;
+}
+
+cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
+                                 const cscd_detector_options *options, cscd_detector **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, take_options(context, mesh, plan, options, out));
 }
 
 void detector_hold(cscd_detector *d) {
@@ -182,15 +194,14 @@ void detector_hold(cscd_detector *d) {
 }
 
 void detector_release(cscd_detector *d) {
-    if (reference_drop(&d->references)) free_detector(d);
+    context_drop_object(d->context, &d->references);
 }
 
 void cscd_detector_destroy(cscd_detector *d) {
-    if (d != NULL && reference_destroy(&d->references)) free_detector(d);
+    if (d != NULL) context_destroy_object(d->context, &d->references);
 }
 
-cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status set_separation(cscd_detector *detector, double min_separation, double tolerance) {
     cscd_detector_options changed = detector->options;
     changed.min_separation = min_separation;
     changed.tolerance = tolerance;
@@ -201,6 +212,13 @@ cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_sep
     detector->options = changed;
     detector->limit = limit_of(&changed);
     return CSCD_OK;
+}
+
+cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, set_separation(detector, min_separation, tolerance));
 }
 
 interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1) {

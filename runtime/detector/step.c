@@ -326,6 +326,7 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     step_outcome found;
     detector_begin_call(d);
     status = step_find(d, x0, x1, d->options.mode, false, &found);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     step_take(d, x1);
     timer_lap(&since, &found.timings.total_ms);
@@ -336,9 +337,8 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                     cscd_contacts *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status step_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                              cscd_contacts *out, size_t size) {
     cscd_context *context = detector->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_step: out is NULL");
     const double *from = NULL, *to = NULL;
@@ -349,4 +349,12 @@ cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x
     if (status == CSCD_OK) status = step_between(detector, from, to, &found);
     if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
     return status;
+}
+
+cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                     cscd_contacts *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, step_views(detector, x0, x1, out, size));
 }

@@ -89,14 +89,26 @@ static bool is_listed(const exclusions *e, uint64_t key) {
     return low < e->ignored_count && e->ignored[low] == key;
 }
 
+/* Within a call of the host: see state_for_host. */
 static bool is_ignored(const exclusions *e, uint32_t a, uint32_t b) {
     uint32_t smaller = a < b ? a : b, larger = a < b ? b : a;
     return (e->ignored_count > 0 && is_listed(e, key_of(a, b))) ||
            (e->ignore != NULL && e->ignore(e->ignore_user, smaller, larger));
 }
 
+static entry_state *state_for_host(const exclusions *e) {
+    return e->ignore != NULL ? &e->mesh->context->entry : NULL;
+}
+
+static bool triangles_ignored(const exclusions *e, uint32_t a, uint32_t b) {
+    HOST_CALL(call, state_for_host(e), HOST_IGNORE);
+    bool ignored = is_ignored(e, a, b);
+    host_call_end(&call);
+    return ignored;
+}
+
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
-    if (is_ignored(e, a, b)) return true;
+    if (triangles_ignored(e, a, b)) return true;
     if (e->names == NULL) return false;
     const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
     return !triangles_intersect_by_names(corners_a, corners_b, e->names, positions);
@@ -118,13 +130,20 @@ static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
     return (triangle_list){mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge)};
 }
 
-static bool any_pair_ignored(const exclusions *e, triangle_list a, triangle_list b) {
+static bool any_pair_listed(const exclusions *e, triangle_list a, triangle_list b) {
     for (uint32_t i = 0; i < a.count; i++) {
         for (uint32_t j = 0; j < b.count; j++) {
             if (a.items[i] != b.items[j] && is_ignored(e, a.items[i], b.items[j])) return true;
         }
     }
     return false;
+}
+
+static bool any_pair_ignored(const exclusions *e, triangle_list a, triangle_list b) {
+    HOST_CALL(call, state_for_host(e), HOST_IGNORE);
+    bool ignored = any_pair_listed(e, a, b);
+    host_call_end(&call);
+    return ignored;
 }
 
 static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, const uint32_t *b,

@@ -85,9 +85,34 @@ static cscd_status create_parts(cscd_sensors *s) {
     return status;
 }
 
-cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
-                                const cscd_sensor_options *options, cscd_sensors **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+static void free_memory(cscd_sensors *s) {
+    cscd_context *context = s->context;
+    context_free(context, s->unpacked[0]);
+    context_free(context, s->unpacked[1]);
+    particles_free(&s->particles);
+    random_particles_free(context, &s->random);
+    sensor_reach_free(context, &s->reach);
+    particle_pairs_free(context, &s->pairs);
+    exact_check_destroy(&s->exact);
+    sensor_renewal_destroy(&s->renewal);
+    sensor_bounds_destroy(&s->bounds);
+    context_free_all(context, list_arrays(s));
+    context_free(context, s->before);
+    context_free(context, s->warnings);
+    context_free(context, s);
+}
+
+static void free_sensors(reference_count *references) {
+    cscd_sensors *s = (cscd_sensors *)references;
+    cscd_context *context = s->context;
+    cscd_partition *partition = s->partition;
+    if (!context_broken(context)) free_memory(s);
+    partition_release(partition);
+    context_release(context);
+}
+
+static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
+                                  const cscd_sensor_options *options, cscd_sensors **out) {
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
     if (partition == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: partition is NULL");
@@ -103,13 +128,12 @@ cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cs
 
     cscd_sensors *s = context_allocate(context, 1, sizeof *s);
     if (s == NULL) return context_out_of_memory(context);
-    context_hold(context);
     partition_hold(partition);
-    reference_begin(&s->references);
     s->context = context;
     s->mesh = partition->mesh;
     s->partition = partition;
     s->options = chosen;
+    context_add_object(context, &s->references, free_sensors);
     if (create_parts(s) != CSCD_OK) {
         cscd_sensors_destroy(s);
         return context_out_of_memory(context);
@@ -118,24 +142,16 @@ cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cs
     return CSCD_OK;
 }
 
+cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
+                                const cscd_sensor_options *options, cscd_sensors **out) {
+    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_sensors(context, mesh, partition, options, out));
+}
+
 void cscd_sensors_destroy(cscd_sensors *s) {
-    if (s == NULL || !reference_destroy(&s->references)) return;
-    context_free(s->context, s->unpacked[0]);
-    context_free(s->context, s->unpacked[1]);
-    cscd_context *context = s->context;
-    particles_free(&s->particles);
-    random_particles_free(context, &s->random);
-    sensor_reach_free(context, &s->reach);
-    particle_pairs_free(context, &s->pairs);
-    exact_check_destroy(&s->exact);
-    sensor_renewal_destroy(&s->renewal);
-    sensor_bounds_destroy(&s->bounds);
-    context_free_all(context, list_arrays(s));
-    context_free(context, s->before);
-    context_free(context, s->warnings);
-    partition_release(s->partition);
-    context_free(context, s);
-    context_release(context);
+    if (s != NULL) context_destroy_object(s->context, &s->references);
 }
 
 /* ---- one interval ------------------------------------------------------------------------------------- */
@@ -259,9 +275,8 @@ static cscd_status step_between(cscd_sensors *s, const double *x0, const double 
     return CSCD_OK;
 }
 
-cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
-                                    cscd_warnings *out, size_t size) {
-    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status step_views(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                              cscd_warnings *out, size_t size) {
     cscd_context *context = sensors->context;
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_step: out is NULL");
     const double *from = NULL, *to = NULL;
@@ -271,6 +286,14 @@ cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, 
     if (status == CSCD_OK) status = step_between(sensors, from, to, &found);
     if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
     return status;
+}
+
+cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
+                                    cscd_warnings *out, size_t size) {
+    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(sensors->context, &entry)) return entry.status;
+    return context_leave(&entry, step_views(sensors, x0, x1, out, size));
 }
 
 /* ---- results of the last step ------------------------------------------------------------------------- */

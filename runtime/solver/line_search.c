@@ -35,8 +35,20 @@ static array_list list_arrays(cscd_line_search *line) {
                          ARRAY(line->reached, coordinates), ARRAY(line->states, mesh->triangle_count)}};
 }
 
-cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static void free_line(reference_count *references) {
+    cscd_line_search *line = (cscd_line_search *)references;
+    cscd_detector *detector = line->detector;
+    cscd_context *context = detector->context;
+    if (!context_broken(context)) {
+        candidates_free(context, &line->candidates);
+        context_free_all(context, list_arrays(line));
+        context_free(context, line);
+    }
+    detector_release(detector);
+    context_release(context);
+}
+
+static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_line_search_create: out is NULL");
@@ -47,19 +59,21 @@ cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **
         context_free(context, line);
         return context_out_of_memory(context);
     }
-    reference_begin(&line->references);
     detector_hold(detector);
+    context_add_object(context, &line->references, free_line);
     *out = line;
     return CSCD_OK;
 }
 
+cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, create_line(detector, out));
+}
+
 void cscd_line_search_destroy(cscd_line_search *line) {
-    if (line == NULL || !reference_destroy(&line->references)) return;
-    cscd_detector *detector = line->detector;
-    candidates_free(detector->context, &line->candidates);
-    context_free_all(detector->context, list_arrays(line));
-    context_free(detector->context, line);
-    detector_release(detector);
+    if (line != NULL) context_destroy_object(line->detector->context, &line->references);
 }
 
 /* ---- begin --------------------------------------------------------------------------------------------- */
@@ -97,20 +111,28 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     detector_begin_call(d);
     status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
                                 &line->candidates);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
     return CSCD_OK;
 }
 
-cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
-                                   double reach) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status begin_views(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
+                               double reach) {
     cscd_detector *d = line->detector;
     const double *from = NULL, *to = NULL;
     cscd_status status = check_reach(d->context, reach);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x0, "x0", &d->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x1, "x1", &d->unpacked[1], &to);
     return status == CSCD_OK ? begin_between(line, from, to, reach) : status;
+}
+
+cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
+                                   double reach) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    return context_leave(&entry, begin_views(line, x0, x1, reach));
 }
 
 static cscd_status check_begun(const cscd_line_search *line, const char *function) {
@@ -136,9 +158,8 @@ static cscd_status check_fraction(const cscd_line_search *line, double fraction,
                         "%s: fraction is %g, expected a number in [0,1]", function, fraction);
 }
 
-cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
-                                       const cscd_mutable_view *positions) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status write_positions(cscd_line_search *line, double fraction,
+                                   const cscd_mutable_view *positions) {
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_positions");
     if (status == CSCD_OK && positions == NULL)
@@ -152,9 +173,16 @@ cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
     return CSCD_OK;
 }
 
-cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
-                                             cscd_proximities *out, size_t size) {
+cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
+                                       const cscd_mutable_view *positions) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    return context_leave(&entry, write_positions(line, fraction, positions));
+}
+
+static cscd_status find_near_on_line(cscd_line_search *line, double fraction, double distance,
+                                     cscd_proximities *out, size_t size) {
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
@@ -173,9 +201,18 @@ cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double frac
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, &found);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     struct_give(out, size, &found, sizeof found);
     return CSCD_OK;
+}
+
+cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
+                                             cscd_proximities *out, size_t size) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    return context_leave(&entry, find_near_on_line(line, fraction, distance, out, size));
 }
 
 /* ---- steps --------------------------------------------------------------------------------------------- */
@@ -225,10 +262,8 @@ static cscd_status check_covered(const cscd_line_search *line) {
                         d->limit.distance, line->covered);
 }
 
-cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longest,
-                                            const cscd_mutable_view *reached, cscd_free_step *out,
-                                            size_t size) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status max_step_on_line(cscd_line_search *line, double longest, const cscd_mutable_view *reached,
+                                    cscd_free_step *out, size_t size) {
     cscd_detector *d = line->detector;
     cscd_status status = check_begun(line, "cscd_line_search_max_step");
     if (status == CSCD_OK) status = check_covered(line);
@@ -245,9 +280,19 @@ cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longe
     free_step step;
     status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
     if (status == CSCD_IN_CONTACT) struct_give(out, size, &step.result, sizeof step.result);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
     views_write(d->mesh, reached, line->reached);
     struct_give(out, size, &step.result, sizeof step.result);
     return CSCD_OK;
+}
+
+cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longest,
+                                            const cscd_mutable_view *reached, cscd_free_step *out,
+                                            size_t size) {
+    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    return context_leave(&entry, max_step_on_line(line, longest, reached, out, size));
 }

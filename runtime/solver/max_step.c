@@ -91,6 +91,7 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step 
     detector_begin_call(d);
     cscd_status status = reserve_reached(d);
     if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return fail_tries(&t, status);
     step_take(d, d->reached);
     timer_lap(&since, &t.timings.total_ms);
@@ -110,9 +111,8 @@ static cscd_status max_step_between(cscd_detector *d, const double *x0, const do
     return status;
 }
 
-cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                         const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                     const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
     if (out == NULL)
@@ -128,4 +128,12 @@ cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_vie
     if (status == CSCD_OK || status == CSCD_IN_CONTACT)
         struct_give(out, size, &step.result, sizeof step.result);
     return status;
+}
+
+cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                         const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out, size));
 }

@@ -119,12 +119,12 @@ static cscd_status find_near_at(cscd_detector *d, const double *positions, doubl
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     status = proximity_find(d, positions, distance, out);
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 
-cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
-                                          double distance, cscd_proximities *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status find_near_views(cscd_detector *detector, const cscd_view *positions, double distance,
+                                   cscd_proximities *out, size_t size) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_near: out is NULL");
@@ -136,4 +136,12 @@ cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_vi
     if (status == CSCD_OK) status = find_near_at(detector, x, distance, &found);
     if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
     return status;
+}
+
+cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
+                                          double distance, cscd_proximities *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, find_near_views(detector, positions, distance, out, size));
 }

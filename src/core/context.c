@@ -19,6 +19,18 @@ void cscd_context_defaults_sized(cscd_context_options *out, size_t size) {
     struct_give_options(out, size, &options, sizeof options);
 }
 
+static void free_context(reference_count *references) {
+    cscd_context *context = (cscd_context *)((char *)references - offsetof(cscd_context, references));
+    parallel_destroy(&context->memory, context->threads);
+    memory_end(&context->memory);
+    cscd_allocator allocator = context->memory.allocator;
+    allocator.release(allocator.user, context, sizeof *context);
+}
+
+static void free_handle(reference_count *handle) {
+    context_release((cscd_context *)handle);
+}
+
 /* Explains in `context`, which only has a place for the sentence. */
 static cscd_status check_options(cscd_context *context, const cscd_context_options *options) {
     if ((options->allocator.allocate == NULL) != (options->allocator.release == NULL))
@@ -37,13 +49,14 @@ static cscd_status check_options(cscd_context *context, const cscd_context_optio
 }
 
 static cscd_status create_parts(cscd_context *context, const cscd_context_options *options) {
-    context->progress = progress_of(options->progress);
+    context->progress = progress_of(options->progress, &context->entry);
     context->simd = options->simd != CSCD_SIMD_AUTO ? options->simd : processor_best_simd();
-    if (!memory_begin(&context->memory, options->allocator))
+    if (!memory_begin(&context->memory, options->allocator, &context->entry))
         return context_fail(context, CSCD_SYSTEM_ERROR, "the system refused a mutex");
     context->memory.bytes = sizeof *context;
     cscd_status status =
         parallel_create(&context->memory, options->thread_count, options->parallel_for, &context->threads);
+    context->entry.threads = context->threads;
     if (status == CSCD_OK) return CSCD_OK;
     memory_end(&context->memory);
     return context_fail(context, status, "%s for %u threads",
@@ -60,7 +73,8 @@ static cscd_status create_context(const cscd_context_options *options, cscd_cont
         return context_fail(explained, CSCD_OUT_OF_MEMORY, "out of memory: the allocator refused %zu bytes",
                             sizeof *context);
     memset(context, 0, sizeof *context);
-    reference_begin(&context->references);
+    reference_begin(&context->references, free_context);
+    reference_begin(&context->handle, free_handle);
     cscd_status status = create_parts(context, options);
     if (status == CSCD_OK) {
         *out = context;
@@ -88,27 +102,37 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     return status;
 }
 
-static void free_context(cscd_context *context) {
-    parallel_destroy(&context->memory, context->threads);
-    memory_end(&context->memory);
-    cscd_allocator allocator = context->memory.allocator;
-    allocator.release(allocator.user, context, sizeof *context);
-}
-
 void context_hold(cscd_context *context) {
     reference_add(&context->references);
 }
 
 void context_release(cscd_context *context) {
-    if (reference_drop(&context->references)) free_context(context);
+    if (reference_drop(&context->references)) context->references.free(&context->references);
 }
 
 void cscd_context_destroy(cscd_context *context) {
-    if (context != NULL && reference_destroy(&context->references)) free_context(context);
+    if (context != NULL) context_destroy_object(context, &context->handle);
+}
+
+/* ---- objects of the context ---------------------------------------------------------------------------- */
+
+void context_add_object(cscd_context *context, reference_count *object, void (*free)(reference_count *)) {
+    reference_begin(object, free);
+    context_hold(context);
+    atomic_store(&context->entry.half_made, object);
+}
+
+void context_drop_object(cscd_context *context, reference_count *object) {
+    if (reference_drop(object)) context_free_object(context, object);
+}
+
+void context_destroy_object(cscd_context *context, reference_count *object) {
+    if (reference_destroy(object)) context_free_object(context, object);
 }
 
 const char *cscd_context_detail(const cscd_context *context) {
-    return context != NULL ? context->detail : "";
+    if (context == NULL) return "";
+    return entry_broken(&context->entry) ? context->entry.broken_by : context->detail;
 }
 
 uint32_t cscd_context_thread_count(const cscd_context *context) {
@@ -137,9 +161,20 @@ cscd_status context_out_of_memory(cscd_context *context) {
                         cscd_context_bytes(context));
 }
 
+cscd_status context_loop_status(cscd_context *context) {
+    loop_faults f = parallel_faults(context->threads);
+    if (f.left_out == 0 && f.repeated == 0 && f.unfinished == 0) return CSCD_OK;
+    return context_fail(
+        context, CSCD_INVALID_ARGUMENT,
+        "of %llu tasks, parallel_for left out %u, ran %u again, and returned before %u had ended; "
+        "it must run every task once, so the call has failed",
+        (unsigned long long)f.tasks, f.left_out, f.repeated, f.unfinished);
+}
+
 cscd_status context_progress_status(cscd_context *context) {
     const progress *p = &context->progress;
-    if (!progress_cancelled(p)) return CSCD_OK;
+    if (entry_broken(&context->entry)) return CSCD_BROKEN;
+    if (!progress_cancelled(p)) return context_loop_status(context);
     return context_fail(context, CSCD_CANCELLED,
                         "cancelled by the progress function, about %.0f %% through, in the stage \"%s\"; "
                         "the call may be repeated",
@@ -147,5 +182,6 @@ cscd_status context_progress_status(cscd_context *context) {
 }
 
 cscd_status context_explain(cscd_context *context, cscd_status status) {
-    return status == CSCD_CANCELLED ? context_progress_status(context) : context_out_of_memory(context);
+    if (status == CSCD_OUT_OF_MEMORY) return context_out_of_memory(context);
+    return status == CSCD_CANCELLED ? context_progress_status(context) : status;
 }

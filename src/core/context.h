@@ -1,6 +1,7 @@
 /* What all objects share: memory, threads, progress, and the sentence that explains the last failure. */
 #pragma once
 
+#include "src/core/entry.h"
 #include "src/core/memory.h"
 #include "src/core/parallel.h"
 #include "src/core/progress.h"
@@ -9,7 +10,9 @@
 /* A context lives, with its allocator and threads, until the caller has destroyed it and the last object that was
  * made from it is gone. */
 struct cscd_context {
-    reference_count references;
+    reference_count handle;     /* the caller's, an object of the context like others */
+    reference_count references; /* the objects */
+    entry_state entry;
     host_memory memory;
     parallel *threads;
     progress progress;
@@ -17,10 +20,22 @@ struct cscd_context {
     char detail[512];
 };
 
-/* An object that is made from the context holds it, first of all, and lets go last: the memory of the context goes
- * with it. */
 void context_hold(cscd_context *context);
 void context_release(cscd_context *context);
+
+/* Begins the references of a new object, which holds the context. free lets go of it last, because the memory of the
+ * context goes with it, and before that of all that the object holds by now. If the context is broken it does no more;
+ * else it also frees the memory. */
+void context_add_object(cscd_context *context, reference_count *object,
+                        void (*free)(reference_count *object));
+
+/* One who holds the object lets go; or its owner does, in its _destroy function. */
+void context_drop_object(cscd_context *context, reference_count *object);
+void context_destroy_object(cscd_context *context, reference_count *object);
+
+static inline bool context_broken(const cscd_context *context) {
+    return entry_broken(&context->entry);
+}
 
 /* These pass on to the functions of memory.h. */
 
@@ -52,9 +67,12 @@ cscd_status context_fail(cscd_context *context, cscd_status status, const char *
 /* Sets the sentence of a failed allocation, and returns CSCD_OUT_OF_MEMORY. */
 cscd_status context_out_of_memory(cscd_context *context);
 
-/* Returns CSCD_OK, or CSCD_CANCELLED with its sentence. Results of tasks count only after this has
- * returned CSCD_OK. */
+/* Returns CSCD_OK, or with its sentence CSCD_CANCELLED, or INVALID_ARGUMENT if the host's loop has not run every task
+ * once, or CSCD_BROKEN. Results of tasks count only after this has returned CSCD_OK. */
 cscd_status context_progress_status(cscd_context *context);
+
+/* Returns CSCD_OK, or INVALID_ARGUMENT if the host's loop has not run every task once in this call. */
+cscd_status context_loop_status(cscd_context *context);
 
 /* Sets the sentence of a status that has none yet, CSCD_CANCELLED or a failed allocation, and returns
  * the status. */

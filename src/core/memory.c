@@ -6,11 +6,12 @@
 #include <string.h>
 
 /* Precedes each block and fills one alignment unit, so that the block itself is aligned. */
-typedef struct block_header {
+struct memory_block {
     size_t size; /* of the whole, header included */
-} block_header;
+    memory_block *before, *after;
+};
 
-_Static_assert(sizeof(block_header) <= MEMORY_ALIGNMENT, "a header fills one alignment unit");
+_Static_assert(sizeof(memory_block) <= MEMORY_ALIGNMENT, "a header fills one alignment unit");
 
 static void *system_allocate(void *user, size_t size, size_t alignment) {
     (void)user;
@@ -27,27 +28,94 @@ cscd_allocator memory_system_allocator(void) {
     return (cscd_allocator){system_allocate, system_release, NULL};
 }
 
-bool memory_begin(host_memory *m, cscd_allocator allocator) {
+bool memory_begin(host_memory *m, cscd_allocator allocator, entry_state *entry) {
     m->allocator = allocator;
+    m->entry = entry;
+    m->taken = false;
+    m->blocks = NULL;
     atomic_init(&m->bytes, 0);
-    return pthread_mutex_init(&m->lock, NULL) == 0;
+    if (pthread_mutex_init(&m->lock, NULL) != 0) return false;
+    if (pthread_cond_init(&m->turn, NULL) == 0) return true;
+    pthread_mutex_destroy(&m->lock);
+    return false;
 }
 
-void memory_end(host_memory *m) {
-    pthread_mutex_destroy(&m->lock);
+/* ---- one thread at a time ------------------------------------------------------------------------------ */
+
+static host_memory *begin_turn(host_memory *m) {
+    pthread_mutex_lock(&m->lock);
+    while (m->taken) pthread_cond_wait(&m->turn, &m->lock);
+    m->taken = true;
+    pthread_mutex_unlock(&m->lock);
+    return m;
+}
+
+static void end_turn(host_memory **m) {
+    pthread_mutex_lock(&(*m)->lock);
+    (*m)->taken = false;
+    pthread_cond_signal(&(*m)->turn);
+    pthread_mutex_unlock(&(*m)->lock);
+}
+
+/* The turn ends with the block of code in which this stands, in whatever way that is left. */
+#define TURN(name, m) __attribute__((cleanup(end_turn))) host_memory *name = begin_turn(m)
+
+/* ---- blocks -------------------------------------------------------------------------------------------- */
+
+static void link_block(host_memory *m, memory_block *block, size_t size) {
+    *block = (memory_block){.size = size, .after = m->blocks};
+    if (m->blocks != NULL) m->blocks->before = block;
+    m->blocks = block;
+    m->bytes += size;
+}
+
+static void unlink_block(host_memory *m, memory_block *block) {
+    assert(block->size <= m->bytes);
+    m->bytes -= block->size;
+    *(block->before != NULL ? &block->before->after : &m->blocks) = block->after;
+    if (block->after != NULL) block->after->before = block->before;
+}
+
+/* Our own allocator returns, and cares for no environment. */
+static entry_state *state_for_host(const host_memory *m) {
+    return m->allocator.allocate != system_allocate ? m->entry : NULL;
+}
+
+/* The threads of the context stand still before it is this thread's turn, because they may wait for theirs. */
+static memory_block *take_block(host_memory *m, size_t size) {
+    HOST_CALL(call, state_for_host(m), HOST_ALLOCATOR);
+    TURN(turn, m);
+    memory_block *block = m->allocator.allocate(m->allocator.user, size, MEMORY_ALIGNMENT);
+    host_call_end(&call);
+    if (block != NULL) link_block(turn, block, size);
+    return block;
+}
+
+static void give_back(host_memory *m, memory_block *block) {
+    HOST_CALL(call, state_for_host(m), HOST_ALLOCATOR);
+    TURN(turn, m);
+    unlink_block(turn, block);
+    m->allocator.release(m->allocator.user, block, block->size);
+    host_call_end(&call);
 }
 
 void *memory_allocate(host_memory *m, size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX / 2 - MEMORY_ALIGNMENT) / size) return NULL;
-    size_t whole = count * size + MEMORY_ALIGNMENT;
-    pthread_mutex_lock(&m->lock);
-    char *block = m->allocator.allocate(m->allocator.user, whole, MEMORY_ALIGNMENT);
-    if (block != NULL) m->bytes += whole;
-    pthread_mutex_unlock(&m->lock);
-    if (block == NULL) return NULL;
-    memset(block, 0, whole);
-    ((block_header *)block)->size = whole;
-    return block + MEMORY_ALIGNMENT;
+    memory_block *block = take_block(m, count * size + MEMORY_ALIGNMENT);
+    return block != NULL ? memset((char *)block + MEMORY_ALIGNMENT, 0, count * size) : NULL;
+}
+
+void memory_free(host_memory *m, void *block) {
+    if (block != NULL && !entry_broken(m->entry))
+        give_back(m, (memory_block *)((char *)block - MEMORY_ALIGNMENT));
+}
+
+void memory_end(host_memory *m) {
+    assert(m->blocks == NULL || entry_broken(m->entry));
+    m->taken = false;
+    while (m->blocks != NULL) give_back(m, m->blocks);
+    pthread_cond_destroy(&m->turn);
+    pthread_mutex_destroy(&m->lock);
 }
 
 void *memory_grow(host_memory *m, void *block, size_t old_count, size_t new_count, size_t size) {
@@ -57,17 +125,6 @@ void *memory_grow(host_memory *m, void *block, size_t old_count, size_t new_coun
     if (block != NULL) memcpy(grown, block, old_count * size);
     memory_free(m, block);
     return grown;
-}
-
-void memory_free(host_memory *m, void *block) {
-    if (block == NULL) return;
-    char *whole_block = (char *)block - MEMORY_ALIGNMENT;
-    size_t whole = ((block_header *)whole_block)->size;
-    pthread_mutex_lock(&m->lock);
-    assert(whole <= m->bytes);
-    m->bytes -= whole;
-    m->allocator.release(m->allocator.user, whole_block, whole);
-    pthread_mutex_unlock(&m->lock);
 }
 
 /* ---- the arrays of a structure ------------------------------------------------------------------------- */

@@ -1,11 +1,14 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #include "src/core/parallel.h"
 
+#include "src/core/entry.h"
+#include "src/core/host_loop.h"
 #include "src/core/timer.h"
 
 #include <assert.h>
 #include <pthread.h>
 #include <sched.h>
+#include <setjmp.h>
 #include <stdatomic.h>
 #include <unistd.h>
 
@@ -32,17 +35,22 @@ typedef struct helper {
     struct parallel *threads;
     pthread_t thread;
     uint32_t index; /* the caller is 0 */
+    jmp_buf way_out;
 } helper;
 
 struct parallel {
-    uint32_t thread_count;  /* the caller included */
-    cscd_parallel_for host; /* run NULL: the crew's own threads */
-    uint32_t started;       /* helpers that were really started */
+    uint32_t thread_count; /* the caller included */
+    host_loop host;        /* run NULL: the crew's own threads */
+    uint32_t started;      /* helpers that were really started */
     helper *helpers;
     double patience_ms; /* 0: there are fewer processors than threads */
 
+    atomic_bool pause;   /* helpers rest: they go on with no task */
+    atomic_uint resting; /* helpers inside that do */
+    bool paused_open;    /* the gate was open before the pause */
+
     pthread_mutex_t lock;
-    pthread_cond_t work_ready, work_done;
+    pthread_cond_t work_ready, work_done, resumed;
     uint64_t calls;       /* how often sleepers were woken; under the lock */
     atomic_uint sleepers; /* helpers that wait for a call; changed under the lock */
     atomic_bool quit;
@@ -59,6 +67,7 @@ static void run_tasks(parallel *threads, uint32_t self) {
     for (uint32_t i = 0; i < threads->thread_count; i++) {
         task_range *range = &threads->ranges[(self + i) % threads->thread_count];
         while (atomic_load(&range->next) < range->end) {
+            parallel_rest(threads);
             uint32_t task = atomic_fetch_add(&range->next, 1);
             if (task < range->end) threads->task(threads->data, task);
         }
@@ -140,8 +149,7 @@ static void call_sleepers(parallel *threads) {
     pthread_mutex_unlock(&threads->lock);
 }
 
-static void *helper_main(void *argument) {
-    const helper *self = argument;
+static void help_until_quit(const helper *self) {
     parallel *threads = self->threads;
     uint32_t seen = 0;
     while (!atomic_load(&threads->quit)) {
@@ -152,7 +160,68 @@ static void *helper_main(void *argument) {
             sleep_until_called(threads, seen);
         }
     }
+}
+
+static void *helper_main(void *argument) {
+    helper *self = argument;
+    float_environment_begin();
+    if (setjmp(self->way_out) == 0) help_until_quit(self);
     return NULL;
+}
+
+/* ---- pauses ------------------------------------------------------------------------------------------ */
+
+static bool all_rest(parallel *threads) {
+    return (atomic_load(&threads->gate) & GATE_INSIDE) == atomic_load(&threads->resting);
+}
+
+void parallel_pause(parallel *threads) {
+    if (threads == NULL || (atomic_load(&threads->gate) & (GATE_OPEN | GATE_INSIDE)) == 0) return;
+    threads->paused_open = (atomic_fetch_and(&threads->gate, ~GATE_OPEN) & GATE_OPEN) != 0;
+    atomic_store(&threads->pause, true);
+    while (!all_rest(threads)) {
+        for (int i = 0; i < LOOKS_AT_ONCE && !all_rest(threads); i++) pause_briefly();
+        sched_yield();
+    }
+}
+
+void parallel_resume(parallel *threads) {
+    if (threads == NULL || !atomic_load(&threads->pause)) return;
+    pthread_mutex_lock(&threads->lock);
+    atomic_store(&threads->pause, false);
+    pthread_cond_broadcast(&threads->resumed);
+    pthread_mutex_unlock(&threads->lock);
+    if (!threads->paused_open) return;
+    atomic_fetch_or(&threads->gate, GATE_OPEN);
+    if (atomic_load(&threads->sleepers) > 0) call_sleepers(threads);
+}
+
+/* Leaves the task in its midst, for good: what it works on may be gone. */
+static void leave_task(parallel *threads) {
+    pthread_t self = pthread_self();
+    for (uint32_t i = 0; i < threads->started; i++) {
+        if (pthread_equal(threads->helpers[i].thread, self)) longjmp(threads->helpers[i].way_out, 1);
+    }
+}
+
+static void sleep_until_resumed(parallel *threads) {
+    double begin = timer_now_ms();
+    while (atomic_load(&threads->pause) && timer_now_ms() - begin < threads->patience_ms) pause_briefly();
+    pthread_mutex_lock(&threads->lock);
+    while (atomic_load(&threads->pause) && !atomic_load(&threads->quit))
+        pthread_cond_wait(&threads->resumed, &threads->lock);
+    pthread_mutex_unlock(&threads->lock);
+}
+
+/* Whoever does not rest any more looks once again: the caller may have counted it in for the next pause. */
+void parallel_rest(parallel *threads) {
+    if (threads == NULL || !atomic_load_explicit(&threads->pause, memory_order_relaxed)) return;
+    do {
+        atomic_fetch_add(&threads->resting, 1);
+        sleep_until_resumed(threads);
+        if (atomic_load(&threads->quit)) leave_task(threads);
+        atomic_fetch_sub(&threads->resting, 1);
+    } while (atomic_load(&threads->pause));
 }
 
 /* ---- the crew ---------------------------------------------------------------------------------------- */
@@ -183,11 +252,12 @@ cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel
     parallel *threads = memory_allocate(m, 1, sizeof *threads);
     if (threads == NULL) return CSCD_OUT_OF_MEMORY;
     threads->thread_count = thread_count;
-    threads->host = host;
+    threads->host = host_loop_of(m, host);
     threads->patience_ms = thread_count <= processors_for_us() ? patience_ms : 0.0;
     pthread_mutex_init(&threads->lock, NULL);
     pthread_cond_init(&threads->work_ready, NULL);
     pthread_cond_init(&threads->work_done, NULL);
+    pthread_cond_init(&threads->resumed, NULL);
     threads->helpers = memory_allocate(m, thread_count, sizeof *threads->helpers);
     threads->ranges = memory_allocate(m, thread_count, sizeof *threads->ranges);
     bool allocated = threads->helpers != NULL && threads->ranges != NULL;
@@ -205,10 +275,13 @@ void parallel_destroy(host_memory *m, parallel *threads) {
     if (threads == NULL) return;
     atomic_store(&threads->quit, true);
     call_sleepers(threads);
+    pthread_cond_broadcast(&threads->resumed);
     for (uint32_t i = 0; i < threads->started; i++) pthread_join(threads->helpers[i].thread, NULL);
+    pthread_cond_destroy(&threads->resumed);
     pthread_cond_destroy(&threads->work_done);
     pthread_cond_destroy(&threads->work_ready);
     pthread_mutex_destroy(&threads->lock);
+    host_loop_free(&threads->host);
     memory_free(m, threads->helpers);
     memory_free(m, threads->ranges);
     memory_free(m, threads);
@@ -216,6 +289,14 @@ void parallel_destroy(host_memory *m, parallel *threads) {
 
 uint32_t parallel_thread_count(const parallel *threads) {
     return threads->thread_count;
+}
+
+void parallel_begin_call(parallel *threads) {
+    if (threads->host.host.run != NULL) host_loop_begin_call(&threads->host);
+}
+
+loop_faults parallel_faults(const parallel *threads) {
+    return host_loop_faults(&threads->host);
 }
 
 /* ---- one run ----------------------------------------------------------------------------------------- */
@@ -248,8 +329,8 @@ static void close_gate(parallel *threads) {
 }
 
 void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data) {
-    if (threads->host.run != NULL && task_count > 1) {
-        threads->host.run(threads->host.user, task_count, task, data);
+    if (threads->host.host.run != NULL && task_count > 1) {
+        host_loop_run(&threads->host, task_count, task, data);
         return;
     }
     if (threads->started == 0 || task_count < 2) {

@@ -1,6 +1,7 @@
 /* Independent tasks, run by a fixed crew of threads or by the host; results never depend on who ran which. */
 #pragma once
 
+#include "src/core/host_loop.h"
 #include "src/core/memory.h"
 
 /* Data that a thread writes often starts on a cache line of its own: two threads on one line halve the speed
@@ -8,7 +9,6 @@
 enum { CACHE_LINE_SIZE = 64 };
 
 typedef struct parallel parallel;
-typedef void parallel_task(void *data, uint32_t task);
 
 /* thread_count includes the caller; 0 means one per processor. With host.run no thread is started. */
 cscd_status parallel_create(host_memory *m, uint32_t thread_count, cscd_parallel_for host, parallel **out);
@@ -20,3 +20,19 @@ uint32_t parallel_thread_count(const parallel *threads);
 /* Calls task(data, 0 .. task_count - 1), each once, in any order, and returns when all are done. The host may
  * run them one after the other, so a task never waits for another one, and never calls this. */
 void parallel_run(parallel *threads, uint32_t task_count, parallel_task *task, void *data);
+
+/* Begins a call of the API; and what the host's loop has done wrong in it so far. */
+void parallel_begin_call(parallel *threads);
+loop_faults parallel_faults(const parallel *threads);
+
+/* ---- pauses -------------------------------------------------------------------------------------------- */
+
+/* While the caller of parallel_run runs code of the host from within a task, nobody else works on a task: that code
+ * may leave the library for good, and take what the tasks work on with it. parallel_pause returns when all other
+ * threads rest; they go on after parallel_resume. If that does not come, parallel_destroy ends them where they rest.
+ * Threads of the host are the host's affair. Both do nothing if nobody works. */
+void parallel_pause(parallel *threads);
+void parallel_resume(parallel *threads);
+
+/* Called now and then in a long task: rests if there is a pause. The thread holds no lock then. */
+void parallel_rest(parallel *threads);

@@ -1,6 +1,7 @@
 /* How far a call has come, and whether the host wants it to end. */
 #include "src/core/progress.h"
 
+#include "src/core/parallel.h"
 #include "src/core/timer.h"
 
 #include <assert.h>
@@ -8,8 +9,8 @@
 
 static const double interval_ms = 4.0;
 
-progress progress_of(cscd_progress host) {
-    return (progress){.host = host, .interval_ms = interval_ms};
+progress progress_of(cscd_progress host, entry_state *entry) {
+    return (progress){.host = host, .entry = entry, .interval_ms = interval_ms};
 }
 
 bool progress_wanted(const progress *p) {
@@ -50,14 +51,22 @@ static void advance_report(progress *p, double share) {
     if (fraction > p->reported) p->reported = fraction;
 }
 
+static bool ask_host(progress *p) {
+    HOST_CALL(call, p->entry, HOST_PROGRESS);
+    bool go_on = p->host.report(p->host.user, p->stage, p->reported);
+    host_call_end(&call);
+    return go_on;
+}
+
 bool progress_go_on(progress *p, double share) {
+    parallel_rest(p->entry->threads);
     if (!progress_wanted(p)) return true;
     if (progress_cancelled(p)) return false;
     if (!pthread_equal(p->caller, pthread_self())) return true;
     double now = timer_now_ms();
     if (now - p->asked_ms < p->interval_ms) return true;
     advance_report(p, share);
-    bool go_on = p->host.report(p->host.user, p->stage, p->reported);
+    bool go_on = ask_host(p);
     p->asked_ms = timer_now_ms();
     if (!go_on) atomic_store_explicit(&p->cancelled, true, memory_order_relaxed);
     return go_on;

@@ -1,7 +1,7 @@
 /* How far a call has come, and whether the host wants it to end. */
 #pragma once
 
-#include "cscd/cscd.h"
+#include "src/core/entry.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -9,6 +9,7 @@
 /* The call that a context's caller waits for. */
 typedef struct progress {
     cscd_progress host; /* report NULL: nobody is told, and nothing is cancelled */
+    entry_state *entry; /* of the context */
     double interval_ms; /* the host is asked no more often */
     pthread_t caller;   /* the thread that made the call, the only one to ask the host */
     double asked_ms;    /* when the host was asked last, or the call began */
@@ -19,7 +20,7 @@ typedef struct progress {
     atomic_bool cancelled;
 } progress;
 
-progress progress_of(cscd_progress host);
+progress progress_of(cscd_progress host, entry_state *entry);
 
 bool progress_wanted(const progress *p);
 

@@ -6,13 +6,17 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+/* The first member of an object. */
 typedef struct reference_count {
     atomic_uint holders;
-    atomic_bool destroyed; /* the caller has let go, which it may do once */
+    atomic_bool destroyed;        /* the caller has let go, which it may do once */
+    struct reference_count *next; /* in a list of objects that are to be freed */
+    void (*free)(struct reference_count *object);
 } reference_count;
 
 /* The caller is the first holder. */
-static inline void reference_begin(reference_count *r) {
+static inline void reference_begin(reference_count *r, void (*free)(reference_count *object)) {
+    *r = (reference_count){.free = free};
     atomic_init(&r->holders, 1);
     atomic_init(&r->destroyed, false);
 }

@@ -26,6 +26,10 @@ const char *cscd_status_string(cscd_status status) {
         return "cancelled";
     case CSCD_IN_CONTACT:
         return "in contact at the start";
+    case CSCD_BUSY:
+        return "busy: a call with this context is running, perhaps the one that this callback belongs to";
+    case CSCD_BROKEN:
+        return "broken: a callback has left a call with this context by an exception or longjmp";
     default:
         return "unknown status";
     }

@@ -15,9 +15,11 @@ enum { SPARE_VERTICES = 1 << 24, SPARE_VERTICES_OF_TRIANGLE = 256 };
 
 /* The mesh that its creator has, and the number of those who hold it. */
 typedef struct shared_mesh {
-    cscd_mesh mesh;
     reference_count references;
+    cscd_mesh mesh;
 } shared_mesh;
+
+static void free_mesh(reference_count *references);
 
 /* How messages name an object: "" if it is the only one, else for instance "object 2: ". */
 typedef struct object_name {
@@ -161,11 +163,10 @@ static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *ob
     if (status != CSCD_OK) return status;
     shared_mesh *shared = context_allocate(context, 1, sizeof *shared);
     if (shared == NULL) return context_out_of_memory(context);
-    context_hold(context);
-    reference_begin(&shared->references);
     cscd_mesh *mesh = &shared->mesh;
     mesh->context = context;
     mesh->shared = shared;
+    context_add_object(context, &shared->references, free_mesh);
     if (build_mesh(mesh, objects, count) != CSCD_OK) {
         cscd_mesh_destroy(mesh);
         return context_out_of_memory(context);
@@ -185,9 +186,8 @@ static cscd_status take_objects(cscd_context *context, const cscd_object_desc *o
     return status;
 }
 
-cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
-                                   uint32_t object_count, cscd_mesh **out) {
-    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status create_from_descriptions(cscd_context *context, const cscd_object_desc *objects,
+                                            size_t object_size, uint32_t object_count, cscd_mesh **out) {
     if (objects == NULL || out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: objects or out is NULL");
     if (object_count == 0)
@@ -200,6 +200,14 @@ cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc
     return status;
 }
 
+cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
+                                   uint32_t object_count, cscd_mesh **out) {
+    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(context, &entry)) return entry.status;
+    return context_leave(&entry, create_from_descriptions(context, objects, object_size, object_count, out));
+}
+
 /* The arrays are allocated one stage after the other, since the size of one follows from what another
  * holds. */
 static array_list mesh_arrays(cscd_mesh *mesh) {
@@ -210,10 +218,13 @@ static array_list mesh_arrays(cscd_mesh *mesh) {
                          ARRAY(mesh->objects, 0), ARRAY(mesh->obstacles, 0)}};
 }
 
-static void free_mesh(shared_mesh *shared) {
+static void free_mesh(reference_count *references) {
+    shared_mesh *shared = (shared_mesh *)references;
     cscd_context *context = shared->mesh.context;
-    context_free_all(context, mesh_arrays(&shared->mesh));
-    context_free(context, shared);
+    if (!context_broken(context)) {
+        context_free_all(context, mesh_arrays(&shared->mesh));
+        context_free(context, shared);
+    }
     context_release(context);
 }
 
@@ -227,13 +238,11 @@ void mesh_hold(const cscd_mesh *mesh) {
 
 void mesh_release(const cscd_mesh *mesh) {
     shared_mesh *shared = mesh->shared;
-    if (reference_drop(&shared->references)) free_mesh(shared);
+    context_drop_object(shared->mesh.context, &shared->references);
 }
 
 void cscd_mesh_destroy(cscd_mesh *mesh) {
-    if (mesh == NULL) return;
-    shared_mesh *shared = mesh->shared;
-    if (reference_destroy(&shared->references)) free_mesh(shared);
+    if (mesh != NULL) context_destroy_object(mesh->context, &mesh->shared->references);
 }
 
 cscd_mesh mesh_seen_from(cscd_context *context, const cscd_mesh *mesh) {

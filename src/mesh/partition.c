@@ -15,10 +15,21 @@ static array_list list_arrays(cscd_partition *p) {
          ARRAY(p->neighbour_offsets, vertices + 1), ARRAY(p->neighbours, 2 * (size_t)p->mesh->edge_count)}};
 }
 
+static void free_partition(reference_count *references) {
+    cscd_partition *partition = (cscd_partition *)references;
+    cscd_context *context = partition->context;
+    cscd_mesh mesh = partition->seen;
+    if (!context_broken(context)) {
+        context_free_all(context, list_arrays(partition));
+        context_free(context, partition);
+    }
+    mesh_release(&mesh);
+    context_release(context);
+}
+
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count) {
     cscd_partition *partition = context_allocate(mesh->context, 1, sizeof *partition);
     if (partition == NULL) return NULL;
-    reference_begin(&partition->references);
     partition->context = mesh->context;
     partition->seen = mesh_seen_from(mesh->context, mesh);
     partition->mesh = &partition->seen;
@@ -28,18 +39,9 @@ cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count,
         context_free(mesh->context, partition);
         return NULL;
     }
-    context_hold(partition->context);
     mesh_hold(mesh);
+    context_add_object(partition->context, &partition->references, free_partition);
     return partition;
-}
-
-static void free_partition(cscd_partition *partition) {
-    cscd_context *context = partition->context;
-    cscd_mesh mesh = partition->seen;
-    context_free_all(context, list_arrays(partition));
-    context_free(context, partition);
-    mesh_release(&mesh);
-    context_release(context);
 }
 
 void partition_hold(cscd_partition *partition) {
@@ -47,11 +49,11 @@ void partition_hold(cscd_partition *partition) {
 }
 
 void partition_release(cscd_partition *partition) {
-    if (reference_drop(&partition->references)) free_partition(partition);
+    context_drop_object(partition->context, &partition->references);
 }
 
 void cscd_partition_destroy(cscd_partition *partition) {
-    if (partition != NULL && reference_destroy(&partition->references)) free_partition(partition);
+    if (partition != NULL) context_destroy_object(partition->context, &partition->references);
 }
 
 uint32_t cscd_partition_object_count(const cscd_partition *partition) {

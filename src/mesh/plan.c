@@ -27,10 +27,19 @@ static array_list list_arrays(cscd_plan *plan) {
                          ARRAY_IF(charged, plan->capacitances, plan->component_count)}};
 }
 
+static void free_plan(reference_count *references) {
+    cscd_plan *plan = (cscd_plan *)references;
+    cscd_context *context = plan->context;
+    if (!context_broken(context)) {
+        context_free_all(context, list_arrays(plan));
+        context_free(context, plan);
+    }
+    context_release(context);
+}
+
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count) {
     cscd_plan *plan = context_allocate(mesh->context, 1, sizeof *plan);
     if (plan == NULL) return NULL;
-    reference_begin(&plan->references);
     plan->context = mesh->context;
     plan->mesh_hash = cscd_mesh_hash(mesh);
     plan->triangle_count = mesh->triangle_count;
@@ -41,16 +50,12 @@ cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t reg
         context_free(mesh->context, plan);
         return NULL;
     }
-    context_hold(plan->context);
+    context_add_object(plan->context, &plan->references, free_plan);
     return plan;
 }
 
 void cscd_plan_destroy(cscd_plan *plan) {
-    if (plan == NULL || !reference_destroy(&plan->references)) return;
-    cscd_context *context = plan->context;
-    context_free_all(context, list_arrays(plan));
-    context_free(context, plan);
-    context_release(context);
+    if (plan != NULL) context_destroy_object(plan->context, &plan->references);
 }
 
 cscd_method cscd_plan_method(const cscd_plan *plan) {

@@ -52,5 +52,5 @@ cscd_status positions_check(cscd_context *context, const double *positions, uint
                             "%s: vertex %zu has %c = %g, expected 0 or a magnitude from 2^-300 to 2^300",
                             name, i / 3, "xyz"[i % 3], positions[i]);
     }
-    return CSCD_OK;
+    return context_loop_status(context);
 }
