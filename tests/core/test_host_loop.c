@@ -1,0 +1,200 @@
+/* A parallel loop of the host that leaves tasks out, repeats them or returns too early: the call fails and says so, nothing
+ * is lost or invented, and the next call with an honest loop is right. */
+#include "tests/support/panels.h"
+#include "tests/support/test.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef void task_function(void *data, uint32_t index);
+
+typedef struct dishonest_host {
+    int trick;
+    uint32_t runs, only_run; /* the tricks are played in this run alone, counted from 1; 0: in every one */
+} dishonest_host;
+
+enum { HONEST, DROP_LAST, DROP_ALL, REPEAT_ALL, REPEAT_AT_ONCE, BEYOND_END, RETURN_EARLY, TRICKS };
+
+typedef struct late_task {
+    task_function *task;
+    void *data;
+    uint32_t index;
+    atomic_bool begun;
+    pthread_t thread;
+} late_task;
+
+static void *run_on_thread(void *argument) {
+    late_task *late = argument;
+    atomic_store(&late->begun, true);
+    late->task(late->data, late->index);
+    return NULL;
+}
+
+static void start_thread(late_task *late, task_function *task, void *data, uint32_t index) {
+    *late = (late_task){.task = task, .data = data, .index = index};
+    assert_int_equal(pthread_create(&late->thread, NULL, run_on_thread, late), 0);
+}
+
+/* Two threads run the same tasks at the same time. */
+static void run_at_once(uint32_t task_count, task_function *task, void *data) {
+    for (uint32_t i = 0; i < task_count; i++) {
+        late_task late;
+        start_thread(&late, task, data, i);
+        task(data, i);
+        pthread_join(late.thread, NULL);
+    }
+}
+
+static late_task left_behind;
+
+/* The last task runs on, but has begun. */
+static void run_and_return_early(uint32_t task_count, task_function *task, void *data) {
+    for (uint32_t i = 0; i + 1 < task_count; i++) task(data, i);
+    start_thread(&left_behind, task, data, task_count - 1);
+    while (!atomic_load(&left_behind.begun)) usleep(1);
+    pthread_detach(left_behind.thread);
+}
+
+static void run_dishonestly(void *user, uint32_t task_count, task_function *task, void *data) {
+    dishonest_host *h = user;
+    h->runs++;
+    int trick = h->only_run == 0 || h->runs == h->only_run ? h->trick : HONEST;
+    if (trick == REPEAT_AT_ONCE) {
+        run_at_once(task_count, task, data);
+        return;
+    }
+    if (trick == RETURN_EARLY) {
+        run_and_return_early(task_count, task, data);
+        return;
+    }
+    uint32_t end = trick == DROP_ALL ? 0 : trick == DROP_LAST ? task_count - 1 : task_count;
+    for (uint32_t i = 0; i < end; i++) {
+        task(data, i);
+        if (trick == REPEAT_ALL) task(data, i);
+    }
+    if (trick == BEYOND_END) task(data, task_count);
+}
+
+static panels make_panels(dishonest_host *host) {
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = 4;
+    options.parallel_for = (cscd_parallel_for){run_dishonestly, host};
+    return panels_create(40, &options, NULL);
+}
+
+/* ---- one step ------------------------------------------------------------------------------------------ */
+
+static cscd_contact *copy_contacts(cscd_contacts found) {
+    cscd_contact *copy = malloc(found.count * sizeof *copy);
+    assert_non_null(copy);
+    return memcpy(copy, found.items, found.count * sizeof *copy);
+}
+
+/* Returns the contacts of an honest step, and how many runs it took. */
+static cscd_contact *honest_contacts(size_t *count, uint32_t *runs) {
+    dishonest_host host = {HONEST, 0, 0};
+    panels p = make_panels(&host);
+    cscd_contacts found;
+    host.runs = 0;
+    assert_int_equal(panels_step(&p, &found), CSCD_OK);
+    *count = found.count;
+    *runs = host.runs;
+    cscd_contact *copy = copy_contacts(found);
+    panels_destroy(&p);
+    return copy;
+}
+
+/* In one run the tricks with one task count 1. */
+static void check_sentence(const char *sentence, int trick, bool one_run) {
+    unsigned tasks, left_out, repeated, unfinished;
+    assert_int_equal(sscanf(sentence,
+                            "of %u tasks, parallel_for left out %u, ran %u again, and returned before %u had",
+                            &tasks, &left_out, &repeated, &unfinished),
+                     4);
+    bool one = one_run && trick != DROP_ALL && trick != REPEAT_ALL && trick != REPEAT_AT_ONCE;
+    unsigned faults[] = {left_out, repeated, unfinished};
+    int of = trick <= DROP_ALL ? 0 : trick == RETURN_EARLY ? 2 : 1;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(faults[i] > 0, i == of);
+        if (one && i == of) assert_int_equal(faults[i], 1);
+    }
+    assert_true(tasks >= faults[of] || trick == BEYOND_END);
+}
+
+/* Plays the trick in one run of the first step; the step is then repeated. */
+static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact *expected, size_t count) {
+    dishonest_host host = {HONEST, 0, 0};
+    panels p = make_panels(&host);
+    cscd_contacts found = {NULL, 77};
+    host = (dishonest_host){trick, 0, run};
+    cscd_status status = panels_step(&p, &found);
+    if (trick != RETURN_EARLY || status != CSCD_OK) { /* a task may end just before the loop returns */
+        assert_int_equal(status, CSCD_INVALID_ARGUMENT);
+        assert_int_equal(found.count, 77);
+        check_sentence(cscd_context_detail(p.context), trick, run > 0);
+    }
+    host.trick = HONEST;
+    assert_int_equal(panels_step(&p, &found), CSCD_OK);
+    assert_int_equal(found.count, count);
+    assert_memory_equal(found.items, expected, count * sizeof *expected);
+    panels_destroy(&p);
+}
+
+static void faults_fail_the_call(void **state) {
+    size_t count;
+    uint32_t runs;
+    cscd_contact *expected = honest_contacts(&count, &runs);
+    (void)state;
+    assert_true(count > 900 && runs > 1);
+    for (int trick = DROP_LAST; trick < TRICKS; trick++) {
+        for (uint32_t run = 0; run <= runs; run++) step_fails_and_recovers(trick, run, expected, count);
+    }
+    free(expected);
+}
+
+/* ---- every call ---------------------------------------------------------------------------------------- */
+
+static cscd_status make_call(const panels *p, int call) {
+    cscd_contacts contacts;
+    cscd_intersections intersections;
+    cscd_proximities proximities;
+    cscd_free_step step;
+    cscd_plan *plan = NULL;
+    cscd_status status = call == 0   ? panels_step(p, &contacts)
+                         : call == 1 ? panels_check(p, &intersections)
+                         : call == 2 ? panels_near(p, &proximities)
+                         : call == 3 ? panels_max_step(p, &step)
+                                     : panels_plan(p, CSCD_METHOD_SINGLE, &plan);
+    cscd_plan_destroy(plan);
+    return status;
+}
+
+/* A call that uses no loop, or only one task, has nothing to complain of. */
+static void every_call_notices(void **state) {
+    uint32_t noticed = 0;
+    (void)state;
+    for (int call = 0; call < 5; call++) {
+        for (int trick = DROP_LAST; trick <= REPEAT_ALL; trick++) {
+            dishonest_host host = {HONEST, 0, 0};
+            panels p = make_panels(&host);
+            host = (dishonest_host){trick, 0, 0};
+            cscd_status status = make_call(&p, call);
+            assert_int_equal(status, host.runs > 0 ? CSCD_INVALID_ARGUMENT : CSCD_OK);
+            noticed += host.runs > 0;
+            host.trick = HONEST;
+            assert_int_equal(make_call(&p, call), CSCD_OK);
+            panels_destroy(&p);
+        }
+    }
+    assert_true(noticed >= 12);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(faults_fail_the_call),
+                                       cmocka_unit_test(every_call_notices)};
+    return cmocka_run_group_tests_name("host_loop", tests, NULL, NULL);
+}

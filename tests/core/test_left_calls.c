@@ -1,0 +1,230 @@
+/* A callback that leaves the library by longjmp: later calls say so, nothing waits for ever, and everything is freed. */
+#include "src/core/context.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/panels.h"
+#include "tests/support/test.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The host leaves from one call of one callback. It does so from its own thread only, where it has set out. */
+typedef struct leaving_host {
+    counting_allocator counter;
+    host_callback from;
+    uint32_t calls, at; /* counted from 1; 0: it stays */
+    pthread_t thread;
+    jmp_buf back;
+} leaving_host;
+
+static void perhaps_leave(leaving_host *h, host_callback callback) {
+    if (callback != h->from || !pthread_equal(h->thread, pthread_self())) return;
+    if (++h->calls == h->at) longjmp(h->back, 1);
+}
+
+static bool ignore_none(void *user, uint32_t a, uint32_t b) {
+    perhaps_leave(user, HOST_IGNORE);
+    return a == b;
+}
+
+static bool report_progress(void *user, const char *stage, double fraction) {
+    perhaps_leave(user, HOST_PROGRESS);
+    return stage != NULL && fraction >= 0.0;
+}
+
+static void *allocate_block(void *user, size_t size, size_t alignment) {
+    leaving_host *h = user;
+    cscd_allocator system = counting_allocator_interface(&h->counter);
+    perhaps_leave(h, HOST_ALLOCATOR);
+    return system.allocate(system.user, size, alignment);
+}
+
+static void release_block(void *user, void *block, size_t size) {
+    leaving_host *h = user;
+    cscd_allocator system = counting_allocator_interface(&h->counter);
+    system.release(system.user, block, size);
+}
+
+static void run_tasks_here(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index),
+                           void *data) {
+    for (uint32_t i = 0; i < task_count; i++) {
+        task(data, i);
+        perhaps_leave(user, HOST_PARALLEL_FOR);
+    }
+}
+
+enum { SIDE = 40 };
+
+static const char *const names[] = {"the allocator", "parallel_for", "the progress function", "ignore"};
+
+static panels make_panels(leaving_host *h, uint32_t thread_count) {
+    cscd_context_options options = cscd_context_defaults();
+    cscd_detector_options detector_options = cscd_detector_defaults();
+    detector_options.ignore = ignore_none;
+    detector_options.ignore_user = h;
+    h->counter = counting_allocator_start();
+    h->thread = pthread_self();
+    options.thread_count = thread_count;
+    options.allocator = (cscd_allocator){allocate_block, release_block, h};
+    options.progress = (cscd_progress){report_progress, h};
+    if (h->from == HOST_PARALLEL_FOR) options.parallel_for = (cscd_parallel_for){run_tasks_here, h};
+    panels p = panels_create(SIDE, &options, &detector_options);
+    p.context->progress.interval_ms = 0.0;
+    return p;
+}
+
+/* ---- what is left in its midst ------------------------------------------------------------------------- */
+
+enum { CALLS = 8 };
+
+/* What a call makes is destroyed at once. */
+static cscd_status make_call(const panels *p, int what) {
+    cscd_contacts contacts;
+    cscd_intersections intersections;
+    cscd_proximities proximities;
+    cscd_free_step step;
+    cscd_plan *plan = NULL;
+    cscd_detector *detector = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_status status = what == 0   ? panels_step(p, &contacts)
+                         : what == 1 ? panels_check(p, &intersections)
+                         : what == 2 ? panels_near(p, &proximities)
+                         : what == 3 ? panels_max_step(p, &step)
+                         : what == 4 ? panels_plan(p, CSCD_METHOD_SINGLE, &plan)
+                         : what == 5 ? panels_plan(p, CSCD_METHOD_KMEANS, &plan)
+                         : what == 6 ? panels_create_detector(p, NULL, &detector)
+                                     : panels_create_mesh(p, p->context, &mesh);
+    cscd_plan_destroy(plan);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    return status;
+}
+
+/* True: the host has left the call. */
+static bool leave_call(leaving_host *h, const panels *p, int what, uint32_t at) {
+    h->calls = 0;
+    h->at = at;
+    if (setjmp(h->back) != 0) {
+        h->at = 0;
+        return true;
+    }
+    assert_int_equal(make_call(p, what), CSCD_OK);
+    h->at = 0;
+    return false;
+}
+
+/* Leaves one call of one kind at one place; false: there are fewer such places. */
+static bool leave_and_look(host_callback from, uint32_t thread_count, int what, uint32_t at) {
+    leaving_host h = {.from = from};
+    panels p = make_panels(&h, thread_count);
+    bool left = leave_call(&h, &p, what, at);
+    for (int next = 0; left && next < CALLS; next++) {
+        assert_int_equal(make_call(&p, next), CSCD_BROKEN);
+        assert_non_null(strstr(cscd_context_detail(p.context), names[from]));
+    }
+    panels_destroy(&p);
+    assert_int_equal(h.counter.live, 0);
+    return left;
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { SPARSENESS = 1 };
+#else
+enum { SPARSENESS = 4 };
+#endif
+
+static void leave_everywhere(host_callback from, uint32_t thread_count) {
+    uint32_t left = 0;
+    for (int what = 0; what < CALLS; what++) {
+        for (uint32_t at = 1; leave_and_look(from, thread_count, what, at); at += 1 + at / SPARSENESS) left++;
+    }
+    assert_true(left > 4);
+}
+
+static void contexts_are_broken(void **state) {
+    (void)state;
+    for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++)
+        leave_everywhere(from, 1 + (from == HOST_PARALLEL_FOR));
+}
+
+/* The helpers rest when the host leaves, and end with the context. */
+static void own_threads_end(void **state) {
+    (void)state;
+    leave_everywhere(HOST_ALLOCATOR, 3);
+    leave_everywhere(HOST_PROGRESS, 3);
+}
+
+/* ---- in doubt ------------------------------------------------------------------------------------------ */
+
+static cscd_status call_from_deep(const panels *p, int depth) {
+    volatile char room[4096] = {0};
+    cscd_status status = depth > 0 ? call_from_deep(p, depth - 1) : make_call(p, 2);
+    return room[0] == 0 ? status : CSCD_OK;
+}
+
+static void *call_from_thread(void *argument) {
+    static cscd_status status;
+    status = make_call(argument, 2);
+    return &status;
+}
+
+/* Where frames tell nothing the context is busy; the first call that can tell marks it for all. */
+static void doubtful_calls_are_busy(void **state) {
+    leaving_host h = {.from = HOST_IGNORE};
+    panels p = make_panels(&h, 2);
+    pthread_t thread;
+    void *status;
+    (void)state;
+    assert_true(leave_call(&h, &p, 0, 3));
+    for (int marked = 0; marked < 2; marked++) {
+        cscd_status expected = marked ? CSCD_BROKEN : CSCD_BUSY;
+        assert_int_equal(call_from_deep(&p, 8), expected);
+        assert_int_equal(pthread_create(&thread, NULL, call_from_thread, &p), 0);
+        assert_int_equal(pthread_join(thread, &status), 0);
+        assert_int_equal(*(cscd_status *)status, expected);
+        assert_int_equal(make_call(&p, 0), CSCD_BROKEN);
+    }
+    panels_destroy(&p);
+    assert_int_equal(h.counter.live, 0);
+}
+
+/* Nothing but destruction follows, which notices by itself. */
+static void destruction_alone(void **state) {
+    (void)state;
+    for (uint32_t threads = 1; threads < 4; threads++) {
+        leaving_host h = {.from = HOST_ALLOCATOR};
+        panels p = make_panels(&h, threads);
+        assert_true(leave_call(&h, &p, 0, 4));
+        panels_destroy(&p);
+        assert_int_equal(h.counter.live, 0);
+    }
+}
+
+/* A mesh that another context uses outlives its own context, although that is broken. */
+static void shared_meshes_live_on(void **state) {
+    leaving_host h = {.from = HOST_IGNORE};
+    panels p = make_panels(&h, 2), other = {.vertex_count = p.vertex_count};
+    cscd_contacts found;
+    (void)state;
+    assert_int_equal(cscd_context_create(NULL, &other.context), CSCD_OK);
+    assert_int_equal(cscd_detector_create(other.context, p.mesh, NULL, NULL, &other.detector), CSCD_OK);
+    assert_true(leave_call(&h, &p, 0, 3));
+    cscd_detector_destroy(p.detector);
+    cscd_mesh_destroy(p.mesh);
+    cscd_context_destroy(p.context);
+    other.x0 = p.x0;
+    other.x1 = p.x1;
+    assert_int_equal(panels_step(&other, &found), CSCD_OK);
+    assert_int_equal(found.count, 12168);
+    assert_true(h.counter.live > 0);
+    panels_destroy(&other);
+    assert_int_equal(h.counter.live, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contexts_are_broken), cmocka_unit_test(own_threads_end),
+        cmocka_unit_test(doubtful_calls_are_busy), cmocka_unit_test(destruction_alone),
+        cmocka_unit_test(shared_meshes_live_on)};
+    return cmocka_run_group_tests_name("left_calls", tests, NULL, NULL);
+}

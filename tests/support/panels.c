@@ -1,0 +1,96 @@
+/* Two wavy panels, one of which passes through the other, with a context and a detector: a host's small program. */
+#include "tests/support/panels.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIDE_MAX = 64 };
+
+/* The vertices i * side + j of one panel. */
+static uint32_t list_triangles(uint32_t side, uint32_t *out) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i + 1 < side; i++) {
+        for (uint32_t j = 0; j + 1 < side; j++) {
+            uint32_t k = i * side + j, corners[] = {k, k + side, k + 1, k + 1, k + side, k + side + 1};
+            for (int c = 0; c < 6; c++) out[6 * count + (uint32_t)c] = corners[c];
+            count++;
+        }
+    }
+    return 2 * count;
+}
+
+static void place_vertices(uint32_t side, double shift, double z, double *out) {
+    for (uint32_t i = 0; i < side; i++) {
+        for (uint32_t j = 0; j < side; j++, out += 3) {
+            out[0] = i + shift;
+            out[1] = j + 0.6 * shift;
+            out[2] = z + 0.3 * sin(i * 1.7 + j);
+        }
+    }
+}
+
+cscd_status panels_create_mesh(const panels *p, cscd_context *context, cscd_mesh **out) {
+    static uint32_t triangles[6 * SIDE_MAX * SIDE_MAX];
+    uint32_t half = p->vertex_count / 2, side = (uint32_t)lround(sqrt(half));
+    cscd_object_desc panel = {
+        .vertex_count = half, .triangle_count = list_triangles(side, triangles), .triangles = triangles};
+    cscd_object_desc objects[] = {panel, panel};
+    return cscd_mesh_create(context, objects, 2, out);
+}
+
+cscd_status panels_create_detector(const panels *p, const cscd_detector_options *options,
+                                   cscd_detector **out) {
+    return cscd_detector_create(p->context, p->mesh, NULL, options, out);
+}
+
+panels panels_create(uint32_t side, const cscd_context_options *context_options,
+                     const cscd_detector_options *options) {
+    assert_true(side <= SIDE_MAX);
+    uint32_t half = side * side;
+    panels p = {.vertex_count = 2 * half};
+    p.x0 = calloc((size_t)p.vertex_count * 3, sizeof *p.x0);
+    p.x1 = calloc((size_t)p.vertex_count * 3, sizeof *p.x1);
+    assert_true(p.x0 != NULL && p.x1 != NULL);
+    place_vertices(side, 0.0, 0.0, p.x0);
+    place_vertices(side, 0.0, 0.0, p.x1);
+    place_vertices(side, 0.31, 2.0, p.x0 + (size_t)half * 3);
+    place_vertices(side, 0.31, -1.0, p.x1 + (size_t)half * 3);
+    assert_int_equal(cscd_context_create(context_options, &p.context), CSCD_OK);
+    assert_int_equal(panels_create_mesh(&p, p.context, &p.mesh), CSCD_OK);
+    assert_int_equal(panels_create_detector(&p, options, &p.detector), CSCD_OK);
+    return p;
+}
+
+void panels_destroy(panels *p) {
+    cscd_detector_destroy(p->detector);
+    cscd_mesh_destroy(p->mesh);
+    cscd_context_destroy(p->context);
+    free(p->x0);
+    free(p->x1);
+    *p = (panels){.context = NULL};
+}
+
+cscd_status panels_step(const panels *p, cscd_contacts *out) {
+    return cscd_detector_step(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
+                              CSCD_DOUBLES(p->x1, p->vertex_count), out);
+}
+
+cscd_status panels_check(const panels *p, cscd_intersections *out) {
+    return cscd_detector_check(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), out);
+}
+
+cscd_status panels_near(const panels *p, cscd_proximities *out) {
+    return cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), 0.1, out);
+}
+
+cscd_status panels_max_step(const panels *p, cscd_free_step *out) {
+    return cscd_detector_max_step(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
+                                  CSCD_DOUBLES(p->x1, p->vertex_count), NULL, out);
+}
+
+cscd_status panels_plan(const panels *p, cscd_method method, cscd_plan **out) {
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = method;
+    return cscd_plan_create(p->context, p->mesh, CSCD_DOUBLES(p->x0, p->vertex_count), &options, out);
+}
