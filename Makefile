@@ -68,7 +68,8 @@ SUPPORT_SOURCES := $(wildcard tests/support/*.c tests/support/*/*.c)
 HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
-                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c) \
+                   $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c \
+                     tests/install/test_header_versions.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
@@ -120,7 +121,7 @@ SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_de
 SLOW_core          := float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_culling       := culling local_culling
 SLOW_detector      := min_separation_detector oracle threads reentry
-SLOW_install       := embedding install
+SLOW_install       := embedding header_versions install
 SLOW_intersections := static_check_kernel
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
@@ -139,7 +140,7 @@ BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmark
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
 
-.PHONY: all programs test-programs tool library install install-library uninstall reference packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
+.PHONY: all programs test-programs tool library install install-library uninstall reference freeze-api packages demo models gallery bench bench-embree bench-plot performance check check-run test test-run test-threads test-threads-run test-without-baselines benchmarks template lint format examples clean help fuzz-elementary FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -177,6 +178,10 @@ reference:
 	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages reference
 	@mkdir -p build/reference
 	@VERSION='$(VERSION)' OUTPUT=build/reference doxygen docs/Doxyfile
+
+# Writes down what the public headers promise, for tests/install/test_api_frozen.c; once 2.0.0 is released, additions alone.
+freeze-api:
+	@CC="$(CC)" tests/install/api_headers.py write
 
 # Installs what the build or the tests need and this machine lacks.
 packages:
@@ -301,6 +306,7 @@ help:
 	@echo '               GSL=0: without GSL; CHARGE=0: without LAPACKE and OpenBLAS, so without charge plans'
 	@echo 'make install   [PREFIX=/usr/local] [DESTDIR=] tool, library, man pages; make install-library; make uninstall'
 	@echo 'make reference   the functions of the library as HTML, in build/reference (installs doxygen)'
+	@echo 'make freeze-api   write down what the public headers promise, when functions or members were added'
 	@echo 'make bench     all methods on all recordings, as in the thesis (BENCH=--quick: 30 s); make bench-plot draws its charts'
 	@echo 'make performance   machine limits, cost per triangle by size, threads, bulk motion, cloth, new meshes (PERFORMANCE=--quick)'
 	@echo 'make benchmarks   build all programs that print tables: docs/measurements.md'

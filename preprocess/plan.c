@@ -216,7 +216,7 @@ static cscd_status create_plan(cscd_context *context, const cscd_mesh *mesh, con
     cscd_plan_options chosen = default_options;
     cscd_status status = CSCD_OK;
     if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_plan_options), options,
                                      "cscd_plan_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status != CSCD_OK) return status;
@@ -295,11 +295,11 @@ static cscd_status create_from_parts(cscd_context *context, const cscd_mesh *mes
     if (parts == NULL || out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "cscd_plan_create_from_parts: parts or out is NULL");
-    cscd_plan_parts taken;
+    cscd_plan_parts taken = {0};
     double *buffer = NULL;
     const double *x = NULL;
-    cscd_status status =
-        struct_take(context, &taken, sizeof taken, sizeof taken, parts, parts_size, "cscd_plan_parts");
+    cscd_status status = struct_take(context, &taken, sizeof taken, LEAST_SIZE(cscd_plan_parts), parts,
+                                     parts_size, "cscd_plan_parts");
     if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
     if (status == CSCD_OK) status = plan_from_parts(&seen, x, &taken, out);
     context_free(context, buffer);

@@ -136,8 +136,8 @@ static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh
     const double *x = NULL;
     cscd_status status = CSCD_OK;
     if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
-                                     "cscd_partition_defaults");
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_partition_options),
+                                     options, "cscd_partition_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status == CSCD_OK) status = check_plan(context, mesh, plan);
     if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);

@@ -174,8 +174,8 @@ static cscd_status take_options(cscd_context *context, const cscd_mesh *mesh, co
     cscd_detector_options chosen = default_options;
     cscd_status status = CSCD_OK;
     if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
-                                     "cscd_detector_defaults");
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_detector_options),
+                                     options, "cscd_detector_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
     return status == CSCD_OK ? create_detector(context, mesh, plan, chosen, out) : status;

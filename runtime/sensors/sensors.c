@@ -121,8 +121,8 @@ static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, 
     cscd_sensor_options chosen = default_options;
     cscd_status status = CSCD_OK;
     if (options != NULL)
-        status = struct_take_options(context, &chosen, sizeof chosen, sizeof chosen, options,
-                                     "cscd_sensor_defaults");
+        status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_sensor_options),
+                                     options, "cscd_sensor_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
     if (status != CSCD_OK) return status;
 

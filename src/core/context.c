@@ -90,8 +90,8 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     cscd_context_options chosen = default_options();
     cscd_status status = CSCD_OK;
     if (options != NULL)
-        status = struct_take_options(&explained, &chosen, sizeof chosen, sizeof chosen, options,
-                                     "cscd_context_defaults");
+        status = struct_take_options(&explained, &chosen, sizeof chosen, LEAST_SIZE(cscd_context_options),
+                                     options, "cscd_context_defaults");
     if (status == CSCD_OK && out == NULL)
         status = context_fail(&explained, CSCD_INVALID_ARGUMENT, "cscd_context_create: out is NULL");
     if (status == CSCD_OK) status = check_options(&explained, &chosen);

@@ -25,6 +25,7 @@ cscd_status struct_take(cscd_context *context, void *into, size_t size, size_t l
     if (from_size < least_size)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "%s: its size is %zu, expected at least %zu",
                             name, from_size, least_size);
+    memcpy(into, from, smaller_of(from_size, size));
     const char *bytes = from;
     for (size_t i = size; i < from_size; i++) {
         if (bytes[i] == 0) continue;
@@ -34,7 +35,6 @@ cscd_status struct_take(cscd_context *context, void *into, size_t size, size_t l
             "set it to 0, or use a newer library",
             name, i, cscd_version_string());
     }
-    memcpy(into, from, smaller_of(from_size, size));
     return CSCD_OK;
 }
 

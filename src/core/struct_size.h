@@ -3,6 +3,7 @@
 #pragma once
 
 #include "src/core/context.h"
+#include "src/core/least_sizes.h"
 
 /* Copies as much of `from` as the caller's struct holds, and zeroes what the library does not know. */
 void struct_give(void *out, size_t out_size, const void *from, size_t size);
@@ -10,9 +11,9 @@ void struct_give(void *out, size_t out_size, const void *from, size_t size);
 /* Writes default options to a caller's struct: the same, and its first member, a uint32_t, becomes its size. */
 void struct_give_options(void *out, size_t out_size, const void *from, size_t size);
 
-/* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. INVALID_ARGUMENT: the
- * caller's struct is smaller than that of version 2.0, or has members that this library does not know and that
- * are not 0; the sentence calls the struct `name`. */
+/* Overwrites the beginning of `into`, which holds the defaults, with the caller's struct. least_size: the struct's
+ * LEAST_SIZE. INVALID_ARGUMENT: the caller's struct is smaller than that, or has members that this library does not know and that
+ * are not 0; the sentence calls the struct `name`. What is known has been copied then. */
 cscd_status struct_take(cscd_context *context, void *into, size_t size, size_t least_size, const void *from,
                         size_t from_size, const char *name);
 

@@ -180,9 +180,10 @@ static cscd_status take_objects(cscd_context *context, const cscd_object_desc *o
                                 uint32_t count, cscd_object_desc *out) {
     const char *bytes = (const char *)objects;
     cscd_status status = CSCD_OK;
+    memset(out, 0, count * sizeof *out);
     for (uint32_t i = 0; i < count && status == CSCD_OK; i++)
-        status = struct_take(context, &out[i], sizeof *out, sizeof *out, bytes + i * object_size, object_size,
-                             "cscd_object_desc");
+        status = struct_take(context, &out[i], sizeof *out, LEAST_SIZE(cscd_object_desc),
+                             bytes + i * object_size, object_size, "cscd_object_desc");
     return status;
 }
 

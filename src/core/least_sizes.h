@@ -1,0 +1,16 @@
+/* The sizes of the structs that callers fill, as they were first released: no caller has smaller ones. Made by
+ * make freeze-api, which leaves the rows of released versions as they are. */
+#pragma once
+
+#include <stddef.h>
+
+#define STRUCT_THROUGH(type, member) (offsetof(type, member) + sizeof(((type *)0)->member))
+#define LEAST_SIZE(type)             LEAST_##type
+
+#define LEAST_cscd_context_options   STRUCT_THROUGH(cscd_context_options, reason_size)
+#define LEAST_cscd_detector_options  STRUCT_THROUGH(cscd_detector_options, step_factor)
+#define LEAST_cscd_object_desc       STRUCT_THROUGH(cscd_object_desc, reserved)
+#define LEAST_cscd_plan_options      STRUCT_THROUGH(cscd_plan_options, memory_limit)
+#define LEAST_cscd_plan_parts        STRUCT_THROUGH(cscd_plan_parts, capacitances)
+#define LEAST_cscd_partition_options STRUCT_THROUGH(cscd_partition_options, epsilon)
+#define LEAST_cscd_sensor_options    STRUCT_THROUGH(cscd_sensor_options, seed)

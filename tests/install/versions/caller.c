@@ -1,0 +1,237 @@
+/* A caller that asks for every struct that may grow, with bytes behind each that nobody may touch. It is compiled with
+ * the headers of today and with those of a later version, and runs on a library of the other. */
+#include "tests/install/versions/guard.h"
+
+enum { VERTEX_COUNT = 8, OBJECT_COUNT = 2, OWN_VERTICES = 4, OWN_TRIANGLES = 4 };
+
+/* Two tetrahedra; the second flies into the first. */
+static const uint32_t triangles[OWN_TRIANGLES * 3] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+static const double start[VERTEX_COUNT * 3] = {0, 0, 0,  4, 0, 0,  0, 4, 0,  0, 0, 4,
+                                               1, 1, -1, 2, 1, -2, 1, 2, -2, 1, 1, -3};
+static double end[VERTEX_COUNT * 3];
+
+typedef struct scene {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_detector *detector;
+    cscd_line_search *search;
+    cscd_partition *partition;
+    cscd_sensors *sensors;
+} scene;
+
+static void expect_ok(const scene *s, cscd_status status, const char *what) {
+    expect_that(status == CSCD_OK, what, s->context != NULL ? cscd_context_detail(s->context) : "failed");
+}
+
+/* The member that this library does not know is refused, by its place. */
+#ifdef WITH_LATER
+static void expect_refused(cscd_status status, const char *what, size_t place, const char *sentence) {
+    char expected[64];
+    snprintf(expected, sizeof expected, "the member at byte %zu is not 0", place);
+    expect_that(status == CSCD_INVALID_ARGUMENT, what, "an unknown member that is not 0 was accepted");
+    expect_that(strstr(sentence, expected) != NULL, what, sentence);
+}
+#define REFUSE(type, member_owner, call, sentence)                                                           \
+    do {                                                                                                     \
+        (member_owner).later_member[1] = 1;                                                                  \
+        expect_refused(call, #type, offsetof(type, later_member) + sizeof(uint32_t), sentence);              \
+        (member_owner).later_member[1] = 0;                                                                  \
+    } while (0)
+#else
+#define REFUSE(type, member_owner, call, sentence) ((void)0)
+#endif
+
+/* Options: the defaults of this caller's size, which the library takes. */
+#define OPTIONS(type, defaults_sized, name)                                                                  \
+    GUARDED(type, name);                                                                                     \
+    defaults_sized(&name.value, sizeof name.value);                                                          \
+    EXPECT_FILLED(type, name);                                                                               \
+    expect_that(name.value.struct_size == sizeof name.value, #type, "struct_size is not the caller's")
+
+static void create_context(scene *s) {
+    char reason[256] = "";
+    OPTIONS(cscd_context_options, cscd_context_defaults_sized, options);
+    expect_that(options.value.thread_count == 1, "cscd_context_options", "the default of thread_count");
+    options.value.reason = reason;
+    options.value.reason_size = sizeof reason;
+    REFUSE(cscd_context_options, options.value, cscd_context_create(&options.value, &s->context), reason);
+    expect_that(cscd_context_create(&options.value, &s->context) == CSCD_OK, "cscd_context_create", reason);
+}
+
+/* The size of an object is the stride of their array. */
+static void create_mesh(scene *s) {
+    struct {
+        cscd_object_desc values[OBJECT_COUNT];
+        unsigned char guard[GUARD_SIZE];
+    } objects;
+    memset(&objects, 0xa5, sizeof objects);
+    for (int i = 0; i < OBJECT_COUNT; i++)
+        objects.values[i] = cscd_object_of_triangles(OWN_VERTICES, OWN_TRIANGLES, triangles);
+    REFUSE(cscd_object_desc, objects.values[1],
+           cscd_mesh_create(s->context, objects.values, OBJECT_COUNT, &s->mesh),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_mesh_create(s->context, objects.values, OBJECT_COUNT, &s->mesh), "cscd_mesh_create");
+    expect_guard(objects.guard, "cscd_object_desc");
+    puts("cscd_object_desc");
+    expect_that(cscd_mesh_vertex_count(s->mesh) == VERTEX_COUNT, "cscd_mesh_create",
+                "an object was not taken");
+    GUARDED(cscd_object, object);
+    cscd_mesh_object_sized(s->mesh, 1, &object.value, sizeof object.value);
+    EXPECT_FILLED(cscd_object, object);
+    expect_that(object.value.triangle_count == OWN_TRIANGLES && !object.value.obstacle, "cscd_object",
+                "its values");
+    GUARDED(cscd_component, component);
+    cscd_mesh_component_sized(s->mesh, 1, &component.value, sizeof component.value);
+    EXPECT_FILLED(cscd_component, component);
+    expect_that(component.value.euler_characteristic == 2, "cscd_component", "its values");
+}
+
+static void create_plan(scene *s) {
+    const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
+    OPTIONS(cscd_plan_options, cscd_plan_defaults_sized, options);
+    expect_that(options.value.threshold == 0.1, "cscd_plan_options", "the default of threshold");
+    options.value.method = CSCD_METHOD_SINGLE;
+    REFUSE(cscd_plan_options, options.value,
+           cscd_plan_create(s->context, s->mesh, rest, &options.value, &s->plan),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_plan_create(s->context, s->mesh, rest, &options.value, &s->plan), "cscd_plan_create");
+    GUARDED(cscd_region, region);
+    cscd_plan_region_sized(s->plan, 1, &region.value, sizeof region.value);
+    EXPECT_FILLED(cscd_region, region);
+    expect_that(region.value.component == 1, "cscd_region", "its values");
+    GUARDED(cscd_preprocess_timings, timings);
+    cscd_plan_timings_sized(s->plan, &timings.value, sizeof timings.value);
+    EXPECT_FILLED(cscd_preprocess_timings, timings);
+}
+
+static void create_plan_from_parts(scene *s) {
+    const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
+    const uint32_t regions[OBJECT_COUNT * OWN_TRIANGLES] = {0, 0, 0, 0, 1, 1, 1, 1};
+    const double points[OBJECT_COUNT * 3] = {1, 1, 1, 1.2, 1.2, -2};
+    cscd_plan *plan = NULL;
+    GUARDED(cscd_plan_parts, parts);
+    memset(&parts.value, 0, sizeof parts.value);
+    parts.value.method = CSCD_METHOD_SINGLE;
+    parts.value.region_count = OBJECT_COUNT;
+    parts.value.triangle_regions = regions;
+    parts.value.detector_points = points;
+    REFUSE(cscd_plan_parts, parts.value,
+           cscd_plan_create_from_parts(s->context, s->mesh, rest, &parts.value, &plan),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_plan_create_from_parts(s->context, s->mesh, rest, &parts.value, &plan), "parts");
+    EXPECT_FILLED(cscd_plan_parts, parts);
+    cscd_plan_destroy(plan);
+}
+
+static void create_detector(scene *s) {
+    OPTIONS(cscd_detector_options, cscd_detector_defaults_sized, options);
+    expect_that(options.value.step_factor == 0.8, "cscd_detector_options", "the default of step_factor");
+    REFUSE(cscd_detector_options, options.value,
+           cscd_detector_create(s->context, s->mesh, s->plan, &options.value, &s->detector),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_detector_create(s->context, s->mesh, s->plan, &options.value, &s->detector),
+              "detector");
+    GUARDED(cscd_method_info, info);
+    expect_that(cscd_method_describe(CSCD_METHOD_SINGLE, &info.value), "cscd_method_describe", "failed");
+    EXPECT_FILLED(cscd_method_info, info);
+}
+
+static void ask_detector(scene *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
+    GUARDED(cscd_intersections, intersections);
+    expect_ok(s, cscd_detector_check(s->detector, x0, &intersections.value), "cscd_detector_check");
+    EXPECT_FILLED(cscd_intersections, intersections);
+    GUARDED(cscd_contacts, contacts);
+    expect_ok(s, cscd_detector_step(s->detector, x0, x1, &contacts.value), "cscd_detector_step");
+    EXPECT_FILLED(cscd_contacts, contacts);
+    expect_that(contacts.value.count > 0, "cscd_detector_step", "no contact");
+    GUARDED(cscd_timings, timings);
+    cscd_detector_timings_sized(s->detector, &timings.value, sizeof timings.value);
+    EXPECT_FILLED(cscd_timings, timings);
+    GUARDED(cscd_counters, counters);
+    cscd_detector_counters_sized(s->detector, &counters.value, sizeof counters.value);
+    EXPECT_FILLED(cscd_counters, counters);
+    expect_that(counters.value.vf + counters.value.ee == contacts.value.count, "cscd_counters", "its values");
+    GUARDED(cscd_guarantee, guarantee);
+    cscd_detector_guarantee_sized(s->detector, 1, &guarantee.value, sizeof guarantee.value);
+    EXPECT_FILLED(cscd_guarantee, guarantee);
+    expect_that(guarantee.value.complete, "cscd_guarantee", "its values");
+}
+
+static void ask_solver(scene *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
+    GUARDED(cscd_proximities, near);
+    expect_ok(s, cscd_detector_find_near(s->detector, x0, 1.5, &near.value), "cscd_detector_find_near");
+    EXPECT_FILLED(cscd_proximities, near);
+    GUARDED(cscd_free_step, step);
+    expect_ok(s, cscd_detector_max_step(s->detector, x0, x1, NULL, &step.value), "cscd_detector_max_step");
+    EXPECT_FILLED(cscd_free_step, step);
+    expect_that(step.value.limited, "cscd_free_step", "its values");
+    expect_ok(s, cscd_line_search_create(s->detector, &s->search), "cscd_line_search_create");
+    expect_ok(s, cscd_line_search_begin(s->search, x0, x1, 1.5), "cscd_line_search_begin");
+    GUARDED(cscd_free_step, found);
+    expect_ok(s, cscd_line_search_max_step(s->search, 1, NULL, &found.value), "cscd_line_search_max_step");
+    EXPECT_FILLED(cscd_free_step, found);
+    GUARDED(cscd_proximities, close);
+    expect_ok(s, cscd_line_search_find_near(s->search, 0, 1.5, &close.value), "cscd_line_search_find_near");
+    EXPECT_FILLED(cscd_proximities, close);
+    expect_that(close.value.count == near.value.count, "cscd_proximities", "their number");
+}
+
+static void create_sensors(scene *s) {
+    const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
+    OPTIONS(cscd_partition_options, cscd_partition_defaults_sized, options);
+    REFUSE(cscd_partition_options, options.value,
+           cscd_partition_create(s->context, s->mesh, NULL, rest, &options.value, &s->partition),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_partition_create(s->context, s->mesh, NULL, rest, &options.value, &s->partition),
+              "partition");
+    GUARDED(cscd_part, part);
+    cscd_partition_part_sized(s->partition, 1, &part.value, sizeof part.value);
+    EXPECT_FILLED(cscd_part, part);
+    OPTIONS(cscd_sensor_options, cscd_sensor_defaults_sized, sensing);
+    expect_that(sensing.value.step_limit == 256, "cscd_sensor_options", "the default of step_limit");
+    REFUSE(cscd_sensor_options, sensing.value,
+           cscd_sensors_create(s->context, s->mesh, s->partition, &sensing.value, &s->sensors),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_sensors_create(s->context, s->mesh, s->partition, &sensing.value, &s->sensors),
+              "sensors");
+}
+
+static void ask_sensors(scene *s) {
+    GUARDED(cscd_warnings, warnings);
+    expect_ok(s,
+              cscd_sensors_step(s->sensors, CSCD_DOUBLES(start, VERTEX_COUNT),
+                                CSCD_DOUBLES(end, VERTEX_COUNT), &warnings.value),
+              "cscd_sensors_step");
+    EXPECT_FILLED(cscd_warnings, warnings);
+    GUARDED(cscd_sensor_timings, timings);
+    cscd_sensors_timings_sized(s->sensors, &timings.value, sizeof timings.value);
+    EXPECT_FILLED(cscd_sensor_timings, timings);
+    GUARDED(cscd_sensor_counters, counters);
+    cscd_sensors_counters_sized(s->sensors, &counters.value, sizeof counters.value);
+    EXPECT_FILLED(cscd_sensor_counters, counters);
+}
+
+int main(void) {
+    scene s = {NULL};
+    for (int i = 0; i < VERTEX_COUNT * 3; i++) end[i] = start[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
+    create_context(&s);
+    create_mesh(&s);
+    create_plan(&s);
+    create_plan_from_parts(&s);
+    create_detector(&s);
+    ask_detector(&s);
+    ask_solver(&s);
+    create_sensors(&s);
+    ask_sensors(&s);
+    cscd_line_search_destroy(s.search);
+    cscd_sensors_destroy(s.sensors);
+    cscd_partition_destroy(s.partition);
+    cscd_detector_destroy(s.detector);
+    cscd_plan_destroy(s.plan);
+    cscd_mesh_destroy(s.mesh);
+    cscd_context_destroy(s.context);
+    return 0;
+}
