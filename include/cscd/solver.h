@@ -87,6 +87,82 @@ static inline cscd_status cscd_detector_max_step(cscd_detector *detector, const 
     return cscd_detector_max_step_sized(detector, x0, x1, reached, out, sizeof *out);
 }
 
+/* ---- how far vertices may go on any path ---------------------------------------------------------------- */
+
+/* What cscd_detector_displacement_bounds found beside the bounds. The list belongs to the detector and
+ * lives until the next call of the detector or of one of its line searches. */
+typedef struct cscd_displacement_bounds {
+    const cscd_proximity
+        *blocked; /* the pairs that are not apart at x0: each of their vertices has a bound of
+                                    * 0, and so have no others; sorted by (kind, a, b) */
+    size_t blocked_count;
+    size_t near_count; /* the number of pairs that were looked at */
+    double least;      /* of all bounds */
+    uint32_t vertex;   /* the first that has it */
+    uint32_t limited;  /* the number of vertices that have less than half the search radius */
+} cscd_displacement_bounds;
+
+/* Finds how far each vertex may go from x0, as Offset Geometric Contact (Chen et al. 2025) uses it. Every
+ * motion, straight or not, all of whose positions, as stored, stay within bounds[v] of x0 for each vertex
+ * v, keeps all pairs of features without a common vertex apart that are apart at x0; with min_separation,
+ * farther apart than that. Seams, pairs to leave out and obstacles count as in cscd_detector_find_near, and
+ * vertices of a seam have one bound in common. Obstacles have bounds, too: a motion of theirs that exceeds
+ * these is not covered. A bound is at least 0.49 times the distance of the vertex's nearest pair less
+ * min_separation, or half of search_radius, a length above 0, whichever is less. Neighbours may still fold
+ * onto each other at their common vertices.
+ *
+ * bounds: vertex_count numbers, floats or doubles as scalar says, in `size` bytes; they are rounded down.
+ * Comparing rounded distances with them is safe: a share of 2^-20 of each is left for that. What counts is
+ * where a vertex is after its position was rounded. CANCELLED: see cscd_progress. Timings, counters and
+ * guarantees stay those of the last step. docs/theory/displacement-bounds.md has the proof. */
+CSCD_API cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
+                                                             double search_radius, cscd_scalar scalar,
+                                                             void *bounds, size_t size,
+                                                             cscd_displacement_bounds *out, size_t out_size);
+static inline cscd_status cscd_detector_displacement_bounds(cscd_detector *detector, const cscd_view *x0,
+                                                            double search_radius, cscd_scalar scalar,
+                                                            void *bounds, size_t size,
+                                                            cscd_displacement_bounds *out) {
+    return cscd_detector_displacement_bounds_sized(detector, x0, search_radius, scalar, bounds, size, out,
+                                                   sizeof *out);
+}
+
+/* What cscd_detector_truncate did. The list lives as that of cscd_displacement_bounds. */
+typedef struct cscd_truncation {
+    double fraction; /* the least share of its motion that a vertex went; 1 if it did not want to move */
+    double obstacle_fraction; /* the same of the vertices of obstacles; 1 without obstacles */
+    const cscd_proximity
+        *held; /* pairs that touch at x0, or nearly: their vertices stay; sorted by (kind, a, b) */
+    size_t held_count;
+    size_t near_count;  /* the number of pairs that were looked at */
+    bool moved;         /* some vertex is not where it was, bit for bit */
+    uint32_t shortened; /* the number of vertices that did not reach x1 */
+} cscd_truncation;
+
+/* Lets every vertex go from x0 towards x1 on its own straight line as far as planes between near pairs
+ * allow, as Divide and Truncate (Chen et al. 2026) does. Each pair of features whose distance at x0 is at
+ * most search_radius, or that beyond min_separation, has a plane across its nearest points, and its
+ * vertices keep to their sides of it; what lies between them is shared by what both want, and obstacles
+ * come first. No vertex goes farther than half of search_radius. So pairs without a common vertex stay
+ * apart that are apart at x0: farther than min_separation, if they are that at x0, and otherwise they come
+ * no nearer. All of this holds for the positions as they are stored: `reached`, which may be x1 itself, or
+ * NULL, is rounded before it is compared with the planes. It is of floats only where x0 is. The vertices of
+ * a seam go the same share.
+ *
+ * A component that is known to be free of contact at x0 is so at `reached`, and the next step from there
+ * need not prove its start. Neighbours may still fold onto each other at their common vertices. Motions are
+ * shortened, not turned: a motion that goes on along a plane must not go towards it. search_radius is a
+ * length above 0; twice the longest motion stops none. Otherwise as cscd_detector_displacement_bounds. */
+CSCD_API cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0,
+                                                  const cscd_view *x1, double search_radius,
+                                                  const cscd_mutable_view *reached, cscd_truncation *out,
+                                                  size_t size);
+static inline cscd_status cscd_detector_truncate(cscd_detector *detector, const cscd_view *x0,
+                                                 const cscd_view *x1, double search_radius,
+                                                 const cscd_mutable_view *reached, cscd_truncation *out) {
+    return cscd_detector_truncate_sized(detector, x0, x1, search_radius, reached, out, sizeof *out);
+}
+
 /* ---- a line search ----------------------------------------------------------------------------------- */
 
 /* One motion that is asked about many times, as in the line search of an implicit solver (Li et al. 2020).

@@ -130,6 +130,7 @@ static void free_memory(cscd_detector *d) {
     context_free(context, d->reached);
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
+    context_free(context, d->scalars);
     context_free(context, d);
 }
 

@@ -53,10 +53,10 @@ struct cscd_detector {
     result_buffer contacts, proximities, intersections;
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
-    void *
-        pair_scratch; /* of displacement bounds and truncation, per near pair; NULL before their first call */
+    void *pair_scratch;  /* of displacement bounds and truncation, per near pair; NULL before the first */
     size_t pair_scratch_size;
     void *vertex_scratch; /* of truncation, per vertex; NULL before its first call */
+    cscd_scalar *scalars; /* of truncation, per object, of x0 and of what is reached; the same */
 
     cscd_timings timings;
     cscd_counters counters;

@@ -4,6 +4,11 @@
 #include "runtime/ccd/pair_plane.h"
 #include "runtime/solver/stored_scalar.h"
 #include "src/core/floating.h"
+#include "src/core/struct_size.h"
+#include "src/mesh/positions.h"
+#include "src/mesh/views.h"
+
+#include <string.h>
 
 /* Half of a gap, less the share that lets callers compare rounded lengths (lemma 3). */
 static const double share_of_gap = 0.5 * (1.0 - 0x1p-20);
@@ -49,17 +54,28 @@ static void join_seams(const cscd_detector *d, double *bounds) {
     for (uint32_t v = 0; v < count; v++) bounds[v] = bounds[names[v]];
 }
 
-/* Keeps the pairs that do not let their vertices move, in order. */
-static cscd_proximities list_blocked(cscd_proximity *items, size_t count, const double *limits) {
+/* Keeps the pairs that do not let their vertices move, in order, and returns how many there are. */
+static size_t keep_blocked(cscd_proximity *items, size_t count, const double *limits) {
     size_t blocked = 0;
     for (size_t i = 0; i < count; i++) {
         if (limits[i] == 0.0) items[blocked++] = items[i];
     }
-    return (cscd_proximities){items, blocked};
+    return blocked;
+}
+
+static void sum_up_bounds(const double *bounds, uint32_t vertex_count, double farthest,
+                          cscd_displacement_bounds *out) {
+    out->least = farthest;
+    for (uint32_t v = 0; v < vertex_count; v++) {
+        out->limited += bounds[v] < farthest;
+        if (bounds[v] >= out->least) continue;
+        out->least = bounds[v];
+        out->vertex = v;
+    }
 }
 
 cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double search_radius,
-                                     cscd_scalar scalar, double *bounds, cscd_proximities *blocked) {
+                                     cscd_scalar scalar, double *bounds, cscd_displacement_bounds *out) {
     cscd_proximities near;
     cscd_status status = near_pairs_find(d, x0, search_radius, &near);
     if (status != CSCD_OK) return status;
@@ -71,6 +87,66 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
     for (uint32_t v = 0; v < d->mesh->vertex_count; v++) bounds[v] = farthest;
     lower_bounds(d->mesh, &near, work.limits, bounds);
     join_seams(d, bounds);
-    *blocked = list_blocked(d->proximities.items, near.count, work.limits);
+    *out = (cscd_displacement_bounds){.blocked = d->proximities.items, .near_count = near.count};
+    out->blocked_count = keep_blocked(d->proximities.items, near.count, work.limits);
+    sum_up_bounds(bounds, d->mesh->vertex_count, farthest, out);
     return CSCD_OK;
+}
+
+/* ---- of the API ---------------------------------------------------------------------------------------- */
+
+static cscd_status check_array(const cscd_detector *d, double search_radius, cscd_scalar scalar,
+                               const void *bounds, size_t size) {
+    cscd_context *context = d->context;
+    size_t wanted = d->mesh->vertex_count * (scalar == CSCD_SCALAR_FLOAT ? sizeof(float) : sizeof(double));
+    if ((unsigned)scalar > CSCD_SCALAR_FLOAT)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "scalar is %d, expected CSCD_SCALAR_DOUBLE or CSCD_SCALAR_FLOAT", (int)scalar);
+    if (bounds == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "bounds is NULL");
+    if (size < wanted)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "bounds has %zu bytes, which is less than the %zu of %u vertices", size, wanted,
+                            d->mesh->vertex_count);
+    if (!(stored_below(0.5 * search_radius, scalar) > 0.0))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "search_radius is %g, and half of it is 0 as a float", search_radius);
+    return CSCD_OK;
+}
+
+static void write_bounds(const double *bounds, uint32_t count, cscd_scalar scalar, void *out) {
+    float *floats = out;
+    for (uint32_t v = 0; scalar == CSCD_SCALAR_FLOAT && v < count; v++) floats[v] = (float)bounds[v];
+    if (scalar == CSCD_SCALAR_DOUBLE) memcpy(out, bounds, count * sizeof *bounds);
+}
+
+static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double search_radius,
+                                  cscd_scalar scalar, void *bounds, cscd_displacement_bounds *out) {
+    uint32_t count = d->mesh->vertex_count;
+    cscd_status status = positions_check(d->context, x0, count, "x0");
+    if (status != CSCD_OK) return status;
+    detector_begin_call(d);
+    if (d->reached == NULL) d->reached = context_allocate(d->context, count, sizeof(double[3]));
+    status = d->reached != NULL ? displacement_bounds_find(d, x0, search_radius, scalar, d->reached, out)
+                                : CSCD_OUT_OF_MEMORY;
+    if (status != CSCD_OK) return detector_fail_call(d, status);
+    write_bounds(d->reached, count, scalar, bounds);
+    return CSCD_OK;
+}
+
+cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
+                                                    double search_radius, cscd_scalar scalar, void *bounds,
+                                                    size_t size, cscd_displacement_bounds *out,
+                                                    size_t out_size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_displacement_bounds: out is NULL");
+    const double *x = NULL;
+    cscd_displacement_bounds found;
+    cscd_status status = near_pairs_check_radius(detector, search_radius);
+    if (status == CSCD_OK) status = check_array(detector, search_radius, scalar, bounds, size);
+    if (status == CSCD_OK) status = views_read(context, detector->mesh, x0, "x0", &detector->unpacked[0], &x);
+    if (status == CSCD_OK) status = find_bounds_at(detector, x, search_radius, scalar, bounds, &found);
+    if (status == CSCD_OK) struct_give(out, out_size, &found, sizeof found);
+    return status;
 }

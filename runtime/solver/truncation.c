@@ -2,9 +2,12 @@
 #include "runtime/solver/truncation.h"
 
 #include "runtime/culling/tainting.h"
+#include "runtime/detector/step.h"
 #include "runtime/solver/division_planes.h"
 #include "runtime/solver/stored_scalar.h"
+#include "src/core/struct_size.h"
 #include "src/core/vec3.h"
+#include "src/mesh/views.h"
 
 #include <string.h>
 
@@ -73,9 +76,8 @@ static bool place_vertex(const truncation_work *w, size_t vertex, double share, 
     const double *x0 = w->motion->x0 + vertex * 3, *x1 = w->motion->x1 + vertex * 3;
     double *end = w->end + vertex * 3, moved[3];
     for (int k = 0; k < 3; k++) {
-        end[k] = share == 0.0   ? x0[k]
-                 : share == 1.0 ? x1[k]
-                                : stored_coordinate(x0[k] + share * (x1[k] - x0[k]), scalar);
+        double x = share == 1.0 ? x1[k] : x0[k] + share * (x1[k] - x0[k]);
+        end[k] = share == 0.0 ? x0[k] : stored_coordinate(x, scalar);
         moved[k] = end[k] - x0[k];
     }
     return vec3_largest(moved) == 0.0 || keeps_sides(w, vertex, moved);
@@ -143,7 +145,7 @@ static bool differ_in_place(const double *a, const double *b, size_t vertex) {
     return false;
 }
 
-static void sum_up_vertices(const truncation_work *w, truncation_outcome *out) {
+static void sum_up_vertices(const truncation_work *w, cscd_truncation *out) {
     out->fraction = out->obstacle_fraction = 1.0;
     for (uint32_t i = 0; i < w->mesh->object_count; i++) {
         const cscd_object *of = &w->mesh->objects[i];
@@ -159,13 +161,13 @@ static void sum_up_vertices(const truncation_work *w, truncation_outcome *out) {
     }
 }
 
-/* Keeps the pairs that no plane divides, in order. */
-static cscd_proximities list_held(const division_planes *planes, cscd_proximity *items) {
+/* Keeps the pairs that no plane divides, in order, and returns how many there are. */
+static size_t keep_held(const division_planes *planes, cscd_proximity *items) {
     size_t held = 0;
     for (size_t i = 0; i < planes->count; i++) {
         if (planes->planes[i].room[0] < 0.0) items[held++] = items[i];
     }
-    return (cscd_proximities){items, held};
+    return held;
 }
 
 /* ---- what is known ------------------------------------------------------------------------------------- */
@@ -206,7 +208,7 @@ static cscd_status reserve_vertices(cscd_detector *d, truncation_work *w, size_t
 }
 
 cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, double search_radius, double *end,
-                            truncation_outcome *out) {
+                            cscd_truncation *out) {
     truncation_work work = {d->mesh, d->exclusions.names, motion, .farthest = 0.5 * search_radius,
                             .end = end};
     size_t *first;
@@ -218,9 +220,66 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
     truncate_all(&work, d->context->threads);
-    *out = (truncation_outcome){.moved = false};
+    *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count};
     sum_up_vertices(&work, out);
-    out->held = list_held(&work.planes, d->proximities.items);
+    out->held_count = keep_held(&work.planes, d->proximities.items);
     if (known) carry_states_over(d, end);
+    return CSCD_OK;
+}
+
+/* ---- of the API ---------------------------------------------------------------------------------------- */
+
+/* The positions that are reached are compared with the planes in the scalar in which they are written, and a vertex
+ * must be able to stay where it is. */
+static cscd_status choose_scalars(cscd_detector *d, const cscd_view *x0, const cscd_mutable_view *reached,
+                                  const cscd_scalar **out) {
+    uint32_t count = d->mesh->object_count;
+    if (reached == NULL) return CSCD_OK;
+    if (d->scalars == NULL) d->scalars = context_allocate(d->context, count, 2 * sizeof *d->scalars);
+    if (d->scalars == NULL) return context_out_of_memory(d->context);
+    views_scalars(d->mesh, x0, d->scalars);
+    views_mutable_scalars(d->mesh, reached, d->scalars + count);
+    *out = d->scalars + count;
+    for (uint32_t i = 0; i < count; i++) {
+        if (d->scalars[i] == CSCD_SCALAR_DOUBLE && d->scalars[count + i] == CSCD_SCALAR_FLOAT)
+            return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                                "cscd_detector_truncate: object %u has doubles in x0 and floats in reached, "
+                                "so its vertices could not stay where they are",
+                                i);
+    }
+    return CSCD_OK;
+}
+
+static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motion, double search_radius,
+                                    cscd_truncation *out) {
+    cscd_status status = step_check_positions(d, motion->x0, motion->x1);
+    if (status != CSCD_OK) return status;
+    detector_begin_call(d);
+    if (d->reached == NULL)
+        d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
+    status =
+        d->reached != NULL ? truncation_find(d, motion, search_radius, d->reached, out) : CSCD_OUT_OF_MEMORY;
+    return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
+}
+
+cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                         double search_radius, const cscd_mutable_view *reached,
+                                         cscd_truncation *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    cscd_context *context = detector->context;
+    const cscd_mesh *mesh = detector->mesh;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_truncate: out is NULL");
+    wanted_motion motion = {.scalars = NULL};
+    cscd_truncation found;
+    cscd_status status = near_pairs_check_radius(detector, search_radius);
+    if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &motion.x0);
+    if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &motion.x1);
+    if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
+    if (status == CSCD_OK) status = choose_scalars(detector, x0, reached, &motion.scalars);
+    if (status == CSCD_OK) status = truncate_between(detector, &motion, search_radius, &found);
+    if (status != CSCD_OK) return status;
+    views_write(mesh, reached, detector->reached);
+    struct_give(out, size, &found, sizeof found);
     return CSCD_OK;
 }

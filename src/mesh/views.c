@@ -165,3 +165,24 @@ void views_write(const cscd_mesh *mesh, const cscd_mutable_view *views, const do
         object = l.end_object;
     }
 }
+
+/* ---- scalars ------------------------------------------------------------------------------------------- */
+
+static uint32_t take_scalar(const cscd_mesh *mesh, const cscd_view *view, uint32_t object,
+                            cscd_scalar *of_objects) {
+    uint32_t end = layout_of(mesh, view, object).end_object;
+    while (object < end) of_objects[object++] = view->scalar;
+    return end;
+}
+
+void views_scalars(const cscd_mesh *mesh, const cscd_view *views, cscd_scalar *of_objects) {
+    for (uint32_t object = 0; object < mesh->object_count; views++)
+        object = take_scalar(mesh, views, object, of_objects);
+}
+
+void views_mutable_scalars(const cscd_mesh *mesh, const cscd_mutable_view *views, cscd_scalar *of_objects) {
+    for (uint32_t object = 0; object < mesh->object_count; views++) {
+        cscd_view view = as_view(views);
+        object = take_scalar(mesh, &view, object, of_objects);
+    }
+}

@@ -16,3 +16,7 @@ cscd_status views_check_mutable(cscd_context *context, const cscd_mesh *mesh, co
 
 /* Writes packed doubles, 3 a vertex, to checked views; does nothing when these are NULL. */
 void views_write(const cscd_mesh *mesh, const cscd_mutable_view *views, const double *positions);
+
+/* Writes the scalar in which checked views hold the vertices of each object. */
+void views_scalars(const cscd_mesh *mesh, const cscd_view *views, cscd_scalar *of_objects);
+void views_mutable_scalars(const cscd_mesh *mesh, const cscd_mutable_view *views, cscd_scalar *of_objects);

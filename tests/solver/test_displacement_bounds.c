@@ -1,10 +1,10 @@
 /* Displacement bounds: motions into the corners of what they allow keep all pairs apart, by rational numbers. */
-#include "runtime/solver/displacement_bounds.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
+#include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -17,12 +17,20 @@ static scene interval; /* large; one test at a time */
 static double bounds[SCENE_VERTICES_MAX], others[SCENE_VERTICES_MAX], nearest[SCENE_VERTICES_MAX];
 static bool explained[SCENE_VERTICES_MAX]; /* the nearest pair shows why the bound is not more */
 
-static cscd_proximities find_bounds(const rig *r, double radius, cscd_scalar scalar, double *out) {
-    cscd_proximities blocked = {NULL, 4711};
-    detector_begin_call(r->detector);
-    assert_int_equal(displacement_bounds_find(r->detector, interval.x0, radius, scalar, out, &blocked),
+static cscd_displacement_bounds find_bounds(const rig *r, double radius, cscd_scalar scalar, double *out) {
+    static float x0[SCENE_VERTICES_MAX * 3], floats[SCENE_VERTICES_MAX];
+    cscd_displacement_bounds found;
+    uint32_t count = interval.vertex_count;
+    if (scalar == CSCD_SCALAR_DOUBLE) {
+        assert_int_equal(displacement_bounds_packed(r->detector, interval.x0, radius, out, &found), CSCD_OK);
+        return found;
+    }
+    for (size_t i = 0; i < (size_t)count * 3; i++) x0[i] = (float)interval.x0[i];
+    assert_int_equal(cscd_detector_displacement_bounds(r->detector, CSCD_FLOATS(x0, count), radius, scalar,
+                                                       floats, count * sizeof *floats, &found),
                      CSCD_OK);
-    return blocked;
+    for (uint32_t v = 0; v < count; v++) out[v] = (double)floats[v];
+    return found;
 }
 
 static void load_points(const cscd_stencil *s, const double *x, points out) {
@@ -124,7 +132,8 @@ static bool check_pair(const rig *r, const cscd_proximity *p, double apart, cscd
 
 /* A bound is half the radius, unless the nearest pair of its vertex explains that it is less. */
 static void check_bounds(const rig *r, double radius, double apart, cscd_scalar scalar, tally *sum) {
-    size_t listed = find_bounds(r, radius, scalar, bounds).count, blocked = 0;
+    cscd_displacement_bounds found = find_bounds(r, radius, scalar, bounds);
+    size_t blocked = 0, limited = 0;
     double half = half_of(radius, scalar);
     cscd_proximities near;
     assert_int_equal(find_near_packed(r->detector, interval.x0, (radius + apart) * (1.0 + 0x1p-16), &near),
@@ -136,9 +145,13 @@ static void check_bounds(const rig *r, double radius, double apart, cscd_scalar 
     for (uint32_t v = 0; v < interval.vertex_count; v++) {
         assert_true(bounds[v] == half || explained[v]);
         assert_true(bounds[v] >= 0.0 && bounds[v] <= half && in_scalar(bounds[v], scalar) == bounds[v]);
-        sum->limited += bounds[v] < half;
+        assert_true(bounds[v] >= found.least);
+        limited += bounds[v] < half;
     }
-    assert_int_equal(listed, blocked);
+    sum->limited += limited;
+    assert_int_equal(found.blocked_count, blocked);
+    assert_int_equal(found.limited, limited);
+    assert_true(found.least == bounds[found.vertex]);
     sum->pairs += near.count;
     sum->blocked += blocked;
 }
@@ -177,20 +190,6 @@ static void motions_within_bounds_keep_pairs_apart(void **state) {
 
 /* ---- which pairs count --------------------------------------------------------------------------------- */
 
-/* Two triangles, one above the other. */
-static void make_two_triangles(double apart) {
-    static const double corners[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-    interval.vertex_count = 6;
-    interval.triangle_count = 2;
-    for (uint32_t i = 0; i < 6; i++) {
-        interval.triangles[i] = i;
-        interval.x0[3 * i] = corners[i % 3][0];
-        interval.x0[3 * i + 1] = corners[i % 3][1];
-        interval.x0[3 * i + 2] = i < 3 ? 0.0 : apart;
-    }
-    memcpy(interval.x1, interval.x0, sizeof interval.x1);
-}
-
 static bool ignore_all(void *user, uint32_t a, uint32_t b) {
     return user == NULL && a < b;
 }
@@ -198,14 +197,14 @@ static bool ignore_all(void *user, uint32_t a, uint32_t b) {
 static void pairs_left_out_give_no_bounds(void **state) {
     (void)state;
     static const uint32_t ignored[] = {1, 0}, seams[] = {0, 3, 1, 4, 2, 5};
-    make_two_triangles(0.25);
+    scene_two_triangles(&interval, 0.25);
     for (int i = 0; i < 4; i++) {
         cscd_detector_options options = cscd_detector_defaults();
         if (i == 1) options.ignore = ignore_all;
         if (i == 2) options.ignored = ignored, options.ignored_count = 1;
         if (i == 3) options.seams = seams, options.seam_count = 3;
         rig r = rig_create(&interval, 1, &options);
-        assert_int_equal(find_bounds(&r, 1.0, CSCD_SCALAR_DOUBLE, bounds).count, 0);
+        assert_int_equal(find_bounds(&r, 1.0, CSCD_SCALAR_DOUBLE, bounds).blocked_count, 0);
         for (int v = 0; v < 6; v++) {
             if (i == 0) assert_true(bounds[v] < 0.125 && bounds[v] > 0.124);
             if (i == 1 || i == 2) assert_true(bounds[v] == 0.5);
@@ -221,7 +220,7 @@ static void pairs_left_out_give_no_bounds(void **state) {
 /* Obstacles that nothing else is near may go half the radius; where cloth is near, both sides have bounds. */
 static void obstacles_have_bounds_for_what_they_may_touch(void **state) {
     (void)state;
-    make_two_triangles(0.25);
+    scene_two_triangles(&interval, 0.25);
     static const uint32_t triangle[] = {0, 1, 2};
     for (int obstacles = 1; obstacles < 3; obstacles++) {
         cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
@@ -250,10 +249,10 @@ static void bounds_are_the_same_for_all_threads_and_methods(void **state) {
         options.min_separation = 0.01;
         rig brute = rig_create(&interval, 1, &options);
         size_t size = interval.vertex_count * sizeof *bounds;
-        size_t blocked = find_bounds(&one, 0.2, CSCD_SCALAR_DOUBLE, bounds).count;
-        assert_int_equal(find_bounds(&many, 0.2, CSCD_SCALAR_DOUBLE, others).count, blocked);
+        size_t blocked = find_bounds(&one, 0.2, CSCD_SCALAR_DOUBLE, bounds).blocked_count;
+        assert_int_equal(find_bounds(&many, 0.2, CSCD_SCALAR_DOUBLE, others).blocked_count, blocked);
         assert_memory_equal(bounds, others, size);
-        assert_int_equal(find_bounds(&brute, 0.2, CSCD_SCALAR_DOUBLE, others).count, blocked);
+        assert_int_equal(find_bounds(&brute, 0.2, CSCD_SCALAR_DOUBLE, others).blocked_count, blocked);
         assert_memory_equal(bounds, others, size);
         rig_destroy(&one);
         rig_destroy(&many);

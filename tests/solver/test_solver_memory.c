@@ -87,6 +87,22 @@ static cscd_status ask_max_step(counted *c, solver_answer *out) {
     return max_step_packed(c->detector, interval.x0, interval.x1, out->end, &out->step);
 }
 
+static cscd_status ask_bounds(counted *c, solver_answer *out) {
+    cscd_displacement_bounds found = {.near_count = 4711};
+    cscd_status status = displacement_bounds_packed(c->detector, interval.x0, distance, out->end, &found);
+    assert_true(status == CSCD_OK || found.near_count == 4711);
+    if (status == CSCD_OK) out->near = found.near_count;
+    return status;
+}
+
+static cscd_status ask_truncation(counted *c, solver_answer *out) {
+    cscd_truncation found = {.near_count = 4711};
+    cscd_status status = truncate_packed(c->detector, interval.x0, interval.x1, distance, out->end, &found);
+    assert_true(status == CSCD_OK || found.near_count == 4711);
+    if (status == CSCD_OK) out->near = found.near_count;
+    return status;
+}
+
 /* Runs the whole life of a line search. A call that fails is repeated at once, and must then succeed. */
 static cscd_status ask_line(counted *c, solver_answer *out) {
     cscd_line_search *line = NULL;
@@ -142,10 +158,10 @@ static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
 
 static void memory_may_run_out(void **state) {
     (void)state;
-    static question *const questions[] = {ask_near, ask_max_step, ask_line};
+    static question *const questions[] = {ask_near, ask_max_step, ask_line, ask_bounds, ask_truncation};
     size_t failures = 0;
     make_limited();
-    for (int q = 0; q < 3; q++) {
+    for (size_t q = 0; q < sizeof questions / sizeof *questions; q++) {
         for (int m = 0; m < METHOD_COUNT; m++) failures += fail_each(questions[q], methods[m], 1);
     }
     failures += fail_each(ask_line, CSCD_METHOD_SINGLE, 3);
@@ -209,12 +225,17 @@ static void a_failed_check_tells_nothing(void **state) {
 
 /* Makes one round of calls as a solver does. */
 static void ask_all(counted *c, cscd_line_search *line, double *x) {
+    static double bounds[SCENE_VERTICES_MAX];
     cscd_free_step step;
     cscd_proximities found;
+    cscd_displacement_bounds bounded;
+    cscd_truncation truncated;
     memcpy(x, interval.x0, interval.vertex_count * sizeof(double[3]));
     for (int i = 0; i < 6; i++) {
         assert_int_equal(find_near_packed(c->detector, x, distance, &found), CSCD_OK);
         assert_int_equal(max_step_packed(c->detector, x, interval.x1, NULL, &step), CSCD_OK);
+        assert_int_equal(displacement_bounds_packed(c->detector, x, distance, bounds, &bounded), CSCD_OK);
+        assert_int_equal(truncate_packed(c->detector, x, interval.x1, distance, x, &truncated), CSCD_OK);
         assert_int_equal(line_begin_packed(line, x, interval.x1, distance), CSCD_OK);
         assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.5 * distance, &found), CSCD_OK);
         assert_int_equal(line_max_step_packed(line, 0.7, x, &step), CSCD_OK);

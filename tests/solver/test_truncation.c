@@ -1,11 +1,11 @@
 /* Truncated motions: what was apart stays apart on the way, by the exact tests of a step and by rational numbers. */
 #include "runtime/solver/division_planes.h"
-#include "runtime/solver/truncation.h"
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
+#include "tests/support/solver/truncation_trial.h"
 #include "tests/support/test.h"
 
 #include <math.h>
@@ -17,21 +17,6 @@ typedef double points[4][3];
 static scene interval; /* large; one test at a time */
 static double end[SCENE_VERTICES_MAX * 3];
 static bool stays[SCENE_VERTICES_MAX]; /* a pair at x0 holds the vertex */
-
-static rig rig_apart(double apart, cscd_method method, uint32_t threads) {
-    cscd_detector_options options = cscd_detector_defaults();
-    options.min_separation = apart;
-    options.method = method_or_none(method);
-    return rig_create(&interval, threads, &options);
-}
-
-static truncation_outcome truncate_motion(const rig *r, double radius, const cscd_scalar *scalar) {
-    truncation_outcome out;
-    wanted_motion motion = {interval.x0, interval.x1, scalar};
-    detector_begin_call(r->detector);
-    assert_int_equal(truncation_find(r->detector, &motion, radius, end, &out), CSCD_OK);
-    return out;
-}
 
 static cscd_stencil stencil_of(const rig *r, const cscd_proximity *p) {
     return cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
@@ -54,20 +39,20 @@ static void make_stored(cscd_scalar scalar, double offset) {
 }
 
 /* Vertices that pairs without a plane hold stay in place. */
-static size_t note_held(const rig *r, const cscd_proximities *held) {
+static size_t note_held(const rig *r, const cscd_truncation *out) {
     memset(stays, 0, sizeof stays);
-    for (size_t i = 0; i < held->count; i++) {
-        cscd_stencil s = stencil_of(r, &held->items[i]);
+    for (size_t i = 0; i < out->held_count; i++) {
+        cscd_stencil s = stencil_of(r, &out->held[i]);
         for (int j = 0; j < 4; j++) stays[s.vertices[j]] = true;
     }
     for (uint32_t v = 0; v < interval.vertex_count; v++)
         if (stays[v])
             assert_memory_equal(end + (size_t)v * 3, interval.x0 + (size_t)v * 3, sizeof(double[3]));
-    return held->count;
+    return out->held_count;
 }
 
 /* Every vertex is stored, has gone straight on, and not too far. */
-static void check_vertices(double radius, cscd_scalar scalar, const truncation_outcome *out) {
+static void check_vertices(double radius, cscd_scalar scalar, const cscd_truncation *out) {
     bool moved = false;
     uint32_t reached = 0;
     for (uint32_t v = 0; v < interval.vertex_count; v++) {
@@ -92,16 +77,16 @@ static void check_vertices(double radius, cscd_scalar scalar, const truncation_o
 }
 
 /* Exact steps see contacts of pairs that touch at x0 and stay, and no others. */
-static void check_no_contact(const truncation_outcome *out) {
+static void check_no_contact(const cscd_truncation *out) {
     static scene way;
     way = interval;
     memcpy(way.x1, end, sizeof end);
-    rig exact = rig_apart(0.0, CSCD_METHOD_NONE, 1);
+    rig exact = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
     cscd_contacts found = rig_step(&exact, &way);
     for (size_t i = 0; i < found.count; i++) {
         const cscd_contact *c = &found.items[i];
         cscd_stencil s = cscd_mesh_stencil(exact.mesh, c->kind, c->a, c->b, c->u, c->v);
-        assert_true(out->held.count > 0 && c->toi == 0.0);
+        assert_true(out->held_count > 0 && c->toi == 0.0);
         for (int j = 0; j < 4; j++) assert_true(stays[s.vertices[j]]);
     }
     rig_destroy(&exact);
@@ -135,9 +120,9 @@ static void truncated_motions_keep_pairs_apart(void **state) {
             cscd_scalar scalar = seed % 2 == 0 ? CSCD_SCALAR_DOUBLE : CSCD_SCALAR_FLOAT;
             make_stored(scalar, seed == 5 ? 1000.0 : 0.0);
             double radius = radii[seed / 2], apart = seed % 3 == 0 ? 0.0 : 0.1 * radius;
-            rig r = rig_apart(apart, CSCD_METHOD_NONE, 1);
-            truncation_outcome out = truncate_motion(&r, radius, &scalar);
-            held += note_held(&r, &out.held);
+            rig r = rig_apart(&interval, apart, CSCD_METHOD_NONE, 1);
+            cscd_truncation out = truncate_scene(&r, &interval, radius, scalar, end);
+            held += note_held(&r, &out);
             check_vertices(radius, scalar, &out);
             check_no_contact(&out);
             if (seed < 4) check_separation(&r, apart, radius);
@@ -157,7 +142,7 @@ static void a_march_never_touches(void **state) {
         cscd_scalar scalar = (cscd_scalar)scalar_of;
         scene_make(SCENE_BENT_CAPSULE, 7, &interval);
         make_stored(scalar, scalar == CSCD_SCALAR_FLOAT ? 1000.0 : 0.0);
-        rig r = rig_apart(0.0, CSCD_METHOD_NONE, 1);
+        rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
         size_t size = (size_t)interval.vertex_count * 3;
         double travelled = 0.0;
         for (int step = 0; step < 60; step++) {
@@ -165,9 +150,9 @@ static void a_march_never_touches(void **state) {
                 interval.x1[i] = interval.x0[i] + 0.03 * random_unit();
                 if (scalar == CSCD_SCALAR_FLOAT) interval.x1[i] = (double)(float)interval.x1[i];
             }
-            truncation_outcome out = truncate_motion(&r, 0.1, &scalar);
-            note_held(&r, &out.held);
-            assert_int_equal(out.held.count, 0);
+            cscd_truncation out = truncate_scene(&r, &interval, 0.1, scalar, end);
+            note_held(&r, &out);
+            assert_int_equal(out.held_count, 0);
             check_no_contact(&out);
             for (size_t i = 0; i < size; i++) travelled += fabs(end[i] - interval.x0[i]);
             memcpy(interval.x0, end, size * sizeof *end);
@@ -203,7 +188,7 @@ static void planes_divide_near_pairs(void **state) {
     size_t divided = 0;
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         scene_make((scene_family)family, 1, &interval);
-        rig r = rig_apart(0.01, CSCD_METHOD_NONE, 1);
+        rig r = rig_apart(&interval, 0.01, CSCD_METHOD_NONE, 1);
         cscd_proximities near;
         division_planes planes;
         assert_int_equal(near_pairs_find(r.detector, interval.x0, 0.25, &near), CSCD_OK);
@@ -222,20 +207,6 @@ static void planes_divide_near_pairs(void **state) {
 
 /* ---- how much may move --------------------------------------------------------------------------------- */
 
-/* Two triangles, one above the other. */
-static void make_two_triangles(double apart) {
-    static const double corners[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-    interval.vertex_count = 6;
-    interval.triangle_count = 2;
-    for (uint32_t i = 0; i < 6; i++) {
-        interval.triangles[i] = i;
-        interval.x0[3 * i] = corners[i % 3][0];
-        interval.x0[3 * i + 1] = corners[i % 3][1];
-        interval.x0[3 * i + 2] = i < 3 ? 0.0 : apart;
-    }
-    memcpy(interval.x1, interval.x0, sizeof interval.x1);
-}
-
 static void move_triangle(uint32_t which, double by) {
     for (uint32_t i = 3 * which; i < 3 * which + 3; i++) interval.x1[3 * i + 2] = interval.x0[3 * i + 2] + by;
 }
@@ -247,11 +218,11 @@ static void room_goes_to_whoever_needs_it(void **state) {
     static const double gone[][2] = {
         {0.0, -0.15}, {0.15, 0.0}, {0.0375, -0.1125}, {-0.5, -0.15}, {0.05, -0.02}};
     for (int i = 0; i < 5; i++) {
-        make_two_triangles(0.25);
+        scene_two_triangles(&interval, 0.25);
         move_triangle(0, wanted[i][0]);
         move_triangle(1, wanted[i][1]);
-        rig r = rig_apart(0.1, CSCD_METHOD_NONE, 1);
-        truncation_outcome out = truncate_motion(&r, 2.0, NULL);
+        rig r = rig_apart(&interval, 0.1, CSCD_METHOD_NONE, 1);
+        cscd_truncation out = truncate_scene(&r, &interval, 2.0, CSCD_SCALAR_DOUBLE, end);
         for (uint32_t v = 0; v < 6; v++)
             assert_true(fabs(end[3 * v + 2] - interval.x0[3 * v + 2] - gone[i][v / 3]) <= 1e-6);
         assert_int_equal(out.shortened, i < 2 ? 3 : i == 2 ? 6 : i == 3 ? 3 : 0);
@@ -264,11 +235,11 @@ static void room_goes_to_whoever_needs_it(void **state) {
 static void pressed_pairs_may_part(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        make_two_triangles(0.05);
+        scene_two_triangles(&interval, 0.05);
         move_triangle(1, i == 0 ? 0.5 : -0.01);
-        rig r = rig_apart(0.1, CSCD_METHOD_NONE, 1);
-        truncation_outcome out = truncate_motion(&r, 2.0, NULL);
-        assert_int_equal(out.held.count, 0);
+        rig r = rig_apart(&interval, 0.1, CSCD_METHOD_NONE, 1);
+        cscd_truncation out = truncate_scene(&r, &interval, 2.0, CSCD_SCALAR_DOUBLE, end);
+        assert_int_equal(out.held_count, 0);
         assert_true(out.moved == (i == 0));
         assert_memory_equal(end, i == 0 ? interval.x1 : interval.x0, 18 * sizeof *end);
         rig_destroy(&r);
@@ -278,11 +249,11 @@ static void pressed_pairs_may_part(void **state) {
 /* Pairs that touch stay, and are listed. */
 static void touching_pairs_are_held(void **state) {
     (void)state;
-    make_two_triangles(0.0);
+    scene_two_triangles(&interval, 0.0);
     move_triangle(1, 0.5);
-    rig r = rig_apart(0.0, CSCD_METHOD_NONE, 1);
-    truncation_outcome out = truncate_motion(&r, 2.0, NULL);
-    assert_true(out.held.count > 0 && !out.moved && out.fraction == 0.0 && out.shortened == 3);
+    rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
+    cscd_truncation out = truncate_scene(&r, &interval, 2.0, CSCD_SCALAR_DOUBLE, end);
+    assert_true(out.held_count > 0 && !out.moved && out.fraction == 0.0 && out.shortened == 3);
     assert_memory_equal(end, interval.x0, 18 * sizeof *end);
     rig_destroy(&r);
 }
@@ -292,7 +263,7 @@ static void obstacles_come_first(void **state) {
     (void)state;
     static const uint32_t triangle[] = {0, 1, 2};
     for (uint32_t obstacle = 0; obstacle < 2; obstacle++) {
-        make_two_triangles(0.25);
+        scene_two_triangles(&interval, 0.25);
         move_triangle(0, 0.2);
         move_triangle(1, -0.2);
         cscd_object_desc objects[2] = {cscd_object_of_triangles(3, 1, triangle),
@@ -302,7 +273,7 @@ static void obstacles_come_first(void **state) {
         assert_int_equal(cscd_context_create(NULL, &r.context), CSCD_OK);
         assert_int_equal(cscd_mesh_create(r.context, objects, 2, &r.mesh), CSCD_OK);
         assert_int_equal(detector_create_here(r.mesh, NULL, NULL, &r.detector), CSCD_OK);
-        truncation_outcome out = truncate_motion(&r, 1.0, NULL);
+        cscd_truncation out = truncate_scene(&r, &interval, 1.0, CSCD_SCALAR_DOUBLE, end);
         assert_true(out.obstacle_fraction == 1.0 && fabs(out.fraction - 0.25) < 1e-5);
         assert_int_equal(out.shortened, 3);
         assert_memory_equal(end + obstacle * 9, interval.x1 + obstacle * 9, 9 * sizeof *end);
@@ -337,80 +308,11 @@ static void sewn_vertices_stay_together(void **state) {
         options.seams = seams;
         options.seam_count = 2;
         rig r = rig_create(&interval, 1, &options);
-        const cscd_scalar scalars[] = {scalar};
-        truncation_outcome out = truncate_motion(&r, 3.0, scalars);
-        assert_true(out.moved && out.held.count == 0 && out.shortened > 0);
+        cscd_truncation out = truncate_scene(&r, &interval, 3.0, scalar, end);
+        assert_true(out.moved && out.held_count == 0 && out.shortened > 0);
         assert_memory_equal(end + 9, end + 6, sizeof(double[3]));
         assert_memory_equal(end + 12, end + 3, sizeof(double[3]));
         rig_destroy(&r);
-    }
-}
-
-/* ---- what is known, and the same for everyone ---------------------------------------------------------- */
-
-/* The step from where a truncated motion ended need not prove its start, and finds what a new detector finds. */
-static void the_end_is_known(void **state) {
-    (void)state;
-    for (uint64_t seed = 0; seed < 4; seed++) {
-        scene_make(SCENE_BENT_CAPSULE, seed, &interval);
-        rig r = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
-        cscd_contacts found;
-        assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
-        assert_int_equal(found.count, 0);
-        for (int i = 0; i < 3; i++) {
-            truncate_motion(&r, 0.1, NULL);
-            memcpy(interval.x0, end, sizeof end);
-        }
-        assert_int_equal(step_packed(r.detector, interval.x0, interval.x1, &found), CSCD_OK);
-        assert_int_equal(cscd_detector_counters(r.detector).static_checks, 0);
-        assert_int_equal(cscd_detector_counters(r.detector).clean, interval.triangle_count);
-        rig fresh = rig_apart(0.0, CSCD_METHOD_SINGLE, 1);
-        cscd_contacts again = rig_step(&fresh, &interval);
-        assert_int_equal(found.count, again.count);
-        for (size_t i = 0; i < found.count; i++)
-            assert_memory_equal(&found.items[i], &again.items[i], sizeof *found.items);
-        rig_destroy(&r);
-        rig_destroy(&fresh);
-    }
-}
-
-static bool ignore_all(void *user, uint32_t a, uint32_t b) {
-    return user == NULL && a < b;
-}
-
-/* Pairs that are left out may pass through each other, so what is near such a pair is checked anew. */
-static void pairs_left_out_leave_nothing_known(void **state) {
-    (void)state;
-    scene_make(SCENE_BENT_CAPSULE, 0, &interval);
-    cscd_detector_options options = cscd_detector_defaults();
-    options.method = CSCD_METHOD_SINGLE;
-    options.ignore = ignore_all;
-    rig r = rig_create(&interval, 1, &options);
-    cscd_contacts found;
-    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
-    truncation_outcome out = truncate_motion(&r, 4.0, NULL);
-    assert_int_equal(out.shortened, 0);
-    memcpy(interval.x0, end, sizeof end);
-    assert_int_equal(step_packed(r.detector, interval.x0, interval.x0, &found), CSCD_OK);
-    assert_true(cscd_detector_counters(r.detector).static_checks > 0);
-    rig_destroy(&r);
-}
-
-static void truncation_is_the_same_for_all_threads_and_methods(void **state) {
-    (void)state;
-    static double first[SCENE_VERTICES_MAX * 3];
-    for (uint64_t seed = 0; seed < 4; seed++) {
-        scene_make(seed % 2 == 0 ? SCENE_BENT_CAPSULE : SCENE_SOUP, seed, &interval);
-        size_t size = (size_t)interval.vertex_count * 3 * sizeof *end;
-        for (int i = 0; i < 3; i++) {
-            rig r = rig_apart(0.01, i == 2 ? CSCD_METHOD_BRUTE : CSCD_METHOD_NONE, i == 1 ? 4 : 1);
-            truncate_motion(&r, 0.2, NULL);
-            if (i == 0)
-                memcpy(first, end, size);
-            else
-                assert_memory_equal(first, end, size);
-            rig_destroy(&r);
-        }
     }
 }
 
@@ -424,9 +326,6 @@ int main(void) {
         cmocka_unit_test(touching_pairs_are_held),
         cmocka_unit_test(obstacles_come_first),
         cmocka_unit_test(sewn_vertices_stay_together),
-        cmocka_unit_test(the_end_is_known),
-        cmocka_unit_test(pairs_left_out_leave_nothing_known),
-        cmocka_unit_test(truncation_is_the_same_for_all_threads_and_methods),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -71,6 +71,24 @@ cscd_status max_step_packed(cscd_detector *detector, const double *x0, const dou
                                   mutable_view_of(mesh, reached, &end), out);
 }
 
+cscd_status displacement_bounds_packed(cscd_detector *detector, const double *x0, double search_radius,
+                                       double *bounds, cscd_displacement_bounds *out) {
+    const cscd_mesh *mesh = mesh_of(detector);
+    cscd_view from;
+    return cscd_detector_displacement_bounds(detector, view_of(mesh, x0, &from), search_radius,
+                                             CSCD_SCALAR_DOUBLE, bounds,
+                                             mesh != NULL ? mesh->vertex_count * sizeof *bounds : 0, out);
+}
+
+cscd_status truncate_packed(cscd_detector *detector, const double *x0, const double *x1, double search_radius,
+                            double *reached, cscd_truncation *out) {
+    const cscd_mesh *mesh = mesh_of(detector);
+    cscd_view from, to;
+    cscd_mutable_view end;
+    return cscd_detector_truncate(detector, view_of(mesh, x0, &from), view_of(mesh, x1, &to), search_radius,
+                                  mutable_view_of(mesh, reached, &end), out);
+}
+
 cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach) {
     const cscd_mesh *mesh = mesh_of_line(line);
     cscd_view from, to;

@@ -19,6 +19,10 @@ cscd_status find_near_packed(cscd_detector *detector, const double *positions, d
                              cscd_proximities *out);
 cscd_status max_step_packed(cscd_detector *detector, const double *x0, const double *x1, double *reached,
                             cscd_free_step *out);
+cscd_status displacement_bounds_packed(cscd_detector *detector, const double *x0, double search_radius,
+                                       double *bounds, cscd_displacement_bounds *out);
+cscd_status truncate_packed(cscd_detector *detector, const double *x0, const double *x1, double search_radius,
+                            double *reached, cscd_truncation *out);
 
 cscd_status line_begin_packed(cscd_line_search *line, const double *x0, const double *x1, double reach);
 cscd_status line_positions_packed(cscd_line_search *line, double fraction, double *positions);
