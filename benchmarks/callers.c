@@ -61,7 +61,7 @@ static uint32_t frames_soft(const char *name) {
 }
 
 static bool open_cloth(const char *name, cscd_context *context, caller *out, io_error *error) {
-    if (!cloth_open(cloth_scene_find(name), 0, context, &out->cloth, error)) return false;
+    if (!cloth_open(cloth_scene_find(name), 0, DRIVER_STEPS, context, &out->cloth, error)) return false;
     out->triangle_count = cscd_mesh_triangle_count(out->cloth.mesh);
     return true;
 }

@@ -58,6 +58,16 @@ static bool close_outputs(cloth_files *out, io_error *error) {
     return good;
 }
 
+/* What continuous detection alone has to say. */
+static void print_steps(const cloth_statistics *t) {
+    const safe_motion_counts *m = &t->motion;
+    printf(
+        "  %llu of %u motions were cut, for %llu contacts; %llu began pressed together; %llu were shortened as "
+        "a whole\n",
+        (unsigned long long)m->cut, t->frames, (unsigned long long)m->contacts, (unsigned long long)m->tight,
+        (unsigned long long)m->fallbacks);
+}
+
 static void print_summary(const cloth_simulation *c, uint64_t late_allocations) {
     const cloth_scene *s = c->scene;
     const cloth_statistics *t = &c->statistics;
@@ -65,17 +75,17 @@ static void print_summary(const cloth_simulation *c, uint64_t late_allocations) 
     printf("%s: %s\n", s->name, s->text);
     printf("  %u frames of %u triangles, %g s each; thickness %.2g, certified %.2g\n", t->frames + 1,
            c->garment.triangle_count, s->frame_seconds, cloth_thickness(c), cloth_separation(c));
+    printf("  near: %.0f pairs a frame; %.2f %% of all motion was left, obstacles waited %.2f frames\n",
+           (double)t->near_pairs / frames, 100.0 * (1.0 - t->lost / t->wanted), t->waited);
+    if (c->bounded.detector == NULL) print_steps(t);
+    if (c->bounded.detector != NULL)
+        printf("  %.2f %% of it was left by first rounds\n",
+               100.0 * (1.0 - c->bounded.left_over / t->wanted));
     printf(
-        "  near: %.0f pairs a frame; %llu of %u motions were cut, for %llu contacts, in up to %llu rounds\n",
-        (double)t->near_pairs / frames, (unsigned long long)t->motion.cut, t->frames,
-        (unsigned long long)t->motion.contacts, (unsigned long long)t->most_rounds);
-    printf(
-        "  %llu motions began pressed together; %llu were shortened as a whole, obstacles waited %.2f frames\n",
-        (unsigned long long)t->motion.tight, (unsigned long long)t->motion.fallbacks, t->waited);
-    printf(
-        "  %.2f ms a frame: solver %.2f, near %.2f, %.1f detector steps %.2f; %llu allocations in the last half\n",
+        "  %.2f ms a frame: solver %.2f, near %.2f, %.1f %s %.2f (up to %llu); %llu allocations in the last half\n",
         t->total_ms / frames, (t->total_ms - t->near_ms - t->step_ms) / frames, t->near_ms / frames,
-        (double)t->motion.steps / frames, t->step_ms / frames, (unsigned long long)late_allocations);
+        (double)t->rounds / frames, c->bounded.detector == NULL ? "detector steps" : "rounds",
+        t->step_ms / frames, (unsigned long long)t->most_rounds, (unsigned long long)late_allocations);
 }
 
 static bool record_frames(cloth_simulation *c, const char *folder, const uint64_t *allocations,
@@ -97,10 +107,15 @@ static bool record_frames(cloth_simulation *c, const char *folder, const uint64_
     return good && complete;
 }
 
-/* Records one scene. user points to the resolution; 0 is the scene's own. */
+typedef struct cloth_options {
+    uint32_t resolution; /* 0: the scene's own */
+    motion_driver driver;
+} cloth_options;
+
+/* Records one scene. user points to the options. */
 static bool record_scene(void *user, uint32_t index, const char *folder, io_error *error) {
     const cloth_scene *s = &cloth_scenes[index];
-    const uint32_t *resolution = user;
+    const cloth_options *o = user;
     uint64_t allocations = 0;
     cscd_context *context;
     cscd_context_options options = cscd_context_defaults();
@@ -108,7 +123,7 @@ static bool record_scene(void *user, uint32_t index, const char *folder, io_erro
     cscd_status status = cscd_context_create(&options, &context);
     if (status != CSCD_OK) return io_fail(error, "%s: %s", s->name, cscd_status_string(status));
     cloth_simulation c;
-    bool good = cloth_open(s, *resolution, context, &c, error);
+    bool good = cloth_open(s, o->resolution, o->driver, context, &c, error);
     if (good) {
         good = record_frames(&c, folder, &allocations, error);
         cloth_close(&c);
@@ -130,6 +145,28 @@ static bool parse_resolution(const char *text, uint32_t *out) {
     return true;
 }
 
+static bool parse_driver(const char *text, motion_driver *out) {
+    for (motion_driver d = DRIVER_STEPS; d < DRIVER_COUNT; d++) {
+        if (strcmp(text, motion_driver_name(d)) != 0) continue;
+        *out = d;
+        return true;
+    }
+    fprintf(stderr, "cloth: --driver '%s': steps, bounds or planes is wanted\n", text);
+    return false;
+}
+
+/* Reads the options before the scenes; *first is what follows them. */
+static bool parse_options(int count, char **arguments, cloth_options *out, int *first) {
+    for (*first = 1; *first + 1 < count; *first += 2) {
+        const char *name = arguments[*first], *value = arguments[*first + 1];
+        bool resolution = strcmp(name, "--resolution") == 0;
+        if (!resolution && strcmp(name, "--driver") != 0) return true;
+        if (!(resolution ? parse_resolution(value, &out->resolution) : parse_driver(value, &out->driver)))
+            return false;
+    }
+    return true;
+}
+
 static const char *scene_name(uint32_t index) {
     return cloth_scenes[index].name;
 }
@@ -139,28 +176,26 @@ static const char *scene_text(uint32_t index) {
 }
 
 int main(int argument_count, char **arguments) {
-    uint32_t resolution = 0;
+    cloth_options options = {0, DRIVER_STEPS};
     const scene_program program = {
         .name = "cloth",
         .help =
-            "usage: cloth [--resolution N] SCENE... FOLDER\n"
+            "usage: cloth [--resolution N] [--driver D] SCENE... FOLDER\n"
             "\n"
             "Simulates cloth and writes, for each scene, FOLDER/SCENE.obj and SCENE.pc2, and what the cloth\n"
             "falls onto as SCENE-scenery.obj and, if it moves, SCENE-scenery.pc2. The folder must exist.\n"
             "N, 12 to 500, is the number of vertices along a side or around a tube; the default is 60, of "
-            "a bag 45.\n"
+            "a bag 45. D says what keeps things apart: `steps`, continuous detection (the default), `bounds`, a\n"
+            "ball for each vertex, or `planes` between near pairs.\n"
             "`all` stands for all scenes:\n"
             "\n",
         .scene_count = cloth_scene_count,
         .scene_name = scene_name,
         .scene_text = scene_text,
         .record = record_scene,
-        .user = &resolution};
-    if (argument_count > 2 && strcmp(arguments[1], "--resolution") == 0) {
-        if (!parse_resolution(arguments[2], &resolution)) return 2;
-        arguments[2] = arguments[0];
-        arguments += 2;
-        argument_count -= 2;
-    }
-    return scene_program_run(&program, argument_count, arguments);
+        .user = &options};
+    int first;
+    if (!parse_options(argument_count, arguments, &options, &first)) return 2;
+    arguments[first - 1] = arguments[0];
+    return scene_program_run(&program, argument_count - first + 1, arguments + first - 1);
 }

@@ -68,8 +68,8 @@ static cscd_status make_state(cloth_simulation *c) {
                             &c->safe);
 }
 
-bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context, cloth_simulation *out,
-                io_error *error) {
+bool cloth_open(const cloth_scene *s, uint32_t resolution, motion_driver driver, cscd_context *context,
+                cloth_simulation *out, io_error *error) {
     cloth_simulation c = {.scene = s, .context = context};
     if (resolution == 0) resolution = s->resolution;
     c.spacing = cloth_scene_spacing(s, resolution);
@@ -83,11 +83,15 @@ bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context
         cloth_close(&c);
         return false;
     }
+    if (driver != DRIVER_STEPS)
+        bounded_motion_open(c.safe.detector, c.mesh, driver, reach * c.spacing, c.garment.vertex_count,
+                            &c.bounded);
     *out = c;
     return true;
 }
 
 void cloth_close(cloth_simulation *c) {
+    bounded_motion_close(&c->bounded);
     safe_motion_close(&c->safe);
     apart_free(&c->pairs);
     fabric_free(&c->cloth);
@@ -130,6 +134,34 @@ static void find_target(cloth_simulation *c) {
     memcpy(goal, c->target, size * sizeof *goal);
 }
 
+/* The sum of what the garment's vertices are apart. */
+static double garment_distance(const cloth_simulation *c, const double *a, const double *b) {
+    double sum = 0.0;
+    for (size_t v = 0; v < c->garment.vertex_count; v++) {
+        double squared = 0.0;
+        for (size_t i = 3 * v; i < 3 * v + 3; i++) squared += (a[i] - b[i]) * (a[i] - b[i]);
+        sum += sqrt(squared);
+    }
+    return sum;
+}
+
+/* Makes the motion from start to positions free of contact, and counts what it costs. */
+static cscd_status find_motion(cloth_simulation *c, double *length) {
+    cloth_statistics *s = &c->statistics;
+    double begin = clock_now_ms();
+    bool bounded = c->bounded.detector != NULL;
+    uint64_t before = bounded ? c->bounded.rounds : c->safe.counts.steps;
+    cscd_status status = bounded ? bounded_motion_find(&c->bounded, c->start, c->positions, length)
+                                 : safe_motion_find(&c->safe, c->start, c->positions, length);
+    uint64_t rounds = (bounded ? c->bounded.rounds : c->safe.counts.steps) - before;
+    s->step_ms += clock_now_ms() - begin;
+    s->rounds += rounds;
+    if (rounds > s->most_rounds) s->most_rounds = rounds;
+    s->wanted += garment_distance(c, c->target, c->start);
+    s->lost += garment_distance(c, c->target, c->positions);
+    return status;
+}
+
 bool cloth_advance(cloth_simulation *c, io_error *error) {
     size_t size = (size_t)cscd_mesh_vertex_count(c->mesh) * 3,
            free_size = (size_t)c->garment.vertex_count * 3;
@@ -144,10 +176,7 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     apart_take(&c->pairs, c->mesh, &near);
     find_target(c);
 
-    double found = clock_now_ms();
-    uint64_t steps_before = c->safe.counts.steps;
-    status = safe_motion_find(&c->safe, c->start, c->positions, &length);
-    s->step_ms += clock_now_ms() - found;
+    status = find_motion(c, &length);
     if (!explain_status(c, status, error)) return false;
     for (size_t i = 0; i < free_size; i++)
         c->velocities[i] += (c->positions[i] - c->target[i]) / c->scene->frame_seconds;
@@ -156,7 +185,6 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     s->frames++;
     s->near_pairs += near.count;
     s->motion = c->safe.counts;
-    if (s->motion.steps - steps_before > s->most_rounds) s->most_rounds = s->motion.steps - steps_before;
     s->waited += 1.0 - length;
     s->total_ms += clock_now_ms() - begin;
     return true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "models/cloth/apart.h"
+#include "models/cloth/bounded_motion.h"
 #include "models/cloth/cloth_scene.h"
 #include "models/cloth/safe_motion.h"
 
@@ -10,9 +11,11 @@
 typedef struct cloth_statistics {
     uint32_t frames;
     double total_ms, near_ms, step_ms;
-    uint64_t near_pairs;  /* found by cscd_detector_find_near */
-    uint64_t most_rounds; /* detector steps of one frame */
-    double waited;        /* frames by which the obstacles are late */
+    uint64_t near_pairs;          /* found by cscd_detector_find_near */
+    uint64_t rounds, most_rounds; /* detector steps, or searches for bounds: all, and of one frame */
+    double waited;                /* frames by which the obstacles are late */
+    double wanted,
+        lost; /* sums of the distances that vertices of the garment wanted to go, and that they are from there */
     safe_motion_counts motion;
 } cloth_statistics;
 
@@ -32,14 +35,15 @@ typedef struct cloth_simulation {
     double *target, *previous, *velocities;
     apart pairs;
     safe_motion safe;
-    double clock; /* time of the obstacles; it stands still while they wait */
+    bounded_motion bounded; /* unless DRIVER_STEPS drives */
+    double clock;           /* time of the obstacles; it stands still while they wait */
     cloth_statistics statistics;
 } cloth_simulation;
 
 /* Opens a scene; resolution 0 is its own. The context outlives the simulation. When it returns false,
  * there is nothing to close and *error says why. */
-bool cloth_open(const cloth_scene *s, uint32_t resolution, cscd_context *context, cloth_simulation *out,
-                io_error *error);
+bool cloth_open(const cloth_scene *s, uint32_t resolution, motion_driver driver, cscd_context *context,
+                cloth_simulation *out, io_error *error);
 void cloth_close(cloth_simulation *c);
 
 /* Advances by one frame. On straight lines from `start` to `positions` there is no contact, and nothing

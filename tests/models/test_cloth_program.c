@@ -87,6 +87,11 @@ static void help_lists_the_scenes(void **state) {
     tool_run_free(&usage);
     EXPECT_TOOL(2, "sleeve");
     EXPECT_TOOL(2, "--resolution", "20");
+    EXPECT_TOOL(2, "--driver", "planes", "--resolution", "20");
+    tool_run driver = RUN_TOOL("--resolution", "20", "--driver", "balls", "sleeve", folder.path);
+    assert_int_equal(driver.code, 2);
+    assert_non_null(strstr(driver.error, "steps, bounds or planes is wanted"));
+    tool_run_free(&driver);
 }
 
 #define REFUSED(code, text, ...)                                                                             \

@@ -50,7 +50,7 @@ static cloth_trial begin_trial(const char *name, uint32_t thread_count) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = thread_count;
     assert_int_equal(cscd_context_create(&options, &t.context), CSCD_OK);
-    if (!cloth_open(cloth_scene_find(name), RESOLUTION, t.context, &t.run, &error))
+    if (!cloth_open(cloth_scene_find(name), RESOLUTION, DRIVER_STEPS, t.context, &t.run, &error))
         fail_msg("%s", error.text);
     t.vertex_count = cscd_mesh_vertex_count(t.run.mesh);
     t.garment_count = t.run.garment.vertex_count;
