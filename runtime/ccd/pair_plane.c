@@ -1,9 +1,8 @@
 /* A plane that certainly lies between two features at rest, and how far apart it certainly keeps them. */
 #include "runtime/ccd/pair_plane.h"
 
-#include "runtime/ccd/closest.h"
 #include "runtime/ccd/exact/exact_gap.h"
-#include "runtime/ccd/separating_plane.h"
+#include "runtime/ccd/feature_moment.h"
 #include "src/core/vec3.h"
 
 #include <string.h>
@@ -18,63 +17,27 @@ static const double share_proven = 0.985;
 /* Below this the direction between the nearest points is only rounding. */
 static const double too_near = 0x1p-46;
 
-/* The pair relative to its first point, scaled by a power of two to an extent in [1/2, 1). */
-typedef struct local_pair {
-    moving_features features; /* at rest */
-    shortest_connection shortest;
-    double scale, distance; /* of the nearest points */
-} local_pair;
+/* The pair at rest, relative to its first point and scaled by a power of two. */
+typedef struct resting_pair {
+    feature_moment at;
+    double scale;
+} resting_pair;
 
-static double pair_extent(const double x[4][3]) {
-    double largest = 0.0;
-    for (int i = 1; i < 4; i++) {
-        for (int k = 0; k < 3; k++) largest = max_of(largest, fabs(x[i][k] - x[0][k]));
-    }
-    return largest;
-}
-
-static void connect_vertex_face(local_pair *p) {
-    const double(*x)[3] = (const double(*)[3])p->features.x;
-    double u, v;
-    closest_point_triangle(x[0], x[1], x[2], x[3], &u, &v);
-    for (int k = 0; k < 3; k++)
-        p->shortest.offset[k] = (x[0][k] - x[1][k]) - u * (x[2][k] - x[1][k]) - v * (x[3][k] - x[1][k]);
-    bool on_last = u + v >= 1.0;
-    p->shortest.inside[0] = u > 0.0 && u < 1.0 && !(on_last && v > 0.0);
-    p->shortest.inside[1] = v > 0.0 && v < 1.0 && !(on_last && u > 0.0);
-    p->shortest.inside[2] = u > 0.0 && v > 0.0 && on_last;
-}
-
-static void connect_edges(local_pair *p) {
-    const double(*x)[3] = (const double(*)[3])p->features.x;
-    double u, v;
-    closest_segments(x[0], x[1], x[2], x[3], &u, &v);
-    for (int k = 0; k < 3; k++)
-        p->shortest.offset[k] = (x[0][k] - x[2][k]) + u * (x[1][k] - x[0][k]) - v * (x[3][k] - x[2][k]);
-    p->shortest.inside[0] = u > 0.0 && u < 1.0;
-    p->shortest.inside[1] = v > 0.0 && v < 1.0;
-}
-
-static local_pair localise_pair(cscd_contact_kind kind, const double x[4][3]) {
-    local_pair p = {.features = {.kind = kind}};
-    int exponent;
-    frexp(pair_extent(x), &exponent);
-    p.scale = ldexp(1.0, -exponent);
-    for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < 3; k++) p.features.x[i][k] = (x[i][k] - x[0][k]) * p.scale;
-    }
-    (kind == CSCD_CONTACT_VF ? connect_vertex_face : connect_edges)(&p);
-    p.distance = sqrt(vec3_dot(p.shortest.offset, p.shortest.offset));
-    return p;
+static resting_pair rest_pair(cscd_contact_kind kind, const double x[4][3]) {
+    elementary_query query;
+    memcpy(query.x0, x, sizeof query.x0);
+    memcpy(query.x1, x, sizeof query.x1);
+    local_query local = local_query_of(&query, kind, FRAME_AT_REST);
+    return (resting_pair){feature_moment_start(&local), local.scale};
 }
 
 /* Measures the points along a unit vector, in units of the scale. */
-static void measure_along(const local_pair *p, const double normal[3], pair_plane *out) {
-    int first = points_of_first(p->features.kind);
+static void measure_along(const feature_moment *m, const double normal[3], pair_plane *out) {
+    int first = points_of_first(m->features.kind);
     out->low_a = INFINITY;
     out->high_b = -INFINITY;
     for (int i = 0; i < 4; i++) {
-        double height = out->height[i] = vec3_dot(normal, p->features.x[i]);
+        double height = out->height[i] = vec3_dot(normal, m->features.x[i]);
         if (i < first)
             out->low_a = min_of(out->low_a, height);
         else
@@ -86,17 +49,17 @@ static void measure_along(const local_pair *p, const double normal[3], pair_plan
 
 /* Tries planes along fewer and fewer edges until one proves enough. The shortest connection itself is tilted by its
  * rounding, which tells when it is short; an edge that is nearly parallel to another one tilts a plane along both. */
-static void find_local_plane(const local_pair *p, double length, pair_plane *out) {
-    double normal[3], enough = share_proven * (p->distance + distance_error - length);
-    for (int k = 0; k < 3; k++) normal[k] = p->shortest.offset[k] / p->distance;
-    measure_along(p, normal, out);
+static void find_local_plane(const feature_moment *m, double length, pair_plane *out) {
+    double normal[3], enough = share_proven * (m->distance + distance_error - length);
+    for (int k = 0; k < 3; k++) normal[k] = m->shortest.offset[k] / m->distance;
+    measure_along(m, normal, out);
     for (int axes_max = 2; axes_max > 0 && out->gap - length < enough; axes_max--) {
         pair_plane other = {.gap = 0.0};
-        separating_plane plane = separating_plane_find(&p->features, &p->shortest, axes_max);
-        measure_along(p, plane.normal, &other);
+        separating_plane plane = separating_plane_find(&m->features, &m->shortest, axes_max);
+        measure_along(m, plane.normal, &other);
         if (other.gap > out->gap) *out = other;
     }
-    out->distance = p->distance + distance_error;
+    out->distance = m->distance + distance_error;
 }
 
 /* The division is exact: all numbers are far from the ends of the range of doubles. */
@@ -109,19 +72,19 @@ static void scale_plane(double scale, pair_plane *plane) {
 }
 
 void pair_plane_find(cscd_contact_kind kind, const double x[4][3], pair_plane *out) {
-    local_pair p = localise_pair(kind, x);
+    resting_pair p = rest_pair(kind, x);
     *out = (pair_plane){.gap = 0.0};
-    if (!(p.distance > too_near)) return;
-    find_local_plane(&p, 0.0, out);
+    if (!(p.at.distance > too_near)) return;
+    find_local_plane(&p.at, 0.0, out);
     scale_plane(p.scale, out);
 }
 
 double pair_gap(cscd_contact_kind kind, const double x[4][3], double length) {
-    local_pair p = localise_pair(kind, x);
+    resting_pair p = rest_pair(kind, x);
     double scaled_length = length * p.scale;
-    if (p.distance > too_near) {
+    if (p.at.distance > too_near) {
         pair_plane plane;
-        find_local_plane(&p, scaled_length, &plane);
+        find_local_plane(&p.at, scaled_length, &plane);
         double gap = plane.gap - scaled_length;
         if (gap > 0.0 && gap >= share_proven * (plane.distance - scaled_length))
             return gap / p.scale >= 0x1p-352 ? gap / p.scale : 0.0;
