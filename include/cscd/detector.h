@@ -61,6 +61,32 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
+/* What one object has to do with the others; start from cscd_object_rule_default. It never grows. */
+typedef struct cscd_object_rule {
+    /* Two objects are looked at when the category of each has a bit in common with the mask of the other. An
+     * object that is not looked at with another one touches it unseen: none of their pairs is a contact, an
+     * intersection or a proximity. */
+    uint64_t category, mask;
+
+    /* A length, 0 for none. Two objects have to stay apart by half of both thicknesses together, an object
+     * from itself by its thickness, as if that were their min_separation. Proximity and the static check know
+     * no thickness. With a thickness_matrix this is 0, and thickness_class says the row. */
+    double thickness;
+    uint32_t thickness_class;
+
+    bool self; /* it is looked at with itself, whatever its mask; obstacles never are. Without, it is
+                          * neither proven nor culled */
+    bool obstacle_pairs; /* an obstacle is looked at with other obstacles that say this, too, if their masks
+                          * agree; other objects do not care */
+    uint16_t reserved;   /* 0 */
+} cscd_object_rule;
+
+/* The rule that changes nothing: category 1, all bits in the mask, no thickness, looked at with itself. */
+static inline cscd_object_rule cscd_object_rule_default(void) {
+    cscd_object_rule rule = {1, UINT64_MAX, 0.0, 0, true, false, 0};
+    return rule;
+}
+
 /* Options of a detector; start from cscd_detector_defaults. Arrays are copied; NULL, the default, means
  * none. */
 typedef struct cscd_detector_options {
@@ -98,6 +124,15 @@ typedef struct cscd_detector_options {
     /* cscd_detector_max_step goes at most this share of the way to the contact that limits it. In (0,1),
      * 0.8 by default. */
     double step_factor;
+
+    /* Who is looked at with whom: one rule for each object of the mesh, or none. */
+    const cscd_object_rule *rules;
+
+    /* The distances of objects by their thickness_class: thickness_class_count rows of as many lengths, at most
+     * 256, symmetric; in place of thicknesses. With a matrix or a thickness min_separation is 0, and tolerance
+     * holds for all distances above 0. Pairs at distance 0 must not touch, as without. */
+    const double *thickness_matrix;
+    uint32_t rule_count, thickness_class_count;
 } cscd_detector_options;
 
 /* The default options. */
@@ -126,6 +161,13 @@ CSCD_API const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector);
  * with a smaller separation must begin again; until then its max_step returns INVALID_ARGUMENT. */
 CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
                                                   double tolerance);
+
+/* Replaces rules and thickness_matrix (see the options) from the next call on; they are checked and copied. Rules
+ * between objects do not change what is known of the start; an object that is looked at with itself again is
+ * proven anew. A line search that was begun before must begin again. */
+CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
+                                             uint32_t rule_count, const double *thickness_matrix,
+                                             uint32_t thickness_class_count);
 
 /* A vertex and a face, or two edges. Later versions may add values. */
 typedef enum cscd_contact_kind {
@@ -205,7 +247,8 @@ static inline cscd_status cscd_detector_check(cscd_detector *detector, const csc
 /* Why the contacts of a component with itself are complete, or why some may be missing. Later versions
  * may add values. */
 typedef enum cscd_reason {
-    CSCD_REASON_METHOD,    /* complete: the method does not cull, or does not with min_separation */
+    CSCD_REASON_METHOD,    /* complete: the method does not cull, or does not with min_separation or a
+                            * thickness of its own */
     CSCD_REASON_SURFACE,   /* complete: open, non-manifold or inconsistently oriented, so it was not culled */
     CSCD_REASON_CROSSING,  /* complete: the start intersects or touches itself; only the rest was culled,
                             * if any */
@@ -218,6 +261,7 @@ typedef enum cscd_reason {
     CSCD_REASON_EARLIEST,  /* later contacts may be missing: the start is embedded, and the mode is
                             * EARLIEST */
     CSCD_REASON_OBSTACLE,  /* an obstacle: its contacts with itself are not looked for */
+    CSCD_REASON_MASK,      /* its object's rule has self = false: contacts with itself are not looked for */
     CSCD_REASON_MAX_ENUM = 0x7fffffff
 } cscd_reason;
 

@@ -1,6 +1,7 @@
 /* The detector of the public API: options, parts, and what they report. */
 #include "runtime/detector/detector.h"
 
+#include "runtime/detector/detector_rules.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"
@@ -22,10 +23,6 @@ static cscd_status check_separation(cscd_context *context, const cscd_detector_o
     if (!is_length(options->tolerance))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "tolerance is %g, expected 0 (the default) or a length from 2^-300 to 2^300",
-                            options->tolerance);
-    if (options->tolerance > 0.0 && options->min_separation == 0.0)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "tolerance is %g, but without min_separation there is none; leave it at 0",
                             options->tolerance);
     return CSCD_OK;
 }
@@ -161,6 +158,9 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     d->floor_ratio = 0.9;
     cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
+    const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
+                               chosen.thickness_class_count};
+    if (status == CSCD_OK) status = detector_set_rules(d, &given);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
         return status;
@@ -208,7 +208,7 @@ static cscd_status set_separation(cscd_detector *detector, double min_separation
     changed.tolerance = tolerance;
     cscd_status status = check_separation(detector->context, &changed);
     if (status == CSCD_OK)
-        status = detector_check_distances(detector, min_separation, detector->pair_rules.greatest);
+        status = detector_check_distances(detector, min_separation, tolerance, detector->pair_rules.greatest);
     if (status != CSCD_OK) return status;
     detector->options = changed;
     detector->limit = limit_of(&changed);

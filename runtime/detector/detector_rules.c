@@ -1,8 +1,8 @@
 /* The rules for objects on a live detector: who is looked at with whom, and how far apart they have to stay. */
 #include "runtime/detector/detector_rules.h"
 
-static bool is_neutral(const object_rule *rule) {
-    object_rule neutral = object_rule_neutral();
+static bool is_neutral(const cscd_object_rule *rule) {
+    cscd_object_rule neutral = cscd_object_rule_default();
     return rule->category == neutral.category && rule->mask == neutral.mask && rule->thickness == 0.0 &&
            rule->self && !rule->obstacle_pairs;
 }
@@ -45,7 +45,12 @@ static void take_rules(cscd_detector *d, const pair_rules *rules) {
     choose_never_culled(d);
 }
 
-cscd_status detector_check_distances(cscd_detector *d, double min_separation, double greatest_of_rules) {
+cscd_status detector_check_distances(cscd_detector *d, double min_separation, double tolerance,
+                                     double greatest_of_rules) {
+    if (tolerance > 0.0 && min_separation == 0.0 && greatest_of_rules == 0.0)
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                            "tolerance is %g, but without min_separation there is none; leave it at 0",
+                            tolerance);
     if (min_separation == 0.0 || greatest_of_rules == 0.0) return CSCD_OK;
     return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                         "min_separation is %g, but the thicknesses of objects say how far apart they have to "
@@ -63,7 +68,7 @@ cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
     cscd_status status = pair_rules_create(d->mesh, given, &rules);
     if (status != CSCD_OK) return status;
     if (all_neutral(given)) pair_rules_free(d->mesh, &rules);
-    status = detector_check_distances(d, d->limit.distance, rules.greatest);
+    status = detector_check_distances(d, d->options.min_separation, d->options.tolerance, rules.greatest);
     if (status == CSCD_OK && d->space.bvh.mesh != NULL && !bvh_set_objects(&d->space.bvh, rules.sets))
         status = context_out_of_memory(d->context);
     if (status != CSCD_OK) {
@@ -72,4 +77,14 @@ cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
     }
     take_rules(d, &rules);
     return CSCD_OK;
+}
+
+cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
+                                    uint32_t rule_count, const double *thickness_matrix,
+                                    uint32_t thickness_class_count) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    const given_rules given = {rules, rule_count, thickness_matrix, thickness_class_count};
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, detector_set_rules(detector, &given));
 }

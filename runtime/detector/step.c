@@ -258,6 +258,7 @@ static cscd_guarantee guarantee_of(const step_work *work, uint32_t component) {
     bool embedded = d->starts.of[component].clean == d->mesh->components[component].triangle_count;
     if (component_is_obstacle(d->mesh, component))
         return (cscd_guarantee){false, false, CSCD_REASON_OBSTACLE};
+    if (detector_masks(d, component)) return (cscd_guarantee){false, false, CSCD_REASON_MASK};
     if (!detector_culls(d) && !detector_hides_pairs(d))
         return (cscd_guarantee){true, embedded, CSCD_REASON_METHOD};
     if (d->traits->loses_contacts) return (cscd_guarantee){false, embedded, CSCD_REASON_PUBLISHED};

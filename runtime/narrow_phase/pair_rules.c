@@ -6,10 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-object_rule object_rule_neutral(void) {
-    return (object_rule){.category = 1, .mask = UINT64_MAX, .self = true};
-}
-
 /* ---- what the caller says --------------------------------------------------------------------------- */
 
 static cscd_status check_matrix(cscd_context *context, const given_rules *given) {
@@ -43,11 +39,15 @@ static cscd_status check_matrix(cscd_context *context, const given_rules *given)
 }
 
 static cscd_status check_rule(cscd_context *context, const given_rules *given, uint32_t object) {
-    const object_rule *rule = &given->objects[object];
+    const cscd_object_rule *rule = &given->objects[object];
     if (!is_length(rule->thickness))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "object %u has a thickness of %g, expected 0 or a length from 2^-300 to 2^300",
                             object, rule->thickness);
+    if (rule->reserved != 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "object %u has a rule whose member reserved is %u, expected 0", object,
+                            rule->reserved);
     if (given->matrix != NULL && rule->thickness > 0.0)
         return context_fail(
             context, CSCD_INVALID_ARGUMENT,
@@ -84,7 +84,7 @@ static array_list list_arrays(const cscd_mesh *mesh, pair_rules *r) {
          ARRAY_IF(classes > 0, r->classes, objects), ARRAY_IF(classes > 0, r->matrix, classes * classes)}};
 }
 
-static object_set set_of(const cscd_mesh *mesh, const object_rule *rule, uint32_t object) {
+static object_set set_of(const cscd_mesh *mesh, const cscd_object_rule *rule, uint32_t object) {
     bool obstacle = mesh->objects[object].obstacle, asks = rule->obstacle_pairs;
     uint8_t kind = !obstacle ? OBJECT_FREE : asks ? OBJECT_ASKING_OBSTACLE : OBJECT_OBSTACLE;
     uint8_t sought = !obstacle ? OBJECT_FREE | OBJECT_OBSTACLE | OBJECT_ASKING_OBSTACLE
@@ -108,7 +108,7 @@ static double greatest_of_row(const pair_rules *r, uint32_t row) {
 
 static void fill_objects(const cscd_mesh *mesh, const given_rules *given, pair_rules *r) {
     for (uint32_t i = 0; i < r->object_count; i++) {
-        object_rule rule = given->count > 0 ? given->objects[i] : object_rule_neutral();
+        cscd_object_rule rule = given->count > 0 ? given->objects[i] : cscd_object_rule_default();
         r->sets[i] = set_of(mesh, &rule, i);
         if (r->matrix != NULL) r->classes[i] = rule.thickness_class;
         if (r->halves != NULL) r->halves[i] = 0.5 * rule.thickness;

@@ -5,18 +5,10 @@
 #include "runtime/ccd/min_separation.h"
 #include "src/mesh/mesh.h"
 
-/* What the caller says of one object. */
-typedef struct object_rule {
-    uint64_t category, mask;
-    double thickness;
-    uint32_t thickness_class;
-    bool self, obstacle_pairs;
-} object_rule;
-
 /* Rules as they were given. The matrix has class_count rows; NULL: distances are sums of halves of thicknesses. */
 typedef struct given_rules {
-    const object_rule *objects; /* NULL: the neutral rule for each */
-    uint32_t count;             /* 0, or the number of objects */
+    const cscd_object_rule *objects; /* NULL: the default rule for each */
+    uint32_t count;                  /* 0, or the number of objects */
     const double *matrix;
     uint32_t class_count;
 } given_rules;
@@ -37,9 +29,6 @@ typedef struct pair_rules {
     double greatest,
         greatest_to_itself; /* distances, the latter of objects that are looked at with themselves */
 } pair_rules;
-
-/* The rule that changes nothing. */
-object_rule object_rule_neutral(void);
 
 /* Copies and checks what the caller says. INVALID_ARGUMENT names the object or the place in the matrix. On failure *out
  * holds nothing. */

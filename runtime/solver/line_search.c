@@ -13,6 +13,7 @@ struct cscd_line_search {
     reference_count references; /* the caller alone */
     cscd_detector *detector;    /* held, and with it the context */
     double *x0, *x1, *reached;  /* positions */
+    uint32_t rules_revision;    /* of the detector, at the begin */
     double reach, covered;      /* covered: all pairs that come within this distance are candidates */
     double beyond;              /* ... as are those that are so much farther apart */
     bool begun;
@@ -108,6 +109,7 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     straight_motion m = motion_of(line);
     line->covered = max_of(d->limit.distance, reach);
     line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
+    line->rules_revision = d->rules_revision;
     detector_begin_call(d);
     status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
                                 &line->candidates);
@@ -150,6 +152,15 @@ size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
     return line->begun ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
 }
 
+/* Were the candidates collected under the rules of now? */
+static cscd_status check_rules(const cscd_line_search *line, const char *function) {
+    if (line->rules_revision == line->detector->rules_revision) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "%s: the rules of objects have been set since the line was begun; call "
+                        "cscd_line_search_begin again",
+                        function);
+}
+
 /* ---- moments ------------------------------------------------------------------------------------------- */
 
 static cscd_status check_fraction(const cscd_line_search *line, double fraction, const char *function) {
@@ -185,6 +196,7 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
                                      cscd_proximities *out, size_t size) {
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
+    if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
     if (status != CSCD_OK) return status;
     if (out == NULL)
@@ -266,6 +278,7 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
                                     cscd_free_step *out, size_t size) {
     cscd_detector *d = line->detector;
     cscd_status status = check_begun(line, "cscd_line_search_max_step");
+    if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_max_step");
     if (status == CSCD_OK) status = check_covered(line);
     if (status == CSCD_OK) status = views_check_mutable(d->context, d->mesh, reached, "reached");
     if (status != CSCD_OK) return status;

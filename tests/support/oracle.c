@@ -3,6 +3,7 @@
 
 #include "tests/support/ccd/queue_test.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,14 +51,28 @@ static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
 /* Feature pairs of one kind that wait for their test. */
 typedef struct waiting_pairs {
     const scene *scene;
-    const separation *limit; /* NULL for contacts */
+    const separation *limit;   /* NULL for contacts */
+    const oracle_rules *rules; /* NULL: the limit is that of all pairs */
+    bool apart;                /* with rules: pairs with a distance; else those that must not touch */
     cscd_contact_kind kind;
     edge *edges;
     uint32_t (*pairs)[2];
     size_t count, capacity;
 } waiting_pairs;
 
+static double pair_distance(const waiting_pairs *w, uint32_t a, uint32_t b) {
+    const uint32_t *objects = w->rules->vertex_objects;
+    bool vf = w->kind == CSCD_CONTACT_VF;
+    uint32_t first = objects[vf ? a : w->edges[a].ends[0]];
+    uint32_t second = objects[vf ? w->scene->triangles[(size_t)b * 3] : w->edges[b].ends[0]];
+    return w->rules->distances[(size_t)first * w->rules->object_count + second];
+}
+
 static void add_pair(waiting_pairs *w, uint32_t a, uint32_t b) {
+    if (w->rules != NULL) {
+        double distance = pair_distance(w, a, b);
+        if (distance < 0.0 || w->apart != (distance > 0.0)) return;
+    }
     if (w->count == w->capacity) {
         w->capacity = w->capacity * 2 + 1024;
         w->pairs = realloc(w->pairs, w->capacity * sizeof *w->pairs);
@@ -78,6 +93,21 @@ static void find_contacts(const waiting_pairs *w, oracle_list *out) {
         add_contact(out, w->kind, contacts[i].a, contacts[i].b, contacts[i].toi);
 }
 
+/* Are all points of one feature farther along an axis than all points of the other, throughout? */
+static bool far_apart(const elementary_query *query, cscd_contact_kind kind, double distance) {
+    int first = kind == CSCD_CONTACT_VF ? 1 : 2;
+    for (int k = 0; k < 3; k++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int i = 0; i < 4; i++) {
+            double *l = &low[i >= first], *h = &high[i >= first];
+            *l = fmin(*l, fmin(query->x0[i][k], query->x1[i][k]));
+            *h = fmax(*h, fmax(query->x0[i][k], query->x1[i][k]));
+        }
+        if (low[1] - high[0] > distance || low[0] - high[1] > distance) return true;
+    }
+    return false;
+}
+
 static void find_within(const waiting_pairs *w, oracle_list *out) {
     for (size_t i = 0; i < w->count; i++) {
         uint32_t a = w->pairs[i][0], b = w->pairs[i][1];
@@ -88,23 +118,27 @@ static void find_within(const waiting_pairs *w, oracle_list *out) {
             vf ? load_query(w->scene, (uint32_t[4]){a, corners[0], corners[1], corners[2]})
                : load_query(w->scene, (uint32_t[4]){w->edges[a].ends[0], w->edges[a].ends[1],
                                                     w->edges[b].ends[0], w->edges[b].ends[1]});
-        bool found = vf ? separation_vf(&query, w->limit, &hit, &bounded)
-                        : separation_ee(&query, w->limit, &hit, &bounded);
+        separation limit = w->limit != NULL ? *w->limit : (separation){.distance = pair_distance(w, a, b)};
+        if (w->limit == NULL) limit.tolerance = 1e-6 * limit.distance;
+        if (far_apart(&query, w->kind, limit.distance)) continue;
+        bool found = vf ? separation_vf(&query, &limit, &hit, &bounded)
+                        : separation_ee(&query, &limit, &hit, &bounded);
         if (found) add_contact(out, w->kind, a, b, hit.toi);
     }
 }
 
 static void test_pairs(waiting_pairs *w, oracle_list *out) {
-    if (w->limit == NULL)
+    if (w->limit == NULL && !w->apart)
         find_contacts(w, out);
     else
         find_within(w, out);
     free(w->pairs);
 }
 
-static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
+static void find_vf(waiting_pairs pairs, oracle_list *out) {
+    const scene *s = pairs.scene;
     bool used[SCENE_VERTICES_MAX] = {false};
-    waiting_pairs pairs = {.scene = s, .limit = limit, .kind = CSCD_CONTACT_VF};
+    pairs.kind = CSCD_CONTACT_VF;
     for (uint32_t i = 0; i < s->triangle_count * 3; i++) used[s->triangles[i]] = true;
     for (uint32_t v = 0; v < s->vertex_count; v++) {
         for (uint32_t t = 0; used[v] && t < s->triangle_count; t++) {
@@ -115,10 +149,11 @@ static void find_vf(const scene *s, const separation *limit, oracle_list *out) {
     test_pairs(&pairs, out);
 }
 
-static void find_ee(const scene *s, const separation *limit, oracle_list *out) {
+static void find_ee(waiting_pairs pairs, oracle_list *out) {
     static edge edges[SCENE_TRIANGLES_MAX * 3];
-    uint32_t count = find_edges(s, edges);
-    waiting_pairs pairs = {.scene = s, .limit = limit, .kind = CSCD_CONTACT_EE, .edges = edges};
+    uint32_t count = find_edges(pairs.scene, edges);
+    pairs.kind = CSCD_CONTACT_EE;
+    pairs.edges = edges;
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t j = i + 1; j < count; j++) {
             const uint32_t *a = edges[i].ends, *b = edges[j].ends;
@@ -136,15 +171,25 @@ static int compare_contacts(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
+static void find_both(waiting_pairs pairs, oracle_list *out) {
+    find_vf(pairs, out);
+    find_ee(pairs, out);
+    if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);
+}
+
 void oracle_find(const scene *s, oracle_list *out) {
     oracle_find_within(s, NULL, out);
 }
 
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out) {
     out->count = 0;
-    find_vf(s, limit, out);
-    find_ee(s, limit, out);
-    if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);
+    find_both((waiting_pairs){.scene = s, .limit = limit}, out);
+}
+
+void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list *out) {
+    out->count = 0;
+    find_both((waiting_pairs){.scene = s, .rules = rules}, out);
+    find_both((waiting_pairs){.scene = s, .rules = rules, .apart = true}, out);
 }
 
 void oracle_free(oracle_list *list) {

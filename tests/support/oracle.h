@@ -25,4 +25,15 @@ void oracle_find(const scene *s, oracle_list *out);
 /* Finds the same with the test of minimum separation. */
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out);
 
+/* Which objects are looked at with which, and how far apart they have to stay. */
+typedef struct oracle_rules {
+    const uint32_t *vertex_objects;
+    uint32_t object_count;
+    const double
+        *distances; /* object_count rows: 0 for touching, below 0 for objects that are not looked at */
+} oracle_rules;
+
+/* Finds contacts and what comes within the distance of its objects, with a tolerance of 1e-6 of it. */
+void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list *out);
+
 void oracle_free(oracle_list *list);
