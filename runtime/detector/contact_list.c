@@ -109,7 +109,7 @@ typedef struct sorted_contacts {
 } sorted_contacts;
 
 static void name_vertices(const cscd_mesh *mesh, cscd_contact *contact) {
-    cscd_stencil stencil = cscd_mesh_stencil(mesh, contact->kind, contact->a, contact->b, 0.0, 0.0);
+    cscd_stencil stencil = mesh_stencil(mesh, contact->kind, contact->a, contact->b, 0.0, 0.0);
     memcpy(contact->vertices, stencil.vertices, sizeof contact->vertices);
 }
 

@@ -304,11 +304,19 @@ cscd_renewal cscd_sensors_renewal(const cscd_sensors *sensors, uint32_t part) {
 
 /* After a renewal the balls still belong to the previous cells. Boxes are asked first: they separate more pairs, and
  * answer at once. */
-bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
+__attribute__((noinline)) static bool parts_apart(const cscd_sensors *sensors, uint32_t part_a,
+                                                  uint32_t part_b) {
     const cscd_partition *partition = sensors->partition;
     if (part_a == part_b || sensors->bounds.generation != partition->generation) return false;
     return sensor_bounds_boxes_apart(&sensors->bounds, part_a, part_b) ||
            sensor_bounds_apart(&sensors->bounds, partition, part_a, part_b);
+}
+
+bool cscd_sensors_apart(const cscd_sensors *sensors, uint32_t part_a, uint32_t part_b) {
+    float_environment host = float_environment_begin();
+    bool apart = parts_apart(sensors, part_a, part_b);
+    float_environment_set(host);
+    return apart;
 }
 
 uint32_t cscd_sensors_particle_count(const cscd_sensors *sensors) {

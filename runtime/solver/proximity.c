@@ -25,7 +25,7 @@ cscd_status proximity_check_distance(cscd_context *context, double distance) {
 /* Returns the distance between the two points that u and v name, summed from differences of coordinates, so that it
  * is as exact as these are. */
 static double distance_between(const cscd_mesh *mesh, const cscd_contact *at, const double *x) {
-    cscd_stencil s = cscd_mesh_stencil(mesh, at->kind, at->a, at->b, at->u, at->v);
+    cscd_stencil s = mesh_stencil(mesh, at->kind, at->a, at->b, at->u, at->v);
     int base = at->kind == CSCD_CONTACT_VF ? 1 : 2;
     const double *from = x + (size_t)s.vertices[base] * 3, *first = x + (size_t)s.vertices[0] * 3;
     double apart[3];

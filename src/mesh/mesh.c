@@ -322,12 +322,20 @@ uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
     return low;
 }
 
-cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                               double u, double v) {
+cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
+                          double v) {
     if (kind == CSCD_CONTACT_VF) {
         const uint32_t *corners = mesh->triangles[b];
         return (cscd_stencil){{a, corners[0], corners[1], corners[2]}, {1.0, u + v - 1.0, -u, -v}};
     }
     const uint32_t *ends_a = mesh->edges[a], *ends_b = mesh->edges[b];
     return (cscd_stencil){{ends_a[0], ends_a[1], ends_b[0], ends_b[1]}, {1.0 - u, u, v - 1.0, -v}};
+}
+
+cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                               double u, double v) {
+    float_environment host = float_environment_begin();
+    cscd_stencil stencil = mesh_stencil(mesh, kind, a, b, u, v);
+    float_environment_set(host);
+    return stencil;
 }

@@ -44,6 +44,10 @@ static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
     return a->shared == b->shared;
 }
 
+/* cscd_mesh_stencil, in whatever floating-point environment is set. Not inline, so that no arithmetic leaves it. */
+cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
+                          double v) __attribute__((noinline));
+
 /* Builds edges, triangle_edges and both kinds of stars from the triangles. */
 cscd_status mesh_build_topology(cscd_mesh *mesh);
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 typedef struct throwing_host {
-    panels p;
+    panel_scene p;
     counting_allocator counter;
     host_callback from;
     atomic_uint calls;

@@ -261,7 +261,7 @@ static void callbacks_may_change_it(void **state) {
     (void)state;
     options.ignore = raise_and_turn;
     options.ignore_user = &mode;
-    panels p = panels_create(12, NULL, &options);
+    panel_scene p = panels_create(12, NULL, &options);
     feclearexcept(FE_ALL_EXCEPT);
     cscd_status status = panels_step(&p, &found);
     int rounding = fegetround(), raised = fetestexcept(FE_ALL_EXCEPT);
@@ -274,9 +274,29 @@ static void callbacks_may_change_it(void **state) {
     panels_destroy(&p);
 }
 
+/* ---- functions without a status -------------------------------------------------------------------------- */
+
+static void stencils_are_the_same(void **state) {
+    panel_scene p = panels_create(4, NULL, NULL);
+    (void)state;
+    for (int kind = CSCD_CONTACT_VF; kind <= CSCD_CONTACT_EE; kind++) {
+        cscd_stencil expected = cscd_mesh_stencil(p.mesh, (cscd_contact_kind)kind, 1, 2, 0.1, 0.3);
+        for (int number = 0; number < ENVIRONMENTS; number++) {
+            float_environment before = float_environment_get();
+            float_environment_set(environment_of(number));
+            cscd_stencil found = cscd_mesh_stencil(p.mesh, (cscd_contact_kind)kind, 1, 2, 0.1, 0.3);
+            bool kept = is_environment(environment_of(number));
+            float_environment_set(before);
+            assert_true(kept);
+            assert_memory_equal(found.weights, expected.weights, sizeof found.weights);
+        }
+    }
+    panels_destroy(&p);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_scenes), cmocka_unit_test(plans_of_each_kind),
-                                       cmocka_unit_test(many_threads),
-                                       cmocka_unit_test(callbacks_may_change_it)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_scenes), cmocka_unit_test(plans_of_each_kind), cmocka_unit_test(many_threads),
+        cmocka_unit_test(callbacks_may_change_it), cmocka_unit_test(stencils_are_the_same)};
     return cmocka_run_group_tests_name("float_environment", tests, NULL, NULL);
 }

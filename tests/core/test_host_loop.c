@@ -79,7 +79,7 @@ static void run_dishonestly(void *user, uint32_t task_count, task_function *task
     if (trick == BEYOND_END) task(data, task_count);
 }
 
-static panels make_panels(dishonest_host *host) {
+static panel_scene make_panels(dishonest_host *host) {
     cscd_context_options options = cscd_context_defaults();
     options.thread_count = 4;
     options.parallel_for = (cscd_parallel_for){run_dishonestly, host};
@@ -97,7 +97,7 @@ static cscd_contact *copy_contacts(cscd_contacts found) {
 /* Returns the contacts of an honest step, and how many runs it took. */
 static cscd_contact *honest_contacts(size_t *count, uint32_t *runs) {
     dishonest_host host = {HONEST, 0, 0};
-    panels p = make_panels(&host);
+    panel_scene p = make_panels(&host);
     cscd_contacts found;
     host.runs = 0;
     assert_int_equal(panels_step(&p, &found), CSCD_OK);
@@ -128,7 +128,7 @@ static void check_sentence(const char *sentence, int trick, bool one_run) {
 /* Plays the trick in one run of the first step; the step is then repeated. */
 static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact *expected, size_t count) {
     dishonest_host host = {HONEST, 0, 0};
-    panels p = make_panels(&host);
+    panel_scene p = make_panels(&host);
     cscd_contacts found = {NULL, 77};
     host = (dishonest_host){trick, 0, run};
     cscd_status status = panels_step(&p, &found);
@@ -158,7 +158,7 @@ static void faults_fail_the_call(void **state) {
 
 /* ---- every call ---------------------------------------------------------------------------------------- */
 
-static cscd_status make_call(const panels *p, int call) {
+static cscd_status make_call(const panel_scene *p, int call) {
     cscd_contacts contacts;
     cscd_intersections intersections;
     cscd_proximities proximities;
@@ -180,7 +180,7 @@ static void every_call_notices(void **state) {
     for (int call = 0; call < 5; call++) {
         for (int trick = DROP_LAST; trick <= REPEAT_ALL; trick++) {
             dishonest_host host = {HONEST, 0, 0};
-            panels p = make_panels(&host);
+            panel_scene p = make_panels(&host);
             host = (dishonest_host){trick, 0, 0};
             cscd_status status = make_call(&p, call);
             assert_int_equal(status, host.runs > 0 ? CSCD_INVALID_ARGUMENT : CSCD_OK);

@@ -57,7 +57,7 @@ enum { SIDE = 40 };
 
 static const char *const names[] = {"the allocator", "parallel_for", "the progress function", "ignore"};
 
-static panels make_panels(leaving_host *h, uint32_t thread_count) {
+static panel_scene make_panels(leaving_host *h, uint32_t thread_count) {
     cscd_context_options options = cscd_context_defaults();
     cscd_detector_options detector_options = cscd_detector_defaults();
     detector_options.ignore = ignore_none;
@@ -68,7 +68,7 @@ static panels make_panels(leaving_host *h, uint32_t thread_count) {
     options.allocator = (cscd_allocator){allocate_block, release_block, h};
     options.progress = (cscd_progress){report_progress, h};
     if (h->from == HOST_PARALLEL_FOR) options.parallel_for = (cscd_parallel_for){run_tasks_here, h};
-    panels p = panels_create(SIDE, &options, &detector_options);
+    panel_scene p = panels_create(SIDE, &options, &detector_options);
     p.context->progress.interval_ms = 0.0;
     return p;
 }
@@ -78,7 +78,7 @@ static panels make_panels(leaving_host *h, uint32_t thread_count) {
 enum { CALLS = 8 };
 
 /* What a call makes is destroyed at once. */
-static cscd_status make_call(const panels *p, int what) {
+static cscd_status make_call(const panel_scene *p, int what) {
     cscd_contacts contacts;
     cscd_intersections intersections;
     cscd_proximities proximities;
@@ -101,7 +101,7 @@ static cscd_status make_call(const panels *p, int what) {
 }
 
 /* True: the host has left the call. */
-static bool leave_call(leaving_host *h, const panels *p, int what, uint32_t at) {
+static bool leave_call(leaving_host *h, const panel_scene *p, int what, uint32_t at) {
     h->calls = 0;
     h->at = at;
     if (setjmp(h->back) != 0) {
@@ -116,7 +116,7 @@ static bool leave_call(leaving_host *h, const panels *p, int what, uint32_t at) 
 /* Leaves one call of one kind at one place; false: there are fewer such places. */
 static bool leave_and_look(host_callback from, uint32_t thread_count, int what, uint32_t at) {
     leaving_host h = {.from = from};
-    panels p = make_panels(&h, thread_count);
+    panel_scene p = make_panels(&h, thread_count);
     bool left = leave_call(&h, &p, what, at);
     for (int next = 0; left && next < CALLS; next++) {
         assert_int_equal(make_call(&p, next), CSCD_BROKEN);
@@ -156,7 +156,7 @@ static void own_threads_end(void **state) {
 
 /* ---- in doubt ------------------------------------------------------------------------------------------ */
 
-static cscd_status call_from_deep(const panels *p, int depth) {
+static cscd_status call_from_deep(const panel_scene *p, int depth) {
     volatile char room[4096] = {0};
     cscd_status status = depth > 0 ? call_from_deep(p, depth - 1) : make_call(p, 2);
     return room[0] == 0 ? status : CSCD_OK;
@@ -171,7 +171,7 @@ static void *call_from_thread(void *argument) {
 /* Where frames tell nothing the context is busy; the first call that can tell marks it for all. */
 static void doubtful_calls_are_busy(void **state) {
     leaving_host h = {.from = HOST_IGNORE};
-    panels p = make_panels(&h, 2);
+    panel_scene p = make_panels(&h, 2);
     pthread_t thread;
     void *status;
     (void)state;
@@ -193,7 +193,7 @@ static void destruction_alone(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads < 4; threads++) {
         leaving_host h = {.from = HOST_ALLOCATOR};
-        panels p = make_panels(&h, threads);
+        panel_scene p = make_panels(&h, threads);
         assert_true(leave_call(&h, &p, 0, 4));
         panels_destroy(&p);
         assert_int_equal(h.counter.live, 0);
@@ -203,7 +203,7 @@ static void destruction_alone(void **state) {
 /* A mesh that another context uses outlives its own context, although that is broken. */
 static void shared_meshes_live_on(void **state) {
     leaving_host h = {.from = HOST_IGNORE};
-    panels p = make_panels(&h, 2), other = {.vertex_count = p.vertex_count};
+    panel_scene p = make_panels(&h, 2), other = {.vertex_count = p.vertex_count};
     cscd_contacts found;
     (void)state;
     assert_int_equal(cscd_context_create(NULL, &other.context), CSCD_OK);

@@ -13,7 +13,7 @@
 
 /* The callback from which the host comes back, and what it does there. */
 typedef struct returning_host {
-    panels *p;
+    panel_scene *p;
     counting_allocator counter;
     host_callback from;
     void (*inside)(struct returning_host *h);
@@ -58,7 +58,7 @@ static void run_tasks_here(void *user, uint32_t task_count, void (*task)(void *d
 
 enum { SIDE = 40, CONTACTS = 12168 };
 
-static panels make_panels(returning_host *h, uint32_t thread_count) {
+static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
     cscd_context_options options = cscd_context_defaults();
     cscd_detector_options detector_options = cscd_detector_defaults();
     detector_options.ignore = ignore_none;
@@ -69,7 +69,7 @@ static panels make_panels(returning_host *h, uint32_t thread_count) {
     options.allocator = (cscd_allocator){allocate_block, release_block, h};
     options.progress = (cscd_progress){report_progress, h};
     if (h->from == HOST_PARALLEL_FOR) options.parallel_for = (cscd_parallel_for){run_tasks_here, h};
-    panels p = panels_create(SIDE, &options, &detector_options);
+    panel_scene p = panels_create(SIDE, &options, &detector_options);
     p.context->progress.interval_ms = 0.0; /* asks as often as it can */
     h->p = NULL;
     return p;
@@ -79,7 +79,7 @@ static panels make_panels(returning_host *h, uint32_t thread_count) {
 
 enum { CALLS = 10 };
 
-static cscd_status call_again(const panels *p, int what) {
+static cscd_status call_again(const panel_scene *p, int what) {
     static union {
         cscd_contacts contacts;
         cscd_proximities proximities;
@@ -126,7 +126,7 @@ static void calls_from_callbacks_are_busy(void **state) {
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         for (int what = 0; what < CALLS; what++) {
             returning_host h = {.from = from, .inside = come_back, .what = what};
-            panels p = make_panels(&h, 3);
+            panel_scene p = make_panels(&h, 3);
             cscd_contacts found;
             h.p = &p;
             h.calls = 0;
@@ -162,7 +162,7 @@ static void other_threads_are_refused(void **state) {
     (void)state;
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         returning_host h = {.from = from, .inside = wait_inside};
-        panels p = make_panels(&h, 2);
+        panel_scene p = make_panels(&h, 2);
         pthread_t thread;
         h.p = &p;
         h.calls = 0;
@@ -202,7 +202,7 @@ static void *step_often(void *argument) {
 
 static void threads_at_once(void **state) {
     returning_host h = {.from = HOST_PROGRESS}, first, second;
-    panels p = make_panels(&h, 1);
+    panel_scene p = make_panels(&h, 1);
     (void)state;
     h.p = &p;
     first = second = h;
@@ -233,7 +233,7 @@ static void destroyed_objects_live_on(void **state) {
     (void)state;
     for (host_callback from = HOST_ALLOCATOR; from <= HOST_IGNORE; from++) {
         returning_host h = {.from = from, .inside = destroy_all};
-        panels p = make_panels(&h, 2);
+        panel_scene p = make_panels(&h, 2);
         cscd_contacts found;
         h.p = &p;
         h.calls = 0;
@@ -258,7 +258,7 @@ static void destroy_elsewhere(returning_host *h) {
 
 static void another_thread_destroys(void **state) {
     returning_host h = {.from = HOST_IGNORE, .inside = destroy_elsewhere};
-    panels p = make_panels(&h, 2);
+    panel_scene p = make_panels(&h, 2);
     cscd_contacts found;
     (void)state;
     h.p = &p;

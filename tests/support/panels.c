@@ -30,7 +30,7 @@ static void place_vertices(uint32_t side, double shift, double z, double *out) {
     }
 }
 
-cscd_status panels_create_mesh(const panels *p, cscd_context *context, cscd_mesh **out) {
+cscd_status panels_create_mesh(const panel_scene *p, cscd_context *context, cscd_mesh **out) {
     static uint32_t triangles[6 * SIDE_MAX * SIDE_MAX];
     uint32_t half = p->vertex_count / 2, side = (uint32_t)lround(sqrt(half));
     cscd_object_desc panel = {
@@ -39,16 +39,16 @@ cscd_status panels_create_mesh(const panels *p, cscd_context *context, cscd_mesh
     return cscd_mesh_create(context, objects, 2, out);
 }
 
-cscd_status panels_create_detector(const panels *p, const cscd_detector_options *options,
+cscd_status panels_create_detector(const panel_scene *p, const cscd_detector_options *options,
                                    cscd_detector **out) {
     return cscd_detector_create(p->context, p->mesh, NULL, options, out);
 }
 
-panels panels_create(uint32_t side, const cscd_context_options *context_options,
-                     const cscd_detector_options *options) {
+panel_scene panels_create(uint32_t side, const cscd_context_options *context_options,
+                          const cscd_detector_options *options) {
     assert_true(side <= SIDE_MAX);
     uint32_t half = side * side;
-    panels p = {.vertex_count = 2 * half};
+    panel_scene p = {.vertex_count = 2 * half};
     p.x0 = calloc((size_t)p.vertex_count * 3, sizeof *p.x0);
     p.x1 = calloc((size_t)p.vertex_count * 3, sizeof *p.x1);
     assert_true(p.x0 != NULL && p.x1 != NULL);
@@ -62,34 +62,34 @@ panels panels_create(uint32_t side, const cscd_context_options *context_options,
     return p;
 }
 
-void panels_destroy(panels *p) {
+void panels_destroy(panel_scene *p) {
     cscd_detector_destroy(p->detector);
     cscd_mesh_destroy(p->mesh);
     cscd_context_destroy(p->context);
     free(p->x0);
     free(p->x1);
-    *p = (panels){.context = NULL};
+    *p = (panel_scene){.context = NULL};
 }
 
-cscd_status panels_step(const panels *p, cscd_contacts *out) {
+cscd_status panels_step(const panel_scene *p, cscd_contacts *out) {
     return cscd_detector_step(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
                               CSCD_DOUBLES(p->x1, p->vertex_count), out);
 }
 
-cscd_status panels_check(const panels *p, cscd_intersections *out) {
+cscd_status panels_check(const panel_scene *p, cscd_intersections *out) {
     return cscd_detector_check(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), out);
 }
 
-cscd_status panels_near(const panels *p, cscd_proximities *out) {
+cscd_status panels_near(const panel_scene *p, cscd_proximities *out) {
     return cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), 0.1, out);
 }
 
-cscd_status panels_max_step(const panels *p, cscd_free_step *out) {
+cscd_status panels_max_step(const panel_scene *p, cscd_free_step *out) {
     return cscd_detector_max_step(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count),
                                   CSCD_DOUBLES(p->x1, p->vertex_count), NULL, out);
 }
 
-cscd_status panels_plan(const panels *p, cscd_method method, cscd_plan **out) {
+cscd_status panels_plan(const panel_scene *p, cscd_method method, cscd_plan **out) {
     cscd_plan_options options = cscd_plan_defaults();
     options.method = method;
     return cscd_plan_create(p->context, p->mesh, CSCD_DOUBLES(p->x0, p->vertex_count), &options, out);
