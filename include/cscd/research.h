@@ -27,7 +27,10 @@ typedef struct cscd_method_info {
     bool needs_plan;     /* a detector needs a plan that was made by it */
     bool loses_contacts; /* it follows published rules that lose contacts */
     bool available;      /* this build has it: baselines can be left out */
-    uint32_t reserved;   /* 0 */
+    bool
+        by_orientation; /* culls by orientation, so it takes a plan and gains from one; AUTO: if it has one */
+    bool by_contours;   /* culls by normal cones and contours */
+    uint8_t reserved[2]; /* 0 */
 } cscd_method_info;
 
 /* The number of methods, those of this header included. */

@@ -99,13 +99,14 @@ CSCD_API double cscd_partition_distortion(const cscd_partition *partition, uint3
 /* The particles on the objects of one mesh. */
 typedef struct cscd_sensors cscd_sensors;
 
-/* Which particles there are, and what moves them. */
+/* Which particles there are, and what moves them. Later versions may add values. */
 typedef enum cscd_sensor_method {
-    CSCD_SENSORS_CELLS, /* one particle in every cell (Saenghaengtham 2006), drawn to the nearest particle
+    CSCD_SENSORS_CELLS,  /* one particle in every cell (Saenghaengtham 2006), drawn to the nearest particle
                          * of another object; the thesis adds up the pulls of all */
-    CSCD_SENSORS_RANDOM /* a fixed number of particles on each object, from random vertices, which also
+    CSCD_SENSORS_RANDOM, /* a fixed number of particles on each object, from random vertices, which also
                          * push each other apart (Senin et al. 2003): to compare with. Watches whole
                          * objects only */
+    CSCD_SENSORS_MAX_ENUM = 0x7fffffff
 } cscd_sensor_method;
 
 /* Options of sensors; start from cscd_sensor_defaults. */
@@ -156,13 +157,14 @@ typedef struct cscd_warning {
     double toi;                  /* the earliest time of such a contact; 0 if there is none */
 } cscd_warning;
 
-/* Why a part should have new cells. */
+/* Why a part should have new cells. Later versions may add values. */
 typedef enum cscd_renewal {
     CSCD_RENEWAL_NONE,
-    CSCD_RENEWAL_AREA,   /* a cell has become too large for one particle */
-    CSCD_RENEWAL_EDGE,   /* an edge is longer than the mu of the options, so contacts there may be missed.
+    CSCD_RENEWAL_AREA,    /* a cell has become too large for one particle */
+    CSCD_RENEWAL_EDGE,    /* an edge is longer than the mu of the options, so contacts there may be missed.
                           * New cells do not help; there is no other reason */
-    CSCD_RENEWAL_CONCAVE /* the part was convex and is not any more */
+    CSCD_RENEWAL_CONCAVE, /* the part was convex and is not any more */
+    CSCD_RENEWAL_MAX_ENUM = 0x7fffffff
 } cscd_renewal;
 
 /* Warnings, sorted by (part_a, part_b). The list belongs to the sensors and lives until their next step. */

@@ -42,6 +42,8 @@ bool cscd_method_describe_sized(cscd_method method, cscd_method_info *out, size_
                              .makes_plan = found->makes_plan,
                              .needs_plan = found->needs_plan,
                              .loses_contacts = found->loses_contacts,
+                             .by_orientation = found->by_orientation,
+                             .by_contours = found->by_contours,
                              .available =
                                  method == CSCD_METHOD_AUTO || method_stages_of(method)->rules != NULL};
     struct_give(out, size, &info, sizeof info);

@@ -4,15 +4,15 @@
 #include <string.h>
 
 static const method_traits traits[] = {
-    {CSCD_METHOD_AUTO, .name = "auto"},
+    {CSCD_METHOD_AUTO, .name = "auto", .by_orientation = true},
     {CSCD_METHOD_NONE, .name = "none"},
     {CSCD_METHOD_BRUTE, .name = "brute"},
-    {CSCD_METHOD_SINGLE, .name = "single", .makes_plan = true},
-    {CSCD_METHOD_KMEANS, .name = "kmeans", .makes_plan = true, .needs_plan = true},
-    {CSCD_METHOD_CHARGE, .name = "charge", .makes_plan = true, .needs_plan = true},
-    {CSCD_METHOD_PUBLISHED, .name = "published", .loses_contacts = true},
-    {CSCD_METHOD_ICCD, .name = "iccd"},
-    {CSCD_METHOD_ICCD_PUBLISHED, .name = "iccd-published", .loses_contacts = true},
+    {CSCD_METHOD_SINGLE, .name = "single", .makes_plan = true, .by_orientation = true},
+    {CSCD_METHOD_KMEANS, .name = "kmeans", .makes_plan = true, .needs_plan = true, .by_orientation = true},
+    {CSCD_METHOD_CHARGE, .name = "charge", .makes_plan = true, .needs_plan = true, .by_orientation = true},
+    {CSCD_METHOD_PUBLISHED, .name = "published", .loses_contacts = true, .by_orientation = true},
+    {CSCD_METHOD_ICCD, .name = "iccd", .by_contours = true},
+    {CSCD_METHOD_ICCD_PUBLISHED, .name = "iccd-published", .loses_contacts = true, .by_contours = true},
 };
 
 enum { METHOD_COUNT = sizeof traits / sizeof *traits };

@@ -9,6 +9,8 @@ typedef struct method_traits {
     bool makes_plan;     /* preprocessing makes plans by this method */
     bool needs_plan;     /* a detector needs a plan that was made by this method */
     bool loses_contacts; /* it follows published rules that lose contacts, so it certifies nothing */
+    bool by_orientation; /* culls by the orientation of triangles, if it has regions */
+    bool by_contours;    /* culls by the contours of patches */
 } method_traits;
 
 /* NULL: there is no such method. */

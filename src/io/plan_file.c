@@ -4,6 +4,8 @@
 #include "src/io/ply.h"
 #include "src/io/ply_data.h"
 
+#include <cscd/research.h>
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -60,9 +62,9 @@ static bool read_comment(plan_reader *p, file_reader *reader, comment_kind kind)
     if (kind == COMMENT_PLAN) fits = text_equals(value, "1");
     if (kind == COMMENT_METHOD) {
         expected = "charge, kmeans or single";
+        cscd_method_info info;
         fits = cscd_method_from_name(text_show(value).text, &p->method) &&
-               (p->method == CSCD_METHOD_CHARGE || p->method == CSCD_METHOD_KMEANS ||
-                p->method == CSCD_METHOD_SINGLE);
+               cscd_method_describe(p->method, &info) && info.makes_plan;
     } else if (kind == COMMENT_MESH) {
         expected = "the mesh's hash in 16 hexadecimal digits";
         fits = parse_hash(value, &p->mesh_hash);

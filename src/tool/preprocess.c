@@ -32,7 +32,7 @@ typedef struct preprocess_options {
 
 static bool read_plan_method(const char *text, void *place) {
     cscd_plan_options *plan = place;
-    return parse_method(text, &plan->method, &plan->k) && method_facts_of(plan->method)->makes_plan;
+    return parse_method(text, &plan->method, &plan->k) && method_facts_of(plan->method).makes_plan;
 }
 
 static bool read_share(const char *text, void *place) {

@@ -1,19 +1,17 @@
-/* What the commands need to know of each method. */
+/* What the commands need to know of each method, from what the library says about it. */
 #include "src/tool/common/methods.h"
 
-#include "cscd/research.h"
-static const method_facts facts[] = {
-    [CSCD_METHOD_AUTO] = {.by_regions = true},
-    [CSCD_METHOD_NONE] = {.by_regions = false},
-    [CSCD_METHOD_BRUTE] = {.by_regions = false},
-    [CSCD_METHOD_SINGLE] = {.by_regions = true, .makes_plan = true},
-    [CSCD_METHOD_KMEANS] = {.by_regions = true, .makes_plan = true},
-    [CSCD_METHOD_CHARGE] = {.by_regions = true, .makes_plan = true},
-    [CSCD_METHOD_PUBLISHED] = {.by_regions = true, .insists_on_plan = true, .loses_contacts = true},
-    [CSCD_METHOD_ICCD] = {.by_contours = true},
-    [CSCD_METHOD_ICCD_PUBLISHED] = {.by_contours = true, .loses_contacts = true},
-};
+#include <cscd/research.h>
 
-const method_facts *method_facts_of(cscd_method method) {
-    return &facts[method];
+method_facts method_facts_of(cscd_method method) {
+    cscd_method_info info;
+    if (!cscd_method_describe(method, &info)) return (method_facts){.by_regions = false};
+    return (method_facts){
+        .by_regions = info.by_orientation,
+        .by_contours = info.by_contours,
+        .makes_plan = info.makes_plan,
+        /* A published method to compare with is compared with regions. */
+        .insists_on_plan = info.by_orientation && info.loses_contacts,
+        .loses_contacts = info.loses_contacts,
+    };
 }

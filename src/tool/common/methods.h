@@ -1,4 +1,4 @@
-/* What the commands need to know of each method. */
+/* What the commands need to know of each method, from what the library says about it. */
 #pragma once
 
 #include <cscd/cscd.h>
@@ -11,4 +11,5 @@ typedef struct method_facts {
     bool loses_contacts;  /* culls as published */
 } method_facts;
 
-const method_facts *method_facts_of(cscd_method method);
+/* All false: the library has no such method. */
+method_facts method_facts_of(cscd_method method);

@@ -30,19 +30,19 @@ const char *plan_source_name(plan_source source) {
 }
 
 static bool insists_on_plan(const plan_request *request) {
-    return request->insists_on_plan || method_facts_of(request->method)->insists_on_plan;
+    return request->insists_on_plan || method_facts_of(request->method).insists_on_plan;
 }
 
 /* A method that makes no plans takes one of any method. */
 static bool method_fits(const plan_request *request, const cscd_plan *plan) {
-    return !method_facts_of(request->method)->makes_plan || cscd_plan_method(plan) == request->method;
+    return !method_facts_of(request->method).makes_plan || cscd_plan_method(plan) == request->method;
 }
 
 /* Takes the path over. */
 static void choose_plan(plan_choice *choice, const plan_request *request, cscd_plan *plan, char *path) {
     choice->plan = plan;
     choice->method =
-        method_facts_of(request->method)->insists_on_plan ? request->method : cscd_plan_method(plan);
+        method_facts_of(request->method).insists_on_plan ? request->method : cscd_plan_method(plan);
     choice->source = path != NULL ? PLAN_FROM_FILE : PLAN_FROM_MEMORY;
     choice->path = path;
 }
@@ -148,17 +148,17 @@ static bool make_requested(const plan_request *request, const recording *r, plan
 }
 
 bool plan_choose(const plan_request *request, const recording *r, plan_choice *out, io_error *error) {
-    const method_facts *facts = method_facts_of(request->method);
-    plan_choice choice = {.method = facts->by_regions ? CSCD_METHOD_NONE : request->method};
+    method_facts facts = method_facts_of(request->method);
+    plan_choice choice = {.method = facts.by_regions ? CSCD_METHOD_NONE : request->method};
     bool chosen = true;
-    if (!facts->by_regions) {
+    if (!facts.by_regions) {
         /* as asked for */
     } else if (request->min_separation > 0.0) {
         add_remark(&choice, "with --min-separation nothing is culled");
     } else if (request->plan_path != NULL) {
         chosen = read_named(request, r, &choice, error);
     } else {
-        bool any_plan = !facts->makes_plan;
+        bool any_plan = !facts.makes_plan;
         if (any_plan || request->method == CSCD_METHOD_CHARGE) try_model_plan(request, r, &choice);
         if (choice.plan == NULL)
             chosen =

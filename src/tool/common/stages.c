@@ -49,9 +49,9 @@ static void set_timing(cscd_timings *timings, const timing_row *row, double valu
 }
 
 bool timing_applies(const timing_row *row, cscd_method method) {
-    const method_facts *facts = method_facts_of(method);
-    return (row->kind != TIMING_OF_CONTOURS || facts->by_contours) &&
-           (row->kind != TIMING_OF_REGIONS || facts->by_regions);
+    method_facts facts = method_facts_of(method);
+    return (row->kind != TIMING_OF_CONTOURS || facts.by_contours) &&
+           (row->kind != TIMING_OF_REGIONS || facts.by_regions);
 }
 
 void timings_add(cscd_timings *sum, cscd_timings *max, const cscd_timings *timings) {

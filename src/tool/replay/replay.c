@@ -158,7 +158,7 @@ static void alarm_contradiction(replay *r, const interval_result *result) {
     bool ignores = r->options->ignore_path != NULL || r->options->ignore_rest;
     if (ignores || result->state != INTERVAL_CLEAN || r->end_state != FRAME_CROSSING) return;
     r->totals.contradictions++;
-    if (method_facts_of(r->plan.method)->loses_contacts) return; /* which such a method may have */
+    if (method_facts_of(r->plan.method).loses_contacts) return; /* which such a method may have */
     warn("interval %u starts free of intersections and ends with one, but no contact was found: a "
          "contact was lost, please report this recording",
          result->frame);
@@ -232,7 +232,7 @@ static void print_results(const replay *r) {
     }
     printf("intervals: %u clean, %u with contact, %u intersecting, %u unknown\n", t->states[INTERVAL_CLEAN],
            t->states[INTERVAL_CONTACT], t->states[INTERVAL_PENETRATING], t->states[INTERVAL_UNKNOWN]);
-    bool by_method = method_facts_of(r->plan.method)->loses_contacts;
+    bool by_method = method_facts_of(r->plan.method).loses_contacts;
     if (t->intervals_complete < t->intervals)
         printf("%s %s: in %u of %u intervals %scontacts of a component with itself may be missing\n",
                by_method ? "method" : "mode", by_method ? cscd_method_name(r->plan.method) : "earliest",

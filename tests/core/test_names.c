@@ -1,0 +1,71 @@
+/* Names of enumerators: those of values that a later version may have are "unknown"; and the list of methods. */
+#include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+static void names_of_unknown_values(void **state) {
+    (void)state;
+    static const int values[] = {77, -1, 0x7fffffff, 1000};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        int value = values[i];
+        assert_string_equal(cscd_status_string((cscd_status)value), "unknown status");
+        assert_string_equal(cscd_simd_name((cscd_simd)value), "unknown");
+        assert_string_equal(cscd_method_name((cscd_method)value), "unknown");
+        assert_string_equal(cscd_mode_name((cscd_mode)value), "unknown");
+        assert_string_equal(cscd_volume_name((cscd_volume)value), "unknown");
+        assert_string_equal(cscd_contact_kind_name((cscd_contact_kind)value), "unknown");
+        assert_string_equal(cscd_reason_text((cscd_reason)value), "unknown");
+    }
+}
+
+/* "unknown" is no name that a function reads. */
+static void unknown_is_not_read(void **state) {
+    (void)state;
+    cscd_method method = CSCD_METHOD_SINGLE;
+    cscd_mode mode = CSCD_MODE_EARLIEST;
+    cscd_volume volume = CSCD_VOLUME_KDOP14;
+    cscd_simd simd = CSCD_SIMD_SCALAR;
+    assert_false(cscd_method_from_name("unknown", &method) || cscd_mode_from_name("unknown", &mode) ||
+                 cscd_volume_from_name("unknown", &volume) || cscd_simd_from_name("unknown", &simd));
+    assert_true(method == CSCD_METHOD_SINGLE && mode == CSCD_MODE_EARLIEST && volume == CSCD_VOLUME_KDOP14 &&
+                simd == CSCD_SIMD_SCALAR);
+}
+
+static void methods_are_listed(void **state) {
+    (void)state;
+    uint32_t count = cscd_method_count(), plan_makers = 0;
+    assert_int_equal(count, 9);
+    for (uint32_t i = 0; i < count; i++) {
+        cscd_method method = cscd_method_at(i), read = CSCD_METHOD_MAX_ENUM;
+        cscd_method_info info;
+        assert_true(cscd_method_describe(method, &info));
+        assert_string_equal(info.name, cscd_method_name(method));
+        assert_true(cscd_method_from_name(info.name, &read));
+        assert_int_equal(read, method);
+        for (uint32_t j = 0; j < i; j++) assert_int_not_equal(cscd_method_at(j), method);
+        assert_false(info.needs_plan && !info.makes_plan);
+        assert_false(info.by_orientation && info.by_contours);
+        assert_int_equal(info.loses_contacts, strstr(info.name, "published") != NULL);
+        assert_int_equal(info.by_contours, strstr(info.name, "iccd") != NULL);
+        plan_makers += info.makes_plan;
+    }
+    assert_int_equal(plan_makers, 3);
+}
+
+static void other_methods_are_refused(void **state) {
+    (void)state;
+    cscd_method_info info, before;
+    memset(&info, 0xa5, sizeof info);
+    before = info;
+    assert_false(cscd_method_describe((cscd_method)77, &info));
+    assert_memory_equal(&info, &before, sizeof info);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names_of_unknown_values), cmocka_unit_test(unknown_is_not_read),
+        cmocka_unit_test(methods_are_listed), cmocka_unit_test(other_methods_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
