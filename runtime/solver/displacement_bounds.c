@@ -128,16 +128,15 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
     if (d->reached == NULL) d->reached = context_allocate(d->context, count, sizeof(double[3]));
     status = d->reached != NULL ? displacement_bounds_find(d, x0, search_radius, scalar, d->reached, out)
                                 : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     write_bounds(d->reached, count, scalar, bounds);
     return CSCD_OK;
 }
 
-cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
-                                                    double search_radius, cscd_scalar scalar, void *bounds,
-                                                    size_t size, cscd_displacement_bounds *out,
-                                                    size_t out_size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status find_bounds_of_views(cscd_detector *detector, const cscd_view *x0, double search_radius,
+                                        cscd_scalar scalar, void *bounds, size_t size,
+                                        cscd_displacement_bounds *out, size_t out_size) {
     cscd_context *context = detector->context;
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_displacement_bounds: out is NULL");
@@ -149,4 +148,15 @@ cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, con
     if (status == CSCD_OK) status = find_bounds_at(detector, x, search_radius, scalar, bounds, &found);
     if (status == CSCD_OK) struct_give(out, out_size, &found, sizeof found);
     return status;
+}
+
+cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
+                                                    double search_radius, cscd_scalar scalar, void *bounds,
+                                                    size_t size, cscd_displacement_bounds *out,
+                                                    size_t out_size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(
+        &entry, find_bounds_of_views(detector, x0, search_radius, scalar, bounds, size, out, out_size));
 }

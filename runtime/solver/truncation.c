@@ -220,6 +220,8 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
     truncate_all(&work, d->context->threads);
+    status = context_loop_status(d->context); /* before anything is known of the end */
+    if (status != CSCD_OK) return status;
     *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count};
     sum_up_vertices(&work, out);
     out->held_count = keep_held(&work.planes, d->proximities.items);
@@ -262,10 +264,9 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 
-cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
-                                         double search_radius, const cscd_mutable_view *reached,
-                                         cscd_truncation *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                  double search_radius, const cscd_mutable_view *reached,
+                                  cscd_truncation *out, size_t size) {
     cscd_context *context = detector->context;
     const cscd_mesh *mesh = detector->mesh;
     if (out == NULL)
@@ -282,4 +283,13 @@ cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_vie
     views_write(mesh, reached, detector->reached);
     struct_give(out, size, &found, sizeof found);
     return CSCD_OK;
+}
+
+cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
+                                         double search_radius, const cscd_mutable_view *reached,
+                                         cscd_truncation *out, size_t size) {
+    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    context_entry entry;
+    if (!context_enter(detector->context, &entry)) return entry.status;
+    return context_leave(&entry, truncate_views(detector, x0, x1, search_radius, reached, out, size));
 }
