@@ -168,6 +168,17 @@ static void ask_solver(scene *s) {
     expect_ok(s, cscd_detector_max_step(s->detector, x0, x1, NULL, &step.value), "cscd_detector_max_step");
     EXPECT_FILLED(cscd_free_step, step);
     expect_that(step.value.limited, "cscd_free_step", "its values");
+    double radii[VERTEX_COUNT];
+    GUARDED(cscd_displacement_bounds, bounded);
+    expect_ok(s,
+              cscd_detector_displacement_bounds(s->detector, x0, 1.5, CSCD_SCALAR_DOUBLE, radii, sizeof radii,
+                                                &bounded.value),
+              "cscd_detector_displacement_bounds");
+    EXPECT_FILLED(cscd_displacement_bounds, bounded);
+    GUARDED(cscd_truncation, truncated);
+    expect_ok(s, cscd_detector_truncate(s->detector, x0, x1, 1.5, NULL, &truncated.value),
+              "cscd_detector_truncate");
+    EXPECT_FILLED(cscd_truncation, truncated);
     expect_ok(s, cscd_line_search_create(s->detector, &s->search), "cscd_line_search_create");
     expect_ok(s, cscd_line_search_begin(s->search, x0, x1, 1.5), "cscd_line_search_begin");
     GUARDED(cscd_free_step, found);
