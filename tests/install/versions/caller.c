@@ -190,6 +190,26 @@ static void ask_solver(scene *s) {
     expect_that(close.value.count == near.value.count, "cscd_proximities", "their number");
 }
 
+static void ask_bounds(scene *s) {
+    const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
+    double reached[VERTEX_COUNT * 3], lengths[VERTEX_COUNT];
+    GUARDED(cscd_displacement_bounds, bounds);
+    expect_ok(s,
+              cscd_detector_displacement_bounds(s->detector, x0, 1.5, CSCD_SCALAR_DOUBLE, lengths,
+                                                sizeof lengths, &bounds.value),
+              "cscd_detector_displacement_bounds");
+    EXPECT_FILLED(cscd_displacement_bounds, bounds);
+    expect_that(bounds.value.blocked_count == 0 && bounds.value.least > 0, "cscd_displacement_bounds",
+                "its values");
+    GUARDED(cscd_truncation, truncation);
+    expect_ok(s,
+              cscd_detector_truncate(s->detector, x0, x1, 1.5, CSCD_MUTABLE_DOUBLES(reached, VERTEX_COUNT),
+                                     &truncation.value),
+              "cscd_detector_truncate");
+    EXPECT_FILLED(cscd_truncation, truncation);
+    expect_that(truncation.value.moved, "cscd_truncation", "its values");
+}
+
 static void create_sensors(scene *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     OPTIONS(cscd_partition_options, cscd_partition_defaults_sized, options);
@@ -235,6 +255,7 @@ int main(void) {
     create_detector(&s);
     ask_detector(&s);
     ask_solver(&s);
+    ask_bounds(&s);
     create_sensors(&s);
     ask_sensors(&s);
     cscd_line_search_destroy(s.search);
