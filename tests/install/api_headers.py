@@ -3,7 +3,8 @@
 
     api_headers.py print             what is frozen, a line for each enumerator, struct, member and function
     api_headers.py write             renews api_frozen.txt and src/core/least_sizes.h: `make freeze-api`
-    api_headers.py padding           fails if a struct ends in padding, with 64-bit and with 32-bit pointers
+    api_headers.py rules             fails if a struct ends in padding, with 64-bit and with 32-bit pointers, or if the
+                                     library could not know the size of one that grows
     api_headers.py grows             the structs that may grow
     api_headers.py later FOLDER      writes FOLDER/cscd/*.h, in which each of these has grown by one member
 Run it in the root of the repository; CC names the compiler.
@@ -57,7 +58,7 @@ def without_names(parameters):
 
 class Api:
     def __init__(self):
-        self.values, self.structs, self.functions, self.opaque = [], {}, [], []
+        self.values, self.structs, self.functions, self.exported, self.opaque = [], {}, [], [], []
         for header in HEADERS:
             self.read(header)
         inputs = ' '.join(parameters for _, name, parameters in self.functions if name.endswith('_sized'))
@@ -80,11 +81,13 @@ class Api:
         if len(functions) != code.count('CSCD_API ') or len(inlines) != code.count('static inline '):
             fail(f'{header}: a function that is written in another way')
         self.values += [value.split('=')[0].strip() for _, body in enums for value in body.split(',') if value.strip()]
-        self.values += [name for name, _ in macros if name not in ('CSCD_API', 'CSCD_VERSION_MINOR', 'CSCD_VERSION_PATCH')]
+        others = ('CSCD_API', 'CSCD_VERSION_MINOR', 'CSCD_VERSION_PATCH')
+        self.values += [name for name, _ in macros if name not in others]
         for name, body in structs:
             members = [part.strip() for part in body.split(';') if part.strip()]
             self.structs[name] = [member for text in members for member in split_declarators(text)]
         self.opaque += opaque
+        self.exported += functions
         self.functions += [(kind.strip(), name, parameters) for kind, name, parameters in functions + inlines]
 
 
@@ -94,7 +97,9 @@ def run_program(text):
         source, program = os.path.join(folder, 'print.c'), os.path.join(folder, 'print')
         with open(source, 'w', encoding='utf-8') as file:
             file.write(text)
-        subprocess.run(COMPILER + ['-std=c11', '-w', '-Iinclude', '-o', program, source, '-Wl,--unresolved-symbols=ignore-all'], check=True)
+        # Inline functions call the library, which nobody runs here.
+        flags = ['-std=c11', '-w', '-Iinclude', '-Wl,--unresolved-symbols=ignore-all', '-o', program]
+        subprocess.run(COMPILER + flags + [source], check=True)
         return subprocess.run([program], check=True, capture_output=True, text=True).stdout
 
 
@@ -109,16 +114,34 @@ def print_frozen(api):
         else:
             rows.append(f'printf("struct {name} of %zu bytes\\n", sizeof({name}));')
     rows += [f'puts("type {name}");' for name in api.opaque]
-    rows += [f'puts("function {name}: {kind} ({without_names(parameters)})");' for kind, name, parameters in api.functions]
-    text = run_program(f'#include <stddef.h>\n#include <stdio.h>\n{INCLUDES}int main(void) {{\n' + '\n'.join(rows) + '\n}\n')
+    rows += [f'puts("function {name}: {kind} ({without_names(parameters)})");'
+             for kind, name, parameters in api.functions]
+    includes = f'#include <stddef.h>\n#include <stdio.h>\n{INCLUDES}'
+    text = run_program(includes + 'int main(void) {\n' + '\n'.join(rows) + '\n}\n')
     return sorted(text.splitlines())
+
+
+def check_sizes(api):
+    """A struct that grows is nobody's member, and every function is told its size or finds it in struct_size."""
+    for name, members in api.structs.items():
+        for declaration, _ in members:
+            if any(re.match(rf'(const )?{inner} \w', declaration) for inner in api.growing):
+                fail(f'{name} contains a struct that may grow: {declaration}')
+    told = [name for name in api.growing if api.structs[name][0][1] != 'struct_size']
+    for kind, name, parameters in api.exported:
+        by_value = [inner for inner in api.growing
+                    if re.search(rf'\b{inner}$', kind.strip()) or re.search(rf'\b{inner} \w', parameters)]
+        untold = [inner for inner in told if re.search(rf'\b{inner} \*', parameters) and not name.endswith('_sized')]
+        if by_value or untold:
+            fail(f'{name} is not told the size of {", ".join(by_value + untold)}')
 
 
 def check_padding(api):
     """Without padding at the end, a new member always changes the size of its struct."""
     asserts = ''.join(
-        f'_Static_assert(sizeof({name}) == offsetof({name}, {members[-1][1]}) + sizeof((({name} *)0)->{members[-1][1]}),'
-        f' "{name} ends in padding");\n' for name, members in api.structs.items())
+        f'_Static_assert(sizeof({name}) == offsetof({name}, {members[-1][1]}) + '
+        f'sizeof((({name} *)0)->{members[-1][1]}), "{name} ends in padding");\n'
+        for name, members in api.structs.items())
     program = f'#include <stddef.h>\n{INCLUDES}{asserts}'
     compile_only = COMPILER + ['-std=c11', '-w', '-Iinclude', '-fsyntax-only', '-x', 'c', '-']
     failed = subprocess.run(compile_only, input=program, text=True, check=False).returncode != 0
@@ -154,7 +177,8 @@ def write_least(api):
         with open(LEAST, encoding='utf-8') as file:
             last = dict(re.findall(r'STRUCT_THROUGH\((\w+), (\w+)\)', file.read()))
     with open(LEAST, 'w', encoding='utf-8') as file:
-        file.write('/* The sizes of the structs that callers fill, as they were first released: no caller has smaller ones. Made by\n'
+        file.write('/* The sizes of the structs that callers fill, as they were first released: no caller has smaller ones.'
+                   ' Made by\n'
                    ' * make freeze-api, which leaves the rows of released versions as they are. */\n'
                    '#pragma once\n\n#include <stddef.h>\n\n'
                    '#define STRUCT_THROUGH(type, member) (offsetof(type, member) + sizeof(((type *)0)->member))\n'
@@ -183,7 +207,8 @@ def main():
         print('\n'.join(print_frozen(api)))
     elif command == 'write':
         write_frozen(api)
-    elif command == 'padding':
+    elif command == 'rules':
+        check_sizes(api)
         check_padding(api)
     elif command == 'grows':
         print('\n'.join(sorted(api.growing)))

@@ -37,13 +37,14 @@ static void headers_are_as_frozen(void **state) {
     free(lines);
 }
 
-static void no_struct_ends_in_padding(void **state) {
+/* No struct ends in padding, and the library is told the size of every one that may grow. */
+static void structs_can_grow(void **state) {
     (void)state;
-    shell("tests/install/api_headers.py padding");
+    shell("tests/install/api_headers.py rules");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(headers_are_as_frozen),
-                                       cmocka_unit_test(no_struct_ends_in_padding)};
+                                       cmocka_unit_test(structs_can_grow)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
