@@ -61,6 +61,17 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
+/* A vertex and a face, or two edges; for the static check two triangles. Later versions may add values. */
+typedef enum cscd_contact_kind {
+    CSCD_CONTACT_VF,
+    CSCD_CONTACT_EE,
+    CSCD_CONTACT_TT,
+    CSCD_CONTACT_KIND_MAX_ENUM = 0x7fffffff
+} cscd_contact_kind;
+
+/* The names are "vf", "ee" and "tt"; static storage, never NULL. */
+CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
+
 /* What one object has to do with the others; start from cscd_object_rule_default. It never grows. */
 typedef struct cscd_object_rule {
     /* Two objects are looked at when the category of each has a bit in common with the mask of the other. An
@@ -96,14 +107,14 @@ typedef struct cscd_detector_options {
     cscd_start start;     /* PROVE by default */
     cscd_volume volume;   /* BOX by default */
 
-    /* Leaves out pairs: a contact or proximity is not reported, and an intersection not listed, when
-     * ignore returns true for two triangles a < b, one of which contains (or is) the one feature, the
-     * other the other feature. It is called on the calling thread, only for pairs that were found. NULL by
-     * default. */
-    bool (*ignore)(void *user, uint32_t a, uint32_t b);
+    /* Leaves out pairs: a contact or proximity is not reported when ignore returns true for its kind and
+     * features a and b, nor an intersection when it returns true for the kind TT and its triangles a < b. It is
+     * called on the calling thread, only for pairs that were found. NULL by default. */
+    bool (*ignore)(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b);
     void *ignore_user;
 
-    /* The same as a list of ignored_count pairs of triangles, in any order. */
+    /* Leaves out pairs of triangles, ignored_count of them in any order: intersections of the two, and contacts
+     * and proximities of features of which one is in (or is) the one triangle, the other in the other. */
     const uint32_t *ignored;
     size_t ignored_count;
 
@@ -168,16 +179,6 @@ CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, doubl
 CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
                                              uint32_t rule_count, const double *thickness_matrix,
                                              uint32_t thickness_class_count);
-
-/* A vertex and a face, or two edges. Later versions may add values. */
-typedef enum cscd_contact_kind {
-    CSCD_CONTACT_VF,
-    CSCD_CONTACT_EE,
-    CSCD_CONTACT_KIND_MAX_ENUM = 0x7fffffff
-} cscd_contact_kind;
-
-/* The names are "vf" and "ee"; static storage, never NULL. */
-CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
 
 /* A contact: two features, when they touch, and where. u and v name the points that touch at time toi or,
  * with min_separation, the nearest points then:

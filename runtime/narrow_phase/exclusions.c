@@ -89,26 +89,17 @@ static bool is_listed(const exclusions *e, uint64_t key) {
     return low < e->ignored_count && e->ignored[low] == key;
 }
 
-/* Within a call of the host: see state_for_host. */
-static bool is_ignored(const exclusions *e, uint32_t a, uint32_t b) {
-    uint32_t smaller = a < b ? a : b, larger = a < b ? b : a;
-    return (e->ignored_count > 0 && is_listed(e, key_of(a, b))) ||
-           (e->ignore != NULL && e->ignore(e->ignore_user, smaller, larger));
-}
-
-static entry_state *state_for_host(const exclusions *e) {
-    return e->ignore != NULL ? &e->mesh->context->entry : NULL;
-}
-
-static bool triangles_ignored(const exclusions *e, uint32_t a, uint32_t b) {
-    HOST_CALL(call, state_for_host(e), HOST_IGNORE);
-    bool ignored = is_ignored(e, a, b);
+static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (e->ignore == NULL) return false;
+    HOST_CALL(call, &e->mesh->context->entry, HOST_IGNORE);
+    bool ignored = e->ignore(e->ignore_user, kind, a, b);
     host_call_end(&call);
     return ignored;
 }
 
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
-    if (triangles_ignored(e, a, b)) return true;
+    if (e->ignored_count > 0 && is_listed(e, key_of(a, b))) return true;
+    if (host_ignores(e, CSCD_CONTACT_TT, a, b)) return true;
     if (e->names == NULL) return false;
     const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
     return !triangles_intersect_by_names(corners_a, corners_b, e->names, positions);
@@ -133,17 +124,16 @@ static triangle_list edge_star(const cscd_mesh *mesh, uint32_t edge) {
 static bool any_pair_listed(const exclusions *e, triangle_list a, triangle_list b) {
     for (uint32_t i = 0; i < a.count; i++) {
         for (uint32_t j = 0; j < b.count; j++) {
-            if (a.items[i] != b.items[j] && is_ignored(e, a.items[i], b.items[j])) return true;
+            if (a.items[i] != b.items[j] && is_listed(e, key_of(a.items[i], b.items[j]))) return true;
         }
     }
     return false;
 }
 
-static bool any_pair_ignored(const exclusions *e, triangle_list a, triangle_list b) {
-    HOST_CALL(call, state_for_host(e), HOST_IGNORE);
-    bool ignored = any_pair_listed(e, a, b);
-    host_call_end(&call);
-    return ignored;
+static bool features_listed(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (e->ignored_count == 0) return false;
+    if (kind == CSCD_CONTACT_VF) return any_pair_listed(e, vertex_star(e->mesh, a), (triangle_list){&b, 1});
+    return any_pair_listed(e, edge_star(e->mesh, a), edge_star(e->mesh, b));
 }
 
 static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, const uint32_t *b,
@@ -164,7 +154,5 @@ bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint
                : share_name(e->names, mesh->edges[a], 2, mesh->edges[b], 2))
             return true;
     }
-    if (e->ignore == NULL && e->ignored_count == 0) return false;
-    return vf ? any_pair_ignored(e, vertex_star(mesh, a), (triangle_list){&b, 1})
-              : any_pair_ignored(e, edge_star(mesh, a), edge_star(mesh, b));
+    return features_listed(e, kind, a, b) || host_ignores(e, kind, a, b);
 }

@@ -5,7 +5,7 @@
 
 typedef struct exclusions {
     const cscd_mesh *mesh;
-    bool (*ignore)(void *user, uint32_t a, uint32_t b);
+    bool (*ignore)(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b);
     void *ignore_user;
     uint64_t *ignored; /* pairs of triangles, the smaller one in the upper half, sorted */
     size_t ignored_count;

@@ -41,6 +41,8 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
         return "vf";
     case CSCD_CONTACT_EE:
         return "ee";
+    case CSCD_CONTACT_TT:
+        return "tt";
     default:
         return "unknown";
     }

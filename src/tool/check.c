@@ -103,12 +103,11 @@ static bool prepare_check(check_run *c, io_error *error) {
     c->frames = o->frames;
     if (!frame_range_close(&c->frames, c->recording.frame_count, error)) return false;
     cscd_detector_options options = cscd_detector_defaults();
-    options.ignore = o->ignore_path != NULL || o->ignore_rest ? ignore_pairs_contain : NULL;
-    options.ignore_user = &c->ignored;
     c->ignored.mesh = c->recording.mesh;
     if (o->ignore_path != NULL && !ignore_pairs_read(&c->ignored, &c->recording, o->ignore_path, error))
         return false;
     if (o->ignore_rest && !ignore_pairs_add_rest(&c->ignored, &c->recording, error)) return false;
+    ignore_pairs_choose(&c->ignored, &options);
     if (cscd_detector_create(c->recording.context, c->recording.mesh, NULL, &options, &c->detector) !=
         CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(c->recording.context));

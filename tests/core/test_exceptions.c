@@ -27,9 +27,9 @@ static void perhaps_throw(throwing_host *h, host_callback callback) {
     if (atomic_fetch_add(&h->calls, 1) + 1 == h->at) throw_exception();
 }
 
-static bool ignore_none(void *user, uint32_t a, uint32_t b) {
+static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     perhaps_throw(user, HOST_IGNORE);
-    return a == b;
+    return kind == CSCD_CONTACT_TT && a == b;
 }
 
 static bool report_progress(void *user, const char *stage, double fraction) {

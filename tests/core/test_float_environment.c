@@ -84,9 +84,9 @@ static bool report_progress(void *user, const char *stage, double fraction) {
     return stage != NULL && ++h->reports != h->cancel_at;
 }
 
-static bool ignore_none(void *user, uint32_t a, uint32_t b) {
+static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     look_around(user, HOST_IGNORE);
-    return a == b;
+    return kind == CSCD_CONTACT_TT && a == b;
 }
 
 typedef struct pool_thread {
@@ -247,10 +247,10 @@ static void many_threads(void **state) {
 
 /* ---- what callbacks do to it ----------------------------------------------------------------------------- */
 
-static bool raise_and_turn(void *user, uint32_t a, uint32_t b) {
+static bool raise_and_turn(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     feraiseexcept(FE_DIVBYZERO);
     fesetround(*(int *)user);
-    return a == b;
+    return kind == CSCD_CONTACT_TT && a == b;
 }
 
 /* What a callback changes is the host's affair: it stays, and the library does not notice. */

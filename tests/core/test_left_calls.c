@@ -22,9 +22,9 @@ static void perhaps_leave(leaving_host *h, host_callback callback) {
     if (++h->calls == h->at) longjmp(h->back, 1);
 }
 
-static bool ignore_none(void *user, uint32_t a, uint32_t b) {
+static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     perhaps_leave(user, HOST_IGNORE);
-    return a == b;
+    return kind == CSCD_CONTACT_TT && a == b;
 }
 
 static bool report_progress(void *user, const char *stage, double fraction) {

@@ -175,8 +175,9 @@ static void culling_loses_no_first_contact(void **state) {
 
 /* ---- ignored pairs ----------------------------------------------------------------------------------- */
 
-static bool ignore_some(void *user, uint32_t a, uint32_t b) {
+static bool ignore_some(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     (void)user;
+    (void)kind;
     return (a * 2654435761u ^ b * 40503u) % 16 == 0;
 }
 

@@ -292,9 +292,8 @@ static void lines_follow_what_they_can(void **state) {
     }
 }
 
-static bool ignore_all(void *user, uint32_t a, uint32_t b) {
-    (void)user;
-    return a < b;
+static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    return user == NULL && (kind == CSCD_CONTACT_VF || a < b);
 }
 
 /* A line search begins without separation and then goes with one through a pair that is ignored. What the

@@ -27,9 +27,9 @@ static void notice_call(returning_host *h, host_callback callback) {
     if (callback == h->from && ++h->calls == h->at) h->inside(h);
 }
 
-static bool ignore_none(void *user, uint32_t a, uint32_t b) {
+static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     notice_call(user, HOST_IGNORE);
-    return a == b;
+    return kind == CSCD_CONTACT_TT && a == b;
 }
 
 static bool report_progress(void *user, const char *stage, double fraction) {

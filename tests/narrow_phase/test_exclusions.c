@@ -49,11 +49,36 @@ static void list_by_rule(uint32_t rule, const cscd_contacts *contacts, const csc
     }
 }
 
-static bool is_in_list(void *user, uint32_t a, uint32_t b) {
-    const ignored_pairs *list = user;
+static bool is_in_list(const ignored_pairs *list, uint32_t a, uint32_t b) {
     for (size_t i = 0; i < list->count; i++) {
         uint32_t x = list->pairs[2 * i], y = list->pairs[2 * i + 1];
         if ((x == a && y == b) || (x == b && y == a)) return true;
+    }
+    return false;
+}
+
+/* What the callback sees: features of the mesh, and the list of triangles. */
+typedef struct feature_filter {
+    const ignored_pairs *list;
+    const cscd_mesh *mesh;
+    size_t calls[3]; /* by kind */
+} feature_filter;
+
+static bool ignore_features(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    feature_filter *filter = user;
+    uint32_t count_a = 1, count_b = 1;
+    const uint32_t *star_a = &a, *star_b = &b;
+    filter->calls[kind]++;
+    if (kind == CSCD_CONTACT_VF) star_a = cscd_mesh_vertex_triangles(filter->mesh, a, &count_a);
+    if (kind == CSCD_CONTACT_EE) {
+        assert_true(a < b);
+        star_a = cscd_mesh_edge_triangles(filter->mesh, a, &count_a);
+        star_b = cscd_mesh_edge_triangles(filter->mesh, b, &count_b);
+    }
+    if (kind == CSCD_CONTACT_TT) assert_true(a < b);
+    for (uint32_t i = 0; i < count_a * count_b; i++) {
+        uint32_t s = star_a[i / count_b], t = star_b[i % count_b];
+        if (s != t && is_in_list(filter->list, s, t)) return true;
     }
     return false;
 }
@@ -65,9 +90,11 @@ static size_t compare_with_callback(const ignored_pairs *list, cscd_method metho
     by_callback = by_list;
     by_list.ignored = list->pairs;
     by_list.ignored_count = list->count;
-    by_callback.ignore = is_in_list;
-    by_callback.ignore_user = (void *)list;
+    feature_filter filter = {.list = list};
+    by_callback.ignore = ignore_features;
+    by_callback.ignore_user = &filter;
     rig l = rig_create(&whole, 1, &by_list), c = rig_create(&whole, 1, &by_callback);
+    filter.mesh = c.mesh;
     cscd_intersections crossing_l, crossing_c;
     assert_int_equal(check_packed(l.detector, whole.x1, &crossing_l), CSCD_OK);
     assert_int_equal(check_packed(c.detector, whole.x1, &crossing_c), CSCD_OK);
@@ -79,6 +106,8 @@ static size_t compare_with_callback(const ignored_pairs *list, cscd_method metho
     if (found_l.count > 0)
         assert_memory_equal(found_l.items, found_c.items, found_l.count * sizeof *found_l.items);
     size_t count = found_l.count;
+    assert_true((filter.calls[CSCD_CONTACT_TT] > 0) >= (crossing_l.count > 0));
+    assert_true(filter.calls[CSCD_CONTACT_VF] + filter.calls[CSCD_CONTACT_EE] >= count);
     rig_destroy(&l);
     rig_destroy(&c);
     return count;

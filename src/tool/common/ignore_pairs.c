@@ -126,20 +126,32 @@ bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error) {
     return added;
 }
 
-bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b) {
+static uint32_t component_of(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t feature, bool second) {
+    uint32_t count;
+    bool triangle = kind == CSCD_CONTACT_TT || (kind == CSCD_CONTACT_VF && second);
+    if (triangle) return cscd_mesh_triangle_component(mesh, feature);
+    const uint32_t *star = kind == CSCD_CONTACT_VF ? cscd_mesh_vertex_triangles(mesh, feature, &count)
+                                                   : cscd_mesh_edge_triangles(mesh, feature, &count);
+    return cscd_mesh_triangle_component(mesh, star[0]);
+}
+
+/* The callback for cscd_detector_options.ignore. */
+static bool components_contain(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const ignore_pairs *pairs = user;
-    cscd_intersection key = {a, b};
-    if (pairs->triangle_count > 0 &&
-        bsearch(&key, pairs->triangles, pairs->triangle_count, sizeof key, compare_pairs) != NULL)
-        return true;
-    if (pairs->component_count == 0) return false;
-    uint32_t c = cscd_mesh_triangle_component(pairs->mesh, a),
-             d = cscd_mesh_triangle_component(pairs->mesh, b);
+    uint32_t c = component_of(pairs->mesh, kind, a, false), d = component_of(pairs->mesh, kind, b, true);
     for (size_t i = 0; i < pairs->component_count; i++) {
         cscd_intersection pair = pairs->components[i];
         if ((pair.a == c && pair.b == d) || (pair.a == d && pair.b == c)) return true;
     }
     return false;
+}
+
+void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options) {
+    options->ignored_count = pairs->triangle_count;
+    if (pairs->triangle_count > 0) options->ignored = &pairs->triangles->a;
+    if (pairs->component_count == 0) return;
+    options->ignore = components_contain;
+    options->ignore_user = pairs;
 }
 
 void ignore_pairs_free(ignore_pairs *pairs) {

@@ -20,7 +20,7 @@ bool ignore_pairs_read(ignore_pairs *pairs, const recording *r, const char *path
 /* Adds the pairs that intersect or touch in frame 0. */
 bool ignore_pairs_add_rest(ignore_pairs *pairs, recording *r, io_error *error);
 
-/* The callback for cscd_detector_options.ignore; user is the ignore_pairs. */
-bool ignore_pairs_contain(void *user, uint32_t a, uint32_t b);
+/* Makes a detector leave out the pairs, which live until it has been destroyed. */
+void ignore_pairs_choose(ignore_pairs *pairs, cscd_detector_options *options);
 
 void ignore_pairs_free(ignore_pairs *pairs);

@@ -82,10 +82,7 @@ static bool prepare_detector(replay *r, io_error *error) {
     options.start = r->options->start;
     options.volume = r->options->volume;
     options.min_separation = r->options->min_separation;
-    if (r->options->ignore_path != NULL || r->options->ignore_rest) {
-        options.ignore = ignore_pairs_contain;
-        options.ignore_user = &r->ignored;
-    }
+    ignore_pairs_choose(&r->ignored, &options);
     if (cscd_detector_create(r->recording.context, r->recording.mesh, r->plan.plan, &options, &r->detector) !=
         CSCD_OK)
         return io_fail(error, "%s", cscd_context_detail(r->recording.context));
