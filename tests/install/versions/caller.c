@@ -10,7 +10,7 @@ static const double start[VERTEX_COUNT * 3] = {0, 0, 0,  4, 0, 0,  0, 4, 0,  0, 
                                                1, 1, -1, 2, 1, -2, 1, 2, -2, 1, 1, -3};
 static double end[VERTEX_COUNT * 3];
 
-typedef struct scene {
+typedef struct caller_state {
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_plan *plan;
@@ -18,9 +18,9 @@ typedef struct scene {
     cscd_line_search *search;
     cscd_partition *partition;
     cscd_sensors *sensors;
-} scene;
+} caller_state;
 
-static void expect_ok(const scene *s, cscd_status status, const char *what) {
+static void expect_ok(const caller_state *s, cscd_status status, const char *what) {
     expect_that(status == CSCD_OK, what, s->context != NULL ? cscd_context_detail(s->context) : "failed");
 }
 
@@ -49,7 +49,7 @@ static void expect_refused(cscd_status status, const char *what, size_t place, c
     EXPECT_FILLED(type, name);                                                                               \
     expect_that(name.value.struct_size == sizeof name.value, #type, "struct_size is not the caller's")
 
-static void create_context(scene *s) {
+static void create_context(caller_state *s) {
     char reason[256] = "";
     OPTIONS(cscd_context_options, cscd_context_defaults_sized, options);
     expect_that(options.value.thread_count == 1, "cscd_context_options", "the default of thread_count");
@@ -60,7 +60,7 @@ static void create_context(scene *s) {
 }
 
 /* The size of an object is the stride of their array. */
-static void create_mesh(scene *s) {
+static void create_mesh(caller_state *s) {
     struct {
         cscd_object_desc values[OBJECT_COUNT];
         unsigned char guard[GUARD_SIZE];
@@ -87,7 +87,7 @@ static void create_mesh(scene *s) {
     expect_that(component.value.euler_characteristic == 2, "cscd_component", "its values");
 }
 
-static void create_plan(scene *s) {
+static void create_plan(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     OPTIONS(cscd_plan_options, cscd_plan_defaults_sized, options);
     expect_that(options.value.threshold == 0.1, "cscd_plan_options", "the default of threshold");
@@ -105,7 +105,7 @@ static void create_plan(scene *s) {
     EXPECT_FILLED(cscd_preprocess_timings, timings);
 }
 
-static void create_plan_from_parts(scene *s) {
+static void create_plan_from_parts(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     const uint32_t regions[OBJECT_COUNT * OWN_TRIANGLES] = {0, 0, 0, 0, 1, 1, 1, 1};
     const double points[OBJECT_COUNT * 3] = {1, 1, 1, 1.2, 1.2, -2};
@@ -124,7 +124,7 @@ static void create_plan_from_parts(scene *s) {
     cscd_plan_destroy(plan);
 }
 
-static void create_detector(scene *s) {
+static void create_detector(caller_state *s) {
     OPTIONS(cscd_detector_options, cscd_detector_defaults_sized, options);
     expect_that(options.value.step_factor == 0.8, "cscd_detector_options", "the default of step_factor");
     REFUSE(cscd_detector_options, options.value,
@@ -137,7 +137,7 @@ static void create_detector(scene *s) {
     EXPECT_FILLED(cscd_method_info, info);
 }
 
-static void ask_detector(scene *s) {
+static void ask_detector(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
     GUARDED(cscd_intersections, intersections);
     expect_ok(s, cscd_detector_check(s->detector, x0, &intersections.value), "cscd_detector_check");
@@ -159,7 +159,7 @@ static void ask_detector(scene *s) {
     expect_that(guarantee.value.complete, "cscd_guarantee", "its values");
 }
 
-static void ask_solver(scene *s) {
+static void ask_solver(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
     GUARDED(cscd_proximities, near);
     expect_ok(s, cscd_detector_find_near(s->detector, x0, 1.5, &near.value), "cscd_detector_find_near");
@@ -168,17 +168,6 @@ static void ask_solver(scene *s) {
     expect_ok(s, cscd_detector_max_step(s->detector, x0, x1, NULL, &step.value), "cscd_detector_max_step");
     EXPECT_FILLED(cscd_free_step, step);
     expect_that(step.value.limited, "cscd_free_step", "its values");
-    double radii[VERTEX_COUNT];
-    GUARDED(cscd_displacement_bounds, bounded);
-    expect_ok(s,
-              cscd_detector_displacement_bounds(s->detector, x0, 1.5, CSCD_SCALAR_DOUBLE, radii, sizeof radii,
-                                                &bounded.value),
-              "cscd_detector_displacement_bounds");
-    EXPECT_FILLED(cscd_displacement_bounds, bounded);
-    GUARDED(cscd_truncation, truncated);
-    expect_ok(s, cscd_detector_truncate(s->detector, x0, x1, 1.5, NULL, &truncated.value),
-              "cscd_detector_truncate");
-    EXPECT_FILLED(cscd_truncation, truncated);
     expect_ok(s, cscd_line_search_create(s->detector, &s->search), "cscd_line_search_create");
     expect_ok(s, cscd_line_search_begin(s->search, x0, x1, 1.5), "cscd_line_search_begin");
     GUARDED(cscd_free_step, found);
@@ -190,7 +179,7 @@ static void ask_solver(scene *s) {
     expect_that(close.value.count == near.value.count, "cscd_proximities", "their number");
 }
 
-static void ask_bounds(scene *s) {
+static void ask_bounds(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
     double reached[VERTEX_COUNT * 3], lengths[VERTEX_COUNT];
     GUARDED(cscd_displacement_bounds, bounds);
@@ -210,7 +199,7 @@ static void ask_bounds(scene *s) {
     expect_that(truncation.value.moved, "cscd_truncation", "its values");
 }
 
-static void create_sensors(scene *s) {
+static void create_sensors(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     OPTIONS(cscd_partition_options, cscd_partition_defaults_sized, options);
     REFUSE(cscd_partition_options, options.value,
@@ -230,7 +219,7 @@ static void create_sensors(scene *s) {
               "sensors");
 }
 
-static void ask_sensors(scene *s) {
+static void ask_sensors(caller_state *s) {
     GUARDED(cscd_warnings, warnings);
     expect_ok(s,
               cscd_sensors_step(s->sensors, CSCD_DOUBLES(start, VERTEX_COUNT),
@@ -246,7 +235,7 @@ static void ask_sensors(scene *s) {
 }
 
 int main(void) {
-    scene s = {NULL};
+    caller_state s = {NULL};
     for (int i = 0; i < VERTEX_COUNT * 3; i++) end[i] = start[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
     create_context(&s);
     create_mesh(&s);
