@@ -186,8 +186,7 @@ cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double lo
                            void *of, double *reached, free_step *out) {
     free_step found = {.result.fraction = longest};
     trial t = {.of = m, .test = test, .data = of};
-    cscd_status status = motion_check(d->context, m);
-    if (status == CSCD_OK) status = find_step(d, &t, longest, reached, &found.result);
+    cscd_status status = find_step(d, &t, longest, reached, &found.result);
     if (status == CSCD_OK) found.moved = is_moved(m, reached);
     if (status == CSCD_OK && !found.moved) memcpy(reached, m->x0, coordinates_of(m) * sizeof *reached);
     if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = found;

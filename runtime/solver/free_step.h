@@ -10,7 +10,8 @@ typedef struct straight_motion {
     const cscd_scalar *scalars; /* per object: positions on the way are rounded to it; NULL: to doubles */
 } straight_motion;
 
-/* Returns INVALID_ARGUMENT, with a sentence, if x0 or x1 would be infinite as the floats that they are to become. */
+/* Returns INVALID_ARGUMENT, with a sentence, if x0 or x1 would be infinite as the floats that they are to become. To be
+ * asked before a search begins. */
 cscd_status motion_check(cscd_context *context, const straight_motion *m);
 
 /* Writes x0 + fraction (x1 - x0), rounded, and where that is asked for rounded to floats; at 0 and 1 x0 and x1 themselves.

@@ -1,7 +1,8 @@
 /* A line search: the candidates of one motion serve every shorter step and every moment on it. */
+#include "runtime/solver/line_search.h"
+
 #include "runtime/detector/contact_list.h"
 #include "runtime/solver/candidates.h"
-#include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
 #include "src/core/check.h"
 #include "src/core/struct_size.h"
@@ -13,6 +14,8 @@ struct cscd_line_search {
     reference_count references; /* the caller alone */
     cscd_detector *detector;    /* held, and with it the context */
     double *x0, *x1, *reached;  /* positions */
+    cscd_scalar *scalars;       /* per object: of positions on the line */
+
     uint32_t rules_revision;    /* of the detector, at the begin */
     double reach, covered;      /* covered: all pairs that come within this distance are candidates */
     double beyond;              /* ... as are those that are so much farther apart */
@@ -24,7 +27,7 @@ struct cscd_line_search {
 };
 
 static straight_motion motion_of(const cscd_line_search *line) {
-    return (straight_motion){.mesh = line->detector->mesh, .x0 = line->x0, .x1 = line->x1};
+    return (straight_motion){line->detector->mesh, line->x0, line->x1, line->scalars};
 }
 
 /* ---- life ---------------------------------------------------------------------------------------------- */
@@ -33,7 +36,8 @@ static array_list list_arrays(cscd_line_search *line) {
     const cscd_mesh *mesh = line->detector->mesh;
     size_t coordinates = (size_t)mesh->vertex_count * 3;
     return (array_list){{ARRAY(line->x0, coordinates), ARRAY(line->x1, coordinates),
-                         ARRAY(line->reached, coordinates), ARRAY(line->states, mesh->triangle_count)}};
+                         ARRAY(line->reached, coordinates), ARRAY(line->states, mesh->triangle_count),
+                         ARRAY(line->scalars, mesh->object_count)}};
 }
 
 static void free_line(reference_count *references) {
@@ -88,6 +92,11 @@ static void remember_states(cscd_line_search *line) {
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
 
+void line_search_store_in(cscd_line_search *line, const cscd_scalar *scalars) {
+    memcpy(line->scalars, scalars, line->detector->mesh->object_count * sizeof *scalars);
+    line->begun = false;
+}
+
 static cscd_status check_reach(cscd_context *context, double reach) {
     if (is_length(reach)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -100,13 +109,15 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     uint32_t vertices = d->mesh->vertex_count;
     cscd_status status = positions_check(d->context, x0, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
+    straight_motion m = {d->mesh, x0, x1, line->scalars};
+    if (status == CSCD_OK) status = motion_check(d->context, &m);
     if (status != CSCD_OK) return status;
     line->begun = false;
     line->reach = reach;
     memcpy(line->x0, x0, vertices * sizeof(double[3]));
     memcpy(line->x1, x1, vertices * sizeof(double[3]));
     remember_states(line);
-    straight_motion m = motion_of(line);
+    m = motion_of(line);
     line->covered = max_of(d->limit.distance, reach);
     line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
     line->rules_revision = d->rules_revision;

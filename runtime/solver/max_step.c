@@ -88,8 +88,10 @@ static cscd_status fail_tries(const tries *t, cscd_status status) {
 cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step *out) {
     double since = timer_now_ms();
     tries t = {.detector = d, .timings = {.check_ms = d->timings.check_ms}};
+    cscd_status status = motion_check(d->context, m);
+    if (status != CSCD_OK) return status;
     detector_begin_call(d);
-    cscd_status status = reserve_reached(d);
+    status = reserve_reached(d);
     if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
     if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return fail_tries(&t, status);

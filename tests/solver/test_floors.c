@@ -40,16 +40,21 @@ static void place_panels(panels *p, double height) {
     }
 }
 
-static void open_panels(panels *p, double min_separation, double height) {
+static void open_panels_by(panels *p, cscd_method method, double min_separation, double height) {
     uint32_t triangles[TRIANGLES * 3];
     cscd_object_desc desc = cscd_object_of_triangles(VERTICES, TRIANGLES, triangles);
     cscd_detector_options options = cscd_detector_defaults();
+    options.method = method;
     options.min_separation = min_separation;
     fill_triangles(triangles);
     place_panels(p, height);
     assert_int_equal(cscd_context_create(NULL, &p->context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(p->context, &desc, 1, &p->mesh), CSCD_OK);
     assert_int_equal(detector_create_here(p->mesh, NULL, &options, &p->detector), CSCD_OK);
+}
+
+static void open_panels(panels *p, double min_separation, double height) {
+    open_panels_by(p, CSCD_METHOD_AUTO, min_separation, height);
 }
 
 static void close_panels(panels *p) {
@@ -116,6 +121,23 @@ static void pressed_pairs_lose_no_more_than_a_rung(void **state) {
     press_panels(0.01, 0.005, 2000, 1e-4);
     press_panels(0.01, 1e-9, 2000, 1e-10);
     press_panels(1e-6, 1e-4, 2000, 0.0);
+}
+
+/* An end that lies between d and what is surely above d is not reached, though volumes part the panels by more than d
+ * on the whole way: the next start would find a rung below. */
+static void ends_are_surely_above(void **state) {
+    (void)state;
+    static const double beyond[] = {1e-9, 5e-7, 9e-7, 2e-6};
+    for (size_t i = 0; i < 2 * sizeof beyond / sizeof *beyond; i++) {
+        panels p;
+        random_stream random = stream_start(i);
+        open_panels_by(&p, i % 2 == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_BRUTE, 0.01, 0.05);
+        aim_panels(&p, 0.05 - 0.01 * (1.0 + beyond[i / 2]), 0.0, &random);
+        free_step step = go_on(&p);
+        assert_int_equal(step.result.limited, beyond[i / 2] < 1e-6);
+        assert_true(distance_of(&p) > 0.01 * (1.0 + 1e-6));
+        close_panels(&p);
+    }
 }
 
 /* ---- torn apart ---------------------------------------------------------------------------------------- */
@@ -186,7 +208,8 @@ static void only_touching_is_in_contact(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pressed_pairs_lose_no_more_than_a_rung), cmocka_unit_test(torn_panels_part),
-        cmocka_unit_test(torn_panels_move_on), cmocka_unit_test(only_touching_is_in_contact)};
+        cmocka_unit_test(pressed_pairs_lose_no_more_than_a_rung), cmocka_unit_test(ends_are_surely_above),
+        cmocka_unit_test(torn_panels_part), cmocka_unit_test(torn_panels_move_on),
+        cmocka_unit_test(only_touching_is_in_contact)};
     return cmocka_run_group_tests_name("floors", tests, NULL, NULL);
 }
