@@ -144,6 +144,11 @@ typedef struct cscd_detector_options {
      * holds for all distances above 0. Pairs at distance 0 must not touch, as without. */
     const double *thickness_matrix;
     uint32_t rule_count, thickness_class_count;
+
+    /* A pair that starts nearer than min_separation d has a floor in cscd_detector_max_step and line searches,
+     * below which it never comes: one of d, s d, s^2 d, ... with s = floor_ratio. In (0,0.999], 0.9 by
+     * default. */
+    double floor_ratio;
 } cscd_detector_options;
 
 /* The default options. */

@@ -63,19 +63,24 @@ static inline cscd_status cscd_detector_find_near(cscd_detector *detector, const
 
 /* How far a motion may go without contact. */
 typedef struct cscd_free_step {
-    double fraction;    /* in (0,1]; with 1 the end is x1, bit for bit */
-    bool limited;       /* the fraction is below the longest that was asked for, because of this contact: */
+    double fraction; /* in (0,1]; with 1 the end is x1, bit for bit */
+    bool limited; /* the fraction is below the longest that was asked for, because of the contact `limit` */
+    bool moved;   /* false: no coordinate is another than in x0, and `reached` is x0 in every bit */
     cscd_contact limit; /* a first contact of the whole motion; fraction <= step_factor * limit.toi, unless
                          * toi is 0 or so small that rounding decides */
 } cscd_free_step;
 
-/* Finds how far the vertices may go from x0 towards x1 without any contact (with min_separation: without
- * coming within it), and certifies it. The positions x0 + fraction (x1 - x0), rounded, are written to
- * `reached`, which may be x1 itself, or NULL if they are not wanted. It is the motion to these very numbers
- * that was searched: there is no contact on the way, both ends included. A component that is embedded at x0
- * is therefore embedded at `reached`, and the next step from there need not prove its start. IN_CONTACT: the features of a pair, which the sentence names, touch at x0 or, with
- * min_separation, are not farther apart than that and its tolerance; nothing is written. INVALID_ARGUMENT
- * also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing. CANCELLED: see cscd_progress.
+/* Finds how far the vertices may go from x0 towards x1 without any contact, and certifies it. The positions
+ * x0 + fraction (x1 - x0), rounded to the scalar of `reached`, are written to it; it may be x1 itself, or NULL
+ * if they are not wanted, and then the scalar is that of x0. It is the motion to these very numbers that was
+ * searched: nothing touches on the way, both ends included. A component that is embedded at x0 is therefore
+ * embedded at `reached`, and the next step from there need not prove its start.
+ * With min_separation d every pair keeps a floor: the greatest of d, s d, s^2 d, ... (s: floor_ratio) that its
+ * distance at x0 surely exceeds, or touching, where that is below 2^-40 of its extent. So a pair above d stays
+ * above d over any number of steps, and one below it may part, and sinks no farther than its floor.
+ * IN_CONTACT: two features touch at x0; the sentence names them, *out has them as its limit, and nothing else
+ * is written. INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing, and
+ * for coordinates that are infinite as floats. CANCELLED: see cscd_progress.
  * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
  * guarantees those of the motion that was certified. */
 CSCD_API cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0,

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static const cscd_detector_options default_options = {.step_factor = 0.8};
+static const cscd_detector_options default_options = {.step_factor = 0.8, .floor_ratio = 0.9};
 
 void cscd_detector_defaults_sized(cscd_detector_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
@@ -45,6 +45,9 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
     if (!(options->step_factor > 0.0 && options->step_factor < 1.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "step_factor is %g, expected a number in (0,1)",
                             options->step_factor);
+    if (!(options->floor_ratio > 0.0 && options->floor_ratio <= 0.999))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "floor_ratio is %g, expected a number in (0,0.999]", options->floor_ratio);
     return check_separation(context, options);
 }
 
@@ -74,8 +77,8 @@ static array_list list_arrays(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
     return (array_list){{ARRAY(d->culled, components), ARRAY(d->wants_all_contacts, components),
                          ARRAY(d->touched, components), ARRAY(d->incomplete, components),
-                         ARRAY(d->guarantees, components), ARRAY(d->contacts_seen, lanes),
-                         ARRAY(d->never_culled, components)}};
+                         ARRAY(d->guarantees, components), ARRAY(d->reached_scalars, d->mesh->object_count),
+                         ARRAY(d->contacts_seen, lanes), ARRAY(d->never_culled, components)}};
 }
 
 static void choose_regions(cscd_detector *d) {
@@ -155,7 +158,6 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     d->stages = method_stages_of(chosen.method);
     d->rules = *d->stages->rules;
     d->limit = limit_of(&chosen);
-    d->floor_ratio = 0.9;
     cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
@@ -247,7 +249,7 @@ double detector_floors_beyond(const cscd_detector *d, double distance, const dou
 interval_search detector_search_floors(cscd_detector *d, const double *x0, const double *x1) {
     interval_search search = detector_search_begin(d, x0, x1);
     search.interval.beyond = detector_floors_beyond(d, d->limit.distance, x0, x1);
-    search.interval.floor_ratio = search.interval.beyond > 0.0 ? d->floor_ratio : 0.0;
+    search.interval.floor_ratio = search.interval.beyond > 0.0 ? d->options.floor_ratio : 0.0;
     return search;
 }
 

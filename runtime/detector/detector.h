@@ -20,8 +20,7 @@ struct cscd_detector {
     cscd_mesh seen;        /* the mesh, which the detector holds, in its context */
     const cscd_mesh *mesh; /* &seen */
     cscd_detector_options options;
-    separation limit;   /* of the options, with the default tolerance filled in */
-    double floor_ratio; /* of one floor to the next */
+    separation limit; /* of the options, with the default tolerance filled in */
     const method_traits *traits;
     const method_stages *stages;
     culling_rules rules;
@@ -53,7 +52,8 @@ struct cscd_detector {
     result_buffer contacts, proximities, intersections;
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
-    void *pair_scratch;  /* of displacement bounds and truncation, per near pair; NULL before the first */
+    cscd_scalar *reached_scalars; /* per object: of what max_step or a line search reaches */
+    void *pair_scratch; /* of displacement bounds and truncation, per near pair; NULL before the first */
     size_t pair_scratch_size;
     void *vertex_scratch; /* of truncation, per vertex; NULL before its first call */
     cscd_scalar *scalars; /* of truncation, per object, of x0 and of what is reached; the same */

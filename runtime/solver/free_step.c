@@ -183,10 +183,10 @@ static cscd_status find_step(cscd_detector *d, trial *t, double longest, double 
 }
 
 cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
-                           void *of, double *reached, free_step *out) {
-    free_step found = {.result.fraction = longest};
+                           void *of, double *reached, cscd_free_step *out) {
+    cscd_free_step found = {.fraction = longest};
     trial t = {.of = m, .test = test, .data = of};
-    cscd_status status = find_step(d, &t, longest, reached, &found.result);
+    cscd_status status = find_step(d, &t, longest, reached, &found);
     if (status == CSCD_OK) found.moved = is_moved(m, reached);
     if (status == CSCD_OK && !found.moved) memcpy(reached, m->x0, coordinates_of(m) * sizeof *reached);
     if (status == CSCD_OK || status == CSCD_IN_CONTACT) *out = found;

@@ -24,13 +24,7 @@ double motion_rounding(const straight_motion *m);
 /* Finds contacts between two moments of the motion, the first contact among them. */
 typedef cscd_status motion_test(void *of, const double *from, const double *to, cscd_contacts *out);
 
-/* What a search for a free step has found. */
-typedef struct free_step {
-    cscd_free_step result;
-    bool moved; /* some coordinate is not what it was */
-} free_step;
-
 /* Finds the longest of the steps tried, at most `longest`, whose end is reached without contact, and writes that end to
- * `reached`. IN_CONTACT: no step is free of contact; then only the limit of the result is written. */
+ * `reached`. IN_CONTACT: no step is free of contact; then *out has the pair that touches, and nothing else is written. */
 cscd_status free_step_find(cscd_detector *d, const straight_motion *m, double longest, motion_test *test,
-                           void *of, double *reached, free_step *out);
+                           void *of, double *reached, cscd_free_step *out);

@@ -1,8 +1,7 @@
 /* A line search: the candidates of one motion serve every shorter step and every moment on it. */
-#include "runtime/solver/line_search.h"
-
 #include "runtime/detector/contact_list.h"
 #include "runtime/solver/candidates.h"
+#include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
 #include "src/core/check.h"
 #include "src/core/struct_size.h"
@@ -16,9 +15,9 @@ struct cscd_line_search {
     double *x0, *x1, *reached;  /* positions */
     cscd_scalar *scalars;       /* per object: of positions on the line */
 
-    uint32_t rules_revision;    /* of the detector, at the begin */
-    double reach, covered;      /* covered: all pairs that come within this distance are candidates */
-    double beyond;              /* ... as are those that are so much farther apart */
+    uint32_t rules_revision; /* of the detector, at the begin */
+    double reach, covered;   /* covered: all pairs that come within this distance are candidates */
+    double beyond;           /* ... as are those that are so much farther apart */
     bool begun;
     double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
@@ -92,11 +91,6 @@ static void remember_states(cscd_line_search *line) {
     if (line->states_known) memcpy(line->states, s->triangles, line->detector->mesh->triangle_count);
 }
 
-void line_search_store_in(cscd_line_search *line, const cscd_scalar *scalars) {
-    memcpy(line->scalars, scalars, line->detector->mesh->object_count * sizeof *scalars);
-    line->begun = false;
-}
-
 static cscd_status check_reach(cscd_context *context, double reach) {
     if (is_length(reach)) return CSCD_OK;
     return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -137,7 +131,10 @@ static cscd_status begin_views(cscd_line_search *line, const cscd_view *x0, cons
     cscd_status status = check_reach(d->context, reach);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x0, "x0", &d->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x1, "x1", &d->unpacked[1], &to);
-    return status == CSCD_OK ? begin_between(line, from, to, reach) : status;
+    if (status != CSCD_OK) return status;
+    line->begun = false;
+    views_scalars(d->mesh, x0, line->scalars);
+    return begin_between(line, from, to, reach);
 }
 
 cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
@@ -180,6 +177,24 @@ static cscd_status check_fraction(const cscd_line_search *line, double fraction,
                         "%s: fraction is %g, expected a number in [0,1]", function, fraction);
 }
 
+/* The motion with the scalars in which its positions are asked for. Candidates that were collected for doubles do not do
+ * for floats. */
+static cscd_status motion_in(const cscd_line_search *line, const cscd_mutable_view *asked,
+                             const char *function, straight_motion *out) {
+    cscd_detector *d = line->detector;
+    *out = motion_of(line);
+    if (asked == NULL) return CSCD_OK;
+    views_mutable_scalars(d->mesh, asked, d->reached_scalars);
+    out->scalars = d->reached_scalars;
+    for (uint32_t o = 0; o < d->mesh->object_count; o++) {
+        if (d->reached_scalars[o] != CSCD_SCALAR_FLOAT || line->scalars[o] == CSCD_SCALAR_FLOAT) continue;
+        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
+                            "%s: object %u is asked for in floats, but the line was begun with x0 in doubles",
+                            function, o);
+    }
+    return CSCD_OK;
+}
+
 static cscd_status write_positions(cscd_line_search *line, double fraction,
                                    const cscd_mutable_view *positions) {
     cscd_detector *d = line->detector;
@@ -188,8 +203,9 @@ static cscd_status write_positions(cscd_line_search *line, double fraction,
         status =
             context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_positions: positions is NULL");
     if (status == CSCD_OK) status = views_check_mutable(d->context, d->mesh, positions, "positions");
+    straight_motion m;
+    if (status == CSCD_OK) status = motion_in(line, positions, "cscd_line_search_positions", &m);
     if (status != CSCD_OK) return status;
-    straight_motion m = motion_of(line);
     motion_at(&m, fraction, line->reached);
     views_write(d->mesh, positions, line->reached);
     return CSCD_OK;
@@ -292,6 +308,8 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_max_step");
     if (status == CSCD_OK) status = check_covered(line);
     if (status == CSCD_OK) status = views_check_mutable(d->context, d->mesh, reached, "reached");
+    straight_motion m;
+    if (status == CSCD_OK) status = motion_in(line, reached, "cscd_line_search_max_step", &m);
     if (status != CSCD_OK) return status;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_max_step: out is NULL");
@@ -300,15 +318,14 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
                             "cscd_line_search_max_step: longest is %g, expected a number in (0,1]", longest);
     detector_begin_call(d);
     line->done = 0.0;
-    straight_motion m = motion_of(line);
-    free_step step;
+    cscd_free_step step;
     status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
-    if (status == CSCD_IN_CONTACT) struct_give(out, size, &step.result, sizeof step.result);
+    if (status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
     if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
     views_write(d->mesh, reached, line->reached);
-    struct_give(out, size, &step.result, sizeof step.result);
+    struct_give(out, size, &step, sizeof step);
     return CSCD_OK;
 }
 

@@ -85,7 +85,7 @@ static cscd_status fail_tries(const tries *t, cscd_status status) {
     return detector_fail_call(t->detector, status);
 }
 
-cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step *out) {
+cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_step *out) {
     double since = timer_now_ms();
     tries t = {.detector = d, .timings = {.check_ms = d->timings.check_ms}};
     cscd_status status = motion_check(d->context, m);
@@ -102,11 +102,12 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, free_step 
     return CSCD_OK;
 }
 
-static cscd_status max_step_between(cscd_detector *d, const double *x0, const double *x1, free_step *out) {
+static cscd_status max_step_between(cscd_detector *d, const double *x0, const double *x1,
+                                    cscd_free_step *out) {
     double since = timer_now_ms(), check_ms = 0.0;
     cscd_status status = step_check_positions(d, x0, x1);
     if (status != CSCD_OK) return status;
-    straight_motion m = {.mesh = d->mesh, .x0 = x0, .x1 = x1};
+    straight_motion m = {d->mesh, x0, x1, d->reached_scalars};
     timer_lap(&since, &check_ms);
     status = max_step_find(d, &m, out);
     if (status == CSCD_OK) d->timings.total_ms += check_ms;
@@ -120,15 +121,16 @@ static cscd_status max_step_of_views(cscd_detector *detector, const cscd_view *x
     if (out == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_max_step: out is NULL");
     const double *from = NULL, *to = NULL;
-    free_step step;
+    cscd_free_step step;
     cscd_status status = check_method(detector);
     if (status == CSCD_OK) status = views_read(context, mesh, x0, "x0", &detector->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(context, mesh, x1, "x1", &detector->unpacked[1], &to);
     if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
+    if (status == CSCD_OK && reached == NULL) views_scalars(mesh, x0, detector->reached_scalars);
+    if (status == CSCD_OK && reached != NULL) views_mutable_scalars(mesh, reached, detector->reached_scalars);
     if (status == CSCD_OK) status = max_step_between(detector, from, to, &step);
     if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
-    if (status == CSCD_OK || status == CSCD_IN_CONTACT)
-        struct_give(out, size, &step.result, sizeof step.result);
+    if (status == CSCD_OK || status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
     return status;
 }
 

@@ -1,6 +1,5 @@
 /* A solver that stores floats marches on: what it stores is what was certified, and it goes as far as in doubles. */
 #include "runtime/detector/step.h"
-#include "runtime/solver/line_search.h"
 #include "runtime/solver/max_step.h"
 #include "tests/support/packed.h"
 #include "tests/support/random_stream.h"
@@ -111,7 +110,7 @@ static march_tally march_on(cage_march *c, int steps, uint64_t seed) {
     random_stream random = stream_start(seed);
     march_tally sum = {.sum = 0.0};
     for (int i = 0; i < steps; i++) {
-        free_step step;
+        cscd_free_step step;
         straight_motion m = {c->mesh, c->x0, c->x1, c->scalars};
         aim_bodies(c, &random);
         assert_int_equal(step_check_positions(c->detector, c->x0, c->x1), CSCD_OK);
@@ -124,9 +123,9 @@ static march_tally march_on(cage_march *c, int steps, uint64_t seed) {
             assert_int_equal(step_packed(c->judge, c->x0, reached, &found), CSCD_OK);
             assert_int_equal(found.count, 0);
         }
-        sum.sum += step.result.fraction;
+        sum.sum += step.fraction;
         sum.still += !step.moved;
-        sum.limited += step.result.limited;
+        sum.limited += step.limited;
         memcpy(c->x0, reached, sizeof c->x0);
     }
     return sum;
@@ -154,16 +153,63 @@ static void floats_go_as_far_as_doubles(void **state) {
     }
 }
 
+/* Views of one array of floats, and of another of doubles. */
+typedef struct stored_views {
+    float floats[VERTICES * 3];
+    double doubles[VERTICES * 3];
+    cscd_view views[2];
+    cscd_mutable_view mutable[2];
+} stored_views;
+
+static void view_stored(const cage_march *c, const double *x, stored_views *out) {
+    static const size_t begin[2] = {0, CAGE * 3}, end[2] = {CAGE * 3, VERTICES * 3};
+    for (int i = 0; i < VERTICES * 3; i++) {
+        out->floats[i] = (float)x[i];
+        out->doubles[i] = x[i];
+    }
+    for (int o = 0; o < 2; o++) {
+        bool in_floats = c->scalars[o] == CSCD_SCALAR_FLOAT;
+        size_t size = in_floats ? sizeof(float) : sizeof(double), bytes = (end[o] - begin[o]) * size;
+        void *data = in_floats ? (void *)(out->floats + begin[o]) : (void *)(out->doubles + begin[o]);
+        out->views[o] = (cscd_view){.data = data, .size = bytes, .scalar = c->scalars[o], .object_count = 1};
+        out->mutable[o] =
+            (cscd_mutable_view){.data = data, .size = bytes, .scalar = c->scalars[o], .object_count = 1};
+    }
+}
+
+static void read_stored(const cage_march *c, const stored_views *v, double *out) {
+    for (int i = 0; i < VERTICES * 3; i++)
+        out[i] = c->scalars[i >= CAGE * 3] == CSCD_SCALAR_FLOAT ? (double)v->floats[i] : v->doubles[i];
+}
+
 /* ---- lines --------------------------------------------------------------------------------------------- */
+
+static void begin_line(const cage_march *c, cscd_line_search *line) {
+    stored_views x0;
+    view_stored(c, c->x0, &x0);
+    const cscd_view x1 = cscd_view_doubles(c->x1, VERTICES);
+    assert_int_equal(cscd_line_search_begin(line, x0.views, &x1, 0.0), CSCD_OK);
+}
+
+static cscd_free_step go_on_line(const cage_march *c, cscd_line_search *line, double *reached) {
+    stored_views end;
+    cscd_free_step step;
+    view_stored(c, c->x0, &end);
+    assert_int_equal(cscd_line_search_max_step(line, 1.0, end.mutable, &step), CSCD_OK);
+    read_stored(c, &end, reached);
+    return step;
+}
 
 /* One line search from where the bodies are: the step that it certifies, and all moments on it, in floats. */
 static cscd_free_step step_on_line(cage_march *c, cscd_line_search *line, double *reached, double *at) {
-    cscd_free_step step;
+    stored_views moment;
     cscd_contacts found;
-    assert_int_equal(line_begin_packed(line, c->x0, c->x1, 0.0), CSCD_OK);
-    assert_int_equal(line_max_step_packed(line, 1.0, reached, &step), CSCD_OK);
+    begin_line(c, line);
+    cscd_free_step step = go_on_line(c, line, reached);
     check_stored(c, reached);
-    assert_int_equal(line_positions_packed(line, step.fraction, at), CSCD_OK);
+    view_stored(c, c->x0, &moment);
+    assert_int_equal(cscd_line_search_positions(line, step.fraction, moment.mutable), CSCD_OK);
+    read_stored(c, &moment, at);
     assert_memory_equal(reached, at, sizeof c->x0);
     assert_int_equal(step_packed(c->judge, c->x0, reached, &found), CSCD_OK);
     assert_int_equal(found.count, 0);
@@ -176,7 +222,6 @@ static void rounding_reaches_beyond_the_line(void **state) {
     (void)state;
     cage_march c;
     cscd_line_search *line = NULL;
-    cscd_free_step step;
     double reached[VERTICES * 3], top = 0.0;
     open_march(&c, 0x1p22, 0.0, CSCD_SCALAR_FLOAT);
     c.scalars[1] = CSCD_SCALAR_DOUBLE;
@@ -185,9 +230,8 @@ static void rounding_reaches_beyond_the_line(void **state) {
     memcpy(c.x1, c.x0, sizeof c.x1);
     for (int v = 0; v < CAGE; v++) c.x1[3 * v + 2] += 0.3;
     assert_int_equal(cscd_line_search_create(c.detector, &line), CSCD_OK);
-    line_search_store_in(line, c.scalars);
-    assert_int_equal(line_begin_packed(line, c.x0, c.x1, 0.0), CSCD_OK);
-    assert_int_equal(line_max_step_packed(line, 1.0, reached, &step), CSCD_OK);
+    begin_line(&c, line);
+    cscd_free_step step = go_on_line(&c, line, reached);
     assert_true(step.limited && step.fraction < 1.0);
     for (int v = 0; v < CAGE; v++) assert_true(reached[3 * v + 2] <= top);
     cscd_line_search_destroy(line);
@@ -207,7 +251,6 @@ static void lines_certify_floats(void **state) {
         uint32_t limited = 0;
         open_march(&c, places[i], 0.0, CSCD_SCALAR_FLOAT);
         assert_int_equal(cscd_line_search_create(c.detector, &line), CSCD_OK);
-        line_search_store_in(line, c.scalars);
         for (int s = 0; s < STEPS; s++) {
             aim_bodies(&c, &random);
             limited += step_on_line(&c, line, reached, at).limited;
@@ -224,7 +267,7 @@ static void lines_certify_floats(void **state) {
 static void overflow_is_refused(void **state) {
     (void)state;
     cage_march c;
-    free_step step;
+    cscd_free_step step;
     open_march(&c, 1.0, 0.0, CSCD_SCALAR_FLOAT);
     straight_motion m = {c.mesh, c.x0, c.x1, c.scalars};
     memcpy(c.x1, c.x0, sizeof c.x1);
@@ -234,7 +277,7 @@ static void overflow_is_refused(void **state) {
         strstr(cscd_context_detail(c.context), "x1: vertex 2 has y = 6.80565e+38, which is infinite"));
     c.scalars[0] = CSCD_SCALAR_DOUBLE;
     assert_int_equal(max_step_find(c.detector, &m, &step), CSCD_OK);
-    assert_true(step.result.limited && step.moved);
+    assert_true(step.limited && step.moved);
     close_march(&c);
 }
 

@@ -78,8 +78,8 @@ static double distance_of(const panels *p) {
 }
 
 /* One certified step towards x1, and on to where it ends. */
-static free_step go_on(panels *p) {
-    free_step step;
+static cscd_free_step go_on(panels *p) {
+    cscd_free_step step;
     straight_motion m = {.mesh = p->mesh, .x0 = p->x0, .x1 = p->x1};
     assert_int_equal(max_step_find(p->detector, &m, &step), CSCD_OK);
     memcpy(p->x0, p->detector->reached, sizeof p->x0);
@@ -133,8 +133,8 @@ static void ends_are_surely_above(void **state) {
         random_stream random = stream_start(i);
         open_panels_by(&p, i % 2 == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_BRUTE, 0.01, 0.05);
         aim_panels(&p, 0.05 - 0.01 * (1.0 + beyond[i / 2]), 0.0, &random);
-        free_step step = go_on(&p);
-        assert_int_equal(step.result.limited, beyond[i / 2] < 1e-6);
+        cscd_free_step step = go_on(&p);
+        assert_int_equal(step.limited, beyond[i / 2] < 1e-6);
         assert_true(distance_of(&p) > 0.01 * (1.0 + 1e-6));
         close_panels(&p);
     }
@@ -151,11 +151,11 @@ static void torn_panels_part(void **state) {
         random_stream random = stream_start(i);
         open_panels(&p, 0.01, 0.01 * shares[i]);
         aim_panels(&p, -0.001, 0.0, &random);
-        free_step step = go_on(&p);
-        assert_true(step.result.fraction == 1.0 && !step.result.limited && step.moved);
+        cscd_free_step step = go_on(&p);
+        assert_true(step.fraction == 1.0 && !step.limited && step.moved);
         while (p.x0[VERTICES * 3 - 1] < 0.02) {
             aim_panels(&p, -0.001, 0.0, &random);
-            assert_true(go_on(&p).result.fraction == 1.0);
+            assert_true(go_on(&p).fraction == 1.0);
         }
         assert_true(distance_of(&p) > 0.01);
         close_panels(&p);
@@ -175,8 +175,8 @@ static void torn_panels_move_on(void **state) {
         for (int k = 0; k < 3; k++) flight[k] = stream_between(&random, -0.1, 0.1);
         for (int c = 0; c < VERTICES * 3; c++) p.x1[c] += flight[c % 3];
         for (int v = PANEL; v < VERTICES; v++) p.x1[3 * v + 2] += 1e-4 * stream_between(&random, 0.0, 1.0);
-        free_step step = go_on(&p);
-        lost += !step.moved || step.result.fraction < 1.0;
+        cscd_free_step step = go_on(&p);
+        lost += !step.moved || step.fraction < 1.0;
     }
     assert_int_equal(lost, 0);
     assert_true(distance_of(&p) > 0.01);

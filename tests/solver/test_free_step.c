@@ -38,47 +38,47 @@ static rig make_flight(straight_motion *m) {
 
 static void free_motions_are_whole_steps(void **state) {
     straight_motion m;
-    free_step out;
+    cscd_free_step out;
     (void)state;
     rig r = make_flight(&m);
     wall nowhere = {.at = INFINITY};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.result.fraction == 1.0 && !out.result.limited && out.moved && nowhere.tests == 1);
+    assert_true(out.fraction == 1.0 && !out.limited && out.moved && nowhere.tests == 1);
     assert_memory_equal(reached, ends, shape.vertex_count * sizeof(double[3]));
     assert_int_equal(free_step_find(r.detector, &m, 0.25, test_wall, &nowhere, reached, &out), CSCD_OK);
-    assert_true(out.result.fraction == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
+    assert_true(out.fraction == 0.25 && fabs(reached[0] - shape.x0[0] - 0.25) < 1e-12);
     rig_destroy(&r);
 }
 
 static void limited_steps_end_before_the_wall(void **state) {
     straight_motion m;
-    free_step out;
+    cscd_free_step out;
     (void)state;
     rig r = make_flight(&m);
     for (double share = 0.9; share > 1e-6; share *= 0.1) {
         wall w = {.at = shape.x0[0] + share};
         assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_OK);
-        assert_true(out.result.limited && out.result.limit.a == 4 && out.result.limit.b == 9);
-        assert_true(fabs(out.result.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.result.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(out.limited && out.limit.a == 4 && out.limit.b == 9);
+        assert_true(fabs(out.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
         if (share > 0.4) continue;
         w.tests = 0; /* half of the motion at most, but times are still of the whole motion */
         assert_int_equal(free_step_find(r.detector, &m, 0.5, test_wall, &w, reached, &out), CSCD_OK);
-        assert_true(out.result.limited && fabs(out.result.limit.toi - share) < 1e-12);
-        assert_true(fabs(out.result.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
+        assert_true(out.limited && fabs(out.limit.toi - share) < 1e-12);
+        assert_true(fabs(out.fraction - 0.8 * share) < 1e-12 && reached[0] < w.at && w.tests == 2);
     }
     rig_destroy(&r);
 }
 
 static void no_step_is_free_from_within(void **state) {
     straight_motion m;
-    free_step out = {.result.fraction = -1.0};
+    cscd_free_step out = {.fraction = -1.0};
     (void)state;
     rig r = make_flight(&m);
     wall w = {.at = shape.x0[0]};
     assert_int_equal(free_step_find(r.detector, &m, 1.0, test_wall, &w, reached, &out), CSCD_IN_CONTACT);
-    assert_true(out.result.fraction == 0.0 && out.result.limited && w.tests < 10);
-    assert_true(out.result.limit.a == 4 && out.result.limit.b == 9 && out.result.limit.toi == 0.0);
+    assert_true(out.fraction == 0.0 && out.limited && w.tests < 10);
+    assert_true(out.limit.a == 4 && out.limit.b == 9 && out.limit.toi == 0.0);
     rig_destroy(&r);
 }
 
