@@ -40,7 +40,8 @@
  *   create      cscd_context_create(), cscd_mesh_create(), cscd_detector_defaults(), cscd_detector_create(); if
  *               the mesh is closed and deforms for long, cscd_plan_create() first, which makes steps faster
  *   contacts    cscd_detector_step(): all contacts of a motion; cscd_mesh_stencil(): the weights behind each
- *   barrier     cscd_detector_find_near(): all pairs within a distance at one moment
+ *   barrier     cscd_detector_find_near(): all pairs within a distance at one moment, each once with its number
+ *               in the form CSCD_NEAR_UNIQUE
  *   certified   cscd_detector_max_step(): how far the vertices may go without contact;
  *               cscd_detector_set_separation()
  *   search      cscd_line_search_create(), _begin(), _max_step(), _find_near(): the same two, many times along

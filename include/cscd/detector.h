@@ -61,15 +61,18 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
-/* A vertex and a face, or two edges; for the static check two triangles. Later versions may add values. */
+/* A vertex and a face, or two edges; for the static check two triangles; in lists of proximities without
+ * repetitions also two vertices, and an edge and a vertex. Later versions may add values. */
 typedef enum cscd_contact_kind {
     CSCD_CONTACT_VF,
     CSCD_CONTACT_EE,
     CSCD_CONTACT_TT,
+    CSCD_CONTACT_VV,
+    CSCD_CONTACT_EV,
     CSCD_CONTACT_KIND_MAX_ENUM = 0x7fffffff
 } cscd_contact_kind;
 
-/* The names are "vf", "ee" and "tt"; static storage, never NULL. */
+/* The names are "vf", "ee", "tt", "vv" and "ev"; static storage, never NULL. */
 CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
 
 /* What one object has to do with the others; start from cscd_object_rule_default. It never grows. */

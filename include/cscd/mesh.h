@@ -94,6 +94,12 @@ CSCD_API void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vert
 /* Writes the three edges of a triangle: from its vertex 0 to 1, from 1 to 2, from 2 to 0. */
 CSCD_API void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]);
 
+/* The same of all features at once: three vertices of each triangle, two of each edge, three edges of each
+ * triangle, one after the other. The arrays belong to the mesh and live as long. */
+CSCD_API const uint32_t *cscd_mesh_all_triangles(const cscd_mesh *mesh);
+CSCD_API const uint32_t *cscd_mesh_all_edges(const cscd_mesh *mesh);
+CSCD_API const uint32_t *cscd_mesh_all_triangle_edges(const cscd_mesh *mesh);
+
 /* The triangles that contain a vertex or an edge, in ascending order; their number is written to *count.
  * The array belongs to the mesh and lives as long. */
 CSCD_API const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count);

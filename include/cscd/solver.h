@@ -15,7 +15,9 @@ extern "C" {
 /* The four vertices of a pair of features, with weights: the sum of weights[i] * x[vertices[i]] is the
  * vector to the point that u and v name on a from the one on b.
  *   VF  the vertex a, then the triangle's three vertices; weights 1, -(1-u-v), -u, -v
- *   EE  the two vertices of a, then those of b; weights 1-u, u, -(1-v), -v */
+ *   EE  the two vertices of a, then those of b; weights 1-u, u, -(1-v), -v
+ *   VV  the vertex a, then b three times; weights 1, -1, 0, 0
+ *   EV  the two vertices of a, then the vertex b twice; weights 1-u, u, -1, 0 */
 typedef struct cscd_stencil {
     uint32_t vertices[4];
     double weights[4];
@@ -27,17 +29,53 @@ CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind
 
 /* ---- proximity at one moment -------------------------------------------------------------------------- */
 
-/* Two features without a common vertex that are close at one moment, and their nearest points, which u and
- * v name as in cscd_contact. */
+/* Two features without a common vertex that are close at one moment, or, in the form UNIQUE, all pairs of
+ * features whose nearest points lie on the same two vertices, or on the same edge and vertex; and the nearest
+ * points. */
 typedef struct cscd_proximity {
     cscd_contact_kind kind;
-    uint32_t a, b;    /* vertex and triangle, or two edges a < b */
-    double distance;  /* between the nearest points */
-    double u, v;      /* in [0,1]; exactly 0 or 1 where a nearest point lies on the border of a feature */
+    uint32_t a, b;        /* VF: vertex and triangle. EE: edges a < b. VV: vertices a < b. EV: edge, vertex */
+    uint32_t count;       /* how many pairs of features it stands for: */
+    uint32_t vf_count;    /* so many of a vertex and a face */
+    uint32_t ee_count;    /* and so many of two edges */
+    uint32_t vertices[4]; /* and weights: see cscd_stencil */
+    double distance;      /* between the nearest points */
+    double u, v;          /* in [0,1], as in cscd_contact; EV: u names the point on the edge. Exactly 0 or 1
+                           * where a nearest point lies on the border of a feature */
+    double weights[4];
     double point[3];  /* the middle between the nearest points */
     double normal[3]; /* unit vector from b's nearest point to a's; if they touch, across both features, or
                        * 0 */
+    double threshold; /* EE, after cscd_detector_set_rest: where the squared length of the cross product of
+                       * the two edges is below this, a barrier's energy fades. Else 0 */
 } cscd_proximity;
+
+/* The form of a list of proximities. Later versions may add values.
+ *
+ * Many pairs of features have the same nearest points: a vertex over an inner edge of a mesh is as far from
+ * both triangles at the edge. A sum of energies that depend on the distance needs all of them, or else it
+ * jumps where a nearest point passes from a face to its edge. UNIQUE lists them once, as VV or EV, with their
+ * number. So the sum of count * energy(distance) over the list is the sum over all pairs, up to rounding.
+ *
+ * The energy of two edges may have a mollifier besides, which fades it where they are nearly parallel and
+ * their nearest points jump (Li et al. 2020, eq. 24): with c = |e_a x e_b|^2, it is c / threshold *
+ * (2 - c / threshold) below the threshold, and 1 above, where threshold = 1e-3 |e_a|^2 |e_b|^2 at rest. It
+ * depends on both edges, so edges below their threshold stay an item EE of their own, also where their
+ * nearest points are ends; edges above it, whose factor is 1, may be part of a VV or an EV. Where a pair
+ * passes from one to the other, its factor is 1 on both sides, so the sum goes on without a jump. Without
+ * cscd_detector_set_rest every threshold is 0, and no pair has a mollifier. An example, for either form:
+ *
+ *     double energy = 0.0;
+ *     for (size_t i = 0; i < near.count; i++) {
+ *         const cscd_proximity *p = &near.items[i];
+ *         energy += p->count * mollifier(p->vertices, p->threshold) * barrier(p->distance);
+ *     } // its gradient has count * mollifier * barrier'(distance) * weights[k] * normal at vertices[k]
+ */
+typedef enum cscd_near_form {
+    CSCD_NEAR_PAIRS,  /* every pair of features, VF and EE; counts are 1 */
+    CSCD_NEAR_UNIQUE, /* no two items with the same nearest features: VF, EE, VV and EV */
+    CSCD_NEAR_FORM_MAX_ENUM = 0x7fffffff
+} cscd_near_form;
 
 /* Proximities, sorted by (kind, a, b). The list belongs to the detector, also when one of its line
  * searches was asked, and lives until the next call of the detector or of one of its line searches. */
@@ -46,18 +84,32 @@ typedef struct cscd_proximities {
     size_t count;
 } cscd_proximities;
 
-/* Finds every pair of features whose distance at `positions` is at most `distance`, a length above 0. No
- * listed pair is farther apart than (1 + 1e-6) times that or, where rounding is coarser, than 2^-42 of the
- * pair's extent beyond it. Seams and pairs to leave out count as in the options; min_separation has no
- * part in it. Where a nearest point lies on the border of a feature, the features that share this border
- * are listed, too; u and v show it. CANCELLED: see cscd_progress. Timings, counters and guarantees stay
- * those of the last step. */
+/* Finds every pair of features whose distance at `positions` is at most `distance`, a length above 0, and
+ * lists them in this form. No listed pair is farther apart than (1 + 1e-6) times that or, where rounding is
+ * coarser, than 2^-42 of the pair's extent beyond it. Seams and pairs to leave out count as in the options;
+ * min_separation has no part in it. Items beyond `distance` need not count all of their pairs. CANCELLED: see
+ * cscd_progress. Timings, counters and guarantees stay those of the last step. */
 CSCD_API cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
-                                                   double distance, cscd_proximities *out, size_t size);
+                                                   double distance, cscd_near_form form,
+                                                   cscd_proximities *out, size_t size);
 static inline cscd_status cscd_detector_find_near(cscd_detector *detector, const cscd_view *positions,
-                                                  double distance, cscd_proximities *out) {
-    return cscd_detector_find_near_sized(detector, positions, distance, out, sizeof *out);
+                                                  double distance, cscd_near_form form,
+                                                  cscd_proximities *out) {
+    return cscd_detector_find_near_sized(detector, positions, distance, form, out, sizeof *out);
 }
+
+/* Takes from `rest`, positions of the mesh at rest, the lengths by which proximities of two edges get their
+ * threshold, in lists of the detector and of its line searches from the next call on. NULL forgets them.
+ * INVALID_ARGUMENT also where an edge is shorter than 2^-250, but not 0, or longer than 2^250, because of
+ * the fourth power. */
+CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest);
+
+/* The stencils of a whole list in one call: count * 4 vertices and as many weights, of which either array may
+ * be NULL. */
+CSCD_API void cscd_contact_stencils(const cscd_contact *items, size_t count, uint32_t *vertices,
+                                    double *weights);
+CSCD_API void cscd_proximity_stencils(const cscd_proximity *items, size_t count, uint32_t *vertices,
+                                      double *weights);
 
 /* ---- a step that is free of contact ------------------------------------------------------------------ */
 
@@ -212,10 +264,12 @@ static inline cscd_status cscd_line_search_max_step(cscd_line_search *search, do
 /* Does what cscd_detector_find_near does, at the positions that cscd_line_search_positions gives for `fraction`.
  * distance: above 0, and at most the reach of the line. */
 CSCD_API cscd_status cscd_line_search_find_near_sized(cscd_line_search *search, double fraction,
-                                                      double distance, cscd_proximities *out, size_t size);
+                                                      double distance, cscd_near_form form,
+                                                      cscd_proximities *out, size_t size);
 static inline cscd_status cscd_line_search_find_near(cscd_line_search *search, double fraction,
-                                                     double distance, cscd_proximities *out) {
-    return cscd_line_search_find_near_sized(search, fraction, distance, out, sizeof *out);
+                                                     double distance, cscd_near_form form,
+                                                     cscd_proximities *out) {
+    return cscd_line_search_find_near_sized(search, fraction, distance, form, out, sizeof *out);
 }
 
 #ifdef __cplusplus

@@ -169,8 +169,9 @@ bool cloth_advance(cloth_simulation *c, io_error *error) {
     double begin = clock_now_ms(), length;
     memcpy(c->start, c->positions, size * sizeof *c->start);
     cscd_proximities near;
-    cscd_status status = cscd_detector_find_near(
-        c->safe.detector, CSCD_DOUBLES(c->start, cscd_mesh_vertex_count(c->mesh)), reach * c->spacing, &near);
+    cscd_status status =
+        cscd_detector_find_near(c->safe.detector, CSCD_DOUBLES(c->start, cscd_mesh_vertex_count(c->mesh)),
+                                reach * c->spacing, CSCD_NEAR_PAIRS, &near);
     s->near_ms += clock_now_ms() - begin;
     if (!explain_status(c, status, error)) return false;
     apart_take(&c->pairs, c->mesh, &near);

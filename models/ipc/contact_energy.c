@@ -6,25 +6,14 @@
 
 #include <stdlib.h>
 
-/* Edges count as nearly parallel when the squared sine between them, taken with their rest lengths, is
- * below this. */
-static const double parallel_share = 1e-3;
-
-static double squared_length(const double *positions, const uint32_t edge[2]) {
-    double along[3];
-    vec3_subtract(positions + (size_t)edge[1] * 3, positions + (size_t)edge[0] * 3, along);
-    return vec3_dot(along, along);
-}
-
 /* Multiplies the energy by the mollifier and adds the mollifier's part of the gradient. crossing is |a x
  * b|^2, whose derivative by a is 2 b x (a x b), and by b 2 (a x b) x a. */
-static void fade_parallel(ipc_contact *c, const double *rest, const double *positions) {
+static void fade_parallel(ipc_contact *c, double threshold, const double *positions) {
     const uint32_t *v = c->vertices;
     double a[3], b[3], across[3], by_a[3], by_b[3];
     vec3_subtract(positions + (size_t)v[1] * 3, positions + (size_t)v[0] * 3, a);
     vec3_subtract(positions + (size_t)v[3] * 3, positions + (size_t)v[2] * 3, b);
     vec3_cross(a, b, across);
-    double threshold = parallel_share * squared_length(rest, v) * squared_length(rest, v + 2);
     ipc_curve fade = ipc_mollifier(vec3_dot(across, across), threshold);
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) c->gradient[i][k] *= fade.value;
@@ -40,19 +29,18 @@ static void fade_parallel(ipc_contact *c, const double *rest, const double *posi
     c->curvature *= fade.value;
 }
 
-static ipc_contact make_contact(const cscd_mesh *mesh, const double *rest, const double *positions,
-                                const cscd_proximity *pair, const ipc_barrier_options *options) {
-    const cscd_stencil s = cscd_mesh_stencil(mesh, pair->kind, pair->a, pair->b, pair->u, pair->v);
-    const ipc_curve barrier = ipc_barrier(pair->distance, options->reach);
-    ipc_contact c = {.energy = options->stiffness * barrier.value,
-                     .curvature = options->stiffness * barrier.curvature};
-    for (int k = 0; k < 3; k++) c.normal[k] = pair->normal[k];
+static ipc_contact make_contact(const double *positions, const cscd_proximity *item,
+                                const ipc_barrier_options *options) {
+    const ipc_curve barrier = ipc_barrier(item->distance, options->reach);
+    double stiffness = options->stiffness * item->count;
+    ipc_contact c = {.energy = stiffness * barrier.value, .curvature = stiffness * barrier.curvature};
+    for (int k = 0; k < 3; k++) c.normal[k] = item->normal[k];
     for (int i = 0; i < 4; i++) {
-        c.vertices[i] = s.vertices[i];
-        c.weights[i] = s.weights[i];
-        vec3_add_scaled(c.gradient[i], options->stiffness * barrier.slope * s.weights[i], c.normal);
+        c.vertices[i] = item->vertices[i];
+        c.weights[i] = item->weights[i];
+        vec3_add_scaled(c.gradient[i], stiffness * barrier.slope * c.weights[i], c.normal);
     }
-    if (pair->kind == CSCD_CONTACT_EE) fade_parallel(&c, rest, positions);
+    if (item->threshold > 0.0) fade_parallel(&c, item->threshold, positions);
     return c;
 }
 
@@ -63,15 +51,14 @@ static void reserve_items(ipc_contacts *contacts, size_t count) {
     contacts->items = body_allocate(contacts->capacity, sizeof *contacts->items);
 }
 
-void ipc_contacts_find(ipc_contacts *contacts, const cscd_mesh *mesh, const double *rest,
-                       const double *positions, const cscd_proximities *near,
+void ipc_contacts_find(ipc_contacts *contacts, const double *positions, const cscd_proximities *near,
                        const ipc_barrier_options *options) {
     reserve_items(contacts, near->count);
     contacts->count = near->count;
     contacts->energy = 0.0;
     contacts->least_distance = INFINITY;
     for (size_t i = 0; i < near->count; i++) {
-        contacts->items[i] = make_contact(mesh, rest, positions, &near->items[i], options);
+        contacts->items[i] = make_contact(positions, &near->items[i], options);
         contacts->energy += contacts->items[i].energy;
         contacts->least_distance = fmin(contacts->least_distance, near->items[i].distance);
     }

@@ -3,7 +3,7 @@
 
 #include "cscd/cscd.h"
 
-/* One pair. Its Hessian is approximated by curvature * g g^T, where g, the gradient of the distance, is
+/* One item of the list. Its Hessian is approximated by curvature * g g^T, where g, the gradient of the distance, is
  * weights[i] * normal at vertex i; see ipc_contacts_find. */
 typedef struct ipc_contact {
     uint32_t vertices[4];
@@ -24,18 +24,16 @@ typedef struct ipc_barrier_options {
     double stiffness; /* kappa: the factor of the barrier */
 } ipc_barrier_options;
 
-/* The terms of `near`, found at `positions`. Every pair of features counts, also where several share one
- * nearest point on their boundaries: the sum is then continuous, for each distance is, while a list without
- * repetitions would jump where a nearest point passes from a face to its edge.
+/* The terms of `near`, found at `positions` in the form without repetitions: each counts as many times as the pairs
+ * of features that it stands for. So the sum is that over all pairs, and continuous, for each distance is; a sum
+ * without the counts would jump where a nearest point passes from a face to its edge.
  *
  * The gradient is exact: how the nearest points slide along the features does not change the distance to
  * first order. The Hessian leaves out that they slide and the normal turns, slope * (Hessian of the
  * distance), which only ever takes curvature away while the features are convex and the slope negative; so
  * what is left is positive semidefinite, and the directions that come of it lead down. Pairs of edges that
- * are nearly parallel, whose nearest points jump, fade out; pairs of vertices and faces take over there.
- * `rest` gives the edges' lengths by which nearly is judged. */
-void ipc_contacts_find(ipc_contacts *contacts, const cscd_mesh *mesh, const double *rest,
-                       const double *positions, const cscd_proximities *near,
+ * are nearly parallel, whose nearest points jump, fade out; pairs of vertices and faces take over there. */
+void ipc_contacts_find(ipc_contacts *contacts, const double *positions, const cscd_proximities *near,
                        const ipc_barrier_options *options);
 void ipc_contacts_free(ipc_contacts *contacts);
 

@@ -18,6 +18,8 @@ static cscd_status open_detector(const ipc_object *objects, uint32_t count, cscd
     options.min_separation = p->scene->min_separation;
     cscd_status status = cscd_mesh_create(context, descs, count, &p->mesh);
     if (status == CSCD_OK) status = cscd_detector_create(context, p->mesh, NULL, &options, &p->detector);
+    if (status == CSCD_OK)
+        status = cscd_detector_set_rest(p->detector, CSCD_DOUBLES(p->shape.positions, p->shape.vertex_count));
     if (status == CSCD_OK) status = cscd_line_search_create(p->detector, &p->line);
     return status;
 }
@@ -50,10 +52,10 @@ static void allocate_arrays(ipc_solver *p) {
 static cscd_status find_first_contacts(ipc_solver *p) {
     const ipc_barrier_options *barrier = &p->scene->barrier;
     cscd_proximities near;
-    cscd_status status = cscd_detector_find_near(
-        p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)), barrier->reach, &near);
-    if (status == CSCD_OK)
-        ipc_contacts_find(&p->contacts, p->mesh, p->shape.positions, p->positions, &near, barrier);
+    cscd_status status =
+        cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->positions, cscd_mesh_vertex_count(p->mesh)),
+                                barrier->reach, CSCD_NEAR_UNIQUE, &near);
+    if (status == CSCD_OK) ipc_contacts_find(&p->contacts, p->positions, &near, barrier);
     return status;
 }
 

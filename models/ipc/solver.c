@@ -64,10 +64,11 @@ static double find_direction(ipc_solver *p) {
 static cscd_status evaluate_trial(ipc_solver *p, double length, double *energy) {
     cscd_proximities near;
     double since = clock_now_ms();
-    cscd_status status = cscd_line_search_find_near(p->line, length, p->scene->barrier.reach, &near);
+    cscd_status status =
+        cscd_line_search_find_near(p->line, length, p->scene->barrier.reach, CSCD_NEAR_UNIQUE, &near);
     add_detection(p, since, &p->statistics.near_ms);
     if (status != CSCD_OK) return status;
-    ipc_contacts_find(&p->trial_contacts, p->mesh, p->shape.positions, p->trial, &near, &p->scene->barrier);
+    ipc_contacts_find(&p->trial_contacts, p->trial, &near, &p->scene->barrier);
     p->statistics.near += near.count;
     p->statistics.trials++;
     *energy = ipc_solver_energy(p, p->trial, &p->trial_contacts);

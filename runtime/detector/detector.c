@@ -2,7 +2,7 @@
 #include "runtime/detector/detector.h"
 
 #include "runtime/detector/detector_rules.h"
-#include "src/core/check.h"
+#include "runtime/narrow_phase/limits.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"
 #include "src/core/vec3.h"
@@ -13,24 +13,6 @@ static const cscd_detector_options default_options = {.step_factor = 0.8, .floor
 
 void cscd_detector_defaults_sized(cscd_detector_options *out, size_t size) {
     struct_give_options(out, size, &default_options, sizeof default_options);
-}
-
-static cscd_status check_separation(cscd_context *context, const cscd_detector_options *options) {
-    if (!is_length(options->min_separation))
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "min_separation is %g, expected 0 or a length from 2^-300 to 2^300",
-                            options->min_separation);
-    if (!is_length(options->tolerance))
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "tolerance is %g, expected 0 (the default) or a length from 2^-300 to 2^300",
-                            options->tolerance);
-    return CSCD_OK;
-}
-
-/* Returns the separation of the options, with the default tolerance filled in. */
-static separation limit_of(const cscd_detector_options *options) {
-    double distance = options->min_separation;
-    return (separation){distance, options->tolerance > 0.0 ? options->tolerance : 1e-6 * distance};
 }
 
 static cscd_status check_options(cscd_context *context, const cscd_detector_options *options) {
@@ -48,7 +30,7 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
     if (!(options->floor_ratio > 0.0 && options->floor_ratio <= 0.999))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "floor_ratio is %g, expected a number in (0,0.999]", options->floor_ratio);
-    return check_separation(context, options);
+    return separation_check(context, options->min_separation, options->tolerance);
 }
 
 /* Without a plan only SINGLE culls; a plan must be the mesh's, and of the method asked for. */
@@ -124,6 +106,8 @@ static void free_memory(cscd_detector *d) {
     result_buffer_free(context, &d->contacts);
     result_buffer_free(context, &d->proximities);
     result_buffer_free(context, &d->intersections);
+    result_buffer_free(context, &d->names);
+    edge_rest_free(context, &d->rest);
     context_free_all(context, list_arrays(d));
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);
@@ -157,7 +141,7 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     d->traits = method_traits_of(chosen.method);
     d->stages = method_stages_of(chosen.method);
     d->rules = *d->stages->rules;
-    d->limit = limit_of(&chosen);
+    d->limit = separation_limit(chosen.min_separation, chosen.tolerance);
     cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
@@ -208,12 +192,12 @@ static cscd_status set_separation(cscd_detector *detector, double min_separation
     cscd_detector_options changed = detector->options;
     changed.min_separation = min_separation;
     changed.tolerance = tolerance;
-    cscd_status status = check_separation(detector->context, &changed);
+    cscd_status status = separation_check(detector->context, min_separation, tolerance);
     if (status == CSCD_OK)
         status = detector_check_distances(detector, min_separation, tolerance, detector->pair_rules.greatest);
     if (status != CSCD_OK) return status;
     detector->options = changed;
-    detector->limit = limit_of(&changed);
+    detector->limit = separation_limit(min_separation, tolerance);
     return CSCD_OK;
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/culling/culling.h"
 #include "runtime/culling/start_state.h"
+#include "runtime/detector/edge_rest.h"
 #include "runtime/detector/interval_search.h"
 #include "runtime/detector/method_table.h"
 #include "runtime/detector/result_buffer.h"
@@ -50,6 +51,8 @@ struct cscd_detector {
     cscd_guarantee *guarantees; /* per component, of the last step */
 
     result_buffer contacts, proximities, intersections;
+    result_buffer names; /* of proximities, while repetitions are found */
+    edge_rest rest;      /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
     cscd_scalar *reached_scalars; /* per object: of what max_step or a line search reaches */

@@ -220,11 +220,12 @@ cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
 }
 
 static cscd_status find_near_on_line(cscd_line_search *line, double fraction, double distance,
-                                     cscd_proximities *out, size_t size) {
+                                     cscd_near_form form, cscd_proximities *out, size_t size) {
     cscd_detector *d = line->detector;
     cscd_status status = check_fraction(line, fraction, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = check_rules(line, "cscd_line_search_find_near");
     if (status == CSCD_OK) status = proximity_check_distance(d->context, distance);
+    if (status == CSCD_OK) status = proximity_check_form(d->context, form);
     if (status != CSCD_OK) return status;
     if (out == NULL)
         return context_fail(d->context, CSCD_INVALID_ARGUMENT, "cscd_line_search_find_near: out is NULL");
@@ -239,7 +240,7 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
-    if (status == CSCD_OK) status = proximity_collect(d, line->reached, &found);
+    if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
     if (status == CSCD_OK) status = context_loop_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     struct_give(out, size, &found, sizeof found);
@@ -247,11 +248,11 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
 }
 
 cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
-                                             cscd_proximities *out, size_t size) {
+                                             cscd_near_form form, cscd_proximities *out, size_t size) {
     if (line == NULL) return CSCD_INVALID_ARGUMENT;
     context_entry entry;
     if (!context_enter(line->detector->context, &entry)) return entry.status;
-    return context_leave(&entry, find_near_on_line(line, fraction, distance, out, size));
+    return context_leave(&entry, find_near_on_line(line, fraction, distance, form, out, size));
 }
 
 /* ---- steps --------------------------------------------------------------------------------------------- */

@@ -33,7 +33,7 @@ cscd_status near_pairs_check_radius(const cscd_detector *d, double search_radius
 }
 
 cscd_status near_pairs_find(cscd_detector *d, const double *x, double search_radius, cscd_proximities *out) {
-    return proximity_find(d, x, search_distance(d, search_radius), out);
+    return proximity_find(d, x, search_distance(d, search_radius), CSCD_NEAR_PAIRS, out);
 }
 
 void *near_pairs_scratch(cscd_detector *d, size_t count, size_t size) {

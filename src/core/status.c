@@ -43,6 +43,10 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
         return "ee";
     case CSCD_CONTACT_TT:
         return "tt";
+    case CSCD_CONTACT_VV:
+        return "vv";
+    case CSCD_CONTACT_EV:
+        return "ev";
     default:
         return "unknown";
     }

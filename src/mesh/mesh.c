@@ -2,6 +2,7 @@
 #include "src/mesh/mesh.h"
 
 #include "src/core/struct_size.h"
+#include "src/mesh/stencil.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -322,14 +323,18 @@ uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
     return low;
 }
 
+static void copy_vertices(const uint32_t *from, int count, uint32_t *to) {
+    for (int i = 0; i < count; i++) to[i] = from[i];
+}
+
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                           double v) {
-    if (kind == CSCD_CONTACT_VF) {
-        const uint32_t *corners = mesh->triangles[b];
-        return (cscd_stencil){{a, corners[0], corners[1], corners[2]}, {1.0, u + v - 1.0, -u, -v}};
-    }
-    const uint32_t *ends_a = mesh->edges[a], *ends_b = mesh->edges[b];
-    return (cscd_stencil){{ends_a[0], ends_a[1], ends_b[0], ends_b[1]}, {1.0 - u, u, v - 1.0, -v}};
+    cscd_stencil s = {.vertices = {a, b, b, b}};
+    if (kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV) copy_vertices(mesh->edges[a], 2, s.vertices);
+    if (kind == CSCD_CONTACT_EE) copy_vertices(mesh->edges[b], 2, s.vertices + 2);
+    if (kind == CSCD_CONTACT_VF) copy_vertices(mesh->triangles[b], 3, s.vertices + 1);
+    stencil_weights(kind, u, v, s.weights);
+    return s;
 }
 
 cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,

@@ -571,7 +571,8 @@ static void lines_begin_again_after_new_rules(void **state) {
     }
     set_rules(&s, &set);
     assert_int_equal(line_max_step_packed(line, 1.0, NULL, &step), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.01, &near), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.01, CSCD_NEAR_PAIRS, &near),
+                     CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(s.context), "call cscd_line_search_begin again"));
     assert_int_equal(line_begin_packed(line, joined.x0, joined.x1, 0.01), CSCD_OK);
     assert_int_equal(cscd_line_search_candidate_count(line), 0);

@@ -216,8 +216,9 @@ static void proximity_free(near_fixture *f) {
 
 static void find_contacts(near_fixture *f, const double *x, ipc_contacts *contacts) {
     cscd_proximities near;
-    assert_int_equal(find_near_packed(f->detector, x, barrier.reach, &near), CSCD_OK);
-    ipc_contacts_find(contacts, f->mesh, f->x, x, &near, &barrier);
+    assert_int_equal(set_rest_packed(f->detector, f->x), CSCD_OK);
+    assert_int_equal(find_unique_packed(f->detector, x, barrier.reach, &near), CSCD_OK);
+    ipc_contacts_find(contacts, x, &near, &barrier);
 }
 
 /* Checks the gradient along each coordinate; the pairs are found again at each point. */
@@ -284,11 +285,10 @@ static void near_pairs_have_their_curvature(void **state) {
             double distance[2] = {-1.0, -1.0};
             for (int side = 0; side < 2; side++) {
                 for (int i = 0; i < 24; i++) there[i] = f.x[i] + (side == 0 ? -h : h) * direction[i];
-                assert_int_equal(find_near_packed(f.detector, there, 2.0 * barrier.reach, &near), CSCD_OK);
+                assert_int_equal(find_unique_packed(f.detector, there, 2.0 * barrier.reach, &near), CSCD_OK);
                 for (size_t n = 0; n < near.count; n++) {
                     const cscd_proximity *p = &near.items[n];
-                    cscd_stencil s = cscd_mesh_stencil(f.mesh, p->kind, p->a, p->b, p->u, p->v);
-                    if (memcmp(s.vertices, contacts.items[c].vertices, sizeof s.vertices) == 0)
+                    if (memcmp(p->vertices, contacts.items[c].vertices, sizeof p->vertices) == 0)
                         distance[side] = p->distance;
                 }
             }

@@ -86,17 +86,23 @@ static void judge_interval(judges *j, const double *from, const double *to) {
     assert_int_equal(intersections.count, 0);
 }
 
-/* Checks that the solver's energy is that of its positions and of the pairs that are near at these
- * positions. */
+/* Checks that the solver's energy is that of its positions and of the items that are near at these
+ * positions, and that the energy of all pairs is the same. */
 static void check_energy(const ipc_solver *p, cscd_detector *detector) {
     cscd_proximities near;
     ipc_contacts contacts = {0};
-    assert_int_equal(find_near_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
-    ipc_contacts_find(&contacts, p->mesh, p->shape.positions, p->positions, &near, &p->scene->barrier);
+    assert_int_equal(set_rest_packed(detector, p->shape.positions), CSCD_OK);
+    assert_int_equal(find_unique_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
+    ipc_contacts_find(&contacts, p->positions, &near, &p->scene->barrier);
     assert_int_equal(contacts.count, p->contacts.count);
     assert_true(contacts.least_distance == p->contacts.least_distance);
     assert_true(contacts.least_distance > p->scene->min_separation);
     assert_true(ipc_solver_energy(p, p->positions, &contacts) == p->energy);
+    double energy = contacts.energy;
+    assert_int_equal(find_near_packed(detector, p->positions, p->scene->barrier.reach, &near), CSCD_OK);
+    ipc_contacts_find(&contacts, p->positions, &near, &p->scene->barrier);
+    assert_true(contacts.count >= p->contacts.count);
+    assert_true(fabs(contacts.energy - energy) <= 1e-12 * energy);
     ipc_contacts_free(&contacts);
 }
 

@@ -115,7 +115,8 @@ static size_t check_near(const step_search *s, const rig *other, const rig *brut
     assert_memory_equal(moment, exact, interval.vertex_count * sizeof(double[3]));
     assert_int_equal(find_near_packed(other->detector, moment, distance, &by_trees), CSCD_OK);
     assert_int_equal(find_near_packed(brute->detector, moment, distance, &truth), CSCD_OK);
-    assert_int_equal(cscd_line_search_find_near(s->line, length, distance, &on_line), CSCD_OK);
+    assert_int_equal(cscd_line_search_find_near(s->line, length, distance, CSCD_NEAR_PAIRS, &on_line),
+                     CSCD_OK);
     assert_int_equal(on_line.count, by_trees.count);
     assert_int_equal(on_line.count, truth.count);
     assert_true(cscd_line_search_candidate_count(s->line) >= truth.count);
@@ -347,7 +348,8 @@ static void misuse_is_named(void **state) {
     cscd_free_step step = {.fraction = -1.0};
     assert_int_equal(cscd_line_search_create(NULL, NULL), CSCD_INVALID_ARGUMENT);
     expect_words(&s, cscd_line_search_create(s.r.detector, NULL), "out is NULL");
-    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, &near), "cscd_line_search_begin first");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near),
+                 "cscd_line_search_begin first");
     expect_words(&s, line_max_step_packed(s.line, 1.0, NULL, &step), "cscd_line_search_begin first");
     expect_words(&s, line_positions_packed(s.line, 1.0, moment), "cscd_line_search_begin first");
     assert_int_equal(cscd_line_search_candidate_count(s.line), 0);
@@ -355,7 +357,8 @@ static void misuse_is_named(void **state) {
     expect_words(&s, line_begin_packed(s.line, interval.x0, NULL, 0.1), "x1 is NULL");
     begin_line(&s, interval.x0, interval.x1, 0.1);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        expect_words(&s, cscd_line_search_find_near(s.line, bad[i], 0.1, &near), "fraction is ");
+        expect_words(&s, cscd_line_search_find_near(s.line, bad[i], 0.1, CSCD_NEAR_PAIRS, &near),
+                     "fraction is ");
         expect_words(&s, line_max_step_packed(s.line, bad[i], NULL, &step), "longest is ");
         expect_words(&s, line_positions_packed(s.line, bad[i], moment), "fraction is ");
         if (bad[i] < 1.0 || bad[i] > 2.0 || isnan(bad[i]))
@@ -363,14 +366,15 @@ static void misuse_is_named(void **state) {
     }
     expect_words(&s, line_max_step_packed(s.line, 0.0, NULL, &step), "longest is 0");
     expect_words(&s, line_max_step_packed(s.line, 1.0, NULL, NULL), "out is NULL");
-    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1 + 1e-12, &near), "reach of 0.1");
-    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.0, &near), "distance is 0");
-    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, NULL), "out is NULL");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1 + 1e-12, CSCD_NEAR_PAIRS, &near),
+                 "reach of 0.1");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.0, CSCD_NEAR_PAIRS, &near), "distance is 0");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, NULL), "out is NULL");
     expect_words(&s, line_positions_packed(s.line, 0.5, NULL), "positions is NULL");
     assert_true(near.count == 4711 && step.fraction == -1.0);
-    assert_int_equal(cscd_line_search_find_near(s.line, 0.5, 0.1, &near), CSCD_OK);
+    assert_int_equal(cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near), CSCD_OK);
     begin_line(&s, interval.x0, interval.x1, 0.0);
-    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0x1p-300, &near), "reach of 0");
+    expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0x1p-300, CSCD_NEAR_PAIRS, &near), "reach of 0");
     search_destroy(&s);
     cscd_line_search_destroy(NULL);
 }

@@ -83,6 +83,16 @@ static cscd_status ask_near(counted *c, solver_answer *out) {
     return status;
 }
 
+/* The same without repetitions, and with lengths at rest. */
+static cscd_status ask_unique(counted *c, solver_answer *out) {
+    cscd_proximities found = {NULL, 4711};
+    cscd_status status = set_rest_packed(c->detector, interval.x0);
+    if (status == CSCD_OK) status = find_unique_packed(c->detector, interval.x0, distance, &found);
+    if (status != CSCD_OK) assert_true(found.count == 4711);
+    out->near = found.count;
+    return status;
+}
+
 static cscd_status ask_max_step(counted *c, solver_answer *out) {
     return max_step_packed(c->detector, interval.x0, interval.x1, out->end, &out->step);
 }
@@ -117,10 +127,10 @@ static cscd_status ask_line(counted *c, solver_answer *out) {
         first = status;
     }
     out->candidates = cscd_line_search_candidate_count(line);
-    status = cscd_line_search_find_near(line, 0.25, distance, &found);
+    status = cscd_line_search_find_near(line, 0.25, distance, CSCD_NEAR_PAIRS, &found);
     if (status != CSCD_OK) {
         assert_true(found.count == 4711);
-        assert_int_equal(cscd_line_search_find_near(line, 0.25, distance, &found), CSCD_OK);
+        assert_int_equal(cscd_line_search_find_near(line, 0.25, distance, CSCD_NEAR_PAIRS, &found), CSCD_OK);
         first = status;
     }
     out->near = found.count;
@@ -158,7 +168,8 @@ static size_t fail_each(question *ask, cscd_method method, uint32_t threads) {
 
 static void memory_may_run_out(void **state) {
     (void)state;
-    static question *const questions[] = {ask_near, ask_max_step, ask_line, ask_bounds, ask_truncation};
+    static question *const questions[] = {ask_near, ask_unique, ask_max_step,
+                                          ask_line, ask_bounds, ask_truncation};
     size_t failures = 0;
     make_limited();
     for (size_t q = 0; q < sizeof questions / sizeof *questions; q++) {
@@ -233,11 +244,13 @@ static void ask_all(counted *c, cscd_line_search *line, double *x) {
     memcpy(x, interval.x0, interval.vertex_count * sizeof(double[3]));
     for (int i = 0; i < 6; i++) {
         assert_int_equal(find_near_packed(c->detector, x, distance, &found), CSCD_OK);
+        assert_int_equal(find_unique_packed(c->detector, x, distance, &found), CSCD_OK);
         assert_int_equal(max_step_packed(c->detector, x, interval.x1, NULL, &step), CSCD_OK);
         assert_int_equal(displacement_bounds_packed(c->detector, x, distance, bounds, &bounded), CSCD_OK);
         assert_int_equal(truncate_packed(c->detector, x, interval.x1, distance, x, &truncated), CSCD_OK);
         assert_int_equal(line_begin_packed(line, x, interval.x1, distance), CSCD_OK);
-        assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.5 * distance, &found), CSCD_OK);
+        assert_int_equal(cscd_line_search_find_near(line, 0.5, 0.5 * distance, CSCD_NEAR_PAIRS, &found),
+                         CSCD_OK);
         assert_int_equal(line_max_step_packed(line, 0.7, x, &step), CSCD_OK);
     }
 }

@@ -59,7 +59,20 @@ cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_
 cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
                              cscd_proximities *out) {
     cscd_view x;
-    return cscd_detector_find_near(detector, view_of(mesh_of(detector), positions, &x), distance, out);
+    return cscd_detector_find_near(detector, view_of(mesh_of(detector), positions, &x), distance,
+                                   CSCD_NEAR_PAIRS, out);
+}
+
+cscd_status find_unique_packed(cscd_detector *detector, const double *positions, double distance,
+                               cscd_proximities *out) {
+    cscd_view x;
+    return cscd_detector_find_near(detector, view_of(mesh_of(detector), positions, &x), distance,
+                                   CSCD_NEAR_UNIQUE, out);
+}
+
+cscd_status set_rest_packed(cscd_detector *detector, const double *rest) {
+    cscd_view x;
+    return cscd_detector_set_rest(detector, view_of(mesh_of(detector), rest, &x));
 }
 
 cscd_status max_step_packed(cscd_detector *detector, const double *x0, const double *x1, double *reached,

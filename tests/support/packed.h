@@ -17,6 +17,9 @@ cscd_status step_packed(cscd_detector *detector, const double *x0, const double 
 cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_intersections *out);
 cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
                              cscd_proximities *out);
+cscd_status find_unique_packed(cscd_detector *detector, const double *positions, double distance,
+                               cscd_proximities *out);
+cscd_status set_rest_packed(cscd_detector *detector, const double *rest);
 cscd_status max_step_packed(cscd_detector *detector, const double *x0, const double *x1, double *reached,
                             cscd_free_step *out);
 cscd_status displacement_bounds_packed(cscd_detector *detector, const double *x0, double search_radius,

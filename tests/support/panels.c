@@ -81,7 +81,8 @@ cscd_status panels_check(const panel_scene *p, cscd_intersections *out) {
 }
 
 cscd_status panels_near(const panel_scene *p, cscd_proximities *out) {
-    return cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), 0.1, out);
+    return cscd_detector_find_near(p->detector, CSCD_DOUBLES(p->x0, p->vertex_count), 0.1, CSCD_NEAR_PAIRS,
+                                   out);
 }
 
 cscd_status panels_max_step(const panel_scene *p, cscd_free_step *out) {

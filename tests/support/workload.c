@@ -156,7 +156,7 @@ static void ask_line(workload_state *r) {
             add_digest(r, end, (size_t)r->w->sequence->shape.vertex_count * sizeof(double[3]));
         end_call(r, status);
         do {
-            status = cscd_line_search_find_near(r->line, 0.6 * i, 0.05, &found);
+            status = cscd_line_search_find_near(r->line, 0.6 * i, 0.05, CSCD_NEAR_PAIRS, &found);
         } while (call_again(r, status));
         add_digest(r, found.items, found.count * sizeof *found.items);
         end_call(r, status);

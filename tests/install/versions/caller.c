@@ -162,7 +162,8 @@ static void ask_detector(caller_state *s) {
 static void ask_solver(caller_state *s) {
     const cscd_view *x0 = CSCD_DOUBLES(start, VERTEX_COUNT), *x1 = CSCD_DOUBLES(end, VERTEX_COUNT);
     GUARDED(cscd_proximities, near);
-    expect_ok(s, cscd_detector_find_near(s->detector, x0, 1.5, &near.value), "cscd_detector_find_near");
+    expect_ok(s, cscd_detector_find_near(s->detector, x0, 1.5, CSCD_NEAR_PAIRS, &near.value),
+              "cscd_detector_find_near");
     EXPECT_FILLED(cscd_proximities, near);
     GUARDED(cscd_free_step, step);
     expect_ok(s, cscd_detector_max_step(s->detector, x0, x1, NULL, &step.value), "cscd_detector_max_step");
@@ -174,7 +175,8 @@ static void ask_solver(caller_state *s) {
     expect_ok(s, cscd_line_search_max_step(s->search, 1, NULL, &found.value), "cscd_line_search_max_step");
     EXPECT_FILLED(cscd_free_step, found);
     GUARDED(cscd_proximities, close);
-    expect_ok(s, cscd_line_search_find_near(s->search, 0, 1.5, &close.value), "cscd_line_search_find_near");
+    expect_ok(s, cscd_line_search_find_near(s->search, 0, 1.5, CSCD_NEAR_PAIRS, &close.value),
+              "cscd_line_search_find_near");
     EXPECT_FILLED(cscd_proximities, close);
     expect_that(close.value.count == near.value.count, "cscd_proximities", "their number");
 }

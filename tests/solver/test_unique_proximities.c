@@ -1,0 +1,518 @@
+/* Proximities without repetitions: merged as brute force over the list of pairs merges them, with the same energy. */
+#include "cscd/cscd.h"
+#include "tests/support/packed.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static scene at_rest, moment; /* large; one test at a time */
+
+/* The scenes are a few units large, and their edges some tenths. */
+static const double distances[] = {1e-3, 0.03, 0.25};
+enum { DISTANCE_COUNT = sizeof distances / sizeof *distances };
+
+static rig rig_of(const scene *s, uint32_t threads) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_NONE;
+    return rig_create(s, threads, &options);
+}
+
+static void set_rest(const rig *r, const double *rest) {
+    assert_int_equal(set_rest_packed(r->detector, rest), CSCD_OK);
+}
+
+typedef struct item_list {
+    cscd_proximity *items;
+    size_t count;
+} item_list;
+
+/* Copies the list, which lives until the next call. */
+static item_list find_items(const rig *r, const double *x, double distance, cscd_near_form form) {
+    cscd_proximities found = {NULL, 4711};
+    assert_int_equal(
+        (form == CSCD_NEAR_UNIQUE ? find_unique_packed : find_near_packed)(r->detector, x, distance, &found),
+        CSCD_OK);
+    item_list list = {calloc(found.count + 1, sizeof *list.items), found.count};
+    assert_non_null(list.items);
+    if (found.count > 0) memcpy(list.items, found.items, found.count * sizeof *list.items);
+    return list;
+}
+
+/* ---- energy -------------------------------------------------------------------------------------------- */
+
+/* The mollifier of Li et al. 2020, eq. 24, of an item's four vertices. */
+static double mollifier_of(const cscd_proximity *p, const double *x) {
+    double a[3], b[3], c[3], square = 0.0;
+    if (p->threshold == 0.0) return 1.0;
+    for (uint32_t k = 0; k < 3; k++) {
+        a[k] = x[p->vertices[1] * 3 + k] - x[p->vertices[0] * 3 + k];
+        b[k] = x[p->vertices[3] * 3 + k] - x[p->vertices[2] * 3 + k];
+    }
+    for (int k = 0; k < 3; k++) {
+        c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        square += c[k] * c[k];
+    }
+    double share = square / p->threshold;
+    return share < 1.0 ? share * (2.0 - share) : 1.0;
+}
+
+/* A barrier without its pole, so that scenes with contacts have an energy, too. */
+static double energy_of(double distance, double reach) {
+    double beyond = 1.0 - distance / reach;
+    return beyond > 0.0 ? beyond * beyond * (2.0 + distance / reach) : 0.0;
+}
+
+static double sum_energies(const item_list *list, const double *x, double reach, bool counted) {
+    double sum = 0.0;
+    for (size_t i = 0; i < list->count; i++) {
+        const cscd_proximity *p = &list->items[i];
+        sum += (counted ? p->count : 1) * mollifier_of(p, x) * energy_of(p->distance, reach);
+    }
+    return sum;
+}
+
+/* ---- brute force over the list of pairs ------------------------------------------------------------------ */
+
+/* The vertices on each side that a nearest point lies on, sorted; all four, in the pair's order, where two edges are
+ * nearly parallel. */
+typedef struct parts {
+    uint32_t side[2][3];
+    int size[2];
+    uint32_t vf, ee;
+} parts;
+
+static int vertices_of_first(const cscd_proximity *p) {
+    return p->kind == CSCD_CONTACT_VF || p->kind == CSCD_CONTACT_VV ? 1 : 2;
+}
+
+static int compare_numbers(const void *left, const void *right) {
+    uint32_t l = *(const uint32_t *)left, r = *(const uint32_t *)right;
+    return (l > r) - (l < r);
+}
+
+static int compare_sides(const uint32_t *l, int l_size, const uint32_t *r, int r_size) {
+    if (l_size != r_size) return l_size - r_size;
+    for (int i = 0; i < l_size; i++) {
+        if (l[i] != r[i]) return l[i] < r[i] ? -1 : 1;
+    }
+    return 0;
+}
+
+static int compare_parts(const void *left, const void *right) {
+    const parts *l = left, *r = right;
+    for (int s = 0; s < 2; s++) {
+        int order = compare_sides(l->side[s], l->size[s], r->side[s], r->size[s]);
+        if (order != 0) return order;
+    }
+    return 0;
+}
+
+/* The smaller side comes first, and a side of one vertex for two features. whole: all vertices count. */
+static parts parts_of(const cscd_proximity *p, bool whole) {
+    parts of = {.vf = p->vf_count, .ee = p->ee_count};
+    for (int i = 0; i < 4; i++) {
+        int s = i < vertices_of_first(p) ? 0 : 1;
+        if (whole || p->weights[i] != 0.0) of.side[s][of.size[s]++] = p->vertices[i];
+    }
+    for (int s = 0; s < 2; s++) qsort(of.side[s], (size_t)of.size[s], sizeof(uint32_t), compare_numbers);
+    if (compare_sides(of.side[0], of.size[0], of.side[1], of.size[1]) > 0) {
+        parts turned = of;
+        for (int s = 0; s < 2; s++) {
+            memcpy(turned.side[s], of.side[1 - s], sizeof turned.side[s]);
+            turned.size[s] = of.size[1 - s];
+        }
+        return turned;
+    }
+    return of;
+}
+
+/* Merges equal neighbours of a sorted array. */
+static size_t merge_parts(parts *all, size_t count) {
+    size_t kept = 0;
+    if (count > 0) qsort(all, count, sizeof *all, compare_parts);
+    for (size_t i = 0; i < count; i++) {
+        if (kept > 0 && compare_parts(&all[kept - 1], &all[i]) == 0) {
+            all[kept - 1].vf += all[i].vf;
+            all[kept - 1].ee += all[i].ee;
+        } else {
+            all[kept++] = all[i];
+        }
+    }
+    return kept;
+}
+
+static parts *list_parts(const item_list *list, const double *x) {
+    parts *all = calloc(list->count + 1, sizeof *all);
+    assert_non_null(all);
+    for (size_t i = 0; i < list->count; i++) {
+        const cscd_proximity *p = &list->items[i];
+        all[i] = parts_of(p, mollifier_of(p, x) < 1.0);
+    }
+    return all;
+}
+
+static void compare_with_merged_pairs(const item_list *pairs, const item_list *items, const double *x) {
+    parts *expected = list_parts(pairs, x), *found = list_parts(items, x);
+    size_t count = merge_parts(expected, pairs->count);
+    assert_int_equal(items->count, count);
+    if (count > 0) qsort(found, count, sizeof *found, compare_parts);
+    for (size_t i = 0; i < count; i++) {
+        assert_int_equal(compare_parts(&found[i], &expected[i]), 0);
+        assert_int_equal(found[i].vf, expected[i].vf);
+        assert_int_equal(found[i].ee, expected[i].ee);
+    }
+    free(expected);
+    free(found);
+}
+
+/* ---- single items ---------------------------------------------------------------------------------------- */
+
+static int compare_names(const cscd_proximity *l, const cscd_proximity *r) {
+    if (l->kind != r->kind) return l->kind < r->kind ? -1 : 1;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return (l->b > r->b) - (l->b < r->b);
+}
+
+static long double extent_of(const cscd_proximity *p, const double *x) {
+    long double largest = 0.0L;
+    for (uint32_t i = 0; i < 12; i++)
+        largest = fmaxl(
+            largest, fabsl((long double)x[p->vertices[i / 3] * 3 + i % 3] - x[p->vertices[0] * 3 + i % 3]));
+    return largest;
+}
+
+/* Compares distance, normal and point with the sums that vertices and weights stand for. */
+static void check_item(const rig *r, const cscd_proximity *p, const double *x) {
+    cscd_stencil s = cscd_mesh_stencil(r->mesh, p->kind, p->a, p->b, p->u, p->v);
+    long double rounding = 0x1p-48L * extent_of(p, x), square = 0.0L;
+    assert_memory_equal(s.vertices, p->vertices, sizeof s.vertices);
+    assert_memory_equal(s.weights, p->weights, sizeof s.weights);
+    assert_int_equal(p->count, p->vf_count + p->ee_count);
+    assert_true(p->count > 0 && p->u >= 0.0 && p->u <= 1.0 && p->v >= 0.0 && p->v <= 1.0);
+    for (uint32_t k = 0; k < 3; k++) {
+        long double apart = 0.0L, middle = 0.0L, largest = 0.0L, origin = x[p->vertices[0] * 3 + k];
+        for (int i = 0; i < 4; i++) {
+            long double coordinate = x[p->vertices[i] * 3 + k];
+            apart += p->weights[i] * (coordinate - origin);
+            middle += 0.5L * fabsl(p->weights[i]) * coordinate;
+            largest = fmaxl(largest, fabsl(coordinate));
+        }
+        square += apart * apart;
+        assert_true(fabsl(middle - p->point[k]) <= rounding + 0x1p-50L * largest);
+        if (p->distance > 1e4L * rounding)
+            assert_true(fabsl(apart - p->distance * p->normal[k]) <= 8.0L * rounding);
+    }
+    assert_true(fabsl(sqrtl(square) - p->distance) <= rounding);
+}
+
+static void check_items(const rig *r, const item_list *list, const double *x) {
+    for (size_t i = 0; i < list->count; i++) {
+        const cscd_proximity *p = &list->items[i];
+        if (i > 0) assert_true(compare_names(p - 1, p) < 0);
+        if (p->kind == CSCD_CONTACT_VV) assert_true(p->a < p->b);
+        if (p->kind == CSCD_CONTACT_VF || p->kind == CSCD_CONTACT_EE) assert_int_equal(p->count, 1);
+        assert_true(p->threshold == 0.0 || p->kind == CSCD_CONTACT_EE);
+        check_item(r, p, x);
+    }
+}
+
+typedef struct tally {
+    size_t pairs, items, of_kind[CSCD_CONTACT_EV + 1], mollified;
+} tally;
+
+static void compare_forms(const rig *r, const double *x, double distance, tally *t) {
+    item_list pairs = find_items(r, x, distance, CSCD_NEAR_PAIRS),
+              items = find_items(r, x, distance, CSCD_NEAR_UNIQUE);
+    check_items(r, &pairs, x);
+    check_items(r, &items, x);
+    compare_with_merged_pairs(&pairs, &items, x);
+    double expected = sum_energies(&pairs, x, distance, false),
+           found = sum_energies(&items, x, distance, true);
+    assert_true(fabs(found - expected) <= 1e-12 * expected);
+    t->pairs += pairs.count;
+    t->items += items.count;
+    for (size_t i = 0; i < items.count; i++) {
+        t->of_kind[items.items[i].kind]++;
+        t->mollified += mollifier_of(&items.items[i], x) < 1.0;
+    }
+    free(pairs.items);
+    free(items.items);
+}
+
+static void items_stand_for_all_pairs(void **state) {
+    (void)state;
+    tally t = {0};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        for (uint64_t seed = 0; seed < 6; seed++) {
+            double distance = distances[((uint64_t)family + seed) % DISTANCE_COUNT];
+            scene_make((scene_family)family, seed, &at_rest);
+            rig r = rig_of(&at_rest, 1 + (uint32_t)seed % 3);
+            compare_forms(&r, at_rest.x1, distance, &t);
+            set_rest(&r, at_rest.x0);
+            compare_forms(&r, at_rest.x1, distance, &t);
+            rig_destroy(&r);
+        }
+    }
+    print_message("  %zu pairs, %zu items: %zu VF, %zu EE (%zu mollified), %zu VV, %zu EV\n", t.pairs,
+                  t.items, t.of_kind[CSCD_CONTACT_VF], t.of_kind[CSCD_CONTACT_EE], t.mollified,
+                  t.of_kind[CSCD_CONTACT_VV], t.of_kind[CSCD_CONTACT_EV]);
+    assert_true(t.items < t.pairs && t.mollified > 100);
+    for (int kind = 0; kind <= CSCD_CONTACT_EV; kind++)
+        assert_true(kind == CSCD_CONTACT_TT || t.of_kind[kind] > 100);
+}
+
+/* ---- paths ----------------------------------------------------------------------------------------------- */
+
+/* A fan of eight triangles around vertex 0, folded up and down, and a small triangle above it, whose lowest corner is
+ * vertex 9. */
+static void make_fan(scene *s) {
+    s->vertex_count = 12;
+    s->triangle_count = 9;
+    memset(s->x0, 0, sizeof s->x0);
+    for (uint32_t i = 0; i < 8; i++) {
+        double angle = 0.25 * 3.141592653589793 * i;
+        const double rim[3] = {cos(angle), sin(angle), i % 2 == 0 ? 0.2 : -0.1};
+        const uint32_t corners[3] = {0, 1 + i, 1 + (i + 1) % 8};
+        memcpy(s->x0 + 3 + 3 * i, rim, sizeof rim);
+        memcpy(s->triangles + 3 * i, corners, sizeof corners);
+    }
+    s->triangles[24] = 9, s->triangles[25] = 10, s->triangles[26] = 11;
+    memcpy(s->x1, s->x0, sizeof s->x1);
+}
+
+/* The small triangle moves over the fan, along a circle and across the middle, and its upper edge turns. */
+static void place_on_fan(scene *s, double time) {
+    double angle = 6.3 * time, far = 0.7 * cos(3.0 * angle), turn = 5.0 * angle;
+    const double low[3] = {far * cos(angle), far * sin(angle), 0.25};
+    for (size_t k = 0; k < 3; k++) s->x0[27 + k] = s->x0[30 + k] = s->x0[33 + k] = low[k];
+    s->x0[30] += 0.4 * cos(turn), s->x0[31] += 0.4 * sin(turn), s->x0[32] += 0.01;
+    s->x0[33] -= 0.4 * sin(turn), s->x0[34] += 0.4 * cos(turn), s->x0[35] += 0.3;
+}
+
+typedef struct path_jumps {
+    double counted, once; /* the largest change between two moments of a sum with counts, and without them */
+    double total;
+} path_jumps;
+
+enum { MOMENTS = 20000 };
+
+/* Follows the energy along the path; at every moment it is that of all pairs. */
+static path_jumps follow_path(const rig *r, double reach) {
+    path_jumps jumps = {0.0, 0.0, 0.0};
+    double counted = 0.0, once = 0.0;
+    for (int i = 0; i <= MOMENTS; i++) {
+        place_on_fan(&moment, i / (double)MOMENTS);
+        item_list pairs = find_items(r, moment.x0, reach, CSCD_NEAR_PAIRS),
+                  items = find_items(r, moment.x0, reach, CSCD_NEAR_UNIQUE);
+        double expected = sum_energies(&pairs, moment.x0, reach, false);
+        double now = sum_energies(&items, moment.x0, reach, true),
+               once_now = sum_energies(&items, moment.x0, reach, false);
+        assert_true(fabs(now - expected) <= 1e-12 * expected);
+        if (i > 0) {
+            jumps.counted = fmax(jumps.counted, fabs(now - counted));
+            jumps.once = fmax(jumps.once, fabs(once_now - once));
+        }
+        jumps.total = fmax(jumps.total, now);
+        counted = now;
+        once = once_now;
+        free(pairs.items);
+        free(items.items);
+    }
+    return jumps;
+}
+
+/* The vertices of the path move by less than 0.01 from moment to moment, and the energy of a pair changes by at most
+ * 2.1 times its share of the reach; about twenty pairs are near. A list without counts jumps by whole energies. */
+static void energy_does_not_jump_on_a_fan(void **state) {
+    (void)state;
+    make_fan(&moment);
+    for (int with_rest = 0; with_rest < 2; with_rest++) {
+        rig r = rig_of(&moment, 1);
+        if (with_rest == 1) {
+            place_on_fan(&moment, 0.1);
+            set_rest(&r, moment.x0);
+        }
+        path_jumps jumps = follow_path(&r, 0.35);
+        print_message("  at most %.3g; jumps by %.3g, and by %.3g without counts\n", jumps.total,
+                      jumps.counted, jumps.once);
+        assert_true(jumps.total > 5.0 && jumps.counted < 0.1 && jumps.once > 0.5);
+        rig_destroy(&r);
+    }
+}
+
+/* Two edges turn through parallel, one above the other: they stay one item, whose mollifier goes to 0 and back, while
+ * their nearest points jump from end to end. */
+static void parallel_edges_stay_an_item(void **state) {
+    (void)state;
+    static const uint32_t triangles[] = {0, 1, 2, 3, 4, 5};
+    static const double corners[] = {-1, 0, 0, 1, 0, 0, 0, 0.1, -2, -0.9, 0, 0.1, 1.1, 0, 0.1, 0, 0.1, 2};
+    double before = -1.0, largest = 0.0, least = INFINITY;
+    size_t at_ends = 0;
+    moment.vertex_count = 6;
+    moment.triangle_count = 2;
+    memcpy(moment.triangles, triangles, sizeof triangles);
+    memcpy(moment.x0, corners, sizeof corners);
+    rig r = rig_of(&moment, 1);
+    set_rest(&r, moment.x0);
+    for (int i = -2000; i <= 2000; i++) {
+        double angle = 1e-4 * i;
+        moment.x0[9] = -0.9 * cos(angle), moment.x0[10] = -0.9 * sin(angle) + 0.02;
+        moment.x0[12] = 1.1 * cos(angle), moment.x0[13] = 1.1 * sin(angle) + 0.02;
+        item_list pairs = find_items(&r, moment.x0, 0.5, CSCD_NEAR_PAIRS),
+                  items = find_items(&r, moment.x0, 0.5, CSCD_NEAR_UNIQUE);
+        double energy = sum_energies(&items, moment.x0, 0.5, true);
+        assert_true(fabs(energy - sum_energies(&pairs, moment.x0, 0.5, false)) <= 1e-12 * energy);
+        for (size_t j = 0; j < items.count; j++) {
+            const cscd_proximity *p = &items.items[j];
+            if (p->kind != CSCD_CONTACT_EE || p->a != 0 || p->b != 3) continue;
+            double factor = mollifier_of(p, moment.x0);
+            assert_true(fabs(p->threshold - 1e-3 * 4.0 * 4.0) <= 1e-15);
+            least = fmin(least, factor);
+            at_ends += factor < 1.0 && (p->u == 0.0 || p->u == 1.0 || p->v == 0.0 || p->v == 1.0);
+        }
+        if (before >= 0.0) largest = fmax(largest, fabs(energy - before));
+        before = energy;
+        free(pairs.items);
+        free(items.items);
+    }
+    print_message("  jumps by %.3g; mollifier down to %.3g; %zu moments with nearest points at ends\n",
+                  largest, least, at_ends);
+    assert_true(largest < 0.02 && least < 1e-9 && at_ends > 10);
+    rig_destroy(&r);
+}
+
+/* ---- the same in other ways -------------------------------------------------------------------------------- */
+
+static void expect_same_items(const item_list *list, const item_list *other) {
+    assert_int_equal(list->count, other->count);
+    if (list->count > 0) assert_memory_equal(list->items, other->items, list->count * sizeof *list->items);
+}
+
+static void same_bits_for_any_thread_count(void **state) {
+    (void)state;
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        scene_make((scene_family)family, 4, &at_rest);
+        rig one = rig_of(&at_rest, 1);
+        set_rest(&one, at_rest.x0);
+        item_list expected = find_items(&one, at_rest.x1, 0.3, CSCD_NEAR_UNIQUE);
+        for (uint32_t threads = 2; threads <= 16; threads += 14) {
+            rig many = rig_of(&at_rest, threads);
+            set_rest(&many, at_rest.x0);
+            item_list found = find_items(&many, at_rest.x1, 0.3, CSCD_NEAR_UNIQUE);
+            expect_same_items(&found, &expected);
+            free(found.items);
+            rig_destroy(&many);
+        }
+        free(expected.items);
+        rig_destroy(&one);
+    }
+}
+
+static void same_from_a_line_search(void **state) {
+    (void)state;
+    static double x[SCENE_VERTICES_MAX * 3];
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        cscd_line_search *line;
+        cscd_proximities found;
+        scene_make((scene_family)family, 6, &at_rest);
+        rig r = rig_of(&at_rest, 2);
+        set_rest(&r, at_rest.x0);
+        assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+        assert_int_equal(line_begin_packed(line, at_rest.x0, at_rest.x1, 0.2), CSCD_OK);
+        assert_int_equal(line_positions_packed(line, 0.3, x), CSCD_OK);
+        item_list expected = find_items(&r, x, 0.2, CSCD_NEAR_UNIQUE);
+        assert_int_equal(cscd_line_search_find_near(line, 0.3, 0.2, CSCD_NEAR_UNIQUE, &found), CSCD_OK);
+        item_list list = {(cscd_proximity *)found.items, found.count};
+        expect_same_items(&list, &expected);
+        free(expected.items);
+        cscd_line_search_destroy(line);
+        rig_destroy(&r);
+    }
+}
+
+static void same_when_scaled(void **state) {
+    (void)state;
+    static const int exponents[] = {-240, -140, 100, 240};
+    for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
+        int exponent = exponents[family % 4];
+        scene_make((scene_family)family, 11, &at_rest);
+        moment = at_rest;
+        for (uint32_t i = 0; i < moment.vertex_count * 3; i++) {
+            moment.x0[i] = ldexp(moment.x0[i], exponent);
+            moment.x1[i] = ldexp(moment.x1[i], exponent);
+        }
+        rig plain = rig_of(&at_rest, 1), scaled = rig_of(&moment, 1);
+        set_rest(&plain, at_rest.x0);
+        set_rest(&scaled, moment.x0);
+        item_list expected = find_items(&plain, at_rest.x1, 0.1, CSCD_NEAR_UNIQUE),
+                  found = find_items(&scaled, moment.x1, ldexp(0.1, exponent), CSCD_NEAR_UNIQUE);
+        assert_int_equal(found.count, expected.count);
+        for (size_t i = 0; i < found.count; i++) {
+            const cscd_proximity *p = &found.items[i], *t = &expected.items[i];
+            assert_int_equal(compare_names(p, t), 0);
+            assert_true(p->u == t->u && p->v == t->v && p->vf_count == t->vf_count &&
+                        p->ee_count == t->ee_count && p->distance == ldexp(t->distance, exponent));
+            assert_true(p->threshold == ldexp(t->threshold, 4 * exponent));
+        }
+        free(expected.items);
+        free(found.items);
+        rig_destroy(&scaled);
+        rig_destroy(&plain);
+    }
+}
+
+/* ---- arguments ----------------------------------------------------------------------------------------- */
+
+static void expect_detail(const rig *r, cscd_status status, const char *words) {
+    assert_int_equal(status, CSCD_INVALID_ARGUMENT);
+    if (strstr(cscd_context_detail(r->context), words) == NULL)
+        fail_msg("\"%s\" in \"%s\"", words, cscd_context_detail(r->context));
+}
+
+static size_t count_mollified(const rig *r) {
+    item_list items = find_items(r, at_rest.x0, 0.25, CSCD_NEAR_UNIQUE);
+    size_t count = 0;
+    for (size_t i = 0; i < items.count; i++) count += items.items[i].threshold > 0.0;
+    free(items.items);
+    return count;
+}
+
+static void arguments_are_checked(void **state) {
+    (void)state;
+    cscd_proximities out = {NULL, 4711};
+    scene_make(SCENE_SPIKE, 1, &at_rest);
+    moment = at_rest;
+    rig r = rig_of(&at_rest, 1);
+    expect_detail(&r,
+                  cscd_detector_find_near(r.detector, CSCD_DOUBLES(at_rest.x0, at_rest.vertex_count), 0.1,
+                                          (cscd_near_form)2, &out),
+                  "form 2");
+    assert_true(out.items == NULL && out.count == 4711);
+    assert_int_equal(set_rest_packed(NULL, at_rest.x0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(count_mollified(&r), 0);
+    set_rest(&r, at_rest.x0);
+    size_t known = count_mollified(&r);
+    assert_true(known > 0);
+    moment.x0[0] = 0x1p280;
+    expect_detail(&r, set_rest_packed(r.detector, moment.x0), "long at rest");
+    moment.x0[0] = NAN;
+    expect_detail(&r, set_rest_packed(r.detector, moment.x0), "rest: vertex 0 has x");
+    assert_int_equal(count_mollified(&r), known);
+    set_rest(&r, NULL);
+    assert_int_equal(count_mollified(&r), 0);
+    rig_destroy(&r);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(items_stand_for_all_pairs),   cmocka_unit_test(energy_does_not_jump_on_a_fan),
+        cmocka_unit_test(parallel_edges_stay_an_item), cmocka_unit_test(same_bits_for_any_thread_count),
+        cmocka_unit_test(same_from_a_line_search),     cmocka_unit_test(same_when_scaled),
+        cmocka_unit_test(arguments_are_checked),
+    };
+    return cmocka_run_group_tests_name("unique proximities", tests, NULL, NULL);
+}
