@@ -63,6 +63,7 @@
 #include <cscd/context.h>
 #include <cscd/detector.h>
 #include <cscd/mesh.h>
+#include <cscd/pairs.h>
 #include <cscd/plan.h>
 #include <cscd/solver.h>
 #include <cscd/view.h>

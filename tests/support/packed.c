@@ -142,3 +142,24 @@ cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const d
     cscd_view from, to;
     return cscd_sensors_step(sensors, view_of(mesh, x0, &from), view_of(mesh, x1, &to), out);
 }
+
+/* All points as packed doubles; NULL goes on as NULL. */
+static const cscd_view *view_points(const cscd_pairs *pairs, const double *points, cscd_view *view) {
+    if (points == NULL) return NULL;
+    *view = cscd_view_doubles(points, pairs != NULL ? pairs->point_count : 0);
+    return view;
+}
+
+cscd_status pairs_step_packed(cscd_context *context, const cscd_pairs *pairs, const double *start,
+                              const double *end, double min_separation, double tolerance,
+                              cscd_pair_contact *out) {
+    cscd_view from, to;
+    return cscd_pairs_step(context, pairs, view_points(pairs, start, &from), view_points(pairs, end, &to),
+                           min_separation, tolerance, out);
+}
+
+cscd_status pairs_near_packed(cscd_context *context, const cscd_pairs *pairs, const double *positions,
+                              double distance, cscd_pair_distance *out) {
+    cscd_view view;
+    return cscd_pairs_find_near(context, pairs, view_points(pairs, positions, &view), distance, out);
+}

@@ -39,3 +39,10 @@ cscd_status sensors_create_here(const cscd_mesh *mesh, cscd_partition *partition
                                 const cscd_sensor_options *options, cscd_sensors **out);
 cscd_status sensors_step_packed(cscd_sensors *sensors, const double *x0, const double *x1,
                                 cscd_warnings *out);
+
+/* Pairs of points; out as in the functions of the API. */
+cscd_status pairs_step_packed(cscd_context *context, const cscd_pairs *pairs, const double *x0,
+                              const double *x1, double min_separation, double tolerance,
+                              cscd_pair_contact *out);
+cscd_status pairs_near_packed(cscd_context *context, const cscd_pairs *pairs, const double *positions,
+                              double distance, cscd_pair_distance *out);
