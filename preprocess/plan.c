@@ -231,7 +231,7 @@ static cscd_status create_plan(cscd_context *context, const cscd_mesh *mesh, con
 
 cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh, const cscd_view *positions,
                              const cscd_plan_options *options, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_plan(context, mesh, positions, options, out));
@@ -245,7 +245,8 @@ static cscd_status check_parts(const cscd_mesh *mesh, const cscd_plan_parts *par
         return context_fail(context, CSCD_INVALID_ARGUMENT, "method %s makes no plan",
                             cscd_method_name(parts->method));
     if (parts->triangle_regions == NULL || parts->detector_points == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "triangle_regions or detector_points is NULL");
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%s is NULL",
+                            parts->triangle_regions == NULL ? "triangle_regions" : "detector_points");
     bool charged = parts->method == CSCD_METHOD_CHARGE;
     if ((parts->charges != NULL) != charged || (parts->capacitances != NULL) != charged)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
@@ -293,8 +294,8 @@ static cscd_status create_from_parts(cscd_context *context, const cscd_mesh *mes
                                      const cscd_plan_parts *parts, size_t parts_size, cscd_plan **out) {
     const cscd_mesh seen = mesh_seen_from(context, mesh);
     if (parts == NULL || out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "cscd_plan_create_from_parts: parts or out is NULL");
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_plan_create_from_parts: %s is NULL",
+                            out == NULL ? "out" : "parts");
     cscd_plan_parts taken = {0};
     double *buffer = NULL;
     const double *x = NULL;
@@ -309,7 +310,7 @@ static cscd_status create_from_parts(cscd_context *context, const cscd_mesh *mes
 cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
                                               const cscd_view *positions, const cscd_plan_parts *parts,
                                               size_t parts_size, cscd_plan **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_from_parts(context, mesh, positions, parts, parts_size, out));

@@ -31,6 +31,8 @@ typedef enum cscd_status {
     CSCD_IN_CONTACT,       /* no step is free of contact, because the start is not: cscd_detector_max_step */
     CSCD_BUSY,             /* another call with this context is running: see the rules of callbacks */
     CSCD_BROKEN,           /* a callback has left a call with this context by an exception or longjmp */
+    CSCD_NULL_OBJECT,      /* an object that the call needs is NULL. There may be no context then that could
+                            * hold a sentence, so cscd_context_detail is what it was before */
     CSCD_STATUS_MAX_ENUM = 0x7fffffff
 } cscd_status;
 
@@ -62,8 +64,10 @@ typedef struct cscd_context cscd_context;
  *             thread if a plan by charge is left */
 
 /* The host's allocator. Set both functions, or neither for aligned_alloc and free. allocate returns NULL
- * when it fails; alignment is a power of two. release is given the size that was asked for. The context
- * never calls them from two threads at once. */
+ * when it fails; alignment is a power of two. release is given the size that was asked for. They are never
+ * called from two threads at once, but from any thread: the context's own, and the one that destroys the last
+ * object that keeps something of the context. That may be an object of another context, made from a mesh of
+ * this one: the memory of a mesh is that of the context in which it was created. */
 typedef struct cscd_allocator {
     void *(*allocate)(void *user, size_t size, size_t alignment);
     void (*release)(void *user, void *block, size_t size);
@@ -135,11 +139,13 @@ static inline cscd_context_options cscd_context_defaults(void) {
  * failure is written where the options say. */
 CSCD_API cscd_status cscd_context_create(const cscd_context_options *options, cscd_context **out);
 
-/* Frees the context. Call it after everything that was created from it has been destroyed. */
+/* Gives the context back. Objects that were created from it go on working, with its allocator and its
+ * threads, until the last of them is destroyed; it frees the memory and ends the threads. The sentences of
+ * their failures can no longer be read. */
 CSCD_API void cscd_context_destroy(cscd_context *context);
 
-/* The sentence behind the last failure in this context, "" if there was none. It lives until the next call
- * with an object of the context. */
+/* Why the last call with an object of the context failed, "" if it succeeded. The sentence lives until the
+ * next such call. */
 CSCD_API const char *cscd_context_detail(const cscd_context *context);
 
 /* The number of threads, or with parallel_for of tasks, that long work is shared by. */

@@ -14,16 +14,21 @@
  *   features    vertices, edges and faces (triangles), borders included; indices begin at 0
  *   contact     two features without a common vertex touch during the interval or, with a minimum separation,
  *               come within it. Features in contact at the start are reported at time 0
- *   ownership   the library copies what it is given. What a _create function makes, one _destroy call frees;
- *               destroy in the reverse order of creation. Destroying NULL does nothing
+ *   ownership   the library copies what it is given. What a _create function makes, one _destroy call gives back,
+ *               in any order: an object keeps what it was made from, so a detector goes on working when its mesh
+ *               and its context have been destroyed, and the last of their objects frees them. After _destroy
+ *               the caller's pointer must not be used. Destroying NULL does nothing
  *   results     lists that a function gives out belong to the object that was asked; each says how long they live
  *   threads     one call at a time works in a context: another one fails with CSCD_BUSY, as calls from callbacks do.
- *               Separate contexts are independent. cscd/context.h has the rules of callbacks
+ *               Separate contexts are independent. A mesh never changes: objects of any contexts use it on any
+ *               threads at the same time, and its functions may be called from any thread. cscd/context.h has
+ *               the rules of callbacks
  *   errors      functions that can fail return cscd_status; *out is written only with CSCD_OK. Afterwards
- *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do. (A NULL context,
- *               mesh, detector or line has no place for a sentence.) All may return CSCD_INVALID_ARGUMENT and
- *               CSCD_OUT_OF_MEMORY; other statuses are named at the function. Objects stay valid after any
- *               failure, and the call may be repeated
+ *               cscd_context_detail() gives a sentence: what is wrong, where, and what to do; "" after a call
+ *               that succeeded. A function that needs an object and is given NULL returns CSCD_NULL_OBJECT, and
+ *               the sentence stays what it was. All may return CSCD_INVALID_ARGUMENT and CSCD_OUT_OF_MEMORY;
+ *               other statuses are named at the function. Objects stay valid after any failure, and the call may
+ *               be repeated
  *   unchecked   functions that do not return cscd_status are given a valid object and indices below its counts;
  *               they check nothing
  *   defaults    options come from the matching _defaults() function and are then changed; {0} is refused. A NULL

@@ -123,7 +123,8 @@ typedef struct cscd_detector_options {
 
     /* Seams: seam_count pairs of vertices that count as one vertex, as where panels of cloth are sewn
      * together or a texture splits a surface. Features that have such vertices are neighbours, and so
-     * never reported. In a chain of pairs all vertices count as one. */
+     * never reported. In a chain of pairs all vertices count as one. A vertex has no seam with itself:
+     * INVALID_ARGUMENT. */
     const uint32_t *seams;
     size_t seam_count;
 
@@ -152,6 +153,13 @@ typedef struct cscd_detector_options {
      * below which it never comes: one of d, s d, s^2 d, ... with s = floor_ratio. In (0,0.999], 0.9 by
      * default. */
     double floor_ratio;
+
+    /* A length: how far apart the two vertices of a seam may be in the first positions that the detector is
+     * given; later they may part. A call with positions in which they are farther apart returns
+     * INVALID_ARGUMENT and names the pair, since mostly its indices are wrong. 0, the default, stands for
+     * the longest edge at the two vertices; INFINITY allows any distance, as for panels that are to be
+     * pulled together. */
+    double seam_reach;
 } cscd_detector_options;
 
 /* The default options. */
@@ -163,13 +171,13 @@ static inline cscd_detector_options cscd_detector_defaults(void) {
 }
 
 /* Creates a detector, which allocates from `context` and fails into it; the mesh may be of another context.
- * The mesh must live as long. plan: a plan of the same mesh, which may be destroyed
- * afterwards, or NULL; the methods CHARGE and KMEANS need one of their kind, the others take any or none.
+ * The detector keeps the mesh. plan: a plan of the same mesh, of which the detector copies what it needs,
+ * or NULL; the methods CHARGE and KMEANS need one of their kind, the others take any or none.
  * options may be NULL. */
 CSCD_API cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                           const cscd_detector_options *options, cscd_detector **out);
 
-/* Frees the detector and its lists. Call it after its line searches have been destroyed. */
+/* Gives the detector back, and with it its lists. Its line searches keep it, and go on working. */
 CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 
 /* The mesh that the detector was created for. */

@@ -42,7 +42,7 @@ static inline cscd_status cscd_mesh_create(cscd_context *context, const cscd_obj
     return cscd_mesh_create_sized(context, objects, sizeof *objects, object_count, out);
 }
 
-/* Frees the mesh. Call it after its plans, detectors, partitions and sensors have been destroyed. */
+/* Gives the mesh back. Objects that were made from it keep it. */
 CSCD_API void cscd_mesh_destroy(cscd_mesh *mesh);
 
 /* The context that the mesh was created in. */

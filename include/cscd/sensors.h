@@ -45,13 +45,13 @@ static inline cscd_partition_options cscd_partition_defaults(void) {
     return options;
 }
 
-/* Creates the partition of a mesh, which must live as long. plan: a plan of the same mesh, which may be
+/* Creates the partition of a mesh, and keeps the mesh. plan: a plan of the same mesh, which may be
  * destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. */
 CSCD_API cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh,
                                            const cscd_plan *plan, const cscd_view *positions,
                                            const cscd_partition_options *options, cscd_partition **out);
 
-/* Frees the partition. Call it after its sensors have been destroyed. */
+/* Gives the partition back. Its sensors keep it. */
 CSCD_API void cscd_partition_destroy(cscd_partition *partition);
 
 /* Makes new cells for one part, or for all if part is UINT32_MAX, at the given positions; their number
@@ -135,8 +135,8 @@ static inline cscd_sensor_options cscd_sensor_defaults(void) {
     return options;
 }
 
-/* Creates sensors. The mesh and the partition, which is one of this mesh, must live as long. options may
- * be NULL. */
+/* Creates sensors, which keep the partition: one of this mesh, and made in the same context, because its
+ * cells may be made anew. options may be NULL. */
 CSCD_API cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh,
                                          cscd_partition *partition, const cscd_sensor_options *options,
                                          cscd_sensors **out);

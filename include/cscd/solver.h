@@ -229,7 +229,7 @@ static inline cscd_status cscd_detector_truncate(cscd_detector *detector, const 
  * two are never called at the same time. */
 typedef struct cscd_line_search cscd_line_search;
 
-/* Creates a line search. The detector must live as long. */
+/* Creates a line search, which keeps its detector. */
 CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out);
 
 /* Frees the line search. */

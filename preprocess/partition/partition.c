@@ -149,7 +149,7 @@ static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh
 cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                   const cscd_view *positions, const cscd_partition_options *options,
                                   cscd_partition **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_partition(context, mesh, plan, positions, options, out));
@@ -178,7 +178,7 @@ static cscd_status renew_partition(cscd_partition *partition, const cscd_view *p
 }
 
 cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
-    if (partition == NULL) return CSCD_INVALID_ARGUMENT;
+    if (partition == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(partition->context, &entry)) return entry.status;
     return context_leave(&entry, renew_partition(partition, positions, part));

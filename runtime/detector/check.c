@@ -57,6 +57,7 @@ static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_
 static cscd_status check_at(cscd_detector *d, const double *positions, cscd_intersections *out) {
     double since = timer_now_ms(), spent = 0.0;
     cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, positions);
     if (status != CSCD_OK) return status;
 
     detector_begin_call(d);
@@ -84,7 +85,7 @@ static cscd_status check_views(cscd_detector *detector, const cscd_view *positio
 
 cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
                                       cscd_intersections *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, check_views(detector, positions, out, size));

@@ -3,10 +3,12 @@
 
 #include "runtime/detector/detector_rules.h"
 #include "runtime/narrow_phase/limits.h"
+#include "src/core/check.h"
 #include "src/core/methods.h"
 #include "src/core/struct_size.h"
 #include "src/core/vec3.h"
 
+#include <math.h>
 #include <string.h>
 
 static const cscd_detector_options default_options = {.step_factor = 0.8, .floor_ratio = 0.9};
@@ -30,6 +32,11 @@ static cscd_status check_options(cscd_context *context, const cscd_detector_opti
     if (!(options->floor_ratio > 0.0 && options->floor_ratio <= 0.999))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "floor_ratio is %g, expected a number in (0,0.999]", options->floor_ratio);
+    if (!(is_length(options->seam_reach) || options->seam_reach == INFINITY))
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "seam_reach is %g, expected 0 (the default), a length from 2^-300 to 2^300 or "
+                            "INFINITY",
+                            options->seam_reach);
     return separation_check(context, options->min_separation, options->tolerance);
 }
 
@@ -164,13 +171,14 @@ static cscd_status take_options(cscd_context *context, const cscd_mesh *mesh, co
         status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_detector_options),
                                      options, "cscd_detector_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
-    if (status == CSCD_OK) status = choose_method(mesh, plan, &chosen);
+    cscd_mesh seen = mesh_seen_from(context, mesh);
+    if (status == CSCD_OK) status = choose_method(&seen, plan, &chosen);
     return status == CSCD_OK ? create_detector(context, mesh, plan, chosen, out) : status;
 }
 
 cscd_status cscd_detector_create(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                  const cscd_detector_options *options, cscd_detector **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL || mesh == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, take_options(context, mesh, plan, options, out));
@@ -202,7 +210,7 @@ static cscd_status set_separation(cscd_detector *detector, double min_separation
 }
 
 cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, set_separation(detector, min_separation, tolerance));

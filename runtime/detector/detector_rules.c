@@ -82,7 +82,7 @@ cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
 cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
                                     uint32_t rule_count, const double *thickness_matrix,
                                     uint32_t thickness_class_count) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     const given_rules given = {rules, rule_count, thickness_matrix, thickness_class_count};
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;

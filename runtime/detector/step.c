@@ -308,15 +308,13 @@ void step_withdraw(cscd_detector *d) {
  * without culling they matter only if a static check has left some. */
 cscd_status step_check_positions(cscd_detector *d, const double *start, const double *end) {
     uint32_t vertices = d->mesh->vertex_count;
-    cscd_status status = CSCD_OK;
-    if (!start_states_hold(&d->starts, start)) {
-        status = positions_check(d->context, start, vertices, "x0");
-        if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "x1");
-        if (status == CSCD_OK && (detector_culls(d) || d->starts.known))
-            start_states_begin(&d->starts, start);
-        return status;
-    }
-    return positions_check(d->context, end, vertices, "x1");
+    bool seen = start_states_hold(&d->starts, start);
+    cscd_status status = seen ? CSCD_OK : positions_check(d->context, start, vertices, "x0");
+    if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "x1");
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, start);
+    if (status == CSCD_OK && !seen && (detector_culls(d) || d->starts.known))
+        start_states_begin(&d->starts, start);
+    return status;
 }
 
 static cscd_status step_between(cscd_detector *d, const double *x0, const double *x1, cscd_contacts *out) {
@@ -354,7 +352,7 @@ static cscd_status step_views(cscd_detector *detector, const cscd_view *x0, cons
 
 cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                      cscd_contacts *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, step_views(detector, x0, x1, out, size));

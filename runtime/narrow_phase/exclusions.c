@@ -59,6 +59,8 @@ cscd_status exclusions_create(const cscd_mesh *mesh, const cscd_detector_options
     if (status == CSCD_OK)
         status = check_pairs(mesh->context, options->seams, options->seam_count, mesh->vertex_count, "seams",
                              "vertex");
+    if (status == CSCD_OK)
+        status = seam_list_create(mesh, options->seams, options->seam_count, options->seam_reach, &e.seams);
     if (status == CSCD_OK) status = list_pairs(&e, options);
     if (status == CSCD_OK) status = name_seams(&e, options);
     if (status != CSCD_OK) {
@@ -72,6 +74,7 @@ cscd_status exclusions_create(const cscd_mesh *mesh, const cscd_detector_options
 void exclusions_free(cscd_context *context, exclusions *e) {
     context_free(context, e->ignored);
     context_free(context, e->names);
+    seam_list_free(context, &e->seams);
     *e = (exclusions){.mesh = NULL};
 }
 

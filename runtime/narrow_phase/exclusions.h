@@ -1,7 +1,7 @@
 /* Pairs that the caller wants to be left out: by callback, by list, and by seams. */
 #pragma once
 
-#include "src/mesh/mesh.h"
+#include "runtime/narrow_phase/seam_list.h"
 
 typedef struct exclusions {
     const cscd_mesh *mesh;
@@ -10,6 +10,7 @@ typedef struct exclusions {
     uint64_t *ignored; /* pairs of triangles, the smaller one in the upper half, sorted */
     size_t ignored_count;
     uint32_t *names; /* per vertex: the smallest one of its seam; NULL: there are no seams */
+    seam_list seams; /* to be checked at the first positions */
 } exclusions;
 
 /* Copies what the options say. INVALID_ARGUMENT names what does not fit. */

@@ -166,7 +166,7 @@ static cscd_status step_pairs(cscd_context *context, const cscd_pairs *pairs, co
 cscd_status cscd_pairs_step(cscd_context *context, const cscd_pairs *pairs, const cscd_view *x0,
                             const cscd_view *x1, double min_separation, double tolerance,
                             cscd_pair_contact *out) {
-    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL) return CSCD_NULL_OBJECT;
     const double limit[2] = {min_separation, tolerance};
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
@@ -196,7 +196,7 @@ static cscd_status measure_pairs(cscd_context *context, const cscd_pairs *pairs,
 
 cscd_status cscd_pairs_find_near(cscd_context *context, const cscd_pairs *pairs, const cscd_view *positions,
                                  double distance, cscd_pair_distance *out) {
-    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, measure_pairs(context, pairs, positions, distance, out));

@@ -114,10 +114,13 @@ static void free_sensors(reference_count *references) {
 static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
                                   const cscd_sensor_options *options, cscd_sensors **out) {
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
-    if (partition == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: partition is NULL");
     if (!mesh_is_same(partition->mesh, mesh))
         return context_fail(context, CSCD_INVALID_ARGUMENT, "the partition was made for another mesh");
+    if (partition->context != context)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "the partition was made in another context: sensors and their partition belong to "
+            "one, because its cells may be made anew");
     cscd_sensor_options chosen = default_options;
     cscd_status status = CSCD_OK;
     if (options != NULL)
@@ -144,7 +147,7 @@ static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, 
 
 cscd_status cscd_sensors_create(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
                                 const cscd_sensor_options *options, cscd_sensors **out) {
-    if (context == NULL || mesh == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL || mesh == NULL || partition == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_sensors(context, mesh, partition, options, out));
@@ -290,7 +293,7 @@ static cscd_status step_views(cscd_sensors *sensors, const cscd_view *x0, const 
 
 cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, const cscd_view *x1,
                                     cscd_warnings *out, size_t size) {
-    if (sensors == NULL) return CSCD_INVALID_ARGUMENT;
+    if (sensors == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(sensors->context, &entry)) return entry.status;
     return context_leave(&entry, step_views(sensors, x0, x1, out, size));

@@ -123,6 +123,7 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
                                   cscd_scalar scalar, void *bounds, cscd_displacement_bounds *out) {
     uint32_t count = d->mesh->vertex_count;
     cscd_status status = positions_check(d->context, x0, count, "x0");
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, x0);
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     if (d->reached == NULL) d->reached = context_allocate(d->context, count, sizeof(double[3]));
@@ -154,7 +155,7 @@ cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, con
                                                     double search_radius, cscd_scalar scalar, void *bounds,
                                                     size_t size, cscd_displacement_bounds *out,
                                                     size_t out_size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(

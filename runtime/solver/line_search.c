@@ -70,7 +70,7 @@ static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) 
 }
 
 cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, create_line(detector, out));
@@ -105,6 +105,7 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     if (status == CSCD_OK) status = positions_check(d->context, x1, vertices, "x1");
     straight_motion m = {d->mesh, x0, x1, line->scalars};
     if (status == CSCD_OK) status = motion_check(d->context, &m);
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, x0);
     if (status != CSCD_OK) return status;
     line->begun = false;
     line->reach = reach;
@@ -139,7 +140,7 @@ static cscd_status begin_views(cscd_line_search *line, const cscd_view *x0, cons
 
 cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
                                    double reach) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(line->detector->context, &entry)) return entry.status;
     return context_leave(&entry, begin_views(line, x0, x1, reach));
@@ -213,7 +214,7 @@ static cscd_status write_positions(cscd_line_search *line, double fraction,
 
 cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
                                        const cscd_mutable_view *positions) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(line->detector->context, &entry)) return entry.status;
     return context_leave(&entry, write_positions(line, fraction, positions));
@@ -249,7 +250,7 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
 
 cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double fraction, double distance,
                                              cscd_near_form form, cscd_proximities *out, size_t size) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(line->detector->context, &entry)) return entry.status;
     return context_leave(&entry, find_near_on_line(line, fraction, distance, form, out, size));
@@ -333,7 +334,7 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
 cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longest,
                                             const cscd_mutable_view *reached, cscd_free_step *out,
                                             size_t size) {
-    if (line == NULL) return CSCD_INVALID_ARGUMENT;
+    if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(line->detector->context, &entry)) return entry.status;
     return context_leave(&entry, max_step_on_line(line, longest, reached, out, size));

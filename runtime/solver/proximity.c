@@ -93,6 +93,7 @@ cscd_status proximity_find(cscd_detector *d, const double *positions, double dis
 static cscd_status find_near_at(cscd_detector *d, const double *positions, double distance,
                                 cscd_near_form form, cscd_proximities *out) {
     cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
+    if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, positions);
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     status = proximity_find(d, positions, distance, form, out);
@@ -119,7 +120,7 @@ static cscd_status find_near_views(cscd_detector *detector, const cscd_view *pos
 cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_view *positions,
                                           double distance, cscd_near_form form, cscd_proximities *out,
                                           size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, find_near_views(detector, positions, distance, form, out, size));
@@ -133,7 +134,7 @@ static cscd_status take_rest(cscd_detector *d, const cscd_view *rest) {
 }
 
 cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     cscd_status status = CSCD_OK;

@@ -288,7 +288,7 @@ static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, 
 cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,
                                          double search_radius, const cscd_mutable_view *reached,
                                          cscd_truncation *out, size_t size) {
-    if (detector == NULL) return CSCD_INVALID_ARGUMENT;
+    if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(detector->context, &entry)) return entry.status;
     return context_leave(&entry, truncate_views(detector, x0, x1, search_radius, reached, out, size));

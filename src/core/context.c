@@ -97,8 +97,10 @@ cscd_status cscd_context_create(const cscd_context_options *options, cscd_contex
     if (status == CSCD_OK) status = check_options(&explained, &chosen);
     if (chosen.allocator.allocate == NULL) chosen.allocator = memory_system_allocator();
     if (status == CSCD_OK) status = create_context(&chosen, &explained, out);
-    if (status != CSCD_OK && chosen.reason != NULL && chosen.reason_size > 0)
-        snprintf(chosen.reason, chosen.reason_size, "%s", explained.detail);
+    bool refused =
+        status != CSCD_OK && options != NULL && options->struct_size >= LEAST_SIZE(cscd_context_options);
+    if (refused && options->reason != NULL && options->reason_size > 0)
+        snprintf(options->reason, options->reason_size, "%s", explained.detail);
     return status;
 }
 

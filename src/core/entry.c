@@ -77,6 +77,7 @@ static bool claim_context(cscd_context *context, context_entry *entry, uintptr_t
 bool context_enter_at(cscd_context *context, context_entry *entry, uintptr_t frame) {
     if (!claim_context(context, entry, frame)) return false;
     context->entry.host = float_environment_begin();
+    context->detail[0] = '\0'; /* of an earlier call */
     parallel_begin_call(context->threads);
     return true;
 }

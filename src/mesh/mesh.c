@@ -4,6 +4,7 @@
 #include "src/core/struct_size.h"
 #include "src/mesh/stencil.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -54,7 +55,8 @@ static cscd_status check_desc(cscd_context *context, const cscd_object_desc *des
         return context_fail(context, CSCD_INVALID_MESH, "%sthe mesh is empty: %u vertices, %u triangles",
                             object, desc->vertex_count, desc->triangle_count);
     if (desc->triangles == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "%striangles is NULL", object);
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%striangles is NULL, but there are to be %u",
+                            object, desc->triangle_count);
     return CSCD_OK;
 }
 
@@ -191,7 +193,8 @@ static cscd_status take_objects(cscd_context *context, const cscd_object_desc *o
 static cscd_status create_from_descriptions(cscd_context *context, const cscd_object_desc *objects,
                                             size_t object_size, uint32_t object_count, cscd_mesh **out) {
     if (objects == NULL || out == NULL)
-        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: objects or out is NULL");
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_mesh_create: %s is NULL",
+                            out == NULL ? "out" : "objects");
     if (object_count == 0)
         return context_fail(context, CSCD_INVALID_MESH, "the mesh is empty: object_count is 0");
     cscd_object_desc *taken = context_allocate(context, object_count, sizeof *taken);
@@ -204,7 +207,7 @@ static cscd_status create_from_descriptions(cscd_context *context, const cscd_ob
 
 cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
                                    uint32_t object_count, cscd_mesh **out) {
-    if (context == NULL) return CSCD_INVALID_ARGUMENT;
+    if (context == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
     if (!context_enter(context, &entry)) return entry.status;
     return context_leave(&entry, create_from_descriptions(context, objects, object_size, object_count, out));
@@ -266,6 +269,7 @@ uint32_t cscd_mesh_triangle_count(const cscd_mesh *mesh) {
 }
 
 void cscd_mesh_triangle(const cscd_mesh *mesh, uint32_t triangle, uint32_t vertices[3]) {
+    assert(triangle < mesh->triangle_count);
     memcpy(vertices, mesh->triangles[triangle], sizeof mesh->triangles[triangle]);
 }
 
@@ -274,19 +278,23 @@ uint32_t cscd_mesh_edge_count(const cscd_mesh *mesh) {
 }
 
 void cscd_mesh_edge(const cscd_mesh *mesh, uint32_t edge, uint32_t vertices[2]) {
+    assert(edge < mesh->edge_count);
     memcpy(vertices, mesh->edges[edge], sizeof mesh->edges[edge]);
 }
 
 void cscd_mesh_triangle_edges(const cscd_mesh *mesh, uint32_t triangle, uint32_t edges[3]) {
+    assert(triangle < mesh->triangle_count);
     memcpy(edges, mesh->triangle_edges[triangle], sizeof mesh->triangle_edges[triangle]);
 }
 
 const uint32_t *cscd_mesh_vertex_triangles(const cscd_mesh *mesh, uint32_t vertex, uint32_t *count) {
+    assert(vertex < mesh->vertex_count);
     *count = mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
     return mesh->vertex_stars + mesh->vertex_star_offsets[vertex];
 }
 
 const uint32_t *cscd_mesh_edge_triangles(const cscd_mesh *mesh, uint32_t edge, uint32_t *count) {
+    assert(edge < mesh->edge_count);
     *count = edge_star_size(mesh, edge);
     return mesh->edge_stars + mesh->edge_star_offsets[edge];
 }
@@ -296,10 +304,12 @@ uint32_t cscd_mesh_component_count(const cscd_mesh *mesh) {
 }
 
 void cscd_mesh_component_sized(const cscd_mesh *mesh, uint32_t component, cscd_component *out, size_t size) {
+    assert(component < mesh->component_count);
     struct_give(out, size, &mesh->components[component], sizeof *mesh->components);
 }
 
 uint32_t cscd_mesh_triangle_component(const cscd_mesh *mesh, uint32_t triangle) {
+    assert(triangle < mesh->triangle_count);
     return mesh->triangle_components[triangle];
 }
 
@@ -308,10 +318,12 @@ uint32_t cscd_mesh_object_count(const cscd_mesh *mesh) {
 }
 
 void cscd_mesh_object_sized(const cscd_mesh *mesh, uint32_t object, cscd_object *out, size_t size) {
+    assert(object < mesh->object_count);
     struct_give(out, size, &mesh->objects[object], sizeof *mesh->objects);
 }
 
 uint32_t cscd_mesh_vertex_object(const cscd_mesh *mesh, uint32_t vertex) {
+    assert(vertex < mesh->vertex_count);
     uint32_t low = 0, high = mesh->object_count;
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;

@@ -1,6 +1,8 @@
 /* Views of positions: from a caller's layout to packed doubles, and back. */
 #include "src/mesh/views.h"
 
+#include "src/mesh/view_overlap.h"
+
 #include <string.h>
 
 /* What both kinds of views have in common; the defaults are filled in. */
@@ -40,13 +42,43 @@ static layout layout_of(const cscd_mesh *mesh, const cscd_view *view, uint32_t f
                     .vertex_count = last->first_vertex + last->vertex_count - first->first_vertex};
 }
 
-/* Computes the bytes from the first coordinate to the end of the last one; false if they overflow. */
-static bool find_extent(const layout *l, size_t *out) {
-    size_t last = l->vertex_count - 1, places, coordinates;
-    return !__builtin_mul_overflow(last, l->stride, &places) &&
-           !__builtin_mul_overflow((size_t)2, l->coordinate_stride, &coordinates) &&
-           !__builtin_add_overflow(places, coordinates, out) &&
-           !__builtin_add_overflow(*out, l->scalar_size, out);
+/* ---- checking ------------------------------------------------------------------------------------------ */
+
+/* No memory is larger; below this, places in a view and their differences do not overflow. */
+#define SIZE_OF_VIEW_MAX (SIZE_MAX / 8)
+
+/* The number of vertices that lie in the memory of the view. */
+static size_t room_of(const layout *l) {
+    if (l->coordinate_stride > l->size) return 0;
+    size_t one = 2 * l->coordinate_stride + l->scalar_size;
+    return one <= l->size ? 1 + (l->size - one) / l->stride : 0;
+}
+
+static view_grid grid_of(const layout *l) {
+    return (view_grid){l->data, l->stride, l->coordinate_stride, l->scalar_size, l->vertex_count};
+}
+
+static cscd_status check_layout(cscd_context *context, const layout *l, uint32_t place, const char *name) {
+    view_grid grid = grid_of(l);
+    view_clash clash;
+    if (l->size > SIZE_OF_VIEW_MAX)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "%s[%u].size is %zu bytes, more than any memory has", name, place, l->size);
+    if (room_of(l) < l->vertex_count)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "%s[%u] has %zu bytes, room for %zu of its %u vertices (stride %zu, "
+                            "coordinate_stride %zu): the array is too short, or its size is in another unit "
+                            "than bytes",
+                            name, place, l->size, room_of(l), l->vertex_count, l->stride,
+                            l->coordinate_stride);
+    if (view_overlaps_itself(&grid, &clash))
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "%s[%u]: %c of vertex %u and %c of vertex %u lie on the same bytes, with a stride "
+            "of %zu, a coordinate_stride of %zu and %zu bytes a coordinate",
+            name, place, "xyz"[clash.coordinates[0]], clash.vertices[0], "xyz"[clash.coordinates[1]],
+            clash.vertices[1], l->stride, l->coordinate_stride, l->scalar_size);
+    return CSCD_OK;
 }
 
 static cscd_status check_view(cscd_context *context, const cscd_mesh *mesh, const cscd_view *view,
@@ -60,16 +92,10 @@ static cscd_status check_view(cscd_context *context, const cscd_mesh *mesh, cons
     uint32_t left = mesh->object_count - first_object;
     if (view->object_count > left)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "%s[%u] is to hold %u objects, but only %u of the mesh are left for it", name,
-                            place, view->object_count, left);
+                            "%s[%u] is to hold %u objects, but only %u of the mesh %s left for it", name,
+                            place, view->object_count, left, left == 1 ? "is" : "are");
     layout l = layout_of(mesh, view, first_object);
-    size_t extent;
-    if (!find_extent(&l, &extent) || extent > l.size)
-        return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "%s[%u] has %zu bytes, which end before vertex %u of %u (stride %zu, %zu bytes a "
-                            "coordinate): the array is too short, or its size is in another unit than bytes",
-                            name, place, l.size, l.vertex_count - 1, l.vertex_count, l.stride, l.scalar_size);
-    return CSCD_OK;
+    return check_layout(context, &l, place, name);
 }
 
 static cscd_status check_views(cscd_context *context, const cscd_mesh *mesh, const cscd_view *views,
@@ -131,12 +157,37 @@ cscd_status views_read(cscd_context *context, const cscd_mesh *mesh, const cscd_
 
 /* ---- writing ------------------------------------------------------------------------------------------- */
 
+/* Compares a view, which begins with an object, with the views before it. */
+static cscd_status check_apart(cscd_context *context, const cscd_mesh *mesh, const cscd_mutable_view *views,
+                               uint32_t place, uint32_t first_object, const char *name) {
+    cscd_view view = as_view(&views[place]);
+    layout l = layout_of(mesh, &view, first_object);
+    view_grid grid = grid_of(&l);
+    for (uint32_t object = 0, before = 0; before < place; before++) {
+        cscd_view other = as_view(&views[before]);
+        layout other_layout = layout_of(mesh, &other, object);
+        view_grid other_grid = grid_of(&other_layout);
+        view_clash clash;
+        object = other_layout.end_object;
+        if (!views_overlap(&other_grid, &grid, &clash)) continue;
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "%c of vertex %u of %s[%u] and %c of vertex %u of %s[%u] lie on the same bytes",
+                            "xyz"[clash.coordinates[0]], clash.vertices[0], name, before,
+                            "xyz"[clash.coordinates[1]], clash.vertices[1], name, place);
+    }
+    return CSCD_OK;
+}
+
 cscd_status views_check_mutable(cscd_context *context, const cscd_mesh *mesh, const cscd_mutable_view *views,
                                 const char *name) {
+    uintptr_t end = 0; /* of the memory of all views before */
     for (uint32_t object = 0, place = 0; views != NULL && object < mesh->object_count; place++) {
         cscd_view view = as_view(&views[place]);
+        uintptr_t begin = (uintptr_t)view.data;
         cscd_status status = check_view(context, mesh, &view, place, object, name);
+        if (status == CSCD_OK && begin < end) status = check_apart(context, mesh, views, place, object, name);
         if (status != CSCD_OK) return status;
+        end = begin + view.size > end ? begin + view.size : end;
         object = layout_of(mesh, &view, object).end_object;
     }
     return CSCD_OK;

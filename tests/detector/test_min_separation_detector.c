@@ -256,7 +256,7 @@ static void separation_can_change(void **state) {
         }
         rig_destroy(&changing);
     }
-    assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_set_separation(NULL, 0.0, 0.0), CSCD_NULL_OBJECT);
 }
 
 /* A line search's candidates serve separations up to the one that it was begun with, or up to its reach; a

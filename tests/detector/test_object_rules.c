@@ -545,7 +545,7 @@ static void mistakes_have_a_sentence(void **state) {
     assert_int_equal(cscd_detector_set_separation(s.detector, 0.0, 0.0), CSCD_OK);
     assert_int_equal(cscd_detector_set_rules(s.detector, NULL, 0, matrix, 2), CSCD_OK);
     assert_int_equal(cscd_detector_set_separation(s.detector, 0.1, 0.0), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0), CSCD_NULL_OBJECT);
     tear_down(&s);
 }
 

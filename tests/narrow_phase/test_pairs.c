@@ -367,7 +367,7 @@ static void bad_arguments_are_named(void **state) {
     memset(nearest, 0xaa, sizeof *nearest);
     cscd_pair_contact before = *contacts;
     make_queries(CSCD_CONTACT_EE, 10);
-    assert_int_equal(pairs_step_packed(NULL, &two, x0[0], x1[0], 0.0, 0.0, contacts), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(pairs_step_packed(NULL, &two, x0[0], x1[0], 0.0, 0.0, contacts), CSCD_NULL_OBJECT);
     expect_refused(c, pairs_step_packed(c, NULL, x0[0], x1[0], 0.0, 0.0, contacts), "pairs is NULL");
     expect_refused(c, pairs_step_packed(c, &two, x0[0], x1[0], 0.0, 0.0, NULL), "out is NULL");
     expect_refused(c, pairs_step_packed(c, &two, NULL, x1[0], 0.0, 0.0, contacts), "x0 is NULL");

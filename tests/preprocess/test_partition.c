@@ -285,11 +285,10 @@ static void bad_arguments(void **state) {
     check_refused(mesh, plan, b.positions, NULL, "another mesh");
     check_refused(mesh, NULL, NULL, NULL, "positions is NULL");
     cscd_partition *partition = NULL;
-    assert_int_equal(partition_create_packed(NULL, NULL, b.positions, NULL, &partition),
-                     CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_create_packed(NULL, NULL, b.positions, NULL, &partition), CSCD_NULL_OBJECT);
     assert_int_equal(partition_create_packed(mesh, NULL, b.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
     partition = partition_of(mesh, NULL, b.positions, NULL);
-    assert_int_equal(partition_renew_packed(NULL, b.positions, 0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(partition_renew_packed(NULL, b.positions, 0), CSCD_NULL_OBJECT);
     assert_int_equal(partition_renew_packed(partition, b.positions, 1), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(mesh->context), "part is 1"));
     assert_int_equal(partition_renew_packed(partition, NULL, 0), CSCD_INVALID_ARGUMENT);

@@ -161,7 +161,7 @@ static void bad_options(void **state) {
     (void)state;
     cscd_plan *plan = NULL;
     cscd_plan_options options = {0};
-    assert_int_equal(plan_create_packed(NULL, shape.positions, NULL, &plan), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(plan_create_packed(NULL, shape.positions, NULL, &plan), CSCD_NULL_OBJECT);
     assert_int_equal(plan_create_packed(mesh, shape.positions, NULL, NULL), CSCD_INVALID_ARGUMENT);
     assert_int_equal(plan_create_packed(mesh, NULL, NULL, &plan), CSCD_INVALID_ARGUMENT);
     assert_int_equal(plan_create_packed(mesh, shape.positions, &options, &plan), CSCD_INVALID_ARGUMENT);

@@ -70,12 +70,12 @@ static void bad_arguments_are_named(void **state) {
     sensor_rig r = sensor_rig_create(&s, NULL), other = sensor_rig_create(&s, NULL);
     cscd_sensors *made = NULL;
     cscd_warnings found;
-    assert_int_equal(sensors_create_here(NULL, r.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(sensors_create_here(r.mesh, NULL, NULL, &made), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_create_here(NULL, r.partition, NULL, &made), CSCD_NULL_OBJECT);
+    assert_int_equal(sensors_create_here(r.mesh, NULL, NULL, &made), CSCD_NULL_OBJECT);
     assert_int_equal(sensors_create_here(r.mesh, r.partition, NULL, NULL), CSCD_INVALID_ARGUMENT);
     assert_int_equal(sensors_create_here(r.mesh, other.partition, NULL, &made), CSCD_INVALID_ARGUMENT);
     assert_non_null(strstr(cscd_context_detail(r.context), "another mesh"));
-    assert_int_equal(sensors_step_packed(NULL, s.x0, s.x0, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(sensors_step_packed(NULL, s.x0, s.x0, &found), CSCD_NULL_OBJECT);
     assert_int_equal(sensors_step_packed(r.sensors, s.x0, s.x0, NULL), CSCD_INVALID_ARGUMENT);
     assert_int_equal(sensors_step_packed(r.sensors, NULL, s.x0, &found), CSCD_INVALID_ARGUMENT);
     s.x1[7] = NAN;

@@ -346,7 +346,7 @@ static void misuse_is_named(void **state) {
     step_search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
     cscd_proximities near = {NULL, 4711};
     cscd_free_step step = {.fraction = -1.0};
-    assert_int_equal(cscd_line_search_create(NULL, NULL), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_line_search_create(NULL, NULL), CSCD_NULL_OBJECT);
     expect_words(&s, cscd_line_search_create(s.r.detector, NULL), "out is NULL");
     expect_words(&s, cscd_line_search_find_near(s.line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near),
                  "cscd_line_search_begin first");

@@ -330,7 +330,7 @@ static void bad_arguments_are_named(void **state) {
     cscd_proximities out = {NULL, 4711};
     scene_make(SCENE_SPIKE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
-    assert_int_equal(find_near_packed(NULL, interval.x0, 0.1, &out), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(find_near_packed(NULL, interval.x0, 0.1, &out), CSCD_NULL_OBJECT);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect_refused(&r, interval.x0, bad[i], &out, "distance is ");
     expect_refused(&r, NULL, 0.1, &out, "positions is NULL");

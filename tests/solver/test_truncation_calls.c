@@ -30,7 +30,7 @@ static void wrong_arguments_are_refused(void **state) {
     rig r = rig_apart(&interval, 0.0, CSCD_METHOD_NONE, 1);
     cscd_detector *d = r.detector;
     const cscd_view *x0 = CSCD_DOUBLES(interval.x0, 6), *x1 = CSCD_DOUBLES(interval.x1, 6);
-    assert_int_equal(cscd_detector_truncate(NULL, x0, x1, 1.0, NULL, &out), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_detector_truncate(NULL, x0, x1, 1.0, NULL, &out), CSCD_NULL_OBJECT);
     expect_refused(&r, cscd_detector_truncate(d, x0, x1, 1.0, NULL, NULL), "out is NULL");
     expect_refused(&r, cscd_detector_truncate(d, NULL, x1, 1.0, NULL, &out), "x0 is NULL");
     expect_refused(&r, cscd_detector_truncate(d, x0, x1, 0.0, NULL, &out), "search_radius is 0");
@@ -47,7 +47,7 @@ static void wrong_arguments_are_refused(void **state) {
     size_t size = 6 * sizeof *short_array;
     const cscd_scalar doubles = CSCD_SCALAR_DOUBLE;
     assert_int_equal(cscd_detector_displacement_bounds(NULL, x0, 1.0, doubles, short_array, size, &found),
-                     CSCD_INVALID_ARGUMENT);
+                     CSCD_NULL_OBJECT);
     expect_refused(&r, cscd_detector_displacement_bounds(d, x0, 1.0, doubles, NULL, size, &found),
                    "bounds is NULL");
     expect_refused(&r, cscd_detector_displacement_bounds(d, x0, 1.0, doubles, short_array, size - 1, &found),

@@ -312,7 +312,7 @@ static void arguments_are_checked(void **state) {
                                           (cscd_near_form)2, &out),
                   "form 2");
     assert_true(out.items == NULL && out.count == 4711);
-    assert_int_equal(set_rest_packed(NULL, at_rest.x0), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(set_rest_packed(NULL, at_rest.x0), CSCD_NULL_OBJECT);
     assert_int_equal(count_mollified(&r), 0);
     set_rest(&r, at_rest.x0);
     size_t known = count_mollified(&r);
