@@ -160,11 +160,11 @@ static void check_items(const rig *r, const item_list *list, const double *x) {
     }
 }
 
-typedef struct tally {
+typedef struct form_tally {
     size_t pairs, items, of_kind[CSCD_CONTACT_EV + 1], mollified;
-} tally;
+} form_tally;
 
-static void compare_forms(const rig *r, const double *x, double distance, tally *t) {
+static void compare_forms(const rig *r, const double *x, double distance, form_tally *t) {
     item_list pairs = find_items(r, x, distance, CSCD_NEAR_PAIRS),
               items = find_items(r, x, distance, CSCD_NEAR_UNIQUE);
     check_items(r, &pairs, x);
@@ -185,7 +185,7 @@ static void compare_forms(const rig *r, const double *x, double distance, tally 
 
 static void items_stand_for_all_pairs(void **state) {
     (void)state;
-    tally t = {0};
+    form_tally t = {0};
     for (int family = 0; family < SCENE_FAMILY_COUNT; family++) {
         for (uint64_t seed = 0; seed < 6; seed++) {
             double distance = distances[((uint64_t)family + seed) % DISTANCE_COUNT];
