@@ -146,7 +146,7 @@ static void mistakes_name_the_object(void **state) {
     assert_non_null(strstr(cscd_context_detail(context), "too many"));
     assert_int_equal(cscd_mesh_create(context, o, 0, &mesh), CSCD_INVALID_MESH);
     assert_int_equal(cscd_mesh_create(context, NULL, 1, &mesh), CSCD_INVALID_ARGUMENT);
-    assert_int_equal(cscd_mesh_create(NULL, o, 1, &mesh), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(cscd_mesh_create(NULL, o, 1, &mesh), CSCD_NULL_OBJECT);
     assert_null(mesh);
     cscd_context_destroy(context);
 }

@@ -374,7 +374,7 @@ static void bad_arguments_are_named(void **state) {
     expect_refused(c, pairs_step_packed(c, &few, x0[0], x1[0], 0.0, 0.0, contacts),
                    "2 pairs need four points");
     expect_refused(c, pairs_step_packed(c, &wild, x0[0], x1[0], 0.0, 0.0, contacts), "pair 1 names point 8");
-    expect_refused(c, pairs_step_packed(c, &vv, x0[0], x1[0], 0.0, 0.0, contacts), "kind 2");
+    expect_refused(c, pairs_step_packed(c, &vv, x0[0], x1[0], 0.0, 0.0, contacts), "kind 3");
     expect_refused(c, pairs_step_packed(c, &two, x0[0], x1[0], -1.0, 0.0, contacts), "min_separation is -1");
     expect_refused(c, pairs_step_packed(c, &two, x0[0], x1[0], 0.0, 1.0, contacts), "tolerance is 1");
     expect_refused(c, pairs_near_packed(c, &two, x0[0], 0.0, nearest), "distance is 0");
