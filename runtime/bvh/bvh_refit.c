@@ -2,6 +2,7 @@
 #include "runtime/bvh/bvh.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -136,6 +137,16 @@ static void refit_level(moving *now) {
     parallel_run(f->mesh->context->threads, tasks, refit_task, now);
 }
 
+/* Where trees are too far apart for floats, a low bound stays finite and a high one goes to infinity, or the other way
+ * round: the bounds still hold the tree, and two such trees overlap. */
+static float low_bound(double x) {
+    return (float)fmin(x, (double)FLT_MAX);
+}
+
+static float high_bound(double x) {
+    return (float)fmax(x, -(double)FLT_MAX);
+}
+
 /* Writes a tree's volume over the interval in the frame of another tree, rounded outward by 2^-20 of what is
  * added. */
 static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, const bvh_tree *frame,
@@ -153,8 +164,8 @@ static void place_tree(const bvh *f, const bvh_tree *tree, const float *own, con
             low = fmin(low, (double)own[2 * k * LANES + i]);
             high = fmax(high, (double)own[(2 * k + 1) * LANES + i]);
         }
-        bounds[2 * k * LANES] = (float)(low + fmin(start, end) - 0x1p-20 * size);
-        bounds[(2 * k + 1) * LANES] = (float)(high + fmax(start, end) + 0x1p-20 * size);
+        bounds[2 * k * LANES] = low_bound(low + fmin(start, end) - 0x1p-20 * size);
+        bounds[(2 * k + 1) * LANES] = high_bound(high + fmax(start, end) + 0x1p-20 * size);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "tests/support/bvh/bvh_rig.h"
 #include "tests/support/test.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,29 @@ static void sound_ones_have_no_fault(void **state) {
                 assert_null(bvh_validate(f, true));
                 bvh_rig_destroy(&rig_of_shape);
             }
+        }
+    }
+}
+
+/* Trees may be farther apart than floats can say. */
+static void trees_at_any_distance_have_no_fault(void **state) {
+    (void)state;
+    static const int exponents[] = {60, 126, 127, 128, 129, 200, 290};
+    for (int i = 0; i < 7 * 3 * 2; i++) {
+        double far = ldexp(1.0, exponents[i / 6]), side = i % 2 == 0 ? far : -far;
+        scene_clear(&shape);
+        for (int k = 0; k < 3; k++) scene_add_sphere(&shape, (double[3]){0, 3.0 * k, 0}, 1.0, 6, 6);
+        for (uint32_t v = 0; v < shape.vertex_count; v++) {
+            uint32_t sphere = v / (shape.vertex_count / 3), axis = (uint32_t)i / 2 % 3;
+            shape.x0[v * 3 + axis] += sphere == 0 ? side : 0.0;
+            shape.x1[v * 3 + axis] += sphere == 0 ? side : sphere == 1 ? -side : 0.0;
+        }
+        for (int axes = BOX_AXES; axes <= KDOP_AXES; axes += KDOP_AXES - BOX_AXES) {
+            bvh *f = build_and_refit((bvh_setup){CSCD_SIMD_SCALAR, 1, axes, 0});
+            assert_int_equal(f->tree_count, 3);
+            const char *fault = bvh_validate(f, true);
+            if (fault != NULL) fail_msg("at 2^%d: %s", exponents[i / 6], fault);
+            bvh_rig_destroy(&rig_of_shape);
         }
     }
 }
@@ -128,11 +152,9 @@ static void obstacles_have_trees_of_their_own(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sound_ones_have_no_fault),
-        cmocka_unit_test(faults_of_leaves),
-        cmocka_unit_test(faults_of_levels),
-        cmocka_unit_test(faults_of_bounds),
-        cmocka_unit_test(obstacles_have_trees_of_their_own),
+        cmocka_unit_test(sound_ones_have_no_fault), cmocka_unit_test(trees_at_any_distance_have_no_fault),
+        cmocka_unit_test(faults_of_leaves),         cmocka_unit_test(faults_of_levels),
+        cmocka_unit_test(faults_of_bounds),         cmocka_unit_test(obstacles_have_trees_of_their_own),
     };
     return cmocka_run_group_tests_name("bvh_validate", tests, NULL, NULL);
 }
