@@ -128,12 +128,13 @@ typedef struct cscd_detector_options {
     const uint32_t *seams;
     size_t seam_count;
 
-    /* Two lengths. With min_separation 0, the default, a contact is a touch. With min_separation d a
-     * contact is coming within d: every pair that comes within d is reported, toi is not after the first
-     * moment at which its distance is d, and at toi the distance is at most d + tolerance. So no pair that
-     * stays farther apart is reported, except contacts marked as bounded. tolerance 0, the default, stands
-     * for 1e-6 d; without min_separation it must be 0. A tolerance below 2^-42 s is taken for 2^-42 s,
-     * where s is the pair's extent along x, y or z, motion included: that is the limit that rounding sets. */
+    /* A length, and a share of it. With min_separation 0, the default, a contact is a touch. With min_separation
+     * d a contact is coming within d: every pair that comes within d is reported, toi is not after the first
+     * moment at which its distance is d, and at toi the distance is at most (1 + tolerance) d. So no pair that
+     * stays farther apart is reported, except contacts marked as bounded. tolerance is at most 1; 0, the
+     * default, stands for 1e-6. It holds for thicknesses of objects, too, and in cscd_detector_max_step and
+     * line searches for each pair's floor instead of d. What it allows is never below 2^-42 of the pair's extent
+     * along x, y or z, motion included: that is the limit that rounding sets. */
     double min_separation, tolerance;
 
     /* cscd_detector_max_step goes at most this share of the way to the contact that limits it. In (0,1),
@@ -144,8 +145,8 @@ typedef struct cscd_detector_options {
     const cscd_object_rule *rules;
 
     /* The distances of objects by their thickness_class: thickness_class_count rows of as many lengths, at most
-     * 256, symmetric; in place of thicknesses. With a matrix or a thickness min_separation is 0, and tolerance
-     * holds for all distances above 0. Pairs at distance 0 must not touch, as without. */
+     * 256, symmetric; in place of thicknesses. With a matrix or a thickness min_separation is 0. Pairs at distance
+     * 0 must not touch, as without. */
     const double *thickness_matrix;
     uint32_t rule_count, thickness_class_count;
 

@@ -35,7 +35,7 @@ typedef struct cscd_pair_contact {
 
 /* Tests each pair for contact while its points move in straight lines from x0 to x1, or at rest where x1 is
  * NULL, and writes pair_count results. Each view holds the positions of all points; object_count is 0.
- * min_separation and tolerance are those of cscd_detector_options: 0 and 0, or two lengths. An example, a
+ * min_separation and tolerance, a length and a share of it, are those of cscd_detector_options. An example, a
  * vertex that falls through a triangle, which prints "at 0.500":
  *
  *     const double x0[12] = {0.2, 0.2, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};

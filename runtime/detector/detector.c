@@ -202,7 +202,7 @@ static cscd_status set_separation(cscd_detector *detector, double min_separation
     changed.tolerance = tolerance;
     cscd_status status = separation_check(detector->context, min_separation, tolerance);
     if (status == CSCD_OK)
-        status = detector_check_distances(detector, min_separation, tolerance, detector->pair_rules.greatest);
+        status = detector_check_distances(detector, min_separation, detector->pair_rules.greatest);
     if (status != CSCD_OK) return status;
     detector->options = changed;
     detector->limit = separation_limit(min_separation, tolerance);
@@ -219,6 +219,7 @@ cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_sep
 interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1) {
     interval_search search = interval_search_begin(&d->space, x0, x1, d->limit);
     search.interval.thick = detector_thick(d);
+    search.interval.tolerance = d->options.tolerance;
     return search;
 }
 
@@ -235,7 +236,7 @@ double detector_floors_beyond(const cscd_detector *d, double distance, const dou
     double greatest = max_of(distance, d->pair_rules.greatest);
     if (greatest == 0.0) return 0.0;
     double largest = max_of(largest_coordinate(x0, count), largest_coordinate(x1, count));
-    return max_of(d->limit.tolerance, 1e-6 * greatest) + 0x1p-37 * largest;
+    return separation_limit(greatest, d->options.tolerance).tolerance + 0x1p-37 * largest;
 }
 
 interval_search detector_search_floors(cscd_detector *d, const double *x0, const double *x1) {

@@ -106,9 +106,8 @@ static inline volume_growth detector_growth(const cscd_detector *d) {
     return (volume_growth){d->limit.distance, detector_thick(d) ? d->pair_rules.reaches : NULL, 0.0};
 }
 
-/* INVALID_ARGUMENT, if both min_separation and the rules say distances, or none does and there is a tolerance. */
-cscd_status detector_check_distances(cscd_detector *d, double min_separation, double tolerance,
-                                     double greatest_of_rules);
+/* INVALID_ARGUMENT, if both min_separation and the rules say distances. */
+cscd_status detector_check_distances(cscd_detector *d, double min_separation, double greatest_of_rules);
 
 /* Sets the marks of components whose triangles are not looked at with each other to false. */
 void detector_unmark_masked(const cscd_detector *d, bool *triangles);

@@ -45,12 +45,7 @@ static void take_rules(cscd_detector *d, const pair_rules *rules) {
     choose_never_culled(d);
 }
 
-cscd_status detector_check_distances(cscd_detector *d, double min_separation, double tolerance,
-                                     double greatest_of_rules) {
-    if (tolerance > 0.0 && min_separation == 0.0 && greatest_of_rules == 0.0)
-        return context_fail(d->context, CSCD_INVALID_ARGUMENT,
-                            "tolerance is %g, but without min_separation there is none; leave it at 0",
-                            tolerance);
+cscd_status detector_check_distances(cscd_detector *d, double min_separation, double greatest_of_rules) {
     if (min_separation == 0.0 || greatest_of_rules == 0.0) return CSCD_OK;
     return context_fail(d->context, CSCD_INVALID_ARGUMENT,
                         "min_separation is %g, but the thicknesses of objects say how far apart they have to "
@@ -68,7 +63,7 @@ cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
     cscd_status status = pair_rules_create(d->mesh, given, &rules);
     if (status != CSCD_OK) return status;
     if (all_neutral(given)) pair_rules_free(d->mesh, &rules);
-    status = detector_check_distances(d, d->options.min_separation, d->options.tolerance, rules.greatest);
+    status = detector_check_distances(d, d->options.min_separation, rules.greatest);
     if (status == CSCD_OK && d->space.bvh.mesh != NULL && !bvh_set_objects(&d->space.bvh, rules.sets))
         status = context_out_of_memory(d->context);
     if (status != CSCD_OK) {

@@ -8,15 +8,15 @@ cscd_status separation_check(cscd_context *context, double min_separation, doubl
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "min_separation is %g, expected 0 or a length from 2^-300 to 2^300",
                             min_separation);
-    if (!is_length(tolerance))
+    if (!(tolerance >= 0.0 && tolerance <= 1.0))
         return context_fail(context, CSCD_INVALID_ARGUMENT,
-                            "tolerance is %g, expected 0 (the default) or a length from 2^-300 to 2^300",
+                            "tolerance is %g, expected a share in (0,1] of min_separation, or 0 for 1e-6",
                             tolerance);
     return CSCD_OK;
 }
 
-separation separation_limit(double min_separation, double tolerance) {
-    return (separation){min_separation, tolerance > 0.0 ? tolerance : 1e-6 * min_separation};
+separation separation_limit(double distance, double tolerance) {
+    return (separation){distance, (tolerance > 0.0 ? tolerance : 1e-6) * distance};
 }
 
 separation proximity_limit(double distance) {

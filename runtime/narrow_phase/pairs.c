@@ -142,19 +142,11 @@ static cscd_status finish_call(pair_call *call, cscd_status status) {
     return status;
 }
 
-static cscd_status check_limit(cscd_context *context, double min_separation, double tolerance) {
-    cscd_status status = separation_check(context, min_separation, tolerance);
-    if (status != CSCD_OK || tolerance == 0.0 || min_separation > 0.0) return status;
-    return context_fail(context, CSCD_INVALID_ARGUMENT,
-                        "tolerance is %g, but without min_separation there is none; leave it at 0",
-                        tolerance);
-}
-
 static cscd_status step_pairs(cscd_context *context, const cscd_pairs *pairs, const cscd_view *x0,
                               const cscd_view *x1, const double limit[2], cscd_pair_contact *out) {
     pair_call call;
     cscd_status status = begin_call(context, pairs, out, "cscd_pairs_step", &call);
-    if (status == CSCD_OK) status = check_limit(context, limit[0], limit[1]);
+    if (status == CSCD_OK) status = separation_check(context, limit[0], limit[1]);
     if (status == CSCD_OK) status = read_points(&call, x0, "x0", 0, &call.x0);
     call.x1 = call.x0;
     if (status == CSCD_OK && x1 != NULL) status = read_points(&call, x1, "x1", 1, &call.x1);

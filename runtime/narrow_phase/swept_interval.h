@@ -6,6 +6,7 @@
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
 #include "runtime/culling/culling.h"
+#include "runtime/narrow_phase/limits.h"
 #include "runtime/narrow_phase/pair_rules.h"
 #include "src/mesh/mesh.h"
 
@@ -24,8 +25,8 @@ typedef struct swept_interval {
     bool closing_pass;       /* with culling: the pairs that are reached are those that were culled before */
     const pair_rules *rules; /* NULL: all objects are looked at */
     separation limit;        /* of every pair; distance 0: a contact is touching */
-    bool thick;              /* a pair's distance is that of the rules, where this is the greater one; its
-                              * tolerance is that of the limit or, where this is 0, 1e-6 of the distance */
+    bool thick;              /* a pair's distance is that of the rules, where this is the greater one */
+    double tolerance;        /* of these distances, as a share of them; 0: the default */
     double beyond;           /* volumes are compared within so much more than the pairs' distances */
     double floor_ratio;      /* above 0: pairs that start nearer than they should have a floor instead */
     bool collecting;         /* pairs of features become the lanes' candidates instead of being tested */
@@ -56,9 +57,8 @@ static inline bool components_look(const swept_interval *interval, uint32_t a, u
 static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (!interval->thick) return interval->limit;
     double distance = pair_rules_distance(interval->rules, a, b);
-    double tolerance = interval->limit.tolerance;
     if (distance < interval->limit.distance) distance = interval->limit.distance;
-    return (separation){distance, tolerance > 0.0 ? tolerance : 1e-6 * distance};
+    return separation_limit(distance, interval->tolerance);
 }
 
 /* How far vertex a and triangle b, or the edges a and b, have to stay apart. */

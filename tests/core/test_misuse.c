@@ -125,7 +125,7 @@ static void options_of_detectors(void **state) {
     EXPECT_NO_DETECTOR(volume, (cscd_volume)9, "unknown volume 9");
     EXPECT_NO_DETECTOR(min_separation, (double)NAN, "min_separation is nan, expected 0 or a length");
     EXPECT_NO_DETECTOR(min_separation, (double)INFINITY, "min_separation is inf, expected 0 or a length");
-    EXPECT_NO_DETECTOR(tolerance, 1.0, "tolerance is 1, but without min_separation there is none");
+    EXPECT_NO_DETECTOR(tolerance, 1.5, "tolerance is 1.5, expected a share in (0,1]");
     EXPECT_NO_DETECTOR(step_factor, 1.0, "step_factor is 1, expected a number in (0,1)");
     EXPECT_NO_DETECTOR(step_factor, 0.0, "step_factor is 0, expected a number in (0,1)");
     EXPECT_NO_DETECTOR(seam_count, 1, "seams is NULL, but there are to be 1 pairs");
