@@ -154,7 +154,7 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
     cscd_plan *plan = plan_allocate(mesh, parts->method, parts->region_count);
     if (plan == NULL) return context_out_of_memory(mesh->context);
     cscd_status status = fill_plan(plan, mesh, positions, parts);
-    if (status == CSCD_OK) status = context_loop_status(mesh->context);
+    if (status == CSCD_OK) status = context_progress_status(mesh->context);
     if (status != CSCD_OK) {
         cscd_plan_destroy(plan);
         return status;

@@ -27,11 +27,11 @@ typedef enum cscd_status {
     CSCD_INVALID_MESH,     /* no triangle, too many, an index beyond vertex_count, a triangle with a vertex
                             * twice */
     CSCD_SYSTEM_ERROR,     /* the system refused a thread, or has no libcscd-charge.so: cscd_plan_create */
-    CSCD_CANCELLED,        /* the callback in cscd_progress returned false */
-    CSCD_IN_CONTACT,       /* no step is free of contact, because the start is not: cscd_detector_max_step */
-    CSCD_BUSY,             /* another call with this context is running: see the rules of callbacks */
-    CSCD_BROKEN,           /* a callback has left a call with this context by an exception or longjmp */
-    CSCD_NULL_OBJECT,      /* an object that the call needs is NULL. There may be no context then that could
+    CSCD_CANCELLED,   /* the callback in cscd_progress returned false, or cscd_context_cancel was called */
+    CSCD_IN_CONTACT,  /* no step is free of contact, because the start is not: cscd_detector_max_step */
+    CSCD_BUSY,        /* another call with this context is running: see the rules of callbacks */
+    CSCD_BROKEN,      /* a callback has left a call with this context by an exception or longjmp */
+    CSCD_NULL_OBJECT, /* an object that the call needs is NULL. There may be no context then that could
                             * hold a sentence, so cscd_context_detail is what it was before */
     CSCD_STATUS_MAX_ENUM = 0x7fffffff
 } cscd_status;
@@ -54,6 +54,8 @@ typedef struct cscd_context cscd_context;
  *             the caller's floating-point environment is. Every call gives the caller's back, flags included, and
  *             callbacks run in it; so do allocator calls on threads of the library. Tasks of parallel_for give the
  *             environment of the thread that runs them back
+ *   failing   A callback that cannot go on calls cscd_context_cancel() and returns: the call that it was called
+ *             from then fails, and may be repeated. cscd/cscd.hpp and bindings do so when a callback throws
  *   leaving   A callback should return. If it leaves the library by a C++ exception or longjmp, the context is
  *             broken: every call fails with CSCD_BROKEN, cscd_context_detail names the callback, and the objects can
  *             only be destroyed, which frees everything. After an exception all threads see this. A longjmp is
@@ -101,8 +103,8 @@ typedef struct cscd_parallel_for {
     void *user;
 } cscd_parallel_for;
 
-/* A callback that shows how far a long call is, and may cancel it. cscd_plan_create, cscd_detector_step,
- * _check, _near and _max_step, and cscd_line_begin, _near and _max_step call it every few milliseconds, on
+/* A callback that shows how far a long call is, and may cancel it. cscd_plan_create, cscd_line_search_begin,
+ * and the calls that find something for a detector or a line search call it every few milliseconds, on
  * the thread that called them; calls that end sooner do not call it at all. stage: a word or two, static
  * storage. fraction: an estimate in [0,1] of how much of the call is done, which never falls during a
  * call. When report returns false, the call ends with CSCD_CANCELLED. */
@@ -147,6 +149,22 @@ CSCD_API void cscd_context_destroy(cscd_context *context);
 /* Why the last call with an object of the context failed, "" if it succeeded. The sentence lives until the
  * next such call. */
 CSCD_API const char *cscd_context_detail(const cscd_context *context);
+
+/* Ends the call that is running in the context with CSCD_CANCELLED, as soon as it can and with nothing written,
+ * unless it is done already or is none that says CANCELLED of itself; without a call it does nothing. Any
+ * callback may call this, and any thread, which may come too late, though, and then meet the call that comes
+ * next. NULL is allowed. An example, a function `ignore` that asks a host in another language:
+ *
+ *     static bool ignore(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+ *         binding *host = user;
+ *         if (!host->failed && !ask_host(host, kind, a, b)) { // it has thrown, and we have caught
+ *             host->failed = true;                           // to be thrown again after the call
+ *             cscd_context_cancel(host->context);
+ *         }
+ *         return !host->failed && host->answer;
+ *     }
+ */
+CSCD_API void cscd_context_cancel(cscd_context *context);
 
 /* The number of threads, or with parallel_for of tasks, that long work is shared by. */
 CSCD_API uint32_t cscd_context_thread_count(const cscd_context *context);

@@ -84,7 +84,7 @@ typedef struct cscd_plan_parts {
 } cscd_plan_parts;
 
 /* Creates a plan from the parts of an earlier one of the same mesh. positions: the mesh at rest.
- * INVALID_ARGUMENT: the sentence names what does not fit. */
+ * INVALID_ARGUMENT: the sentence names what does not fit. CANCELLED: see cscd_context_cancel. */
 CSCD_API cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
                                                        const cscd_view *positions,
                                                        const cscd_plan_parts *parts, size_t parts_size,

@@ -63,7 +63,7 @@ static cscd_status check_at(cscd_detector *d, const double *positions, cscd_inte
     detector_begin_call(d);
     progress_stage(&d->context->progress, "static check", 0.0, 1.0);
     status = check_moment(d, positions, out);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     timer_lap(&since, &spent);
     d->timings.check_ms = spent;

@@ -17,8 +17,8 @@ typedef struct rollback {
     uint32_t intervals_unmeasured;
 } rollback;
 
-/* In a context without a progress function, where a call fails only because memory runs out, it takes no memory, and
- * nothing is restored. On failure the caller frees what was allocated. */
+/* In a context without a progress function, where calls fail only because memory runs out or a callback has called
+ * cscd_context_cancel, it takes no memory, and nothing is restored. On failure the caller frees what was allocated. */
 cscd_status rollback_create(const cscd_mesh *mesh, rollback *out);
 void rollback_free(cscd_context *context, rollback *r);
 

@@ -325,7 +325,7 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     step_outcome found;
     detector_begin_call(d);
     status = step_find(d, x0, x1, d->options.mode, false, &found);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     step_take(d, x1);
     timer_lap(&since, &found.timings.total_ms);

@@ -129,7 +129,7 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
     if (d->reached == NULL) d->reached = context_allocate(d->context, count, sizeof(double[3]));
     status = d->reached != NULL ? displacement_bounds_find(d, x0, search_radius, scalar, d->reached, out)
                                 : CSCD_OUT_OF_MEMORY;
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     write_bounds(d->reached, count, scalar, bounds);
     return CSCD_OK;

@@ -119,7 +119,7 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     detector_begin_call(d);
     status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
                                 &line->candidates);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
     return CSCD_OK;
@@ -242,7 +242,7 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     cscd_proximities found;
     status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     struct_give(out, size, &found, sizeof found);
     return CSCD_OK;
@@ -323,7 +323,7 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     cscd_free_step step;
     status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
     if (status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     carry_states_over(line);
     views_write(d->mesh, reached, line->reached);

@@ -93,7 +93,7 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     detector_begin_call(d);
     status = reserve_reached(d);
     if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return fail_tries(&t, status);
     step_take(d, d->reached);
     timer_lap(&since, &t.timings.total_ms);

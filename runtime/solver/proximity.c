@@ -97,7 +97,7 @@ static cscd_status find_near_at(cscd_detector *d, const double *positions, doubl
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     status = proximity_find(d, positions, distance, form, out);
-    if (status == CSCD_OK) status = context_loop_status(d->context);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 

@@ -220,7 +220,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
     truncate_all(&work, d->context->threads);
-    status = context_loop_status(d->context); /* before anything is known of the end */
+    status = context_progress_status(d->context); /* before anything is known of the end */
     if (status != CSCD_OK) return status;
     *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count};
     sum_up_vertices(&work, out);

@@ -137,6 +137,10 @@ const char *cscd_context_detail(const cscd_context *context) {
     return entry_broken(&context->entry) ? context->entry.broken_by : context->detail;
 }
 
+void cscd_context_cancel(cscd_context *context) {
+    if (context != NULL) progress_cancel(&context->progress);
+}
+
 uint32_t cscd_context_thread_count(const cscd_context *context) {
     return parallel_thread_count(context->threads);
 }
@@ -177,6 +181,9 @@ cscd_status context_progress_status(cscd_context *context) {
     const progress *p = &context->progress;
     if (entry_broken(&context->entry)) return CSCD_BROKEN;
     if (!progress_cancelled(p)) return context_loop_status(context);
+    if (!p->by_report)
+        return context_fail(context, CSCD_CANCELLED,
+                            "cancelled by cscd_context_cancel; the call may be repeated");
     return context_fail(context, CSCD_CANCELLED,
                         "cancelled by the progress function, about %.0f %% through, in the stage \"%s\"; "
                         "the call may be repeated",

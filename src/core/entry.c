@@ -78,6 +78,7 @@ bool context_enter_at(cscd_context *context, context_entry *entry, uintptr_t fra
     if (!claim_context(context, entry, frame)) return false;
     context->entry.host = float_environment_begin();
     context->detail[0] = '\0'; /* of an earlier call */
+    progress_begin_call(&context->progress);
     parallel_begin_call(context->threads);
     return true;
 }

@@ -21,12 +21,20 @@ bool progress_cancelled(const progress *p) {
     return atomic_load_explicit(&p->cancelled, memory_order_relaxed);
 }
 
+void progress_cancel(progress *p) {
+    atomic_store_explicit(&p->cancelled, true, memory_order_relaxed);
+}
+
+void progress_begin_call(progress *p) {
+    atomic_store_explicit(&p->cancelled, false, memory_order_relaxed);
+    p->by_report = false;
+}
+
 void progress_begin(progress *p) {
     if (!progress_wanted(p)) return;
     p->caller = pthread_self();
     p->asked_ms = timer_now_ms();
     p->reported = 0.0;
-    atomic_store_explicit(&p->cancelled, false, memory_order_relaxed);
     progress_part(p, 0.0, 1.0);
     progress_stage(p, "", 0.0, 1.0);
 }
@@ -60,14 +68,15 @@ static bool ask_host(progress *p) {
 
 bool progress_go_on(progress *p, double share) {
     parallel_rest(p->entry->threads);
-    if (!progress_wanted(p)) return true;
     if (progress_cancelled(p)) return false;
+    if (!progress_wanted(p)) return true;
     if (!pthread_equal(p->caller, pthread_self())) return true;
     double now = timer_now_ms();
     if (now - p->asked_ms < p->interval_ms) return true;
     advance_report(p, share);
     bool go_on = ask_host(p);
     p->asked_ms = timer_now_ms();
-    if (!go_on) atomic_store_explicit(&p->cancelled, true, memory_order_relaxed);
-    return go_on;
+    p->by_report = !go_on;
+    if (!go_on) progress_cancel(p);
+    return !progress_cancelled(p);
 }

@@ -18,6 +18,7 @@ typedef struct progress {
     double begin, end;           /* the share of that part that the stage takes */
     double reported;             /* never falls */
     atomic_bool cancelled;
+    bool by_report; /* report has cancelled the call, and not cscd_context_cancel */
 } progress;
 
 progress progress_of(cscd_progress host, entry_state *entry);
@@ -27,8 +28,13 @@ bool progress_wanted(const progress *p);
 /* Has the host cancelled the call? */
 bool progress_cancelled(const progress *p);
 
-/* Begins a call that asks the host now and then. Every call that can end with CSCD_CANCELLED begins with
- * this, which forgets that an earlier one was cancelled. */
+/* Cancels the call; on any thread. */
+void progress_cancel(progress *p);
+
+/* Begins any call: forgets that an earlier one was cancelled. */
+void progress_begin_call(progress *p);
+
+/* Begins a call that asks the host now and then, as every call that can end with CSCD_CANCELLED. */
 void progress_begin(progress *p);
 
 /* The following stages take the call from begin to end, by estimate; without this, the whole call. */
@@ -41,5 +47,5 @@ void progress_stage(progress *p, const char *stage, double begin, double end);
 /* Says which share of the stage is done, from 0 to 1, and asks the host when it is time. Returns false when
  * the call is cancelled: the caller then returns as soon as it can, and unfinished results must not be used.
  * Any thread may ask, in a task too, but only the one that made the call reaches the host; on the others, and
- * where no host wants to know, this only reads a flag. */
+ * where no host wants to know, this only reads flags. */
 bool progress_go_on(progress *p, double share);
