@@ -68,6 +68,7 @@
 #include <cscd/context.h>
 #include <cscd/detector.h>
 #include <cscd/mesh.h>
+#include <cscd/mesh_change.h>
 #include <cscd/pairs.h>
 #include <cscd/plan.h>
 #include <cscd/solver.h>

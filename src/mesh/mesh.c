@@ -78,20 +78,24 @@ static cscd_status check_totals(cscd_context *context, uint64_t vertices, uint64
     return CSCD_OK;
 }
 
-static cscd_status check_objects(cscd_context *context, const cscd_object_desc *objects, uint32_t count) {
-    uint64_t vertices = 0, triangles = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        object_name name = name_of(i, count);
-        cscd_status status = check_desc(context, &objects[i], name.text);
+static uint32_t number_of(const described_objects *objects, uint32_t index) {
+    return objects->numbers != NULL ? objects->numbers[index] : index;
+}
+
+cscd_status mesh_check_objects(cscd_context *context, const described_objects *objects) {
+    uint64_t vertices = objects->other_vertices, triangles = objects->other_triangles;
+    for (uint32_t i = 0; i < objects->count; i++) {
+        object_name name = name_of(number_of(objects, i), objects->total);
+        cscd_status status = check_desc(context, &objects->descs[i], name.text);
         if (status != CSCD_OK) return status;
-        vertices += objects[i].vertex_count;
-        triangles += objects[i].triangle_count;
+        vertices += objects->descs[i].vertex_count;
+        triangles += objects->descs[i].triangle_count;
     }
     cscd_status status = check_totals(context, vertices, triangles);
-    for (uint32_t i = 0; i < count && status == CSCD_OK; i++) {
-        object_name name = name_of(i, count);
-        for (uint32_t t = 0; t < objects[i].triangle_count && status == CSCD_OK; t++)
-            status = check_triangle(context, &objects[i], t, name.text);
+    for (uint32_t i = 0; i < objects->count && status == CSCD_OK; i++) {
+        object_name name = name_of(number_of(objects, i), objects->total);
+        for (uint32_t t = 0; t < objects->descs[i].triangle_count && status == CSCD_OK; t++)
+            status = check_triangle(context, &objects->descs[i], t, name.text);
     }
     return status;
 }
@@ -151,7 +155,7 @@ static cscd_status mark_obstacles(cscd_mesh *mesh) {
     return CSCD_OK;
 }
 
-static cscd_status build_mesh(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
+cscd_status mesh_build_objects(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
     cscd_status status = join_objects(mesh, objects, count);
     if (status == CSCD_OK) status = mesh_build_topology(mesh);
     if (status == CSCD_OK) status = mesh_build_components(mesh);
@@ -160,17 +164,23 @@ static cscd_status build_mesh(cscd_mesh *mesh, const cscd_object_desc *objects, 
     return status;
 }
 
+cscd_mesh *mesh_begin(cscd_context *context) {
+    shared_mesh *shared = context_allocate(context, 1, sizeof *shared);
+    if (shared == NULL) return NULL;
+    shared->mesh.context = context;
+    shared->mesh.shared = shared;
+    context_add_object(context, &shared->references, free_mesh);
+    return &shared->mesh;
+}
+
 static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *objects, uint32_t count,
                                cscd_mesh **out) {
-    cscd_status status = check_objects(context, objects, count);
+    const described_objects described = {.descs = objects, .count = count, .total = count};
+    cscd_status status = mesh_check_objects(context, &described);
     if (status != CSCD_OK) return status;
-    shared_mesh *shared = context_allocate(context, 1, sizeof *shared);
-    if (shared == NULL) return context_out_of_memory(context);
-    cscd_mesh *mesh = &shared->mesh;
-    mesh->context = context;
-    mesh->shared = shared;
-    context_add_object(context, &shared->references, free_mesh);
-    if (build_mesh(mesh, objects, count) != CSCD_OK) {
+    cscd_mesh *mesh = mesh_begin(context);
+    if (mesh == NULL) return context_out_of_memory(context);
+    if (mesh_build_objects(mesh, objects, count) != CSCD_OK) {
         cscd_mesh_destroy(mesh);
         return context_out_of_memory(context);
     }
@@ -178,9 +188,8 @@ static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *ob
     return CSCD_OK;
 }
 
-/* Copies descriptions of the caller's size to descriptions of this library's. */
-static cscd_status take_objects(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
-                                uint32_t count, cscd_object_desc *out) {
+cscd_status mesh_take_objects(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
+                              uint32_t count, cscd_object_desc *out) {
     const char *bytes = (const char *)objects;
     cscd_status status = CSCD_OK;
     memset(out, 0, count * sizeof *out);
@@ -199,7 +208,7 @@ static cscd_status create_from_descriptions(cscd_context *context, const cscd_ob
         return context_fail(context, CSCD_INVALID_MESH, "the mesh is empty: object_count is 0");
     cscd_object_desc *taken = context_allocate(context, object_count, sizeof *taken);
     if (taken == NULL) return context_out_of_memory(context);
-    cscd_status status = take_objects(context, objects, object_size, object_count, taken);
+    cscd_status status = mesh_take_objects(context, objects, object_size, object_count, taken);
     if (status == CSCD_OK) status = create_mesh(context, taken, object_count, out);
     context_free(context, taken);
     return status;

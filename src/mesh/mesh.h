@@ -54,6 +54,28 @@ cscd_status mesh_build_topology(cscd_mesh *mesh);
 /* Builds triangle_components and components from the topology. */
 cscd_status mesh_build_components(cscd_mesh *mesh);
 
+/* Descriptions of objects, and what has to be known of the mesh that they become a part of. */
+typedef struct described_objects {
+    const cscd_object_desc *descs;
+    uint32_t count;
+    const uint32_t *numbers;                  /* which objects of the mesh they are; NULL: 0, 1, 2, ... */
+    uint32_t total;                           /* objects of the mesh */
+    uint64_t other_vertices, other_triangles; /* those of its other objects */
+} described_objects;
+
+/* What cscd_mesh_create does, step by step. Copies descriptions of the caller's size to descriptions of this library's. */
+cscd_status mesh_take_objects(cscd_context *context, const cscd_object_desc *objects, size_t object_size,
+                              uint32_t count, cscd_object_desc *out);
+
+/* INVALID_MESH or INVALID_ARGUMENT names the object and what is wrong. */
+cscd_status mesh_check_objects(cscd_context *context, const described_objects *objects);
+
+/* A mesh without any object yet, and with the caller as its holder; NULL: no memory. */
+cscd_mesh *mesh_begin(cscd_context *context);
+
+/* Fills an empty mesh. On failure, which is OUT_OF_MEMORY without a sentence, the caller destroys it. */
+cscd_status mesh_build_objects(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count);
+
 static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t component) {
     return mesh->obstacles != NULL && mesh->obstacles[component];
 }

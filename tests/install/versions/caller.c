@@ -87,6 +87,33 @@ static void create_mesh(caller_state *s) {
     expect_that(component.value.euler_characteristic == 2, "cscd_component", "its values");
 }
 
+/* The size of a change is the stride of their array; descriptions have theirs. */
+static void change_mesh(caller_state *s) {
+    cscd_object_desc object = cscd_object_of_triangles(OWN_VERTICES, OWN_TRIANGLES, triangles);
+    cscd_mesh_change *change = NULL;
+    uint32_t count = 0;
+    struct {
+        cscd_object_change values[OBJECT_COUNT];
+        unsigned char guard[GUARD_SIZE];
+    } changes;
+    memset(&changes, 0xa5, sizeof changes);
+    for (uint32_t i = 0; i < OBJECT_COUNT; i++)
+        changes.values[i] = (cscd_object_change){.object = i == 0 ? 1 : UINT32_MAX, .desc = &object};
+    REFUSE(cscd_object_change, changes.values[1],
+           cscd_mesh_change_create(s->context, s->mesh, changes.values, OBJECT_COUNT, &change),
+           cscd_context_detail(s->context));
+    REFUSE(cscd_object_desc, object,
+           cscd_mesh_change_create(s->context, s->mesh, changes.values, OBJECT_COUNT, &change),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_mesh_change_create(s->context, s->mesh, changes.values, OBJECT_COUNT, &change),
+              "cscd_mesh_change_create");
+    expect_guard(changes.guard, "cscd_object_change");
+    puts("cscd_object_change");
+    cscd_mesh_change_vertex_origins(change, &count);
+    expect_that(count == VERTEX_COUNT + OWN_VERTICES, "cscd_mesh_change_create", "an object was not taken");
+    cscd_mesh_change_destroy(change);
+}
+
 static void create_plan(caller_state *s) {
     const cscd_view *rest = CSCD_DOUBLES(start, VERTEX_COUNT);
     OPTIONS(cscd_plan_options, cscd_plan_defaults_sized, options);
@@ -241,6 +268,7 @@ int main(void) {
     for (int i = 0; i < VERTEX_COUNT * 3; i++) end[i] = start[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
     create_context(&s);
     create_mesh(&s);
+    change_mesh(&s);
     create_plan(&s);
     create_plan_from_parts(&s);
     create_detector(&s);

@@ -1,0 +1,54 @@
+/* A new mesh from an old one, and the maps between their features. */
+#pragma once
+
+#include "src/mesh/mesh.h"
+
+/* UINT32_MAX in place of a number: there is none. */
+typedef struct number_map {
+    uint32_t *to_new, *to_old;
+    uint32_t old_count, new_count;
+} number_map;
+
+struct cscd_mesh_change {
+    reference_count references; /* the caller alone */
+    cscd_context *context;
+    const cscd_mesh *old_mesh, *mesh; /* as their creators see them; held */
+    number_map vertices, edges, triangles, objects;
+    number_map components; /* the untouched ones; in these, features have one origin and are its only ones */
+};
+
+/* Where what belongs to one object stands in the arrays of a mesh. */
+typedef struct object_range {
+    uint32_t vertex, vertex_count, edge, edge_count, triangle, triangle_count, component, component_count;
+} object_range;
+
+/* An object of a mesh that becomes the next object of another one. */
+typedef struct object_source {
+    const cscd_mesh *mesh;
+    uint32_t object;
+} object_source;
+
+/* Finds the ranges of all objects of a mesh. */
+void mesh_find_ranges(const cscd_mesh *mesh, object_range *out);
+
+/* An object on its way from one mesh to another. */
+typedef struct object_move {
+    object_source source;
+    object_range from, to;
+} object_move;
+
+/* Fills an empty mesh with copies of objects of others: all arrays but for their offsets, so the mesh is what
+ * mesh_build_objects makes of their descriptions. Fills in where they go to. On failure, which is OUT_OF_MEMORY without a
+ * sentence, the caller destroys the mesh. */
+cscd_status mesh_splice(cscd_mesh *mesh, object_move *moves, uint32_t count);
+
+/* What an object of the new mesh was. */
+typedef struct object_origin {
+    uint32_t old_object;                               /* UINT32_MAX: a new one */
+    bool changed;                                      /* the caller has described it anew */
+    const uint32_t *vertex_origins, *triangle_origins; /* of the caller; NULL: the same numbers */
+} object_origin;
+
+/* Fills in the maps, whose arrays there are; moves and origins: one for each object of the new mesh. */
+void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, const object_move *moves,
+                     const object_origin *origins);
