@@ -149,6 +149,10 @@ static cscd_status fill_plan(cscd_plan *plan, const cscd_mesh *mesh, const doubl
     return status;
 }
 
+static const char *validate_listed(const reference_count *object) {
+    return plan_validate((const cscd_plan *)object);
+}
+
 static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, const cscd_plan_parts *parts,
                              cscd_plan **out) {
     cscd_plan *plan = plan_allocate(mesh, parts->method, parts->region_count);
@@ -159,6 +163,7 @@ static cscd_status make_plan(const cscd_mesh *mesh, const double *positions, con
         cscd_plan_destroy(plan);
         return status;
     }
+    context_list_object(plan->context, &plan->references, validate_listed);
     *out = plan;
     return CSCD_OK;
 }

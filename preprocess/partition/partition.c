@@ -110,6 +110,10 @@ static cscd_status check_plan(cscd_context *context, const cscd_mesh *mesh, cons
                         (unsigned long long)plan->mesh_hash, (unsigned long long)cscd_mesh_hash(mesh));
 }
 
+static const char *validate_listed(const reference_count *object) {
+    return partition_validate((const cscd_partition *)object);
+}
+
 static cscd_status partition_at(const cscd_mesh *mesh, const cscd_plan *plan, const double *positions,
                                 const cscd_partition_options *options, cscd_partition **out) {
     cscd_status status = positions_check(mesh->context, positions, mesh->vertex_count, "positions");
@@ -118,11 +122,13 @@ static cscd_status partition_at(const cscd_mesh *mesh, const cscd_plan *plan, co
     if (partition == NULL) return context_out_of_memory(mesh->context);
     partition->options = *options;
     status = make_cells_of(partition, positions, 0, partition->part_count);
-    if (status == CSCD_OK)
-        *out = partition;
-    else
+    if (status != CSCD_OK) {
         cscd_partition_destroy(partition);
-    return status;
+        return status;
+    }
+    context_list_object(partition->context, &partition->references, validate_listed);
+    *out = partition;
+    return CSCD_OK;
 }
 
 static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,

@@ -2,6 +2,7 @@
 #include "runtime/detector/detector.h"
 
 #include "runtime/detector/detector_rules.h"
+#include "runtime/detector/detector_validate.h"
 #include "runtime/narrow_phase/limits.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
@@ -134,6 +135,10 @@ static void free_detector(reference_count *references) {
     context_release(context);
 }
 
+static const char *validate_listed(const reference_count *object) {
+    return detector_validate((const cscd_detector *)object);
+}
+
 /* Creates a detector with checked options. */
 static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                    cscd_detector_options chosen, cscd_detector **out) {
@@ -158,6 +163,7 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
         cscd_detector_destroy(d);
         return status;
     }
+    context_list_object(context, &d->references, validate_listed);
     *out = d;
     return CSCD_OK;
 }

@@ -111,6 +111,16 @@ static void free_sensors(reference_count *references) {
     context_release(context);
 }
 
+static const char *validate_listed(const reference_count *object) {
+    const cscd_sensors *s = (const cscd_sensors *)object;
+    if (s->partition->references.alive != REFERENCE_ALIVE) return "the partition of sensors was freed";
+    for (uint32_t i = 0; i < s->particles.count; i++) {
+        if (s->particles.vertices[i] >= s->mesh->vertex_count)
+            return "a particle is at a vertex that there is not";
+    }
+    return s->generation <= s->partition->generation ? NULL : "sensors are ahead of their partition";
+}
+
 static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, cscd_partition *partition,
                                   const cscd_sensor_options *options, cscd_sensors **out) {
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_sensors_create: out is NULL");
@@ -141,6 +151,7 @@ static cscd_status create_sensors(cscd_context *context, const cscd_mesh *mesh, 
         cscd_sensors_destroy(s);
         return context_out_of_memory(context);
     }
+    context_list_object(context, &s->references, validate_listed);
     *out = s;
     return CSCD_OK;
 }

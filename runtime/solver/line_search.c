@@ -52,6 +52,25 @@ static void free_line(reference_count *references) {
     context_release(context);
 }
 
+static const char *check_candidates(const candidate_list *list, uint32_t a_count, uint32_t b_count) {
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->pairs[i][0] >= a_count || list->pairs[i][1] >= b_count)
+            return "a candidate of a line search names a feature that there is not";
+    }
+    return NULL;
+}
+
+static const char *validate_listed(const reference_count *object) {
+    const cscd_line_search *line = (const cscd_line_search *)object;
+    const cscd_mesh *mesh = line->detector->mesh;
+    if (line->detector->references.alive != REFERENCE_ALIVE) return "the detector of a line search was freed";
+    if (!line->begun || line->rules_revision != line->detector->rules_revision) return NULL;
+    const candidate_list *lists = line->candidates.lists;
+    const char *fault = check_candidates(&lists[CSCD_CONTACT_VF], mesh->vertex_count, mesh->triangle_count);
+    return fault != NULL ? fault
+                         : check_candidates(&lists[CSCD_CONTACT_EE], mesh->edge_count, mesh->edge_count);
+}
+
 static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) {
     cscd_context *context = detector->context;
     if (out == NULL)
@@ -65,6 +84,7 @@ static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) 
     }
     detector_hold(detector);
     context_add_object(context, &line->references, free_line);
+    context_list_object(context, &line->references, validate_listed);
     *out = line;
     return CSCD_OK;
 }

@@ -23,6 +23,7 @@ static void free_context(reference_count *references) {
     cscd_context *context = (cscd_context *)((char *)references - offsetof(cscd_context, references));
     parallel_destroy(&context->memory, context->threads);
     memory_end(&context->memory);
+    live_objects_end(&context->live);
     cscd_allocator allocator = context->memory.allocator;
     allocator.release(allocator.user, context, sizeof *context);
 }
@@ -53,11 +54,16 @@ static cscd_status create_parts(cscd_context *context, const cscd_context_option
     context->simd = options->simd != CSCD_SIMD_AUTO ? options->simd : processor_best_simd();
     if (!memory_begin(&context->memory, options->allocator, &context->entry))
         return context_fail(context, CSCD_SYSTEM_ERROR, "the system refused a mutex");
+    if (!live_objects_begin(&context->live)) {
+        memory_end(&context->memory);
+        return context_fail(context, CSCD_SYSTEM_ERROR, "the system refused a mutex");
+    }
     context->memory.bytes = sizeof *context;
     cscd_status status =
         parallel_create(&context->memory, options->thread_count, options->parallel_for, &context->threads);
     context->entry.threads = context->threads;
     if (status == CSCD_OK) return CSCD_OK;
+    live_objects_end(&context->live);
     memory_end(&context->memory);
     return context_fail(context, status, "%s for %u threads",
                         status == CSCD_OUT_OF_MEMORY ? "out of memory" : "the system refused threads",
@@ -122,6 +128,11 @@ void context_add_object(cscd_context *context, reference_count *object, void (*f
     reference_begin(object, free);
     context_hold(context);
     atomic_store(&context->entry.half_made, object);
+}
+
+void context_list_object(cscd_context *context, reference_count *object,
+                         const char *(*validate)(const reference_count *object)) {
+    live_objects_add(&context->live, object, validate);
 }
 
 void context_drop_object(cscd_context *context, reference_count *object) {

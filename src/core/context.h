@@ -2,6 +2,7 @@
 #pragma once
 
 #include "src/core/entry.h"
+#include "src/core/live_objects.h"
 #include "src/core/memory.h"
 #include "src/core/parallel.h"
 #include "src/core/progress.h"
@@ -16,6 +17,7 @@ struct cscd_context {
     host_memory memory;
     parallel *threads;
     progress progress;
+    live_objects live;
     cscd_simd simd; /* never AUTO */
     char detail[512];
 };
@@ -28,6 +30,10 @@ void context_release(cscd_context *context);
  * else it also frees the memory. */
 void context_add_object(cscd_context *context, reference_count *object,
                         void (*free)(reference_count *object));
+
+/* The object is whole; from now on debug builds check it at every call. See live_objects_add. */
+void context_list_object(cscd_context *context, reference_count *object,
+                         const char *(*validate)(const reference_count *object));
 
 /* One who holds the object lets go; or its owner does, in its _destroy function. */
 void context_drop_object(cscd_context *context, reference_count *object);

@@ -4,6 +4,8 @@
 #include "src/core/context.h"
 
 #include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* Flags of a mark, below the address of the first object that is to be freed. */
 #define MARK_INSIDE ((uintptr_t)1)
@@ -74,9 +76,23 @@ static bool claim_context(cscd_context *context, context_entry *entry, uintptr_t
     return true;
 }
 
+#ifdef NDEBUG
+static void check_objects(cscd_context *context) {
+    (void)context;
+}
+#else
+static void check_objects(cscd_context *context) {
+    const char *fault = live_objects_fault(&context->live);
+    if (fault == NULL) return;
+    fprintf(stderr, "cscd: a structure was broken before this call: %s\n", fault);
+    abort();
+}
+#endif
+
 bool context_enter_at(cscd_context *context, context_entry *entry, uintptr_t frame) {
     if (!claim_context(context, entry, frame)) return false;
     context->entry.host = float_environment_begin();
+    check_objects(context);
     context->detail[0] = '\0'; /* of an earlier call */
     progress_begin_call(&context->progress);
     parallel_begin_call(context->threads);
@@ -90,6 +106,12 @@ static bool take_mark_away(entry_state *state) {
                                                    memory_order_relaxed);
 }
 
+/* The mark of a freed object outlives it for a while, in debug builds long enough for most mistakes. */
+static void free_object(reference_count *object) {
+    object->alive = 0;
+    object->free(object);
+}
+
 static void free_listed(entry_state *state) {
     uintptr_t mark = atomic_load(&state->mark);
     while (!atomic_compare_exchange_weak(&state->mark, &mark, mark & MARK_FLAGS)) {
@@ -97,7 +119,7 @@ static void free_listed(entry_state *state) {
     reference_count *object = (reference_count *)(mark & ~MARK_FLAGS);
     while (object != NULL) {
         reference_count *next = object->next;
-        object->free(object);
+        free_object(object);
         object = next;
     }
 }
@@ -142,16 +164,16 @@ static void free_in_broken(cscd_context *context, reference_count *object) {
     entry_state *state = &context->entry;
     context_hold(context);
     reference_count *half_made = atomic_exchange(&state->half_made, NULL);
-    if (half_made != NULL && reference_drop(half_made)) half_made->free(half_made);
+    if (half_made != NULL && reference_drop(half_made)) free_object(half_made);
     free_listed(state);
-    object->free(object);
+    free_object(object);
     context_release(context);
 }
 
 static void free_claimed(cscd_context *context, reference_count *object) {
     context_hold(context);
     context->entry.host = float_environment_get();
-    object->free(object);
+    free_object(object);
     leave_claim(context, CSCD_OK);
     context_release(context);
 }
@@ -160,6 +182,7 @@ void context_free_object(cscd_context *context, reference_count *object) {
     context_entry entry;
     reference_count *half_made = object;
     atomic_compare_exchange_strong(&context->entry.half_made, &half_made, NULL);
+    live_objects_remove(&context->live, object);
     for (;;) {
         if (claim_context(context, &entry, (uintptr_t)__builtin_frame_address(0))) {
             free_claimed(context, object);

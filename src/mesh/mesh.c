@@ -173,6 +173,14 @@ cscd_mesh *mesh_begin(cscd_context *context) {
     return &shared->mesh;
 }
 
+static const char *validate_shared(const reference_count *object) {
+    return mesh_validate(&((const shared_mesh *)object)->mesh);
+}
+
+void mesh_list(cscd_mesh *mesh) {
+    context_list_object(mesh->context, &mesh->shared->references, validate_shared);
+}
+
 static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *objects, uint32_t count,
                                cscd_mesh **out) {
     const described_objects described = {.descs = objects, .count = count, .total = count};
@@ -184,6 +192,7 @@ static cscd_status create_mesh(cscd_context *context, const cscd_object_desc *ob
         cscd_mesh_destroy(mesh);
         return context_out_of_memory(context);
     }
+    mesh_list(mesh);
     *out = mesh;
     return CSCD_OK;
 }

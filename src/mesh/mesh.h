@@ -48,6 +48,10 @@ static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                           double v) __attribute__((noinline));
 
+/* Returns the first fault of the structure as a sentence, or NULL: indices out of range, stars, components and objects that
+ * do not agree with the triangles. Takes linear time; see live_objects.h. */
+const char *mesh_validate(const cscd_mesh *mesh);
+
 /* Builds edges, triangle_edges and both kinds of stars from the triangles. */
 cscd_status mesh_build_topology(cscd_mesh *mesh);
 
@@ -75,6 +79,9 @@ cscd_mesh *mesh_begin(cscd_context *context);
 
 /* Fills an empty mesh. On failure, which is OUT_OF_MEMORY without a sentence, the caller destroys it. */
 cscd_status mesh_build_objects(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count);
+
+/* The mesh is whole; see context_list_object. */
+void mesh_list(cscd_mesh *mesh);
 
 static inline bool component_is_obstacle(const cscd_mesh *mesh, uint32_t component) {
     return mesh->obstacles != NULL && mesh->obstacles[component];

@@ -219,6 +219,7 @@ static cscd_status begin_change(change_plan *p, cscd_mesh *mesh, cscd_mesh_chang
     mesh_hold(p->old);
     mesh_hold(mesh);
     context_add_object(p->context, &change->references, free_change);
+    mesh_list(mesh);
     mesh_change_map(change, p->old_ranges, p->moves, p->origins);
     *out = change;
     return CSCD_OK;

@@ -4,6 +4,8 @@
 
 #include "src/core/struct_size.h"
 
+#include <assert.h>
+
 static array_list list_arrays(cscd_partition *p) {
     size_t vertices = p->mesh->vertex_count, triangles = p->mesh->triangle_count, parts = p->part_count;
     return (array_list){
@@ -25,6 +27,37 @@ static void free_partition(reference_count *references) {
     }
     mesh_release(&mesh);
     context_release(context);
+}
+
+static const char *check_cells(const cscd_partition *p) {
+    uint32_t vertices = 0;
+    for (uint32_t c = 0; c < p->cell_count; c++) {
+        if (p->cell_parts[c] >= p->part_count) return "a cell is of a part that there is not";
+        if (p->cell_offsets[c] != vertices || p->cell_offsets[c + 1] < vertices)
+            return "the cells of a partition do not follow each other";
+        vertices = p->cell_offsets[c + 1];
+        for (uint32_t i = p->cell_offsets[c]; i < vertices; i++) {
+            uint32_t v = p->cell_vertices[i];
+            if (v >= p->mesh->vertex_count || p->vertex_cells[v] != c ||
+                p->vertex_parts[v] != p->cell_parts[c])
+                return "a cell holds a vertex of another one";
+        }
+    }
+    return NULL;
+}
+
+const char *partition_validate(const cscd_partition *p) {
+    for (uint32_t t = 0; t < p->mesh->triangle_count; t++) {
+        if (p->triangle_parts[t] >= p->part_count) return "a triangle is in a part that there is not";
+    }
+    for (uint32_t v = 0; v < p->mesh->vertex_count; v++) {
+        if (p->vertex_cells[v] != PARTITION_NONE && p->vertex_cells[v] >= p->cell_count)
+            return "a vertex is in a cell that there is not";
+    }
+    for (uint32_t i = 0; i < p->part_count; i++) {
+        if (p->parts[i].object >= p->object_count) return "a part is of an object that there is not";
+    }
+    return check_cells(p);
 }
 
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count) {
@@ -65,6 +98,7 @@ uint32_t cscd_partition_part_count(const cscd_partition *partition) {
 }
 
 void cscd_partition_part_sized(const cscd_partition *partition, uint32_t part, cscd_part *out, size_t size) {
+    assert(part < partition->part_count);
     struct_give(out, size, &partition->parts[part], sizeof(cscd_part));
 }
 
@@ -73,9 +107,11 @@ uint32_t cscd_partition_cell_count(const cscd_partition *partition) {
 }
 
 uint32_t cscd_partition_vertex_cell(const cscd_partition *partition, uint32_t vertex) {
+    assert(vertex < partition->mesh->vertex_count);
     return partition->vertex_cells[vertex];
 }
 
 double cscd_partition_distortion(const cscd_partition *partition, uint32_t part) {
+    assert(part < partition->part_count);
     return partition->distortions[part];
 }

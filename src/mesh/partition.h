@@ -37,6 +37,9 @@ struct cscd_partition {
                                  * keep their vertices, but not their numbers */
 };
 
+/* Returns the first fault of a partition as a sentence, or NULL. See live_objects.h. */
+const char *partition_validate(const cscd_partition *partition);
+
 /* Returns a partition of zeros with all its arrays; NULL when out of memory. */
 cscd_partition *partition_allocate(const cscd_mesh *mesh, uint32_t object_count, uint32_t part_count);
 

@@ -3,6 +3,8 @@
 
 #include "src/core/struct_size.h"
 
+#include <assert.h>
+
 static uint64_t hash_word(uint64_t hash, uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (word >> shift & 0xff)) * 0x100000001b3u;
     return hash;
@@ -37,6 +39,21 @@ static void free_plan(reference_count *references) {
     context_release(context);
 }
 
+const char *plan_validate(const cscd_plan *plan) {
+    uint64_t triangles = 0;
+    for (uint32_t r = 0; r < plan->region_count; r++) {
+        triangles += plan->regions[r].triangle_count;
+        if (plan->regions[r].component >= plan->component_count)
+            return "a region of a plan is of a component that there is not";
+    }
+    for (uint32_t t = 0; t < plan->triangle_count; t++) {
+        if (plan->triangle_regions[t] >= plan->region_count) return "a plan names a region that there is not";
+        if (!(plan->triangle_weights[t] >= 0.0 && plan->triangle_weights[t] <= 1.0 + 0x1p-40))
+            return "a plan gives a triangle no weight in its region";
+    }
+    return triangles == plan->triangle_count ? NULL : "the regions of a plan do not hold every triangle once";
+}
+
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count) {
     cscd_plan *plan = context_allocate(mesh->context, 1, sizeof *plan);
     if (plan == NULL) return NULL;
@@ -67,18 +84,22 @@ uint32_t cscd_plan_region_count(const cscd_plan *plan) {
 }
 
 void cscd_plan_region_sized(const cscd_plan *plan, uint32_t region, cscd_region *out, size_t size) {
+    assert(region < plan->region_count);
     struct_give(out, size, &plan->regions[region], sizeof *plan->regions);
 }
 
 uint32_t cscd_plan_triangle_region(const cscd_plan *plan, uint32_t triangle) {
+    assert(triangle < plan->triangle_count);
     return plan->triangle_regions[triangle];
 }
 
 double cscd_plan_triangle_charge(const cscd_plan *plan, uint32_t triangle) {
+    assert(triangle < plan->triangle_count);
     return plan->charges != NULL ? plan->charges[triangle] : 0.0;
 }
 
 double cscd_plan_capacitance(const cscd_plan *plan, uint32_t component) {
+    assert(component < plan->component_count);
     return plan->capacitances != NULL ? plan->capacitances[component] : 0.0;
 }
 

@@ -22,5 +22,8 @@ struct cscd_plan {
     cscd_preprocess_timings timings;
 };
 
+/* Returns the first fault of a plan as a sentence, or NULL. See live_objects.h. */
+const char *plan_validate(const cscd_plan *plan);
+
 /* Returns a plan of zeros with room for region_count regions; NULL when out of memory. */
 cscd_plan *plan_allocate(const cscd_mesh *mesh, cscd_method method, uint32_t region_count);

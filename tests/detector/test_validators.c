@@ -1,0 +1,185 @@
+/* The validators of meshes, plans, partitions and detectors find every kind of planted fault, and none in what the
+ * library has made. */
+#include "cscd/sensors.h"
+#include "runtime/detector/detector_validate.h"
+#include "src/mesh/partition.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static scene shape; /* large; one test at a time */
+
+/* Two objects, of which the second is an obstacle, with a plan, a partition, and a detector that has made a step. */
+typedef struct whole_set {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_plan *plan;
+    cscd_partition *partition;
+    cscd_detector *detector;
+} whole_set;
+
+static cscd_detector *create_detector(whole_set *w) {
+    static const uint32_t ignored[] = {1, 5, 2, 9, 0, 7}, seams[] = {0, 1, 1, 2, 4, 7};
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    cscd_detector *detector = NULL;
+    cscd_detector_options options = cscd_detector_defaults();
+    rules[1].thickness = 0.01;
+    options.ignored = ignored;
+    options.ignored_count = 3;
+    options.seams = seams;
+    options.seam_count = 3;
+    options.seam_reach = (double)INFINITY;
+    options.rules = rules;
+    options.rule_count = 2;
+    assert_int_equal(cscd_detector_create(w->context, w->mesh, w->plan, &options, &detector), CSCD_OK);
+    return detector;
+}
+
+static whole_set whole_set_create(void) {
+    whole_set w = {NULL};
+    cscd_contacts found;
+    scene_clear(&shape);
+    for (int i = 0; i < 2; i++) scene_add_sphere(&shape, (double[3]){2.5 * i, 0, 0}, 1.0, 8, 8);
+    uint32_t vertices = shape.vertex_count / 2, triangles = shape.triangle_count / 2;
+    cscd_object_desc objects[2] = {cscd_object_of_triangles(vertices, triangles, shape.triangles),
+                                   cscd_object_of_triangles(vertices, triangles, shape.triangles)};
+    objects[1].obstacle = true;
+    assert_int_equal(cscd_context_create(NULL, &w.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(w.context, objects, 2, &w.mesh), CSCD_OK);
+    cscd_plan_options options = cscd_plan_defaults();
+    options.method = CSCD_METHOD_SINGLE;
+    const cscd_view x0 = cscd_view_doubles(shape.x0, shape.vertex_count);
+    const cscd_view x1 = cscd_view_doubles(shape.x1, shape.vertex_count);
+    assert_int_equal(cscd_plan_create(w.context, w.mesh, &x0, &options, &w.plan), CSCD_OK);
+    assert_int_equal(cscd_partition_create(w.context, w.mesh, NULL, &x0, NULL, &w.partition), CSCD_OK);
+    w.detector = create_detector(&w);
+    assert_int_equal(cscd_detector_step(w.detector, &x0, &x1, &found), CSCD_OK);
+    assert_null(mesh_validate(w.mesh));
+    assert_null(plan_validate(w.plan));
+    assert_null(partition_validate(w.partition));
+    assert_null(detector_validate(w.detector));
+    return w;
+}
+
+static void whole_set_destroy(whole_set *w) {
+    cscd_detector_destroy(w->detector);
+    cscd_partition_destroy(w->partition);
+    cscd_plan_destroy(w->plan);
+    cscd_mesh_destroy(w->mesh);
+    cscd_context_destroy(w->context);
+}
+
+static void expect_sentence(const char *fault, const char *expected) {
+    if (fault == NULL) fail_msg("not found: %s", expected);
+    assert_string_equal(fault, expected);
+}
+
+/* Plants a value, expects the validator to find it, and puts the old one back. */
+#define PLANT(validate, object, place, value, expected)                                                      \
+    do {                                                                                                     \
+        __typeof__(place) saved = (place);                                                                   \
+        (place) = (value);                                                                                   \
+        expect_sentence(validate(object), expected);                                                         \
+        (place) = saved;                                                                                     \
+        assert_null(validate(object));                                                                       \
+    } while (0)
+
+static void faults_of_meshes(void **state) {
+    (void)state;
+    whole_set w = whole_set_create();
+    cscd_mesh *m = w.mesh;
+    PLANT(mesh_validate, m, m->triangles[3][1], m->vertex_count,
+          "a triangle of a mesh names a vertex that there is not");
+    PLANT(mesh_validate, m, m->triangles[3][1], m->triangles[3][0],
+          "a triangle of a mesh has a vertex twice");
+    PLANT(mesh_validate, m, m->triangle_edges[3][2], m->triangle_edges[3][1],
+          "an edge of a triangle does not join its corners");
+    PLANT(mesh_validate, m, m->edges[4][1], m->edges[4][0],
+          "the vertices of an edge are out of order or range");
+    PLANT(mesh_validate, m, m->edges[1][1], m->edges[0][1], "the edges of a mesh are not sorted");
+    PLANT(mesh_validate, m, m->vertex_star_offsets[m->vertex_count], 7,
+          "the stars of a mesh do not hold every triangle three times");
+    PLANT(mesh_validate, m, m->edge_star_offsets[3], m->edge_star_offsets[4] + 1,
+          "the stars of a mesh overlap");
+    PLANT(mesh_validate, m, m->vertex_stars[0], m->triangle_count - 1,
+          "a star holds a triangle that does not contain its feature");
+    PLANT(mesh_validate, m, m->vertex_stars[1], m->vertex_stars[0], "a star of a mesh is not sorted");
+    PLANT(mesh_validate, m, m->triangle_components[0], 1, "the components of a mesh are not in order");
+    PLANT(mesh_validate, m, m->triangle_components[m->triangle_count - 1], 0,
+          "two components of a mesh have a vertex in common");
+    PLANT(mesh_validate, m, m->components[1].triangle_count, 1,
+          "the components of a mesh do not hold every triangle once");
+    PLANT(mesh_validate, m, m->objects[1].first_edge, 0, "the objects of a mesh do not follow each other");
+    PLANT(mesh_validate, m, m->obstacles[1], false, "a component is no obstacle, but its object is");
+    PLANT(mesh_validate, m, m->objects[1].vertex_count, m->objects[1].vertex_count + 1,
+          "the objects of a mesh do not hold every feature once");
+    whole_set_destroy(&w);
+}
+
+static void faults_of_plans_and_partitions(void **state) {
+    (void)state;
+    whole_set w = whole_set_create();
+    PLANT(plan_validate, w.plan, w.plan->triangle_regions[2], 99, "a plan names a region that there is not");
+    PLANT(plan_validate, w.plan, w.plan->triangle_weights[2], (double)NAN,
+          "a plan gives a triangle no weight in its region");
+    PLANT(plan_validate, w.plan, w.plan->regions[0].triangle_count, 1,
+          "the regions of a plan do not hold every triangle once");
+    PLANT(plan_validate, w.plan, w.plan->regions[0].component, 9,
+          "a region of a plan is of a component that there is not");
+    cscd_partition *p = w.partition;
+    PLANT(partition_validate, p, p->triangle_parts[2], 99, "a triangle is in a part that there is not");
+    PLANT(partition_validate, p, p->vertex_cells[2], p->cell_count,
+          "a vertex is in a cell that there is not");
+    PLANT(partition_validate, p, p->parts[1].object, 2, "a part is of an object that there is not");
+    PLANT(partition_validate, p, p->cell_parts[0], 2, "a cell is of a part that there is not");
+    PLANT(partition_validate, p, p->cell_offsets[0], 1, "the cells of a partition do not follow each other");
+    PLANT(partition_validate, p, p->cell_vertices[0], p->cell_vertices[p->cell_offsets[1]],
+          "a cell holds a vertex of another one");
+    whole_set_destroy(&w);
+}
+
+static void faults_of_detectors(void **state) {
+    (void)state;
+    whole_set w = whole_set_create();
+    cscd_detector *d = w.detector;
+    PLANT(detector_validate, d, d->rebuild.mesh, w.mesh, "the parts of a detector are of different meshes");
+    PLANT(detector_validate, d, d->seen.triangle_count, 5, "the mesh of a detector has changed");
+    PLANT(detector_validate, d, d->limit.distance, 1.0,
+          "the distance of a detector is not that of its options");
+    PLANT(detector_validate, d, d->culling.triangle_regions[4], d->culling.region_count,
+          "a triangle is in a region that there is not");
+    PLANT(detector_validate, d, d->culling.triangle_weights[4], -1.0,
+          "a triangle has no weight in its region");
+    PLANT(detector_validate, d, d->culling.facing[4], 9, "a triangle has an unknown orientation");
+    PLANT(detector_validate, d, d->culling.detector_offsets[0][1], (double)INFINITY,
+          "a detector point is nowhere");
+    PLANT(detector_validate, d, d->culled[1], true, "the pairs of an obstacle are culled");
+    PLANT(detector_validate, d, d->starts.triangles[3], 9, "a triangle has an unknown state at its start");
+    PLANT(detector_validate, d, d->starts.of[0].clean, (d->starts.counted = true, UINT32_MAX),
+          "a component has more states than triangles at its start");
+    PLANT(detector_validate, d, d->exclusions.ignored[1], d->exclusions.ignored[0] - 1,
+          "the pairs to leave out are not sorted");
+    PLANT(detector_validate, d, d->exclusions.ignored[1], (uint64_t)7 << 32 | 3,
+          "a pair to leave out names no two triangles");
+    PLANT(detector_validate, d, d->exclusions.names[2], 1, "the seams do not name their vertices");
+    PLANT(detector_validate, d, d->space.rules, NULL, "the parts of a detector have different rules");
+    PLANT(detector_validate, d, d->pair_rules.object_count, 1, "the rules are of another number of objects");
+    PLANT(detector_validate, d, d->pair_rules.reaches[0], 1.0,
+          "an object's distance is not within the greatest");
+    PLANT(detector_validate, d, d->pair_rules.component_objects[0], 2,
+          "a component is of an object that there is not");
+    PLANT(detector_validate, d, d->space.bvh.leaf_flags[0].used, 0xfd, "the lanes of a leaf are no prefix");
+    whole_set_destroy(&w);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faults_of_meshes),
+        cmocka_unit_test(faults_of_plans_and_partitions),
+        cmocka_unit_test(faults_of_detectors),
+    };
+    return cmocka_run_group_tests_name("validators", tests, NULL, NULL);
+}
