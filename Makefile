@@ -25,9 +25,11 @@ ifeq ($(OPTIMISE_$(CONFIG)),)
 $(error CONFIG=$(CONFIG) is unknown: use release, debug, sanitize, tsan or scalar)
 endif
 
+CPP_WARNINGS := -Wall -Wextra -Wpedantic -Wconversion -Wshadow
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -Wmissing-prototypes -Wstrict-prototypes -Wvla
 ifeq ($(WERROR),1)
 WARNINGS += -Werror
+CPP_WARNINGS += -Werror
 endif
 # Inner loops are compiled once per instruction set; at run time the processor decides which ones run.
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
@@ -73,12 +75,12 @@ NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/cc
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))
-TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c))
+TEST_SOURCES    := $(filter-out $(NOT_HERE),$(wildcard tests/*/test_*.c tests/*/test_*.cpp))
 # ONLY="bvh line_search" chooses the tests of these rooms, or with one of these words in their names.
 ONLY ?=
 ifneq ($(strip $(ONLY)),)
 TEST_SOURCES    := $(sort $(foreach word,$(ONLY),$(filter $(TEST_SOURCES),\
-                     $(wildcard tests/*/test_*$(word)*.c tests/$(word)/test_*.c))))
+                     $(wildcard tests/*/test_*$(word)*.c* tests/$(word)/test_*.c*))))
 endif
 FUZZ_SOURCES    := $(wildcard tests/*/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
@@ -112,7 +114,8 @@ LIBRARY := $(BUILD)/libcscd.a
 SHARED  := $(BUILD)/libcscd.so.$(VERSION)
 CHARGE_SHARED := $(if $(filter 0,$(CHARGE)),,$(BUILD)/libcscd-charge.so.$(VERSION))
 TOOL    := $(BUILD)/cscd
-TESTS   := $(patsubst tests/%.c,$(BUILD)/tests/%,$(TEST_SOURCES))
+TESTS   := $(addprefix $(BUILD)/,$(basename $(TEST_SOURCES)))
+CPP_TESTS := $(addprefix $(BUILD)/,$(basename $(filter %.cpp,$(TEST_SOURCES))))
 # Tests of a second or more of processor time in the release: `make test` runs them, `make check` leaves them out.
 # tests/run.sh ends with the slowest programs of a run and their seconds: programs that become slow are added here.
 SLOW_baselines     := contour iccd
@@ -130,9 +133,9 @@ SLOW_report        := report_browser
 SLOW_sensors       := exact_check sensor_recall sensor_scenes
 SLOW_solver        := floors max_step proximity
 SLOW_tool          := tool_preprocess tool_render tool_stop
-TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c)))))
+TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c*)))))
 SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
-$(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c),,$(warning tests/$(test).c is called slow, but there is none)))
+$(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c*),,$(warning tests/$(test).c is called slow, but there is none)))
 FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
 MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
@@ -286,7 +289,7 @@ lint: packages
 	@.ci/lint
 
 format:
-	clang-format -i $$(git ls-files '*.c' '*.h')
+	clang-format -i $$(git ls-files '*.c' '*.h' '*.cpp' '*.hpp')
 
 examples: packages
 	@CC="$(CC)" .ci/examples
@@ -387,9 +390,9 @@ $(BUILD)/tests/%: $(OBJECTS)/tests/%.o $(BUILD)/tests/support.a $(BUILD)/inside.
 TEST_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/tests/core/simd_operations_simd.$(level).o)
 $(BUILD)/tests/core/test_simd: $(TEST_LEVELS)
 
-# A host in C++, which throws.
+# A host in C++, which throws; and tests in C++.
 $(BUILD)/tests/core/test_exceptions: $(OBJECTS)/tests/core/throwing_host.o
-$(BUILD)/tests/core/test_exceptions: TEST_LIBS += -lstdc++
+$(BUILD)/tests/core/test_exceptions $(CPP_TESTS): TEST_LIBS += -lstdc++
 
 # Elementary tests go through the same batches in tests and benchmarks.
 $(BUILD)/tests/support.a: $(call objects,$(SUPPORT_SOURCES) benchmarks/lib/pair_batches.c)
@@ -419,7 +422,7 @@ $(OBJECTS)/%.o: %.c
 $(OBJECTS)/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(say) '  CXX $<'
-	$(Q)$(CXX) -std=c++11 $(OPTIMISE_$(CONFIG)) -Wall -Wextra -fPIC -pthread -MMD -MP -Iinclude -I. -c -o $@ $<
+	$(Q)$(CXX) -std=c++17 $(OPTIMISE_$(CONFIG)) $(CPP_WARNINGS) -fPIC -pthread -MMD -MP -Iinclude -I. $(CXXFLAGS) -c -o $@ $<
 
 # Without errno in square roots and without traps in comparisons; otherwise its loops are not vectorised.
 $(OBJECTS)/preprocess/charge/potential.o: CFLAGS_ALL += -fno-math-errno -fno-trapping-math
@@ -443,5 +446,5 @@ $(BUILD)/commit: FORCE
 	@echo $(COMMIT) | cmp -s - $@ || echo $(COMMIT) > $@
 FORCE:
 
--include $(patsubst %.c,$(OBJECTS)/%.d,$(SOURCES)) $(KERNEL_OBJECTS:.o=.d) \
+-include $(addprefix $(OBJECTS)/,$(addsuffix .d,$(basename $(SOURCES)))) $(KERNEL_OBJECTS:.o=.d) \
          $(CHARGE_LIBRARY_FORMS:.o=.d) $(MACHINE_LEVELS:.o=.d) $(TEST_LEVELS:.o=.d)

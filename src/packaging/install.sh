@@ -28,7 +28,7 @@ what=all
 # each ACTION: calls it with MODE SOURCE TARGET for every file; ACTION decides what becomes of it.
 each_file() {
     [ "$what" = library ] || "$1" 755 "$BUILD/cscd" "$BINDIR/cscd"
-    for header in include/cscd/*.h; do
+    for header in include/cscd/*.h include/cscd/*.hpp; do
         "$1" 644 "$header" "$INCLUDEDIR/cscd/${header##*/}"
     done
     "$1" 644 "$BUILD/libcscd.a" "$LIBDIR/libcscd.a"

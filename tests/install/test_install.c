@@ -81,9 +81,11 @@ static void files_are_where_they_belong(void **state) {
     const char *version = cscd_version_string();
     snprintf(
         expected, sizeof expected,
-        "bin/cscd\ninclude/cscd/context.h\ninclude/cscd/cscd.h\ninclude/cscd/detector.h\n"
-        "include/cscd/mesh.h\ninclude/cscd/pairs.h\ninclude/cscd/plan.h\ninclude/cscd/research.h\ninclude/cscd/sensors.h\n"
-        "include/cscd/solver.h\ninclude/cscd/view.h\n"
+        "bin/cscd\ninclude/cscd/context.h\ninclude/cscd/context.hpp\ninclude/cscd/cscd.h\ninclude/cscd/cscd.hpp\n"
+        "include/cscd/detector.h\ninclude/cscd/detector.hpp\ninclude/cscd/error.hpp\ninclude/cscd/lists.hpp\n"
+        "include/cscd/mesh.h\ninclude/cscd/mesh.hpp\ninclude/cscd/pairs.h\ninclude/cscd/pairs.hpp\n"
+        "include/cscd/plan.h\ninclude/cscd/plan.hpp\ninclude/cscd/research.h\ninclude/cscd/sensors.h\n"
+        "include/cscd/solver.h\ninclude/cscd/solver.hpp\ninclude/cscd/view.h\ninclude/cscd/view.hpp\n"
         "lib/cmake/cscd/cscdConfig.cmake\nlib/cmake/cscd/cscdConfigVersion.cmake\n"
         "lib/libcscd-charge.so.%d\nlib/libcscd-charge.so.%s\n"
         "lib/libcscd.a\nlib/libcscd.so\nlib/libcscd.so.%d\nlib/libcscd.so.%s\n"

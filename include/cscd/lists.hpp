@@ -1,0 +1,95 @@
+/* Lists that the library gives out, as ranges. Part of cscd/cscd.hpp, which says what holds for all. */
+#ifndef CSCD_LISTS_HPP
+#define CSCD_LISTS_HPP
+
+#include <cscd/context.hpp>
+#include <cscd/solver.h>
+#include <cscd/view.hpp>
+
+#include <vector>
+
+namespace cscd {
+
+/* A list of the library with its items as a range. It belongs to the detector, and lives until the next call of
+ * it or of one of its line searches. */
+template <class List> struct list : List {
+    using value_type = std::remove_cv_t<std::remove_pointer_t<decltype(List::items)>>;
+
+    list() noexcept : List{} {
+    }
+    const value_type *data() const noexcept {
+        return this->items;
+    }
+    const value_type *begin() const noexcept {
+        return this->items;
+    }
+    const value_type *end() const noexcept {
+        return this->items + this->count;
+    }
+    std::size_t size() const noexcept {
+        return this->count;
+    }
+    bool empty() const noexcept {
+        return this->count == 0;
+    }
+    const value_type &operator[](std::size_t i) const noexcept {
+        return this->items[i];
+    }
+};
+
+using contacts = list<cscd_contacts>;
+using intersections = list<cscd_intersections>;
+using proximities = list<cscd_proximities>;
+
+/* The lists beside bounds and truncations. */
+inline span<const cscd_proximity> blocked_pairs(const cscd_displacement_bounds &bounds) noexcept {
+    return {bounds.blocked, bounds.blocked_count};
+}
+inline span<const cscd_proximity> held_pairs(const cscd_truncation &truncation) noexcept {
+    return {truncation.held, truncation.held_count};
+}
+
+/* ---- stencils ------------------------------------------------------------------------------------------- */
+
+/* Four vertices, and as many weights, for each item of a list. */
+struct stencils {
+    std::vector<std::uint32_t> vertices;
+    std::vector<double> weights;
+};
+inline stencils stencils_of(span<const cscd_contact> items) {
+    stencils all{std::vector<std::uint32_t>(4 * items.size()), std::vector<double>(4 * items.size())};
+    cscd_contact_stencils(items.data(), items.size(), all.vertices.data(), all.weights.data());
+    return all;
+}
+inline stencils stencils_of(span<const cscd_proximity> items) {
+    stencils all{std::vector<std::uint32_t>(4 * items.size()), std::vector<double>(4 * items.size())};
+    cscd_proximity_stencils(items.data(), items.size(), all.vertices.data(), all.weights.data());
+    return all;
+}
+
+/* ---- for the other classes ------------------------------------------------------------------------------ */
+
+namespace detail {
+
+/* Makes a call that gives a list out. */
+template <class List, class Call> List find_list(const state_pointer &state, Call &&call) {
+    List found;
+    cscd_status status = try_call(state, [&] { return call(&found); });
+    if (status != CSCD_OK) fail(state, status, found.size());
+    return found;
+}
+
+/* Makes a call that finds how far a motion may go. */
+template <class Call> cscd_free_step find_step(const state_pointer &state, Call &&call) {
+    cscd_free_step found{};
+    cscd_status status = try_call(state, [&] { return call(&found); });
+    if (status == CSCD_IN_CONTACT) throw error(status, state->sentence_of(status), found.limit);
+    if (status != CSCD_OK) fail(state, status);
+    return found;
+}
+
+} // namespace detail
+
+} // namespace cscd
+
+#endif

@@ -1,0 +1,225 @@
+/* Detectors and line searches of the C++ interface against the functions of C that they stand for. */
+#include "tests/cpp/twin_detectors.hpp"
+
+namespace {
+
+void steps(void **) {
+    twins t;
+    assert_true(t.compare_steps() > 50);
+    assert_ptr_equal(t.ours.mesh().get(), t.mesh.get());
+    assert_int_equal(t.ours.guarantee(1).reason, cscd_detector_guarantee(t.c, 1).reason);
+    assert_int_equal(t.ours.counters().tests, cscd_detector_counters(t.c).tests);
+    assert_true(t.ours.timings().total_ms > 0.0);
+    cscd_intersections crossing;
+    std::vector<float> between = t.x0;
+    for (std::size_t i = 2; i < between.size(); i += 3) between[i] = 0.5f * (t.x0[i] + t.x1[i]);
+    for (std::size_t i = between.size() / 2 + 2; i < between.size(); i += 3) between[i] -= 0.5f;
+    const cscd_view x = cscd::view_of(std::as_const(between));
+    assert_int_equal(cscd_detector_check(t.c, &x, &crossing), CSCD_OK);
+    const cscd::intersections found = t.ours.check(between);
+    assert_int_equal(found.count, crossing.count);
+    assert_true(!found.empty() && found[0].a == crossing.items[0].a && found.data() == found.begin());
+}
+
+void culling(void **) {
+    const cscd::context context;
+    const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
+    cscd::detector detector(context, mesh, cscd::plan(context, mesh, body_positions));
+    std::vector<double> moved = body_positions;
+    for (std::size_t i = 0; i < moved.size(); i += 3) moved[i] += 0.5;
+    assert_true(detector.step(body_positions, moved).empty());
+    assert_int_equal(detector.region_count(), cscd_detector_region_count(detector.get()));
+    assert_true(detector.region_count() > 0);
+    const auto ends = detector.region_point(0);
+    assert_true(std::fabs(ends[1][0] - ends[0][0] - 0.5) < 1e-9 && ends[0][1] == ends[1][1]);
+    assert_int_equal(detector.orientation(0), cscd_detector_orientation(detector.get(), 0));
+    assert_true(detector.orientation(0) != 0);
+}
+
+void proximity(void **) {
+    twins t;
+    for (int form = CSCD_NEAR_PAIRS; form <= CSCD_NEAR_UNIQUE; form++) {
+        cscd_proximities expected;
+        for (int rest = 0; rest < 2; rest++) {
+            if (rest == 1) t.ours.set_rest(t.x0);
+            assert_int_equal(cscd_detector_set_rest(t.c, rest ? &t.v0 : nullptr), CSCD_OK);
+            const cscd::proximities found = t.ours.find_near(t.x0, 1.2, static_cast<cscd_near_form>(form));
+            assert_int_equal(
+                cscd_detector_find_near(t.c, &t.v0, 1.2, static_cast<cscd_near_form>(form), &expected),
+                CSCD_OK);
+            assert_int_equal(found.size(), expected.count);
+            assert_true(!found.empty());
+            for (std::size_t i = 0; i < found.size(); i++) {
+                assert_true(found[i].distance == expected.items[i].distance);
+                assert_true(found[i].threshold == expected.items[i].threshold);
+            }
+        }
+        t.ours.forget_rest();
+    }
+    const cscd::proximities found = t.ours.find_near(t.x0, 1.2);
+    const cscd::stencils stencils = cscd::stencils_of(found);
+    assert_int_equal(stencils.vertices.size(), 4 * found.size());
+    for (std::size_t i = 0; i < found.size(); i++) {
+        assert_int_equal(stencils.vertices[4 * i + 3], found[i].vertices[3]);
+        assert_true(stencils.weights[4 * i + 1] == found[i].weights[1]);
+    }
+}
+
+void contact_stencils(void **) {
+    twins t;
+    const cscd::contacts found = t.ours.step(t.x0, t.x1);
+    const cscd::stencils stencils = cscd::stencils_of(found);
+    for (std::size_t i = 0; i < found.size(); i++) {
+        const cscd_stencil one =
+            t.mesh.stencil(found[i].kind, found[i].a, found[i].b, found[i].u, found[i].v);
+        assert_memory_equal(&stencils.vertices[4 * i], one.vertices, sizeof one.vertices);
+        assert_memory_equal(&stencils.weights[4 * i], one.weights, sizeof one.weights);
+    }
+}
+
+/* ---- what options leave out -------------------------------------------------------------------------------- */
+
+void options(void **) {
+    twins plain;
+    const std::size_t all = plain.compare_steps();
+    cscd::detector_options o;
+    const std::vector<std::array<std::uint32_t, 2>> ignored{{0, 200}, {1, 201}, {2, 202}, {30, 190}};
+    const std::vector<std::array<std::uint32_t, 2>> seams{{0, 100}, {55, 155}};
+    o.set_ignored(ignored);
+    o.set_seams(seams);
+    o.seam_reach = HUGE_VAL;
+    o.mode = CSCD_MODE_EARLIEST;
+    twins left_out(o);
+    assert_true(left_out.compare_steps() < all);
+    o.ignore_if = [](cscd_contact_kind kind, std::uint32_t, std::uint32_t) {
+        return kind == CSCD_CONTACT_EE;
+    };
+    cscd::detector without_edges(plain.context, plain.mesh, o);
+    for (const cscd_contact &contact : without_edges.step(plain.x0, plain.x1))
+        assert_int_equal(contact.kind, CSCD_CONTACT_VF);
+}
+
+void rules(void **) {
+    std::vector<cscd_object_rule> rules(2, cscd_object_rule_default());
+    cscd::detector_options o;
+    o.set_rules(rules);
+    twins t(o);
+    t.compare_steps();
+    const double touching = t.first_time();
+    rules[0].mask = 0;
+    t.ours.set_rules(rules);
+    assert_int_equal(cscd_detector_set_rules(t.c, rules.data(), 2, nullptr, 0), CSCD_OK);
+    assert_int_equal(t.compare_steps(), 0);
+    rules[0] = cscd_object_rule_default();
+    rules[1].thickness_class = 1;
+    const std::vector<double> matrix{0.0, 0.1, 0.1, 0.0};
+    t.ours.set_rules(rules, matrix);
+    assert_int_equal(cscd_detector_set_rules(t.c, rules.data(), 2, matrix.data(), 2), CSCD_OK);
+    t.compare_steps();
+    assert_true(t.first_time() < touching);
+    const std::vector<double> odd{0.0, 0.1, 0.1};
+    assert_int_equal(error_of([&] { t.ours.set_rules(rules, odd); }).status(), CSCD_INVALID_ARGUMENT);
+}
+
+void separation(void **) {
+    twins t;
+    t.compare_steps();
+    const double touching = t.first_time();
+    t.ours.set_separation(0.05);
+    assert_int_equal(cscd_detector_set_separation(t.c, 0.05, 0.0), CSCD_OK);
+    t.compare_steps();
+    assert_true(t.first_time() < touching);
+    assert_int_equal(error_of([&] { t.ours.set_separation(-1.0); }).status(), CSCD_INVALID_ARGUMENT);
+}
+
+/* ---- motions ----------------------------------------------------------------------------------------------- */
+
+void motions(void **) {
+    twins t;
+    std::vector<float> reached(t.x0.size()), expected(t.x0.size());
+    const cscd_mutable_view out = cscd::view_of(expected);
+    cscd_free_step step;
+    assert_int_equal(cscd_detector_max_step(t.c, &t.v0, &t.v1, &out, &step), CSCD_OK);
+    assert_true(t.ours.max_step(t.x0, t.x1).fraction > 0.0);
+    assert_true(t.ours.max_step(t.x0, t.x1, reached).fraction == step.fraction);
+    assert_true(reached == expected);
+    cscd_truncation cut;
+    assert_int_equal(cscd_detector_truncate(t.c, &t.v0, &t.v1, 1.0, &out, &cut), CSCD_OK);
+    assert_int_equal(t.ours.truncate(t.x0, t.x1, 1.0, reached).shortened, cut.shortened);
+    assert_true(reached == expected && cut.shortened > 0);
+    assert_int_equal(t.ours.truncate(t.x0, t.x1, 1.0).shortened, cut.shortened);
+    assert_int_equal(cscd::held_pairs(cut).size(), 0);
+}
+
+void bounds(void **) {
+    twins t;
+    std::vector<float> floats(t.mesh.vertex_count()), expected(floats.size());
+    std::vector<double> doubles(floats.size());
+    cscd_displacement_bounds found;
+    assert_int_equal(cscd_detector_displacement_bounds(t.c, &t.v0, 1.0, CSCD_SCALAR_FLOAT, expected.data(),
+                                                       expected.size() * sizeof(float), &found),
+                     CSCD_OK);
+    assert_int_equal(t.ours.displacement_bounds(t.x0, 1.0, floats).near_count, found.near_count);
+    assert_true(floats == expected && found.near_count > 0);
+    assert_int_equal(t.ours.displacement_bounds(t.x0, 1.0, doubles).limited, found.limited);
+    assert_true(doubles[0] >= static_cast<double>(floats[0]) && doubles[0] > 0.0);
+    t.ours.set_separation(1e9);
+    const cscd_displacement_bounds none = t.ours.displacement_bounds(t.x0, 1.0, doubles);
+    assert_true(cscd::blocked_pairs(none).size() == none.blocked_count && none.blocked_count > 0);
+}
+
+/* A start that touches: the error has the pair. */
+void touching_starts(void **) {
+    const cscd::context context;
+    const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
+    cscd::detector detector(context, mesh);
+    std::vector<double> touching = body_positions, up = body_positions;
+    touching[14] = 0.0;
+    up[14] = 1.0;
+    const cscd::error refused = error_of([&] { detector.max_step(touching, up); });
+    assert_int_equal(refused.status(), CSCD_IN_CONTACT);
+    assert_non_null(refused.contact());
+    assert_int_equal(refused.contact()->kind, CSCD_CONTACT_VF);
+    assert_int_equal(refused.contact()->a, 4);
+    assert_int_equal(refused.count(), 0);
+    const cscd::error other = error_of([&] { detector.set_separation(-1.0); });
+    assert_null(other.contact());
+}
+
+void line_searches(void **) {
+    twins t;
+    cscd_line_search *c;
+    cscd::line_search ours(t.ours);
+    assert_int_equal(cscd_line_search_create(t.c, &c), CSCD_OK);
+    assert_ptr_equal(ours.mesh().get(), t.mesh.get());
+    ours.begin(t.x0, t.x1, 1.2);
+    assert_int_equal(cscd_line_search_begin(c, &t.v0, &t.v1, 1.2), CSCD_OK);
+    assert_int_equal(ours.candidate_count(), cscd_line_search_candidate_count(c));
+    std::vector<float> reached(t.x0.size()), expected(t.x0.size());
+    const cscd_mutable_view out = cscd::view_of(expected);
+    ours.positions(0.25, reached);
+    assert_int_equal(cscd_line_search_positions(c, 0.25, &out), CSCD_OK);
+    assert_true(reached == expected);
+    cscd_free_step step;
+    assert_int_equal(cscd_line_search_max_step(c, 0.75, &out, &step), CSCD_OK);
+    assert_true(ours.max_step(0.75, reached).fraction == step.fraction && reached == expected);
+    assert_true(ours.max_step().fraction <= 1.0);
+    cscd_proximities near;
+    assert_int_equal(cscd_line_search_find_near(c, 0.25, 1.0, CSCD_NEAR_UNIQUE, &near), CSCD_OK);
+    assert_int_equal(ours.find_near(0.25, 1.0).size(), near.count);
+    assert_true(near.count > 0);
+    assert_int_equal(error_of([&] { ours.find_near(0.25, 2.0); }).status(), CSCD_INVALID_ARGUMENT);
+    cscd_line_search_destroy(c);
+}
+
+} // namespace
+
+int main() {
+    const CMUnitTest tests[] = {cmocka_unit_test(steps),        cmocka_unit_test(culling),
+                                cmocka_unit_test(proximity),    cmocka_unit_test(contact_stencils),
+                                cmocka_unit_test(options),      cmocka_unit_test(rules),
+                                cmocka_unit_test(separation),   cmocka_unit_test(motions),
+                                cmocka_unit_test(bounds),       cmocka_unit_test(touching_starts),
+                                cmocka_unit_test(line_searches)};
+    return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
+}
