@@ -188,6 +188,8 @@ static void objects_that_are_null(void **state) {
     cscd_intersections intersections;
     cscd_proximities near;
     cscd_free_step step;
+    cscd_displacement_bounds bounds;
+    cscd_truncation truncation;
     EXPECT_NO_DETECTOR(method, (cscd_method)99, "unknown method 99");
     expect_null_object(cscd_mesh_create(NULL, OBJECT(VERTICES, 8, triangles), 1, &no_mesh));
     expect_null_object(cscd_plan_create(NULL, mesh, AT_START, NULL, &no_plan));
@@ -203,6 +205,11 @@ static void objects_that_are_null(void **state) {
     expect_null_object(cscd_detector_set_separation(NULL, 1.0, 0.0));
     expect_null_object(cscd_detector_set_rest(NULL, AT_START));
     expect_null_object(cscd_detector_set_rules(NULL, NULL, 0, NULL, 0));
+    expect_null_object(
+        cscd_detector_displacement_bounds(NULL, AT_START, 1.0, CSCD_SCALAR_DOUBLE, NULL, 0, &bounds));
+    expect_null_object(cscd_detector_truncate(NULL, AT_START, AT_END, 1.0, NULL, &truncation));
+    expect_null_object(cscd_pairs_step(NULL, NULL, AT_START, AT_END, 0.0, 0.0, NULL));
+    expect_null_object(cscd_pairs_find_near(NULL, NULL, AT_START, 1.0, NULL));
     expect_null_object(cscd_line_search_create(NULL, &no_search));
     expect_null_object(cscd_line_search_begin(NULL, AT_START, AT_END, 0.0));
     expect_null_object(cscd_line_search_positions(NULL, 0.5, NULL));

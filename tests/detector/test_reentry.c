@@ -3,6 +3,7 @@
 #include "cscd/sensors.h"
 #include "src/core/context.h"
 #include "tests/support/counting_allocator.h"
+#include "tests/support/packed.h"
 #include "tests/support/panels.h"
 #include "tests/support/test.h"
 
@@ -77,7 +78,7 @@ static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
 
 /* ---- calls from callbacks ------------------------------------------------------------------------------ */
 
-enum { CALLS = 10 };
+enum { CALLS = 13 };
 
 static cscd_status call_again(const panel_scene *p, int what) {
     static union {
@@ -85,6 +86,8 @@ static cscd_status call_again(const panel_scene *p, int what) {
         cscd_proximities proximities;
         cscd_intersections intersections;
         cscd_free_step step;
+        cscd_displacement_bounds bounds;
+        cscd_truncation truncation;
     } found;
     void *made = NULL;
     switch (what) {
@@ -106,6 +109,12 @@ static cscd_status call_again(const panel_scene *p, int what) {
         return panels_plan(p, CSCD_METHOD_SINGLE, (cscd_plan **)&made);
     case 8:
         return cscd_line_search_create(p->detector, (cscd_line_search **)&made);
+    case 9:
+        return displacement_bounds_packed(p->detector, p->x0, 0.1, p->x1, &found.bounds);
+    case 10:
+        return truncate_packed(p->detector, p->x0, p->x1, 0.1, NULL, &found.truncation);
+    case 11:
+        return cscd_detector_set_rules(p->detector, NULL, 0, NULL, 0);
     default:
         return cscd_partition_create(p->context, p->mesh, NULL, CSCD_DOUBLES(p->x0, p->vertex_count), NULL,
                                      (cscd_partition **)&made);

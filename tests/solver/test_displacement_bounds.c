@@ -1,6 +1,7 @@
 /* Displacement bounds: motions into the corners of what they allow keep all pairs apart, by rational numbers. */
 #include "tests/support/methods.h"
 #include "tests/support/packed.h"
+#include "tests/support/panels.h"
 #include "tests/support/random.h"
 #include "tests/support/rig.h"
 #include "tests/support/solver/exact_distance.h"
@@ -260,11 +261,51 @@ static void bounds_are_the_same_for_all_threads_and_methods(void **state) {
     }
 }
 
+/* Finds the bounds of two panels whose distances by classes are these; the number of pairs that have none is returned. */
+static size_t bounds_of_panels(const panel_scene *p, const double matrix[4], double separation, double *out) {
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    cscd_displacement_bounds found;
+    rules[1].thickness_class = matrix != NULL;
+    assert_int_equal(cscd_detector_set_separation(p->detector, 0.0, 0.0), CSCD_OK);
+    assert_int_equal(cscd_detector_set_rules(p->detector, rules, 2, matrix, matrix != NULL ? 2 : 0), CSCD_OK);
+    assert_int_equal(cscd_detector_set_separation(p->detector, separation, 0.0), CSCD_OK);
+    assert_int_equal(displacement_bounds_packed(p->detector, p->x0, 3.0, out, &found), CSCD_OK);
+    for (size_t i = 0; matrix != NULL && i < found.blocked_count; i++) {
+        const cscd_proximity *pair = &found.blocked[i];
+        uint32_t a = cscd_mesh_vertex_object(p->mesh, pair->vertices[0]),
+                 b = cscd_mesh_vertex_object(p->mesh, pair->vertices[3]);
+        assert_true(pair->distance <= matrix[2 * a + b]);
+    }
+    return found.blocked_count;
+}
+
+/* Every pair keeps the distance of its own objects: as with that distance for all, or with none, or in between. */
+static void distances_of_objects_count(void **state) {
+    (void)state;
+    static const double each = 1.5, all[] = {1.5, 1.5, 1.5, 1.5}, cross[] = {0.0, 1.5, 1.5, 0.0};
+    static double with_none[200], with_all[200], with_cross[200];
+    panel_scene p = panels_create(10, NULL, NULL);
+    size_t wider = 0, narrower = 0;
+    size_t blocked = bounds_of_panels(&p, NULL, each, with_all);
+    assert_int_equal(bounds_of_panels(&p, all, 0.0, with_none), blocked);
+    assert_memory_equal(with_none, with_all, sizeof with_all);
+    bounds_of_panels(&p, NULL, 0.0, with_none);
+    assert_true(bounds_of_panels(&p, cross, 0.0, with_cross) < blocked);
+    for (int v = 0; v < 200; v++) {
+        assert_true(with_all[v] <= with_cross[v] && with_cross[v] <= with_none[v]);
+        wider += with_cross[v] > with_all[v];
+        narrower += with_cross[v] < with_none[v];
+    }
+    assert_true(wider > 20 && narrower > 20);
+    panels_destroy(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(motions_within_bounds_keep_pairs_apart),
         cmocka_unit_test(pairs_left_out_give_no_bounds),
         cmocka_unit_test(obstacles_have_bounds_for_what_they_may_touch),
+        cmocka_unit_test(distances_of_objects_count),
         cmocka_unit_test(bounds_are_the_same_for_all_threads_and_methods),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
