@@ -85,10 +85,12 @@ endif
 FUZZ_SOURCES    := $(wildcard tests/*/fuzz_*.c)
 MODEL_SOURCES   := $(wildcard models/*.c)
 MODEL_PARTS     := $(wildcard models/*/*.c)
+CPP_MODEL_SOURCES := $(wildcard models/*.cpp)
+CPP_MODEL_PARTS   := $(wildcard models/*/*.cpp)
 BENCHMARK_SOURCES := $(filter-out $(if $(HAS_BASELINES),,benchmarks/published_rules.c),$(wildcard benchmarks/*.c))
 BENCHMARK_PARTS   := $(filter-out %_simd.c,$(wildcard benchmarks/lib/*.c))
 SOURCES := $(CORE_SOURCES) $(CHARGE_SOURCES) $(KERNEL_SOURCES) $(COMMON_SOURCES) $(COMMAND_SOURCES) $(SUPPORT_SOURCES) $(TEST_SOURCES) $(FUZZ_SOURCES) \
-           $(MODEL_SOURCES) $(MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
+           $(MODEL_SOURCES) $(MODEL_PARTS) $(CPP_MODEL_SOURCES) $(CPP_MODEL_PARTS) $(BENCHMARK_SOURCES) $(BENCHMARK_PARTS)
 
 # One short line per file; V=1 shows the commands.
 V ?= 0
@@ -137,7 +139,9 @@ TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c*
 SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
 $(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c*),,$(warning tests/$(test).c is called slow, but there is none)))
 FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
-MODELS  := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
+C_MODELS   := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
+CPP_MODELS := $(patsubst models/%.cpp,$(BUILD)/models/%,$(CPP_MODEL_SOURCES))
+MODELS  := $(C_MODELS) $(CPP_MODELS)
 BENCHMARKS := $(filter-out %/embree,$(patsubst benchmarks/%.c,$(BUILD)/benchmarks/%,$(BENCHMARK_SOURCES)))
 
 COMMIT := $(shell git rev-parse --short=12 HEAD 2>/dev/null || echo unknown)
@@ -360,10 +364,16 @@ $(TOOL): $(call objects,$(COMMAND_SOURCES)) $(COMMON_OBJECTS) $(LIBRARY)
 
 # models/*.c are programs, and models/*/ has their parts; they use the public API alone, too.
 MODEL_PART_OBJECTS := $(call objects,$(MODEL_PARTS))
-$(MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
+$(C_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(MODEL_PART_OBJECTS) $(IO_OBJECTS) $(LIBRARY)
 	@mkdir -p $(@D)
 	$(say) '  LD $@'
 	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(TOOL_LIBS)
+
+# Programs in C++ have parts in C++ alone.
+$(CPP_MODELS): $(BUILD)/models/%: $(OBJECTS)/models/%.o $(patsubst %.cpp,$(OBJECTS)/%.o,$(CPP_MODEL_PARTS)) $(LIBRARY)
+	@mkdir -p $(@D)
+	$(say) '  LD $@'
+	$(Q)$(CC) $(LINK_ALL) -o $@ $^ $(STATIC_LIBS) -lstdc++ -lm
 
 # Benchmarks may use internals, as tests do: benchmarks/*.c are programs, and benchmarks/lib has what they share.
 MACHINE_LEVELS := $(foreach level,$(LEVELS),$(OBJECTS)/benchmarks/lib/machine_kernels_simd.$(level).o)
