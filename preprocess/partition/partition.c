@@ -186,6 +186,6 @@ static cscd_status renew_partition(cscd_partition *partition, const cscd_view *p
 cscd_status cscd_partition_renew(cscd_partition *partition, const cscd_view *positions, uint32_t part) {
     if (partition == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(partition->context, &entry)) return entry.status;
+    if (!object_enter(partition, &entry)) return entry.status;
     return context_leave(&entry, renew_partition(partition, positions, part));
 }

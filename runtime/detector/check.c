@@ -87,6 +87,6 @@ cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *
                                       cscd_intersections *out, size_t size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, check_views(detector, positions, out, size));
 }

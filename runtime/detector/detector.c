@@ -218,7 +218,7 @@ static cscd_status set_separation(cscd_detector *detector, double min_separation
 cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation, double tolerance) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, set_separation(detector, min_separation, tolerance));
 }
 

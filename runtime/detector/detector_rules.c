@@ -80,6 +80,6 @@ cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_r
     if (detector == NULL) return CSCD_NULL_OBJECT;
     const given_rules given = {rules, rule_count, thickness_matrix, thickness_class_count};
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, detector_set_rules(detector, &given));
 }

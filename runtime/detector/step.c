@@ -354,6 +354,6 @@ cscd_status cscd_detector_step_sized(cscd_detector *detector, const cscd_view *x
                                      cscd_contacts *out, size_t size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, step_views(detector, x0, x1, out, size));
 }

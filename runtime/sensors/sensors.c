@@ -306,7 +306,7 @@ cscd_status cscd_sensors_step_sized(cscd_sensors *sensors, const cscd_view *x0, 
                                     cscd_warnings *out, size_t size) {
     if (sensors == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(sensors->context, &entry)) return entry.status;
+    if (!object_enter(sensors, &entry)) return entry.status;
     return context_leave(&entry, step_views(sensors, x0, x1, out, size));
 }
 

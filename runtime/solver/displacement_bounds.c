@@ -157,7 +157,7 @@ cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, con
                                                     size_t out_size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(
         &entry, find_bounds_of_views(detector, x0, search_radius, scalar, bounds, size, out, out_size));
 }

@@ -11,9 +11,10 @@
 
 struct cscd_line_search {
     reference_count references; /* the caller alone */
-    cscd_detector *detector;    /* held, and with it the context */
-    double *x0, *x1, *reached;  /* positions */
-    cscd_scalar *scalars;       /* per object: of positions on the line */
+    cscd_detector *detector;    /* held, and with it: */
+    cscd_context *context;
+    double *x0, *x1, *reached; /* positions */
+    cscd_scalar *scalars;      /* per object: of positions on the line */
 
     uint32_t rules_revision; /* of the detector, at the begin */
     double reach, covered;   /* covered: all pairs that come within this distance are candidates */
@@ -78,6 +79,7 @@ static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) 
     cscd_line_search *line = context_allocate(context, 1, sizeof *line);
     if (line == NULL) return context_out_of_memory(context);
     line->detector = detector;
+    line->context = context;
     if (!context_allocate_all(context, list_arrays(line))) {
         context_free(context, line);
         return context_out_of_memory(context);
@@ -92,7 +94,7 @@ static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) 
 cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, create_line(detector, out));
 }
 
@@ -162,7 +164,7 @@ cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, 
                                    double reach) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    if (!object_enter(line, &entry)) return entry.status;
     return context_leave(&entry, begin_views(line, x0, x1, reach));
 }
 
@@ -236,7 +238,7 @@ cscd_status cscd_line_search_positions(cscd_line_search *line, double fraction,
                                        const cscd_mutable_view *positions) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    if (!object_enter(line, &entry)) return entry.status;
     return context_leave(&entry, write_positions(line, fraction, positions));
 }
 
@@ -272,7 +274,7 @@ cscd_status cscd_line_search_find_near_sized(cscd_line_search *line, double frac
                                              cscd_near_form form, cscd_proximities *out, size_t size) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    if (!object_enter(line, &entry)) return entry.status;
     return context_leave(&entry, find_near_on_line(line, fraction, distance, form, out, size));
 }
 
@@ -356,6 +358,6 @@ cscd_status cscd_line_search_max_step_sized(cscd_line_search *line, double longe
                                             size_t size) {
     if (line == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(line->detector->context, &entry)) return entry.status;
+    if (!object_enter(line, &entry)) return entry.status;
     return context_leave(&entry, max_step_on_line(line, longest, reached, out, size));
 }

@@ -138,6 +138,6 @@ cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_vie
                                          const cscd_mutable_view *reached, cscd_free_step *out, size_t size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, max_step_of_views(detector, x0, x1, reached, out, size));
 }

@@ -122,7 +122,7 @@ cscd_status cscd_detector_find_near_sized(cscd_detector *detector, const cscd_vi
                                           size_t size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, find_near_views(detector, positions, distance, form, out, size));
 }
 
@@ -136,7 +136,7 @@ static cscd_status take_rest(cscd_detector *d, const cscd_view *rest) {
 cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     cscd_status status = CSCD_OK;
     if (rest == NULL)
         edge_rest_free(detector->context, &detector->rest);

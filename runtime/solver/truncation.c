@@ -290,6 +290,6 @@ cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_vie
                                          cscd_truncation *out, size_t size) {
     if (detector == NULL) return CSCD_NULL_OBJECT;
     context_entry entry;
-    if (!context_enter(detector->context, &entry)) return entry.status;
+    if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, truncate_views(detector, x0, x1, search_radius, reached, out, size));
 }

@@ -3,7 +3,7 @@
  *
  *     cscd_status cscd_thing_change(cscd_thing *thing) {
  *         context_entry entry;
- *         if (!context_enter(thing->context, &entry)) return entry.status;
+ *         if (!object_enter(thing, &entry)) return entry.status;
  *         return context_leave(&entry, change_thing(thing));
  *     }
  *
@@ -48,6 +48,11 @@ typedef struct context_entry {
  * CSCD_BROKEN if a callback has left one. */
 #define context_enter(context, entry) context_enter_at(context, entry, (uintptr_t)__builtin_frame_address(0))
 bool context_enter_at(cscd_context *context, context_entry *entry, uintptr_t frame);
+
+/* The same for a call with an object of the context, of which debug builds notice that it was freed. */
+#define object_enter(object, entry)                                                                          \
+    (assert((object)->references.alive == REFERENCE_ALIVE && "an object is used after it was freed"),        \
+     context_enter((object)->context, entry))
 
 /* Ends a call, and returns how it ended. */
 cscd_status context_leave(context_entry *entry, cscd_status status);
