@@ -9,7 +9,7 @@
  *     for (const cscd_contact &contact : detector.step(x0, x1)) ...
  *
  * What holds for all of it:
- *   objects     context, mesh, plan, detector and line_search are moved and not copied. Each keeps what it was made
+ *   objects     context, mesh, plan, detector, line_search and mesh_change are moved and not copied. Each keeps what it was made
  *               from, so they may go in any order. One that was moved from may be destroyed or assigned to; its
  *               calls fail, but functions that only ask, such as vertex_count(), must not be called. get() gives
  *               the object of C, for what has no class here; C objects made from it go before the C++ ones
@@ -37,6 +37,7 @@
 #include <cscd/error.hpp>
 #include <cscd/lists.hpp>
 #include <cscd/mesh.hpp>
+#include <cscd/mesh_change.hpp>
 #include <cscd/pairs.hpp>
 #include <cscd/plan.hpp>
 #include <cscd/solver.hpp>

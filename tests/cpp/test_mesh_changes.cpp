@@ -1,0 +1,62 @@
+/* Changes of meshes in the C++ interface against the functions of C that they stand for. */
+#include "tests/cpp/twin_detectors.hpp"
+
+namespace {
+
+using getter = const std::uint32_t *(*)(const cscd_mesh_change *, std::uint32_t *);
+
+void expect_array(cscd::span<const std::uint32_t> found, const cscd_mesh_change *c, getter of,
+                  std::size_t count) {
+    std::uint32_t expected = 0;
+    assert_ptr_equal(found.data(), of(c, &expected));
+    assert_int_equal(found.size(), expected);
+    assert_int_equal(found.size(), count);
+}
+
+/* A panel's first triangle comes off, the other panel goes, and a body comes. */
+void changes(void **) {
+    const panel_scene scene(4);
+    const cscd::context context;
+    const cscd::mesh old(context, scene.objects());
+    std::vector<triple> torn = scene.triangles;
+    std::vector<std::uint32_t> vertices(17), triangles(torn.size());
+    for (std::uint32_t i = 0; i < 16; i++) vertices[i] = i;
+    for (std::uint32_t t = 0; t < triangles.size(); t++) triangles[t] = t;
+    vertices[16] = torn[0][1];
+    torn[0][1] = 16;
+
+    cscd::object_change tear{0, cscd::object_of_triangles(17, torn), vertices, triangles};
+    const cscd::object_change gone{1, std::nullopt, {}, {}};
+    const cscd::object_change comes{UINT32_MAX, cscd::object_of_triangles(8, body_triangles), {}, {}};
+    const cscd::mesh_change change(context, old, {tear, gone, comes});
+    const cscd_mesh_change *c = change.get();
+    assert_ptr_equal(change.mesh().get(), cscd_mesh_change_mesh(c));
+    assert_int_equal(change.mesh().vertex_count(), 25);
+    expect_array(change.vertices(), c, cscd_mesh_change_vertices, 32);
+    expect_array(change.edges(), c, cscd_mesh_change_edges, old.edge_count());
+    expect_array(change.triangles(), c, cscd_mesh_change_triangles, 36);
+    expect_array(change.objects(), c, cscd_mesh_change_objects, 2);
+    expect_array(change.components(), c, cscd_mesh_change_components, 2);
+    expect_array(change.vertex_origins(), c, cscd_mesh_change_vertex_origins, 25);
+    expect_array(change.edge_origins(), c, cscd_mesh_change_edge_origins, change.mesh().edge_count());
+    expect_array(change.triangle_origins(), c, cscd_mesh_change_triangle_origins, 26);
+    expect_array(change.object_origins(), c, cscd_mesh_change_object_origins, 2);
+    expect_array(change.component_origins(), c, cscd_mesh_change_component_origins,
+                 change.mesh().component_count());
+    assert_int_equal(change.vertex_origins()[16], scene.triangles[0][1]);
+
+    const std::vector<std::uint32_t> short_list(3);
+    tear.vertex_origins = short_list;
+    assert_int_equal(error_of([&] { cscd::mesh_change(context, old, {tear}); }).status(),
+                     CSCD_INVALID_ARGUMENT);
+    const cscd::object_change nothing{7, std::nullopt, {}, {}};
+    assert_int_equal(error_of([&] { cscd::mesh_change(context, old, {nothing}); }).status(),
+                     CSCD_INVALID_ARGUMENT);
+}
+
+} // namespace
+
+int main() {
+    const CMUnitTest tests[] = {cmocka_unit_test(changes)};
+    return cmocka_run_group_tests_name("mesh_changes", tests, nullptr, nullptr);
+}
