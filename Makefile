@@ -71,7 +71,7 @@ HAS_BASELINES   := $(wildcard runtime/baselines/*.h)
 # The browser's tests look at pages, which no other configuration writes differently. Only a release is installed.
 NOT_HERE        := $(if $(filter 0,$(GSL)),tests/ccd/test_cubic_guess.c tests/ccd/test_root_finders.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/install/test_charge_library.c tests/install/test_embedding.c \
-                     tests/install/test_header_versions.c) \
+                     tests/install/test_header_examples.c tests/install/test_header_versions.c) \
                    $(if $(filter %/release,$(BUILD)),,tests/report/test_report_browser.c) \
                    $(if $(filter release,$(CONFIG)),,tests/install/test_install.c) \
                    $(if $(HAS_BASELINES),,$(wildcard tests/baselines/*.c))

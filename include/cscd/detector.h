@@ -192,7 +192,13 @@ CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, doubl
 
 /* Replaces rules and thickness_matrix (see the options) from the next call on; they are checked and copied. Rules
  * between objects do not change what is known of the start; an object that is looked at with itself again is
- * proven anew. A line search that was begun before must begin again. */
+ * proven anew. A line search that was begun before must begin again. An example, cloth 2 thick and a body 0 thick,
+ * which therefore is culled, and so stay 1 apart:
+ *
+ *     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+ *     rules[0].thickness = 2.0;
+ *     cscd_status status = cscd_detector_set_rules(detector, rules, 2, NULL, 0);
+ */
 CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
                                              uint32_t rule_count, const double *thickness_matrix,
                                              uint32_t thickness_class_count);

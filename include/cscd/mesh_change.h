@@ -31,7 +31,25 @@ typedef struct cscd_object_change {
  * object that goes moves up all that come after it. The new mesh is what cscd_mesh_create would make of all
  * descriptions, bit for bit. Both meshes may be read meanwhile and afterwards, from any thread. INVALID_ARGUMENT:
  * an object that does not exist or is named twice, or an origin that does not exist. INVALID_MESH: as
- * cscd_mesh_create, with the object's number in the new mesh; or no object is left. */
+ * cscd_mesh_create, with the object's number in the new mesh; or no object is left. An example, object 0 that
+ * tears at a vertex: triangle t takes a new vertex there, whose position is that of the old one:
+ *
+ *     uint32_t origins[17], torn[18][3];
+ *     const uint32_t t = 0, corner = 1;
+ *     for (uint32_t v = 0; v < 16; v++) origins[v] = v;
+ *     memcpy(torn, triangles, sizeof torn);
+ *     origins[16] = torn[t][corner];
+ *     torn[t][corner] = 16;
+ *     cscd_object_desc desc = cscd_object_of_triangles(17, 18, &torn[0][0]);
+ *     cscd_object_change tear = {0, 0, &desc, origins, NULL};
+ *     cscd_mesh_change *change = NULL;
+ *     if (cscd_mesh_change_create(context, mesh, &tear, 1, &change) == CSCD_OK) {
+ *         uint32_t count;
+ *         const uint32_t *from = cscd_mesh_change_vertex_origins(change, &count);
+ *         for (uint32_t v = 0; v < count; v++) memcpy(&moved[3 * v], &x0[3 * from[v]], 3 * sizeof *moved);
+ *     }
+ *     cscd_mesh_change_destroy(change);
+ */
 CSCD_API cscd_status cscd_mesh_change_create_sized(cscd_context *context, const cscd_mesh *old,
                                                    const cscd_object_change *changes, size_t change_size,
                                                    size_t object_size, uint32_t change_count,

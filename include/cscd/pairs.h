@@ -58,7 +58,16 @@ typedef struct cscd_pair_distance {
 
 /* Measures each pair at rest, as far as `distance`, a length above 0 or INFINITY, and writes pair_count
  * results. Pairs within `distance` are measured; pairs farther apart than (1 + 1e-6) times that are not,
- * up to the rounding that cscd_detector_find_near has, too. */
+ * up to the rounding that cscd_detector_find_near has, too. An example, two pairs of edges of six points, which
+ * prints "1.0 1.5":
+ *
+ *     const double x[18] = {0, 0, 0, 2, 0, 0, 1, -1, 1, 1, 1, 1, 1, -1, -1.5, 1, 1, -1.5};
+ *     const uint32_t points[8] = {0, 1, 2, 3, 0, 1, 4, 5};
+ *     const cscd_pairs pairs = {CSCD_CONTACT_EE, 6, 2, points};
+ *     cscd_pair_distance found[2];
+ *     if (cscd_pairs_find_near(context, &pairs, CSCD_DOUBLES(x, 6), INFINITY, found) == CSCD_OK)
+ *         printf("%.1f %.1f\n", found[0].distance, found[1].distance);
+ */
 CSCD_API cscd_status cscd_pairs_find_near(cscd_context *context, const cscd_pairs *pairs,
                                           const cscd_view *positions, double distance,
                                           cscd_pair_distance *out);

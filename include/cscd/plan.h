@@ -84,7 +84,17 @@ typedef struct cscd_plan_parts {
 } cscd_plan_parts;
 
 /* Creates a plan from the parts of an earlier one of the same mesh. positions: the mesh at rest.
- * INVALID_ARGUMENT: the sentence names what does not fit. CANCELLED: see cscd_context_cancel. */
+ * INVALID_ARGUMENT: the sentence names what does not fit. CANCELLED: see cscd_context_cancel. An example, a plan
+ * of one region that was worked out elsewhere: what a plan consists of are regions and a point in each:
+ *
+ *     const uint32_t regions[4] = {0, 0, 0, 0}; // of the triangles
+ *     const double points[3] = {0.2, 0.2, 0.2};
+ *     const cscd_plan_parts parts = {CSCD_METHOD_SINGLE, 1, regions, points, NULL, NULL};
+ *     cscd_plan *plan = NULL;
+ *     if (cscd_plan_create_from_parts(context, tetrahedron, CSCD_DOUBLES(corners, 4), &parts, &plan) == CSCD_OK)
+ *         printf("%.1f of the region is seen\n", cscd_plan_region(plan, 0).visible_share);
+ *     cscd_plan_destroy(plan);
+ */
 CSCD_API cscd_status cscd_plan_create_from_parts_sized(cscd_context *context, const cscd_mesh *mesh,
                                                        const cscd_view *positions,
                                                        const cscd_plan_parts *parts, size_t parts_size,

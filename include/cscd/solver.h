@@ -105,7 +105,23 @@ static inline cscd_status cscd_detector_find_near(cscd_detector *detector, const
 CSCD_API cscd_status cscd_detector_set_rest(cscd_detector *detector, const cscd_view *rest);
 
 /* The stencils of a whole list in one call: count * 4 vertices and as many weights, of which either array may
- * be NULL. */
+ * be NULL. An example, in which each contact stops the approach of its points, as it may be done for a list of
+ * 100,000 by vector instructions:
+ *
+ *     uint32_t *vertices = malloc(contacts.count * 4 * sizeof *vertices);
+ *     double *weights = malloc(contacts.count * 4 * sizeof *weights);
+ *     cscd_contact_stencils(contacts.items, contacts.count, vertices, weights);
+ *     for (size_t i = 0; i < contacts.count; i++) {
+ *         double approach = 0.0; // of a to b, along the normal
+ *         for (size_t k = 4 * i; k < 4 * i + 4; k++) {
+ *             for (int c = 0; c < 3; c++)
+ *                 approach -= weights[k] * velocities[3 * vertices[k] + c] * contacts.items[i].normal[c];
+ *         }
+ *         if (approach > 0.0) impulses[i] = approach;
+ *     }
+ *     free(vertices);
+ *     free(weights);
+ */
 CSCD_API void cscd_contact_stencils(const cscd_contact *items, size_t count, uint32_t *vertices,
                                     double *weights);
 CSCD_API void cscd_proximity_stencils(const cscd_proximity *items, size_t count, uint32_t *vertices,
@@ -134,7 +150,19 @@ typedef struct cscd_free_step {
  * is written. INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing, and
  * for coordinates that are infinite as floats. CANCELLED: see cscd_progress.
  * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
- * guarantees those of the motion that was certified. */
+ * guarantees those of the motion that was certified. An example, a motion in floats that ends before two sheets
+ * meet half way, which prints "0.4 of the way":
+ *
+ *     cscd_free_step step;
+ *     cscd_status status = cscd_detector_max_step(detector, CSCD_FLOATS(now, n), CSCD_FLOATS(wanted, n),
+ *                                                 CSCD_MUTABLE_FLOATS(wanted, n), &step);
+ *     if (status == CSCD_IN_CONTACT) // nothing was written; the caller moves this pair apart first
+ *         printf("features %u and %u touch at the start\n", step.limit.a, step.limit.b);
+ *     if (status == CSCD_OK && step.limited) // wanted is now what was reached, in every bit
+ *         printf("%.1f of the way\n", step.fraction);
+ *     if (status == CSCD_OK && !step.moved) // the caller takes the approach of step.limit out of the motion
+ *         printf("no way\n");
+ */
 CSCD_API cscd_status cscd_detector_max_step_sized(cscd_detector *detector, const cscd_view *x0,
                                                   const cscd_view *x1, const cscd_mutable_view *reached,
                                                   cscd_free_step *out, size_t size);
@@ -171,7 +199,24 @@ typedef struct cscd_displacement_bounds {
  * bounds: vertex_count numbers, floats or doubles as scalar says, in `size` bytes; they are rounded down.
  * Comparing rounded distances with them is safe: a share of 2^-20 of each is left for that. What counts is
  * where a vertex is after its position was rounded. CANCELLED: see cscd_progress. Timings, counters and
- * guarantees stay those of the last step. docs/theory/displacement-bounds.md has the proof. */
+ * guarantees stay those of the last step. docs/theory/displacement-bounds.md has the proof. An example, in
+ * which each vertex goes no farther than its bound, on whatever path:
+ *
+ *     double *bounds = malloc(n * sizeof *bounds);
+ *     cscd_displacement_bounds found;
+ *     cscd_status status = cscd_detector_displacement_bounds(
+ *         detector, CSCD_DOUBLES(x0, n), 0.5, CSCD_SCALAR_DOUBLE, bounds, n * sizeof *bounds, &found);
+ *     for (uint32_t v = 0; status == CSCD_OK && v < n; v++) {
+ *         double way[3], length = 0.0, share = 1.0;
+ *         for (int c = 0; c < 3; c++) {
+ *             way[c] = x1[3 * v + c] - x0[3 * v + c];
+ *             length += way[c] * way[c];
+ *         }
+ *         if (sqrt(length) > bounds[v]) share = (1.0 - 1e-12) * bounds[v] / sqrt(length); // and never beyond it
+ *         for (int c = 0; c < 3; c++) reached[3 * v + c] = x0[3 * v + c] + share * way[c];
+ *     }
+ *     free(bounds);
+ */
 CSCD_API cscd_status cscd_detector_displacement_bounds_sized(cscd_detector *detector, const cscd_view *x0,
                                                              double search_radius, cscd_scalar scalar,
                                                              void *bounds, size_t size,
@@ -209,7 +254,17 @@ typedef struct cscd_truncation {
  * A component that is known to be free of contact at x0 is so at `reached`, and the next step from there
  * need not prove its start. Neighbours may still fold onto each other at their common vertices. Motions are
  * shortened, not turned: a motion that goes on along a plane must not go towards it. search_radius is a
- * length above 0; twice the longest motion stops none. Otherwise as cscd_detector_displacement_bounds. */
+ * length above 0; twice the longest motion stops none. Otherwise as cscd_detector_displacement_bounds. An
+ * example, rounds that each go a part of a motion, until it is done or stopped:
+ *
+ *     cscd_truncation cut;
+ *     for (int round = 0; round < 10; round++) {
+ *         if (cscd_detector_truncate(detector, CSCD_DOUBLES(reached, n), CSCD_DOUBLES(x1, n), 0.2,
+ *                                    CSCD_MUTABLE_DOUBLES(reached, n), &cut) != CSCD_OK)
+ *             break;
+ *         if (cut.shortened == 0 || !cut.moved) break; // all is done, or nothing has a way on
+ *     }
+ */
 CSCD_API cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0,
                                                   const cscd_view *x1, double search_radius,
                                                   const cscd_mutable_view *reached, cscd_truncation *out,
@@ -229,7 +284,23 @@ static inline cscd_status cscd_detector_truncate(cscd_detector *detector, const 
  * two are never called at the same time. */
 typedef struct cscd_line_search cscd_line_search;
 
-/* Creates a line search, which keeps its detector. */
+/* Creates a line search, which keeps its detector. An example, one search of an implicit solver, along the line to
+ * x1, whose energy has a barrier for each pair nearer than 0.3:
+ *
+ *     cscd_line_search *search = NULL;
+ *     cscd_free_step step = {0};
+ *     cscd_status status = cscd_line_search_create(detector, &search);
+ *     if (status == CSCD_OK)
+ *         status = cscd_line_search_begin(search, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), 0.3);
+ *     if (status == CSCD_OK) status = cscd_line_search_max_step(search, 1.0, NULL, &step);
+ *     for (double f = step.fraction; status == CSCD_OK && f > 1e-6; f *= 0.5) { // no shorter step touches
+ *         status = cscd_line_search_find_near(search, f, 0.3, CSCD_NEAR_UNIQUE, &near);
+ *         if (status == CSCD_OK)
+ *             status = cscd_line_search_positions(search, f, CSCD_MUTABLE_DOUBLES(reached, n));
+ *         if (status == CSCD_OK && energy_at(reached, &near) < energy_before) break;
+ *     }
+ *     cscd_line_search_destroy(search);
+ */
 CSCD_API cscd_status cscd_line_search_create(cscd_detector *detector, cscd_line_search **out);
 
 /* Frees the line search. */

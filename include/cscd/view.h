@@ -18,7 +18,19 @@ typedef enum cscd_scalar { CSCD_SCALAR_DOUBLE, CSCD_SCALAR_FLOAT } cscd_scalar;
  *
  * A function that takes `const cscd_view *x0` takes an array of views, which hold the vertices of the mesh's
  * objects, object by object. Often that is one view of all vertices: object_count 0 says that it holds all
- * objects that the views before it do not hold. A view that is shorter than its objects is refused.
+ * objects that the views before it do not hold. A view that is shorter than its objects is refused. An example,
+ * cloth in an array of structs and, as the mesh's second object, a floor in doubles by columns:
+ *
+ *     struct particle {
+ *         float position[3], velocity[3];
+ *     } cloth[16] = {{{0}, {0}}};
+ *     double floor[3][16] = {{0}}; // x of all vertices, then y, then z
+ *     const cscd_view positions[2] = {
+ *         {cloth, sizeof cloth, sizeof cloth[0], 0, CSCD_SCALAR_FLOAT, 1},
+ *         {floor, sizeof floor, sizeof(double), sizeof floor[0], CSCD_SCALAR_DOUBLE, 1}};
+ *     cscd_intersections found;
+ *     cscd_status status = cscd_detector_check(detector, positions, &found);
+ *     if (status == CSCD_OK) printf("%zu pairs intersect\n", found.count);
  *
  * Views never grow, so they carry no size of their own. */
 typedef struct cscd_view {
