@@ -59,7 +59,7 @@ typedef struct task_result {
 /* ---- what is timed ----------------------------------------------------------------------------------- */
 
 static cscd_status act_step(task_rig *r, uint32_t i) {
-    cscd_contacts found = {NULL, 0};
+    cscd_contacts found = {.count = 0};
     cscd_status status =
         cscd_detector_step(r->detector, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)),
                            CSCD_DOUBLES(r->f->ends[i + 1], cscd_mesh_vertex_count(r->f->mesh)), &found);
@@ -68,7 +68,7 @@ static cscd_status act_step(task_rig *r, uint32_t i) {
 }
 
 static cscd_status act_near(task_rig *r, uint32_t i) {
-    cscd_proximities found = {NULL, 0};
+    cscd_proximities found = {.count = 0};
     cscd_status status =
         cscd_detector_find_near(r->detector, CSCD_DOUBLES(r->f->ends[i], cscd_mesh_vertex_count(r->f->mesh)),
                                 r->distance, CSCD_NEAR_PAIRS, &found);
@@ -98,7 +98,7 @@ static cscd_status act_line_step(task_rig *r, uint32_t i) {
 }
 
 static cscd_status act_line_near(task_rig *r, uint32_t i) {
-    cscd_proximities found = {NULL, 0};
+    cscd_proximities found = {.count = 0};
     (void)i;
     cscd_status status = cscd_line_search_find_near(r->line, 0.5, r->distance, CSCD_NEAR_PAIRS, &found);
     r->found = found.count;

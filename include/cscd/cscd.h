@@ -67,6 +67,7 @@
 
 #include <cscd/context.h>
 #include <cscd/detector.h>
+#include <cscd/live.h>
 #include <cscd/mesh.h>
 #include <cscd/mesh_change.h>
 #include <cscd/pairs.h>

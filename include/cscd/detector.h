@@ -184,25 +184,6 @@ CSCD_API void cscd_detector_destroy(cscd_detector *detector);
 /* The mesh that the detector was created for. */
 CSCD_API const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector);
 
-/* Changes min_separation and tolerance (see the options) from the next call on, for solvers that have to
- * go closer. If the change ends culling, what is known of the start is forgotten. A line search that was begun
- * with a smaller separation must begin again; until then its max_step returns INVALID_ARGUMENT. */
-CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
-                                                  double tolerance);
-
-/* Replaces rules and thickness_matrix (see the options) from the next call on; they are checked and copied. Rules
- * between objects do not change what is known of the start; an object that is looked at with itself again is
- * proven anew. A line search that was begun before must begin again. An example, cloth 2 thick and a body 0 thick,
- * which therefore is culled, and so stay 1 apart:
- *
- *     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
- *     rules[0].thickness = 2.0;
- *     cscd_status status = cscd_detector_set_rules(detector, rules, 2, NULL, 0);
- */
-CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
-                                             uint32_t rule_count, const double *thickness_matrix,
-                                             uint32_t thickness_class_count);
-
 /* A contact: two features, when they touch, and where. u and v name the points that touch at time toi or,
  * with min_separation, the nearest points then:
  *   VF  a is a vertex, b a triangle (p0, p1, p2); the point on it is (1-u-v) p0 + u p1 + v p2
@@ -227,6 +208,7 @@ typedef struct cscd_contact {
 typedef struct cscd_contacts {
     const cscd_contact *items;
     size_t count;
+    size_t waiting; /* so many pairs of features wait, and are left out: see cscd_detector_set_seams */
 } cscd_contacts;
 
 /* Finds the contacts from positions x0 to positions x1, as the mode promises. The first call
@@ -255,6 +237,7 @@ typedef struct cscd_intersections {
                                    * aside */
     uint32_t zero_area_triangles; /* how many triangles have all corners on one line */
     uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
+    size_t waiting; /* so many pairs of triangles wait, and are left out: see cscd_detector_set_seams */
 } cscd_intersections;
 
 /* The static check: lists exactly the triangle pairs that intersect or touch at the given positions

@@ -3,6 +3,7 @@
 #define CSCD_DETECTOR_HPP
 
 #include <cscd/lists.hpp>
+#include <cscd/live.h>
 #include <cscd/plan.hpp>
 
 namespace cscd {

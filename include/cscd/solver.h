@@ -82,6 +82,7 @@ typedef enum cscd_near_form {
 typedef struct cscd_proximities {
     const cscd_proximity *items;
     size_t count;
+    size_t waiting; /* so many pairs of features wait, and are left out: see cscd_detector_set_seams */
 } cscd_proximities;
 
 /* Finds every pair of features whose distance at `positions` is at most `distance`, a length above 0, and
@@ -136,6 +137,7 @@ typedef struct cscd_free_step {
     bool moved;   /* false: no coordinate is another than in x0, and `reached` is x0 in every bit */
     cscd_contact limit; /* a first contact of the whole motion; fraction <= step_factor * limit.toi, unless
                          * toi is 0 or so small that rounding decides */
+    size_t waiting;     /* so many pairs of features wait, and limit nothing: see cscd_detector_set_seams */
 } cscd_free_step;
 
 /* Finds how far the vertices may go from x0 towards x1 without any contact, and certifies it. The positions
@@ -185,6 +187,7 @@ typedef struct cscd_displacement_bounds {
     double least;      /* of all bounds */
     uint32_t vertex;   /* the first that has it */
     uint32_t limited;  /* the number of vertices that have less than half the search radius */
+    size_t waiting;    /* so many pairs of features wait, and bound nothing: see cscd_detector_set_seams */
 } cscd_displacement_bounds;
 
 /* Finds how far each vertex may go from x0, as Offset Geometric Contact (Chen et al. 2025) uses it. Every
@@ -239,6 +242,7 @@ typedef struct cscd_truncation {
     size_t near_count;  /* the number of pairs that were looked at */
     bool moved;         /* some vertex is not where it was, bit for bit */
     uint32_t shortened; /* the number of vertices that did not reach x1 */
+    size_t waiting;     /* so many pairs of features wait, and hold nothing: see cscd_detector_set_seams */
 } cscd_truncation;
 
 /* Lets every vertex go from x0 towards x1 on its own straight line as far as planes between near pairs

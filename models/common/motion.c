@@ -87,7 +87,7 @@ cscd_status recording_motion_begin(const cscd_mesh *mesh, const double *first, r
 }
 
 static cscd_status add_contacts(recording_motion *m, const double *frame) {
-    cscd_contacts contacts = {NULL, 0};
+    cscd_contacts contacts = {.count = 0};
     cscd_intersections intersections;
     if (m->frame_count > 0) {
         cscd_status status =

@@ -70,7 +70,7 @@ void recorder_close(recorder *r) {
 bool recorder_advance(recorder *r, io_error *error) {
     const soft_scene *s = r->scene;
     for (uint32_t i = 0; i < s->checks; i++) {
-        cscd_contacts found = {NULL, 0};
+        cscd_contacts found = {.count = 0};
         memcpy(r->start, r->soft.vertices, (size_t)r->shape.vertex_count * 3 * sizeof *r->start);
         simulation_advance(&r->soft, &r->around, &r->contacts, s->frame_seconds / s->checks, s->steps);
         cscd_status status =

@@ -1,5 +1,5 @@
 /* The static check of the public API: which triangles intersect at one moment? */
-#include "runtime/detector/detector.h"
+#include "runtime/detector/waiting.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"
@@ -20,7 +20,7 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     if (status != CSCD_OK) return status;
 
     uint64_t *pairs = d->intersections.keys; /* a in the upper half, b in the lower one */
-    cscd_intersections result = {d->intersections.items, 0, 0, UINT32_MAX};
+    cscd_intersections result = {.items = d->intersections.items, .first_zero_area = UINT32_MAX};
     for (uint32_t i = 0; i < check->lane_count; i++) {
         const intersection_lane *lane = &check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
@@ -36,6 +36,7 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     for (size_t i = 0; i < kept; i++)
         items[i] = (cscd_intersection){(uint32_t)(pairs[i] >> 32), (uint32_t)pairs[i]};
     result.count = kept;
+    result.waiting = d->waiting.pairs.triangle_pairs;
     *out = result;
     return CSCD_OK;
 }
@@ -62,7 +63,8 @@ static cscd_status check_at(cscd_detector *d, const double *positions, cscd_inte
 
     detector_begin_call(d);
     progress_stage(&d->context->progress, "static check", 0.0, 1.0);
-    status = check_moment(d, positions, out);
+    status = waiting_settle(d, positions);
+    if (status == CSCD_OK) status = check_moment(d, positions, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     timer_lap(&since, &spent);

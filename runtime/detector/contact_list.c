@@ -138,6 +138,6 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
     sorted_contacts sorted = {s->mesh, keys, buffer->items, count};
     uint32_t copies = (uint32_t)((count + CONTACTS_PER_COPY - 1) / CONTACTS_PER_COPY);
     parallel_run(s->context->threads, copies, copy_contacts, &sorted);
-    *out = (cscd_contacts){buffer->items, count};
+    *out = (cscd_contacts){.items = buffer->items, .count = count};
     return CSCD_OK;
 }

@@ -109,6 +109,7 @@ static void free_memory(cscd_detector *d) {
     static_check_destroy(&d->check);
     search_space_destroy(&d->space);
     exclusions_free(context, &d->exclusions);
+    waiting_pairs_free(d->mesh, &d->waiting);
     pair_rules_free(d->mesh, &d->pair_rules);
     rollback_free(context, &d->before);
     result_buffer_free(context, &d->contacts);
@@ -155,6 +156,7 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     d->rules = *d->stages->rules;
     d->limit = separation_limit(chosen.min_separation, chosen.tolerance);
     cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
+    d->exclusions.waiting = &d->waiting.pairs;
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
                                chosen.thickness_class_count};

@@ -13,6 +13,7 @@
 #include "runtime/intersections/static_check.h"
 #include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
+#include "runtime/narrow_phase/waiting_pairs.h"
 #include "src/core/methods.h"
 
 struct cscd_detector {
@@ -25,7 +26,8 @@ struct cscd_detector {
     const method_traits *traits;
     const method_stages *stages;
     culling_rules rules;
-    exclusions exclusions;
+    exclusions exclusions; /* its waiting pairs are those of the next member */
+    waiting_pairs waiting;
 
     pair_rules pair_rules;   /* for objects; without sets: there are none */
     uint32_t rules_revision; /* so many times they have been set */

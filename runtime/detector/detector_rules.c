@@ -1,4 +1,4 @@
-/* The rules for objects on a live detector: who is looked at with whom, and how far apart they have to stay. */
+/* What is left out, changed on a live detector: by rules for objects, seams and ignored pairs. */
 #include "runtime/detector/detector_rules.h"
 
 static bool is_neutral(const cscd_object_rule *rule) {
@@ -58,20 +58,45 @@ void detector_unmark_masked(const cscd_detector *d, bool *triangles) {
         triangles[t] = triangles[t] && !detector_masks(d, d->mesh->triangle_components[t]);
 }
 
-cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
+/* May objects be looked at with each other that were not? */
+static bool rules_uncover(const cscd_mesh *mesh, const pair_rules *before, const pair_rules *now) {
+    bool differ = before->sets != NULL;
+    if (before->sets != NULL && now->sets != NULL) {
+        differ = false;
+        for (uint32_t i = 0; i < mesh->object_count; i++) {
+            const object_set *a = &before->sets[i], *b = &now->sets[i];
+            differ |= a->categories != b->categories || a->masks != b->masks ||
+                      a->kinds_sought != b->kinds_sought || a->self != b->self;
+        }
+    } else if (now->sets != NULL) {
+        for (uint32_t i = 0; i < mesh->object_count; i++)
+            differ |= now->sets[i].kinds == OBJECT_ASKING_OBSTACLE;
+    }
+    return differ;
+}
+
+/* Replaces the rules. What new rules of a live detector uncover may have to wait. */
+static cscd_status replace_rules(cscd_detector *d, const given_rules *given, bool live) {
     pair_rules rules;
     cscd_status status = pair_rules_create(d->mesh, given, &rules);
     if (status != CSCD_OK) return status;
     if (all_neutral(given)) pair_rules_free(d->mesh, &rules);
-    status = detector_check_distances(d, d->options.min_separation, rules.greatest);
+    bool uncovers = live && rules_uncover(d->mesh, &d->pair_rules, &rules);
+    if (uncovers) status = waiting_pairs_reserve(d->mesh, &d->waiting);
+    if (status == CSCD_OK) status = detector_check_distances(d, d->options.min_separation, rules.greatest);
     if (status == CSCD_OK && d->space.bvh.mesh != NULL && !bvh_set_objects(&d->space.bvh, rules.sets))
         status = context_out_of_memory(d->context);
     if (status != CSCD_OK) {
         pair_rules_free(d->mesh, &rules);
         return status;
     }
+    if (uncovers) waiting_pairs_uncover_objects(&d->waiting, &d->pair_rules);
     take_rules(d, &rules);
     return CSCD_OK;
+}
+
+cscd_status detector_set_rules(cscd_detector *d, const given_rules *given) {
+    return replace_rules(d, given, false);
 }
 
 cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
@@ -81,5 +106,55 @@ cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_r
     const given_rules given = {rules, rule_count, thickness_matrix, thickness_class_count};
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
-    return context_leave(&entry, detector_set_rules(detector, &given));
+    return context_leave(&entry, replace_rules(detector, &given, true));
+}
+
+/* ---- seams and ignored pairs --------------------------------------------------------------------------- */
+
+/* Replaces what is left out by *next, which becomes the detector's, or is freed. What it uncovers may have to wait. */
+static cscd_status replace_exclusions(cscd_detector *d, exclusions *next) {
+    exclusions before = exclusions_listed(&d->exclusions);
+    bool uncovers = exclusions_uncover(&before, next);
+    cscd_status status = uncovers ? waiting_pairs_reserve(d->mesh, &d->waiting) : CSCD_OK;
+    if (status != CSCD_OK) {
+        exclusions_free(d->context, next);
+        return status;
+    }
+    if (uncovers) waiting_pairs_uncover(&d->waiting, &before);
+    exclusions_free(d->context, &before);
+    d->exclusions = *next;
+    return CSCD_OK;
+}
+
+static cscd_status set_seams(cscd_detector *d, const uint32_t *seams, size_t seam_count) {
+    exclusions next;
+    cscd_status status =
+        exclusions_with_seams(&d->exclusions, seams, seam_count, d->options.seam_reach, &next);
+    return status == CSCD_OK ? replace_exclusions(d, &next) : status;
+}
+
+/* Seams that are still to be checked go on to the exclusions that replace those of now. */
+static cscd_status set_ignored(cscd_detector *d, const uint32_t *ignored, size_t ignored_count) {
+    exclusions next;
+    cscd_status status = exclusions_with_ignored(&d->exclusions, ignored, ignored_count, &next);
+    seam_list seams = d->exclusions.seams;
+    d->exclusions.seams = (seam_list){.vertices = NULL};
+    if (status == CSCD_OK) status = replace_exclusions(d, &next);
+    d->exclusions.seams = seams;
+    return status;
+}
+
+cscd_status cscd_detector_set_seams(cscd_detector *detector, const uint32_t *seams, size_t seam_count) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, set_seams(detector, seams, seam_count));
+}
+
+cscd_status cscd_detector_set_ignored(cscd_detector *detector, const uint32_t *ignored,
+                                      size_t ignored_count) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, set_ignored(detector, ignored, ignored_count));
 }

@@ -1,7 +1,7 @@
-/* The rules for objects on a live detector: who is looked at with whom, and how far apart they have to stay. */
+/* What is left out, changed on a live detector: by rules for objects, seams and ignored pairs. */
 #pragma once
 
 #include "runtime/detector/detector.h"
 
-/* Replaces the rules. INVALID_ARGUMENT names what does not fit; then the detector has the rules of before. */
+/* Gives a new detector its rules. INVALID_ARGUMENT names what does not fit; then it has none. */
 cscd_status detector_set_rules(cscd_detector *d, const given_rules *given);

@@ -4,6 +4,7 @@
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/interval_search.h"
+#include "runtime/detector/waiting.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/positions.h"
@@ -324,7 +325,8 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
 
     step_outcome found;
     detector_begin_call(d);
-    status = step_find(d, x0, x1, d->options.mode, false, &found);
+    status = waiting_settle(d, x0);
+    if (status == CSCD_OK) status = step_find(d, x0, x1, d->options.mode, false, &found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     step_take(d, x1);
@@ -333,6 +335,7 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     d->timings = found.timings;
     d->counters = found.counters;
     *out = found.contacts;
+    out->waiting = waiting_features(&d->waiting);
     return CSCD_OK;
 }
 

@@ -5,6 +5,8 @@
 #include "src/core/sort.h"
 #include "src/mesh/triangle_intersection.h"
 
+#include <string.h>
+
 /* ---- what the options say ------------------------------------------------------------------------------ */
 
 static uint64_t key_of(uint32_t a, uint32_t b) {
@@ -25,60 +27,102 @@ static cscd_status check_pairs(cscd_context *context, const uint32_t *pairs, siz
     return CSCD_OK;
 }
 
-static cscd_status list_pairs(exclusions *e, const cscd_detector_options *options) {
+static cscd_status check_ignored(const cscd_mesh *mesh, const uint32_t *ignored, size_t count) {
+    return check_pairs(mesh->context, ignored, count, mesh->triangle_count, "ignored", "triangle");
+}
+
+static cscd_status list_pairs(exclusions *e, const uint32_t *ignored, size_t count) {
     cscd_context *context = e->mesh->context;
-    size_t count = options->ignored_count;
     if (count == 0) return CSCD_OK;
     e->ignored = context_allocate(context, count, sizeof *e->ignored);
     uint64_t *scratch = context_allocate(context, count, sizeof *scratch);
     bool allocated = e->ignored != NULL && scratch != NULL;
     for (size_t i = 0; allocated && i < count; i++)
-        e->ignored[i] = key_of(options->ignored[2 * i], options->ignored[2 * i + 1]);
+        e->ignored[i] = key_of(ignored[2 * i], ignored[2 * i + 1]);
     if (allocated) sort_by_number(e->ignored, scratch, count, sizeof *e->ignored);
     e->ignored_count = count;
     context_free(context, scratch);
     return allocated ? CSCD_OK : context_out_of_memory(context);
 }
 
-static cscd_status name_seams(exclusions *e, const cscd_detector_options *options) {
+static cscd_status name_seams(exclusions *e, const uint32_t *seams, size_t seam_count) {
     uint32_t count = e->mesh->vertex_count;
-    if (options->seam_count == 0) return CSCD_OK;
+    if (seam_count == 0) return CSCD_OK;
     uint32_t *names = e->names = context_allocate(e->mesh->context, count, sizeof *names);
     if (names == NULL) return context_out_of_memory(e->mesh->context);
     sets_begin(names, count);
-    for (size_t i = 0; i < options->seam_count; i++)
-        set_unite(names, options->seams[2 * i], options->seams[2 * i + 1]);
+    for (size_t i = 0; i < seam_count; i++) set_unite(names, seams[2 * i], seams[2 * i + 1]);
     for (uint32_t v = 0; v < count; v++) names[v] = set_root(names, v);
     return CSCD_OK;
 }
 
+static cscd_status take_seams(exclusions *e, const uint32_t *seams, size_t count, double reach) {
+    const cscd_mesh *mesh = e->mesh;
+    cscd_status status = check_pairs(mesh->context, seams, count, mesh->vertex_count, "seams", "vertex");
+    if (status == CSCD_OK) status = seam_list_create(mesh, seams, count, reach, &e->seams);
+    return status == CSCD_OK ? name_seams(e, seams, count) : status;
+}
+
+/* Gives *e to the caller, or frees it. */
+static cscd_status give_exclusions(cscd_status status, exclusions *e, exclusions *out) {
+    if (status == CSCD_OK)
+        *out = *e;
+    else
+        exclusions_free(e->mesh->context, e);
+    return status;
+}
+
 cscd_status exclusions_create(const cscd_mesh *mesh, const cscd_detector_options *options, exclusions *out) {
     exclusions e = {.mesh = mesh, .ignore = options->ignore, .ignore_user = options->ignore_user};
-    cscd_status status = check_pairs(mesh->context, options->ignored, options->ignored_count,
-                                     mesh->triangle_count, "ignored", "triangle");
-    if (status == CSCD_OK)
-        status = check_pairs(mesh->context, options->seams, options->seam_count, mesh->vertex_count, "seams",
-                             "vertex");
-    if (status == CSCD_OK)
-        status = seam_list_create(mesh, options->seams, options->seam_count, options->seam_reach, &e.seams);
-    if (status == CSCD_OK) status = list_pairs(&e, options);
-    if (status == CSCD_OK) status = name_seams(&e, options);
-    if (status != CSCD_OK) {
-        exclusions_free(mesh->context, &e);
-        return status;
+    cscd_status status = check_ignored(mesh, options->ignored, options->ignored_count);
+    if (status == CSCD_OK) status = take_seams(&e, options->seams, options->seam_count, options->seam_reach);
+    if (status == CSCD_OK) status = list_pairs(&e, options->ignored, options->ignored_count);
+    return give_exclusions(status, &e, out);
+}
+
+/* ---- changes ------------------------------------------------------------------------------------------- */
+
+/* Neither seams nor ignored pairs, but what else there is. */
+static exclusions without_lists(const exclusions *e) {
+    return (exclusions){
+        .mesh = e->mesh, .ignore = e->ignore, .ignore_user = e->ignore_user, .waiting = e->waiting};
+}
+
+exclusions exclusions_listed(const exclusions *e) {
+    return (exclusions){.mesh = e->mesh,
+                        .ignored = e->ignored,
+                        .ignored_count = e->ignored_count,
+                        .names = e->names,
+                        .seams = e->seams};
+}
+
+cscd_status exclusions_with_seams(const exclusions *now, const uint32_t *seams, size_t seam_count,
+                                  double seam_reach, exclusions *out) {
+    cscd_context *context = now->mesh->context;
+    exclusions e = without_lists(now);
+    cscd_status status = take_seams(&e, seams, seam_count, seam_reach);
+    if (status == CSCD_OK && now->ignored_count > 0) {
+        e.ignored = context_allocate(context, now->ignored_count, sizeof *e.ignored);
+        if (e.ignored == NULL) status = context_out_of_memory(context);
     }
-    *out = e;
-    return CSCD_OK;
+    if (e.ignored != NULL) memcpy(e.ignored, now->ignored, now->ignored_count * sizeof *e.ignored);
+    e.ignored_count = now->ignored_count;
+    return give_exclusions(status, &e, out);
 }
 
-void exclusions_free(cscd_context *context, exclusions *e) {
-    context_free(context, e->ignored);
-    context_free(context, e->names);
-    seam_list_free(context, &e->seams);
-    *e = (exclusions){.mesh = NULL};
+cscd_status exclusions_with_ignored(const exclusions *now, const uint32_t *ignored, size_t ignored_count,
+                                    exclusions *out) {
+    const cscd_mesh *mesh = now->mesh;
+    exclusions e = without_lists(now);
+    cscd_status status = check_ignored(mesh, ignored, ignored_count);
+    if (status == CSCD_OK) status = list_pairs(&e, ignored, ignored_count);
+    if (status == CSCD_OK && now->names != NULL) {
+        e.names = context_allocate(mesh->context, mesh->vertex_count, sizeof *e.names);
+        if (e.names == NULL) status = context_out_of_memory(mesh->context);
+    }
+    if (e.names != NULL) memcpy(e.names, now->names, mesh->vertex_count * sizeof *e.names);
+    return give_exclusions(status, &e, out);
 }
-
-/* ---- pairs of triangles -------------------------------------------------------------------------------- */
 
 static bool is_listed(const exclusions *e, uint64_t key) {
     size_t low = 0, high = e->ignored_count;
@@ -92,6 +136,29 @@ static bool is_listed(const exclusions *e, uint64_t key) {
     return low < e->ignored_count && e->ignored[low] == key;
 }
 
+static uint32_t name_of(const exclusions *e, uint32_t vertex) {
+    return e->names != NULL ? e->names[vertex] : vertex;
+}
+
+bool exclusions_uncover(const exclusions *before, const exclusions *now) {
+    for (size_t i = 0; i < before->ignored_count; i++) {
+        if (!is_listed(now, before->ignored[i])) return true;
+    }
+    for (uint32_t v = 0; before->names != NULL && v < before->mesh->vertex_count; v++) {
+        if (name_of(now, v) != name_of(now, before->names[v])) return true;
+    }
+    return false;
+}
+
+void exclusions_free(cscd_context *context, exclusions *e) {
+    context_free(context, e->ignored);
+    context_free(context, e->names);
+    seam_list_free(context, &e->seams);
+    *e = (exclusions){.mesh = NULL};
+}
+
+/* ---- pairs of triangles -------------------------------------------------------------------------------- */
+
 static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     if (e->ignore == NULL) return false;
     HOST_CALL(call, &e->mesh->context->entry, HOST_IGNORE);
@@ -100,7 +167,12 @@ static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a
     return ignored;
 }
 
+static bool is_waiting(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    return e->waiting != NULL && named_pair_set_has(e->waiting, kind, a, b);
+}
+
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
+    if (is_waiting(e, CSCD_CONTACT_TT, a, b)) return true;
     if (e->ignored_count > 0 && is_listed(e, key_of(a, b))) return true;
     if (host_ignores(e, CSCD_CONTACT_TT, a, b)) return true;
     if (e->names == NULL) return false;
@@ -152,6 +224,7 @@ static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, co
 bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const cscd_mesh *mesh = e->mesh;
     bool vf = kind == CSCD_CONTACT_VF;
+    if (is_waiting(e, kind, a, b)) return true;
     if (e->names != NULL) {
         if (vf ? share_name(e->names, &a, 1, mesh->triangles[b], 3)
                : share_name(e->names, mesh->edges[a], 2, mesh->edges[b], 2))

@@ -2,6 +2,7 @@
 #include "runtime/solver/displacement_bounds.h"
 
 #include "runtime/ccd/pair_plane.h"
+#include "runtime/detector/waiting.h"
 #include "runtime/solver/stored_scalar.h"
 #include "src/core/floating.h"
 #include "src/core/struct_size.h"
@@ -87,7 +88,8 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
     for (uint32_t v = 0; v < d->mesh->vertex_count; v++) bounds[v] = farthest;
     lower_bounds(d->mesh, &near, work.limits, bounds);
     join_seams(d, bounds);
-    *out = (cscd_displacement_bounds){.blocked = d->proximities.items, .near_count = near.count};
+    *out = (cscd_displacement_bounds){
+        .blocked = d->proximities.items, .near_count = near.count, .waiting = near.waiting};
     out->blocked_count = keep_blocked(d->proximities.items, near.count, work.limits);
     sum_up_bounds(bounds, d->mesh->vertex_count, farthest, out);
     return CSCD_OK;
@@ -127,8 +129,8 @@ static cscd_status find_bounds_at(cscd_detector *d, const double *x0, double sea
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     if (d->reached == NULL) d->reached = context_allocate(d->context, count, sizeof(double[3]));
-    status = d->reached != NULL ? displacement_bounds_find(d, x0, search_radius, scalar, d->reached, out)
-                                : CSCD_OUT_OF_MEMORY;
+    status = d->reached != NULL ? waiting_settle(d, x0) : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = displacement_bounds_find(d, x0, search_radius, scalar, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     write_bounds(d->reached, count, scalar, bounds);

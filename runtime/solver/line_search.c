@@ -1,5 +1,6 @@
 /* A line search: the candidates of one motion serve every shorter step and every moment on it. */
 #include "runtime/detector/contact_list.h"
+#include "runtime/detector/waiting.h"
 #include "runtime/solver/candidates.h"
 #include "runtime/solver/free_step.h"
 #include "runtime/solver/proximity.h"
@@ -139,8 +140,10 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
     line->rules_revision = d->rules_revision;
     detector_begin_call(d);
-    status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
-                                &line->candidates);
+    status = waiting_settle(d, line->x0);
+    if (status == CSCD_OK)
+        status = candidates_collect(d, line->x0, line->x1, line->covered, line->beyond + motion_rounding(&m),
+                                    &line->candidates);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     line->begun = true;
@@ -260,9 +263,10 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     detector_begin_call(d);
     straight_motion m = motion_of(line);
     motion_at(&m, fraction, line->reached);
-    interval_search search = proximity_search(d, line->reached, distance);
     cscd_proximities found;
-    status = candidates_test(&line->candidates, &search);
+    status = waiting_look(d, line->x0);
+    interval_search search = proximity_search(d, line->reached, distance);
+    if (status == CSCD_OK) status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
@@ -343,7 +347,9 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     detector_begin_call(d);
     line->done = 0.0;
     cscd_free_step step;
-    status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
+    status = waiting_look(d, line->x0);
+    if (status == CSCD_OK)
+        status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
     if (status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);

@@ -2,6 +2,7 @@
 #include "runtime/solver/max_step.h"
 
 #include "runtime/detector/step.h"
+#include "runtime/detector/waiting.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"
 #include "src/mesh/views.h"
@@ -91,7 +92,8 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     cscd_status status = motion_check(d->context, m);
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
-    status = reserve_reached(d);
+    status = waiting_settle(d, m->x0);
+    if (status == CSCD_OK) status = reserve_reached(d);
     if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return fail_tries(&t, status);

@@ -2,6 +2,7 @@
 #include "runtime/solver/proximity.h"
 
 #include "runtime/detector/contact_list.h"
+#include "runtime/detector/waiting.h"
 #include "runtime/solver/unique_pairs.h"
 #include "src/core/check.h"
 #include "src/core/sort.h"
@@ -62,7 +63,7 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
         status = unique_pairs_list(d->context, &scene, buffer->keys, found, &d->names, buffer->items, &count);
     else
         describe_pairs(d, &scene, count);
-    if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count};
+    if (status == CSCD_OK) *out = (cscd_proximities){buffer->items, count, waiting_features(&d->waiting)};
     return status;
 }
 
@@ -96,7 +97,8 @@ static cscd_status find_near_at(cscd_detector *d, const double *positions, doubl
     if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, positions);
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
-    status = proximity_find(d, positions, distance, form, out);
+    status = waiting_look(d, positions);
+    if (status == CSCD_OK) status = proximity_find(d, positions, distance, form, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }

@@ -3,6 +3,7 @@
 
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/step.h"
+#include "runtime/detector/waiting.h"
 #include "runtime/solver/division_planes.h"
 #include "runtime/solver/stored_scalar.h"
 #include "src/core/struct_size.h"
@@ -222,7 +223,7 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     truncate_all(&work, d->context->threads);
     status = context_progress_status(d->context); /* before anything is known of the end */
     if (status != CSCD_OK) return status;
-    *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count};
+    *out = (cscd_truncation){.held = d->proximities.items, .near_count = near.count, .waiting = near.waiting};
     sum_up_vertices(&work, out);
     out->held_count = keep_held(&work.planes, d->proximities.items);
     if (known) carry_states_over(d, end);
@@ -259,8 +260,8 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
     detector_begin_call(d);
     if (d->reached == NULL)
         d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
-    status =
-        d->reached != NULL ? truncation_find(d, motion, search_radius, d->reached, out) : CSCD_OUT_OF_MEMORY;
+    status = d->reached != NULL ? waiting_settle(d, motion->x0) : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = truncation_find(d, motion, search_radius, d->reached, out);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }
 

@@ -85,9 +85,9 @@ static void free_host(cancelling_host *h) {
 
 /* One of the calls of a solver; *out is its number of results, and must stay as it was when it fails. */
 static cscd_status make_call(cancelling_host *h, int what, size_t *out) {
-    cscd_contacts contacts = {NULL, *out};
-    cscd_intersections intersections = {NULL, *out, 0, 0};
-    cscd_proximities proximities = {NULL, *out};
+    cscd_contacts contacts = {.count = *out};
+    cscd_intersections intersections = {.count = *out};
+    cscd_proximities proximities = {.count = *out};
     cscd_free_step step = {.fraction = (double)*out};
     uint32_t n = h->p.vertex_count;
     h->calls = 0;

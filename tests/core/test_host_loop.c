@@ -129,7 +129,7 @@ static void check_sentence(const char *sentence, int trick, bool one_run) {
 static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact *expected, size_t count) {
     dishonest_host host = {HONEST, 0, 0};
     panel_scene p = make_panels(&host);
-    cscd_contacts found = {NULL, 77};
+    cscd_contacts found = {.count = 77};
     host = (dishonest_host){trick, 0, run};
     cscd_status status = panels_step(&p, &found);
     if (trick != RETURN_EARLY || status != CSCD_OK) { /* a task may end just before the loop returns */

@@ -31,7 +31,7 @@ static bool in_order(const cscd_contact *a, const cscd_contact *b) {
 
 static cscd_contacts collect_from(rig *r, search_space *s, cscd_counters *counters, result_buffer *buffer,
                                   const exclusions *e) {
-    cscd_contacts found = {NULL, 0};
+    cscd_contacts found = {.count = 0};
     *counters = (cscd_counters){.vf = 0};
     fill_lanes(r->context, s);
     s->lanes[0].feature_pairs = 3;

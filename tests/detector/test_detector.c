@@ -131,8 +131,8 @@ static void bad_positions_are_named(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         other = interval;
         other.x1[3 * 17 + 1] = bad[i];
-        cscd_contacts untouched = {NULL, 4711};
-        cscd_intersections unchanged = {NULL, 4711, 0, 0};
+        cscd_contacts untouched = {.count = 4711};
+        cscd_intersections unchanged = {.count = 4711};
         assert_int_equal(step_packed(r.detector, other.x0, other.x1, &untouched), CSCD_INVALID_ARGUMENT);
         assert_int_equal(untouched.count, 4711);
         assert_non_null(strstr(cscd_context_detail(r.context), "x1: vertex 17 has y"));

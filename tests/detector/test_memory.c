@@ -19,8 +19,8 @@ typedef struct memory_outcome {
 } memory_outcome;
 
 static cscd_status use_detector(cscd_detector *detector, memory_outcome *out) {
-    cscd_contacts contacts = {NULL, 4711};
-    cscd_intersections crossing = {NULL, 4711, 0, 0};
+    cscd_contacts contacts = {.count = 4711};
+    cscd_intersections crossing = {.count = 4711};
     cscd_status status = step_packed(detector, s.x0, s.x1, &contacts);
     assert_true(status == CSCD_OK || contacts.count == 4711);
     if (status != CSCD_OK) return status;

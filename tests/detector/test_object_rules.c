@@ -1,10 +1,12 @@
-/* Contacts under rules for objects, against brute force over features that knows neither trees nor rules. */
+/* Contacts under rules for objects, against brute force over features that knows neither trees nor rules. Pairs that
+ * new rules uncover while they touch wait. */
 #include "cscd/cscd.h"
 #include "cscd/research.h"
 #include "tests/support/methods.h"
 #include "tests/support/object_scene.h"
 #include "tests/support/packed.h"
 #include "tests/support/test.h"
+#include "tests/support/waiting_oracle.h"
 
 #include <string.h>
 
@@ -30,12 +32,32 @@ static void check_guarantees(const rules_rig *s, const random_rules *set, rules_
     }
 }
 
-static void compare_step(const rules_rig *s, const random_rules *set, oracle_list *truth, rules_tally *sum) {
+/* The rules of one sequence, one after the other: the oracle reads those of before, too. */
+static random_rules rules_given[3 * STEPS + 1];
+static int rules_count;
+
+static left_out left_out_by(const random_rules *set) {
+    assert_true(rules_count < 3 * STEPS + 1);
+    random_rules *given = &rules_given[rules_count++];
+    *given = *set;
+    return (left_out){.rules = {objects_of_vertices, SCENE_OBJECTS, given->distances}};
+}
+
+static void give_rules(const rules_rig *s, const random_rules *set, waiting_oracle *oracle) {
+    const left_out now = left_out_by(set);
+    rules_rig_set(s, set);
+    waiting_oracle_change(oracle, &now);
+}
+
+static void compare_step(const rules_rig *s, const random_rules *set, waiting_oracle *oracle,
+                         oracle_list *truth, rules_tally *sum) {
     cscd_contacts found;
-    oracle_rules rules = {objects_of_vertices, SCENE_OBJECTS, set->distances};
-    oracle_find_by_rules(&objects_motion, &rules, truth);
+    waiting_oracle_see(oracle, objects_motion.x0, true);
+    oracle_find_by_rules(&objects_motion, &oracle->now.what.rules, truth);
+    waiting_oracle_filter(oracle, truth);
     assert_int_equal(step_packed(s->detector, objects_motion.x0, objects_motion.x1, &found), CSCD_OK);
     rules_rig_compare(s, truth, &found, sum);
+    assert_int_equal(found.waiting, waiting_oracle_features(oracle));
     check_guarantees(s, set, sum);
 }
 
@@ -50,12 +72,15 @@ static void next_motion(random_stream *random, double *at) {
 }
 
 /* What a check has proven holds under other rules. */
-static void check_with_other_rules(const rules_rig *s, random_stream *random, const random_rules *now) {
+static void check_with_other_rules(const rules_rig *s, random_stream *random, const random_rules *now,
+                                   waiting_oracle *oracle) {
     random_rules other = *now;
     cscd_intersections found;
     if (stream_below(random, 2) == 0) random_rules_make(random, stream_below(random, 3), &other);
-    rules_rig_set(s, &other);
+    give_rules(s, &other, oracle);
+    waiting_oracle_see(oracle, objects_motion.x0, true);
     assert_int_equal(check_packed(s->detector, objects_motion.x0, &found), CSCD_OK);
+    assert_int_equal(found.waiting, waiting_oracle_triangles(oracle));
 }
 
 static void run_sequence(uint64_t seed, cscd_detector_options options, uint32_t threads, rules_tally *sum) {
@@ -67,16 +92,20 @@ static void run_sequence(uint64_t seed, cscd_detector_options options, uint32_t 
     for (int i = 0; i < SCENE_OBJECTS; i++) set.obstacles[i] = stream_below(&random, 4) == 0;
     random_rules_neutral(&set);
     rules_rig s = rules_rig_create(&set, &options, threads);
+    rules_count = 0;
+    const left_out first = left_out_by(&set);
+    waiting_oracle oracle = waiting_oracle_start(s.mesh, &objects_joined, &first);
     for (int step = 0; step < STEPS; step++) {
         if (stream_below(&random, 4) == 0)
             random_rules_neutral(&set);
         else if (step == 0 || stream_below(&random, 3) > 0)
             random_rules_make(&random, stream_below(&random, 3), &set);
         next_motion(&random, &at);
-        if (stream_below(&random, 3) == 0) check_with_other_rules(&s, &random, &set);
-        rules_rig_set(&s, &set);
-        compare_step(&s, &set, &truth, sum);
+        if (stream_below(&random, 3) == 0) check_with_other_rules(&s, &random, &set, &oracle);
+        give_rules(&s, &set, &oracle);
+        compare_step(&s, &set, &oracle, &truth, sum);
     }
+    waiting_oracle_free(&oracle);
     oracle_free(&truth);
     rules_rig_destroy(&s);
 }
@@ -115,7 +144,7 @@ static void with_culling_as_brute_force(void **state) {
 
 /* ---- many objects, and what is known of masked ones ---------------------------------------------------- */
 
-static double many_distances[MANY * MANY];
+static double many_distances[2][MANY * MANY]; /* of the rules of now and of before, by turns */
 static cscd_object_rule many_rules[MANY];
 
 /* Small spheres in one box, so that trees of many objects are joined in blocks. */
@@ -140,7 +169,7 @@ static void make_many(random_stream *random, cscd_object_desc *descs) {
 }
 
 /* Every object has a rule of its own. */
-static void make_many_rules(random_stream *random) {
+static void make_many_rules(random_stream *random, double *distances) {
     for (uint32_t i = 0; i < MANY; i++) {
         many_rules[i] = cscd_object_rule_default();
         many_rules[i].category = (uint64_t)1 << i;
@@ -151,7 +180,7 @@ static void make_many_rules(random_stream *random) {
         for (uint32_t b = 0; b < MANY; b++) {
             const cscd_object_rule *p = &many_rules[a], *q = &many_rules[b];
             bool looks = a == b || ((p->category & q->mask) != 0 && (q->category & p->mask) != 0);
-            many_distances[a * MANY + b] = looks ? 0.5 * p->thickness + 0.5 * q->thickness : -1.0;
+            distances[a * MANY + b] = looks ? 0.5 * p->thickness + 0.5 * q->thickness : -1.0;
         }
     }
 }
@@ -163,21 +192,30 @@ static void many_objects_with_a_rule_each(void **state) {
     random_stream random = stream_start(1);
     oracle_list truth = {0};
     rules_tally sum = {0};
+    size_t waiting = 0;
     make_many(&random, descs);
     assert_int_equal(cscd_context_create(NULL, &s.context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(s.context, descs, MANY, &s.mesh), CSCD_OK);
     assert_int_equal(detector_create_here(s.mesh, NULL, NULL, &s.detector), CSCD_OK);
     s.plan = NULL;
+    left_out now = {.rules = {objects_of_vertices, MANY, many_distances[1]}};
+    waiting_oracle oracle = waiting_oracle_start(s.mesh, &objects_joined, &now);
     for (int step = 0; step < 6; step++) {
         cscd_contacts found;
-        oracle_rules rules = {objects_of_vertices, MANY, many_distances};
-        make_many_rules(&random);
+        now.rules.distances = many_distances[step % 2];
+        make_many_rules(&random, many_distances[step % 2]);
+        waiting_oracle_change(&oracle, &now);
+        waiting_oracle_see(&oracle, objects_joined.x0, true);
         assert_int_equal(cscd_detector_set_rules(s.detector, many_rules, MANY, NULL, 0), CSCD_OK);
-        oracle_find_by_rules(&objects_joined, &rules, &truth);
+        oracle_find_by_rules(&objects_joined, &now.rules, &truth);
+        waiting_oracle_filter(&oracle, &truth);
         assert_int_equal(step_packed(s.detector, objects_joined.x0, objects_joined.x1, &found), CSCD_OK);
         rules_rig_compare(&s, &truth, &found, &sum);
+        assert_int_equal(found.waiting, waiting_oracle_features(&oracle));
+        waiting += found.waiting;
     }
-    assert_true(sum.contacts > 100);
+    assert_true(sum.contacts > 100 && waiting > 10);
+    waiting_oracle_free(&oracle);
     oracle_free(&truth);
     rules_rig_destroy(&s);
 }

@@ -162,7 +162,7 @@ static void wait_inside(returning_host *h) {
 
 static void *step_on_thread(void *argument) {
     returning_host *h = argument;
-    cscd_contacts found = {NULL, 0};
+    cscd_contacts found = {.count = 0};
     h->done = panels_step(h->p, &found) == CSCD_OK && found.count == CONTACTS;
     return NULL;
 }
@@ -198,7 +198,7 @@ static void *step_often(void *argument) {
         cscd_detector *own = NULL;
         cscd_status status = panels_create_detector(h->p, NULL, &own);
         if (status == CSCD_BUSY) continue;
-        cscd_contacts found = {NULL, 0};
+        cscd_contacts found = {.count = 0};
         if (status == CSCD_OK)
             status = cscd_detector_step(own, CSCD_DOUBLES(h->p->x0, h->p->vertex_count),
                                         CSCD_DOUBLES(h->p->x1, h->p->vertex_count), &found);

@@ -43,7 +43,7 @@ static void destroy_objects(objects *o) {
 }
 
 static cscd_contacts step_topology(const objects *o, const scene *s) {
-    cscd_contacts found = {NULL, 0};
+    cscd_contacts found = {.count = 0};
     assert_int_equal(step_packed(o->detector, s->x0, s->x1, &found), CSCD_OK);
     return found;
 }

@@ -17,7 +17,7 @@ static cscd_status print_contacts(cscd_context *context) {
     cscd_mesh *mesh = NULL;
     cscd_plan *plan = NULL;
     cscd_detector *detector = NULL;
-    cscd_contacts contacts = {NULL, 0};
+    cscd_contacts contacts = {.count = 0};
     for (int i = 0; i < VERTEX_COUNT * 3; i++) end[i] = start[i] + (i >= 12 && i % 3 == 2 ? 1.5 : 0.0);
     cscd_status status = cscd_mesh_create(context, &object, 1, &mesh);
     if (status == CSCD_OK)

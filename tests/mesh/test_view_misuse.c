@@ -5,7 +5,7 @@
 
 static void expect_coordinate(double x, const char *words) {
     double end[COORDINATES];
-    cscd_contacts found = {NULL, 77};
+    cscd_contacts found = {.count = 77};
     memcpy(end, x1, sizeof end);
     end[7] = x;
     EXPECT_ARGUMENT(cscd_detector_step(detector, AT_START, CSCD_DOUBLES(end, VERTICES), &found), words);

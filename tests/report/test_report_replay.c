@@ -290,7 +290,7 @@ static page crowded_page(const report_rig *rig, uint32_t *file_offset) {
     report *r = create_report(&options);
     assert_true(report_begin(r, rig->shape.frames, NULL));
     for (uint32_t k = 0; k < INTERVALS; k++) {
-        cscd_contacts contacts = {items, found_in(k)};
+        cscd_contacts contacts = {.items = items, .count = found_in(k)};
         assert_true(report_add_interval(r, NULL, &contacts, rig->shape.frames, NULL));
     }
     return write_page(r);

@@ -23,7 +23,7 @@ static cscd_status test_wall(void *of, const double *from, const double *to, csc
     w->tests++;
     w->contact = (cscd_contact){.kind = CSCD_CONTACT_VF, .a = 4, .b = 9};
     w->contact.toi = from[0] >= w->at || way <= 0.0 ? 0.0 : (w->at - from[0]) / way;
-    *out = (cscd_contacts){&w->contact, touches};
+    *out = (cscd_contacts){.items = &w->contact, .count = touches};
     return CSCD_OK;
 }
 

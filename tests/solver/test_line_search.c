@@ -344,7 +344,7 @@ static void misuse_is_named(void **state) {
     static const double bad[] = {-0x1p-1000, 1.0 + 0x1p-52, NAN, INFINITY, -1.0};
     scene_make(SCENE_SPIKE, 1, &interval);
     step_search s = search_create(CSCD_METHOD_NONE, 0.0, 1);
-    cscd_proximities near = {NULL, 4711};
+    cscd_proximities near = {.count = 4711};
     cscd_free_step step = {.fraction = -1.0};
     assert_int_equal(cscd_line_search_create(NULL, NULL), CSCD_NULL_OBJECT);
     expect_words(&s, cscd_line_search_create(s.r.detector, NULL), "out is NULL");

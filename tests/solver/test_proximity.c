@@ -127,7 +127,7 @@ static long double check_proximity(const rig *r, const cscd_proximity *p, const 
 }
 
 static cscd_proximities find_near(const rig *r, const double *x, double distance) {
-    cscd_proximities found = {NULL, 4711};
+    cscd_proximities found = {.count = 4711};
     assert_int_equal(find_near_packed(r->detector, x, distance, &found), CSCD_OK);
     return found;
 }
@@ -327,7 +327,7 @@ static void expect_refused(const rig *r, const double *x, double distance, cscd_
 static void bad_arguments_are_named(void **state) {
     (void)state;
     static const double bad[] = {0.0, -1.0, NAN, INFINITY, 5e-324, 0x1p-301, 0x1p301};
-    cscd_proximities out = {NULL, 4711};
+    cscd_proximities out = {.count = 4711};
     scene_make(SCENE_SPIKE, 1, &interval);
     rig r = rig_create(&interval, 1, NULL);
     assert_int_equal(find_near_packed(NULL, interval.x0, 0.1, &out), CSCD_NULL_OBJECT);

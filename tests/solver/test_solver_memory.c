@@ -76,7 +76,7 @@ typedef struct solver_answer {
 typedef cscd_status question(counted *c, solver_answer *out);
 
 static cscd_status ask_near(counted *c, solver_answer *out) {
-    cscd_proximities found = {NULL, 4711};
+    cscd_proximities found = {.count = 4711};
     cscd_status status = find_near_packed(c->detector, interval.x0, distance, &found);
     assert_true(status == CSCD_OK || found.count == 4711);
     out->near = found.count;
@@ -85,7 +85,7 @@ static cscd_status ask_near(counted *c, solver_answer *out) {
 
 /* The same without repetitions, and with lengths at rest. */
 static cscd_status ask_unique(counted *c, solver_answer *out) {
-    cscd_proximities found = {NULL, 4711};
+    cscd_proximities found = {.count = 4711};
     cscd_status status = set_rest_packed(c->detector, interval.x0);
     if (status == CSCD_OK) status = find_unique_packed(c->detector, interval.x0, distance, &found);
     if (status != CSCD_OK) assert_true(found.count == 4711);
@@ -116,7 +116,7 @@ static cscd_status ask_truncation(counted *c, solver_answer *out) {
 /* Runs the whole life of a line search. A call that fails is repeated at once, and must then succeed. */
 static cscd_status ask_line(counted *c, solver_answer *out) {
     cscd_line_search *line = NULL;
-    cscd_proximities found = {NULL, 4711};
+    cscd_proximities found = {.count = 4711};
     cscd_status status = cscd_line_search_create(c->detector, &line), first = status;
     assert_true(status == CSCD_OK || line == NULL);
     if (status != CSCD_OK) return status;

@@ -303,7 +303,7 @@ static size_t count_mollified(const rig *r) {
 
 static void arguments_are_checked(void **state) {
     (void)state;
-    cscd_proximities out = {NULL, 4711};
+    cscd_proximities out = {.count = 4711};
     scene_make(SCENE_SPIKE, 1, &at_rest);
     moment = at_rest;
     rig r = near_rig(&at_rest, 1);

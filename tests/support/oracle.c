@@ -49,7 +49,7 @@ static elementary_query load_query(const scene *s, const uint32_t vertices[4]) {
 }
 
 /* Feature pairs of one kind that wait for their test. */
-typedef struct waiting_pairs {
+typedef struct queued_pairs {
     const scene *scene;
     const separation *limit;   /* NULL for contacts */
     const oracle_rules *rules; /* NULL: the limit is that of all pairs */
@@ -58,9 +58,9 @@ typedef struct waiting_pairs {
     edge *edges;
     uint32_t (*pairs)[2];
     size_t count, capacity;
-} waiting_pairs;
+} queued_pairs;
 
-static double pair_distance(const waiting_pairs *w, uint32_t a, uint32_t b) {
+static double pair_distance(const queued_pairs *w, uint32_t a, uint32_t b) {
     const uint32_t *objects = w->rules->vertex_objects;
     bool vf = w->kind == CSCD_CONTACT_VF;
     uint32_t first = objects[vf ? a : w->edges[a].ends[0]];
@@ -68,7 +68,7 @@ static double pair_distance(const waiting_pairs *w, uint32_t a, uint32_t b) {
     return w->rules->distances[(size_t)first * w->rules->object_count + second];
 }
 
-static void add_pair(waiting_pairs *w, uint32_t a, uint32_t b) {
+static void add_pair(queued_pairs *w, uint32_t a, uint32_t b) {
     if (w->rules != NULL) {
         double distance = pair_distance(w, a, b);
         if (distance < 0.0 || w->apart != (distance > 0.0)) return;
@@ -83,7 +83,7 @@ static void add_pair(waiting_pairs *w, uint32_t a, uint32_t b) {
 }
 
 /* Finds contacts as a step does, through the feature queue. */
-static void find_contacts(const waiting_pairs *w, oracle_list *out) {
+static void find_contacts(const queued_pairs *w, oracle_list *out) {
     size_t count;
     const feature_source source = {w->scene->x0, w->scene->x1, (const uint32_t(*)[3])w->scene->triangles,
                                    (const uint32_t(*)[2])w->edges};
@@ -108,7 +108,7 @@ static bool far_apart(const elementary_query *query, cscd_contact_kind kind, dou
     return false;
 }
 
-static void find_within(const waiting_pairs *w, oracle_list *out) {
+static void find_within(const queued_pairs *w, oracle_list *out) {
     for (size_t i = 0; i < w->count; i++) {
         uint32_t a = w->pairs[i][0], b = w->pairs[i][1];
         const uint32_t *corners = w->scene->triangles + (size_t)b * 3;
@@ -127,7 +127,7 @@ static void find_within(const waiting_pairs *w, oracle_list *out) {
     }
 }
 
-static void test_pairs(waiting_pairs *w, oracle_list *out) {
+static void test_pairs(queued_pairs *w, oracle_list *out) {
     if (w->limit == NULL && !w->apart)
         find_contacts(w, out);
     else
@@ -135,7 +135,7 @@ static void test_pairs(waiting_pairs *w, oracle_list *out) {
     free(w->pairs);
 }
 
-static void find_vf(waiting_pairs pairs, oracle_list *out) {
+static void find_vf(queued_pairs pairs, oracle_list *out) {
     const scene *s = pairs.scene;
     bool used[SCENE_VERTICES_MAX] = {false};
     pairs.kind = CSCD_CONTACT_VF;
@@ -149,7 +149,7 @@ static void find_vf(waiting_pairs pairs, oracle_list *out) {
     test_pairs(&pairs, out);
 }
 
-static void find_ee(waiting_pairs pairs, oracle_list *out) {
+static void find_ee(queued_pairs pairs, oracle_list *out) {
     static edge edges[SCENE_TRIANGLES_MAX * 3];
     uint32_t count = find_edges(pairs.scene, edges);
     pairs.kind = CSCD_CONTACT_EE;
@@ -171,7 +171,7 @@ static int compare_contacts(const void *left, const void *right) {
     return l->b < r->b ? -1 : l->b > r->b;
 }
 
-static void find_both(waiting_pairs pairs, oracle_list *out) {
+static void find_both(queued_pairs pairs, oracle_list *out) {
     find_vf(pairs, out);
     find_ee(pairs, out);
     if (out->count > 0) qsort(out->items, out->count, sizeof *out->items, compare_contacts);
@@ -183,13 +183,13 @@ void oracle_find(const scene *s, oracle_list *out) {
 
 void oracle_find_within(const scene *s, const separation *limit, oracle_list *out) {
     out->count = 0;
-    find_both((waiting_pairs){.scene = s, .limit = limit}, out);
+    find_both((queued_pairs){.scene = s, .limit = limit}, out);
 }
 
 void oracle_find_by_rules(const scene *s, const oracle_rules *rules, oracle_list *out) {
     out->count = 0;
-    find_both((waiting_pairs){.scene = s, .rules = rules}, out);
-    find_both((waiting_pairs){.scene = s, .rules = rules, .apart = true}, out);
+    find_both((queued_pairs){.scene = s, .rules = rules}, out);
+    find_both((queued_pairs){.scene = s, .rules = rules, .apart = true}, out);
 }
 
 void oracle_free(oracle_list *list) {

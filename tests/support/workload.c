@@ -78,7 +78,7 @@ static void make_plan(workload_state *r) {
 }
 
 static void run_step(workload_state *r, const double *x0, const double *x1) {
-    cscd_contacts found = {NULL, 0};
+    cscd_contacts found = {.count = 0};
     cscd_status status;
     do {
         status = step_packed(r->detector, x0, x1, &found);
@@ -95,7 +95,7 @@ static void run_step(workload_state *r, const double *x0, const double *x1) {
 }
 
 static void run_check(workload_state *r, const double *x) {
-    cscd_intersections found = {NULL, 0, 0, 0};
+    cscd_intersections found = {.count = 0};
     cscd_status status;
     do {
         status = check_packed(r->detector, x, &found);
@@ -106,7 +106,7 @@ static void run_check(workload_state *r, const double *x) {
 }
 
 static void run_near(workload_state *r, const double *x) {
-    cscd_proximities found = {NULL, 0};
+    cscd_proximities found = {.count = 0};
     cscd_status status;
     do {
         status = find_near_packed(r->detector, x, 0.05, &found);
@@ -146,7 +146,7 @@ static void ask_line(workload_state *r) {
     static _Thread_local double end[SCENE_VERTICES_MAX * 3];
     for (int i = 0; i < 2; i++) {
         cscd_free_step step = {.fraction = 0.0};
-        cscd_proximities found = {NULL, 0};
+        cscd_proximities found = {.count = 0};
         cscd_status status;
         do {
             status = line_max_step_packed(r->line, i == 0 ? 1.0 : 0.3, end, &step);

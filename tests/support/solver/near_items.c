@@ -19,7 +19,7 @@ void set_rest(const rig *r, const double *rest) {
 }
 
 item_list find_items(const rig *r, const double *x, double distance, cscd_near_form form) {
-    cscd_proximities found = {NULL, 4711};
+    cscd_proximities found = {.count = 4711};
     assert_int_equal(
         (form == CSCD_NEAR_UNIQUE ? find_unique_packed : find_near_packed)(r->detector, x, distance, &found),
         CSCD_OK);

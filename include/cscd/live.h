@@ -1,0 +1,72 @@
+/* Changes to a detector between two calls: how far apart features have to stay, and which pairs are left out. Part of
+ * cscd/cscd.h, which says what holds for every function. */
+#ifndef CSCD_LIVE_API_H
+#define CSCD_LIVE_API_H
+
+#include <cscd/detector.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Changes min_separation and tolerance (see the options) from the next call on, for solvers that have to
+ * go closer. If the change ends culling, what is known of the start is forgotten. A line search that was begun
+ * with a smaller separation must begin again; until then its max_step returns INVALID_ARGUMENT. */
+CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
+                                                  double tolerance);
+
+/* ---- what is left out, on a live detector ----------------------------------------------------------------
+ *
+ * Pairs that such a change uncovers may touch, or cross, where they are, as the two sides of a seam that opens. They
+ * wait: they count as pairs to leave out until they have once been apart, and from then on as all others. A pair of
+ * features begins to wait if it is left out before the change, not left out after it, and not farther apart than
+ * min_separation, or its thickness, in the first positions that the detector is given then; without a distance, if it
+ * touches. It waits until it is farther apart than that in positions where a motion starts, that is, in x0 of any
+ * call, or in those of cscd_detector_check. While it waits, nobody watches it: a pair that parts and comes back
+ * within one motion passes unseen. The check has pairs of triangles instead, which wait while they intersect or
+ * touch. Results count the pairs that wait. A pair that is left out anew, by a later change, waits no more.
+ *
+ * What the function `ignore` leaves out is asked for each list: if its answers change, nothing waits. An example, the
+ * second sheet on the first one, sewn to it, then torn off, which prints "0 contacts, pairs wait":
+ *
+ *     uint32_t seams[SHEET][2];
+ *     for (uint32_t v = 0; v < SHEET; v++) {
+ *         seams[v][0] = v;
+ *         seams[v][1] = SHEET + v;
+ *         memcpy(&x0[3 * (SHEET + v)], &x0[3 * v], sizeof(double[3]));
+ *     }
+ *     const cscd_view *here = CSCD_DOUBLES(x0, n);
+ *     cscd_status status = cscd_detector_set_seams(detector, &seams[0][0], SHEET);
+ *     if (status == CSCD_OK) status = cscd_detector_step(detector, here, here, &contacts);
+ *     if (status == CSCD_OK) status = cscd_detector_set_seams(detector, NULL, 0);
+ *     if (status == CSCD_OK) status = cscd_detector_step(detector, here, here, &contacts);
+ *     printf("%d contacts, %s\n", (int)contacts.count, contacts.waiting > 0 ? "pairs wait" : "no pair waits");
+ */
+
+/* Replaces seams (see the options) from the next call on. seam_reach holds for them at the first positions that the
+ * detector is given then. */
+CSCD_API cscd_status cscd_detector_set_seams(cscd_detector *detector, const uint32_t *seams,
+                                             size_t seam_count);
+
+/* Replaces ignored (see the options) from the next call on. */
+CSCD_API cscd_status cscd_detector_set_ignored(cscd_detector *detector, const uint32_t *ignored,
+                                               size_t ignored_count);
+
+/* Replaces rules and thickness_matrix (see the options) from the next call on; they are checked and copied. Rules
+ * between objects do not change what is known of the start; an object that is looked at with itself again is
+ * proven anew. A line search that was begun before must begin again. An example, cloth 2 thick and a body 0 thick,
+ * which therefore is culled, and so stay 1 apart:
+ *
+ *     cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+ *     rules[0].thickness = 2.0;
+ *     cscd_status status = cscd_detector_set_rules(detector, rules, 2, NULL, 0);
+ */
+CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
+                                             uint32_t rule_count, const double *thickness_matrix,
+                                             uint32_t thickness_class_count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,183 @@
+/* Pairs that wait on a live detector: what a change of seams, ignored pairs or rules uncovers while it touches. */
+#include "runtime/detector/waiting.h"
+
+#include "src/mesh/triangle_intersection.h"
+
+/* The positions that pairs are looked at, and what is left out there without those that wait. */
+typedef struct settling {
+    cscd_detector *detector;
+    const double *x;
+    interval_search search; /* at rest */
+    exclusions others;      /* without the caller's function, which is asked about lists only */
+    named_pair_set *set;
+} settling;
+
+static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set) {
+    return (settling){d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set};
+}
+
+/* ---- pairs that wait already ---------------------------------------------------------------------------- */
+
+/* One thread looks at so many pairs at a time. */
+enum { PAIRS_PER_TASK = 1024 };
+
+static bool components_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (interval->rules != NULL) return components_look(interval, a, b);
+    return !component_is_obstacle(mesh, a) || !component_is_obstacle(mesh, b);
+}
+
+static bool is_left_out(const settling *s, const named_pair *pair) {
+    const cscd_mesh *mesh = s->detector->mesh;
+    const swept_interval *interval = &s->search.interval;
+    const uint32_t *components = mesh->triangle_components;
+    uint32_t a = pair->a, b = pair->b;
+    switch (pair->kind) {
+    case CSCD_CONTACT_VF:
+        if (!components_meet(interval, vertex_component(mesh, a), components[b])) return true;
+        break;
+    case CSCD_CONTACT_EE:
+        if (!components_meet(interval, edge_component(mesh, a), edge_component(mesh, b))) return true;
+        break;
+    default:
+        return !components_meet(interval, components[a], components[b]) ||
+               exclusions_cover_triangles(&s->others, a, b, s->x);
+    }
+    return exclusions_cover_features(&s->others, (cscd_contact_kind)pair->kind, a, b);
+}
+
+static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane) {
+    const swept_interval *interval = &s->search.interval;
+    const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
+    pair->marked = 0;
+    if (is_left_out(s, pair)) return;
+    if (pair->kind == CSCD_CONTACT_VF) narrow_phase_test_vf(interval, pair->a, pair->b, lane);
+    if (pair->kind == CSCD_CONTACT_EE) narrow_phase_test_ee(interval, pair->a, pair->b, lane);
+    if (pair->kind == CSCD_CONTACT_TT)
+        pair->marked = triangles_intersect(triangles[pair->a], triangles[pair->b], s->x);
+}
+
+/* A lane tests its share of the pairs, and marks those that are not apart. */
+static void mark_share(void *data, uint32_t index) {
+    const settling *s = data;
+    const search_space *space = &s->detector->space;
+    contact_lane *lane = &space->lanes[index];
+    size_t begin = s->set->count * index / space->traversal.lane_count;
+    size_t end = s->set->count * (index + 1) / space->traversal.lane_count;
+    for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+        if ((i - begin) % PAIRS_PER_TASK == 0 && !progress_go_on(&space->context->progress, 0.0)) return;
+        test_at_rest(s, &s->set->items[i], lane);
+    }
+    narrow_phase_finish(&s->search.interval, lane);
+    for (size_t i = 0; i < lane->count; i++) {
+        const cscd_contact *c = &lane->contacts[i];
+        named_pair_set_find(s->set, c->kind, c->a, c->b)->marked = 1;
+    }
+}
+
+/* Lets go of the pairs that are apart now, or that are left out otherwise. */
+static cscd_status let_go(cscd_detector *d, const double *x) {
+    settling s = settle_at(d, x, &d->waiting.pairs);
+    parallel_run(d->context->threads, d->space.traversal.lane_count, mark_share, &s);
+    cscd_status status = search_space_status(&d->space);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
+    if (status == CSCD_OK) named_pair_set_keep_marked(&d->waiting.pairs);
+    return status;
+}
+
+/* ---- pairs that a change has uncovered ------------------------------------------------------------------ */
+
+/* Should this pair, which touches, wait from now on? */
+static bool should_wait(const settling *s, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const cscd_detector *d = s->detector;
+    bool covered = kind == CSCD_CONTACT_TT ? exclusions_cover_triangles(&s->others, a, b, s->x)
+                                           : exclusions_cover_features(&s->others, kind, a, b);
+    return !covered && (named_pair_set_has(&d->waiting.pairs, kind, a, b) ||
+                        waiting_pairs_uncovered(d->mesh, &d->waiting, kind, a, b, s->x));
+}
+
+static cscd_status add_features(settling *s) {
+    cscd_detector *d = s->detector;
+    for (uint32_t i = 0; i < d->space.traversal.lane_count; i++) {
+        const contact_lane *lane = &d->space.lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            const cscd_contact *c = &lane->contacts[j];
+            if (should_wait(s, c->kind, c->a, c->b) &&
+                !named_pair_set_add(d->context, s->set, c->kind, c->a, c->b))
+                return CSCD_OUT_OF_MEMORY;
+        }
+    }
+    return CSCD_OK;
+}
+
+static cscd_status add_triangles(settling *s) {
+    cscd_detector *d = s->detector;
+    for (uint32_t i = 0; i < d->check.lane_count; i++) {
+        const intersection_lane *lane = &d->check.lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            cscd_intersection c = lane->items[j];
+            if (should_wait(s, CSCD_CONTACT_TT, c.a, c.b) &&
+                !named_pair_set_add(d->context, s->set, CSCD_CONTACT_TT, c.a, c.b))
+                return CSCD_OUT_OF_MEMORY;
+        }
+    }
+    return CSCD_OK;
+}
+
+static cscd_status search_at_rest(settling *s) {
+    cscd_detector *d = s->detector;
+    cscd_status status =
+        bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, s->x, detector_growth(d), detector_growth(d));
+    if (status != CSCD_OK) return status;
+    return d->stages->brute_force ? interval_search_by_brute_force(&s->search)
+                                  : interval_search_everything(&s->search);
+}
+
+static cscd_status find_touching(settling *s) {
+    cscd_detector *d = s->detector;
+    cscd_status status = search_at_rest(s);
+    if (status == CSCD_OK) status = add_features(s);
+    if (status == CSCD_OK) status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s->x);
+    if (status == CSCD_OK) status = add_triangles(s);
+    if (status == CSCD_OK && !named_pair_set_sort(d->context, s->set)) status = CSCD_OUT_OF_MEMORY;
+    return status;
+}
+
+static cscd_status keep_all_waiting(settling *s) {
+    const named_pair_set *before = &s->detector->waiting.pairs;
+    for (size_t i = 0; i < before->count; i++) {
+        const named_pair *p = &before->items[i];
+        if (!named_pair_set_add(s->detector->context, s->set, (cscd_contact_kind)p->kind, p->a, p->b))
+            return CSCD_OUT_OF_MEMORY;
+    }
+    return CSCD_OK;
+}
+
+/* The search finds the pairs that wait already, too, unless they are apart. */
+static cscd_status take_uncovered(cscd_detector *d, const double *x, bool letting_go) {
+    named_pair_set set = {.items = NULL};
+    settling s = settle_at(d, x, &set);
+    progress_part(&d->context->progress, 0.0, 0.2);
+    cscd_status status = letting_go ? CSCD_OK : keep_all_waiting(&s);
+    if (status == CSCD_OK) status = find_touching(&s);
+    progress_part(&d->context->progress, 0.2, 1.0);
+    if (status != CSCD_OK) {
+        named_pair_set_free(d->context, &set);
+        return status;
+    }
+    named_pair_set_free(d->context, &d->waiting.pairs);
+    d->waiting.pairs = set;
+    waiting_pairs_settled(d->mesh, &d->waiting);
+    return CSCD_OK;
+}
+
+/* ---- either --------------------------------------------------------------------------------------------- */
+
+cscd_status waiting_settle(cscd_detector *d, const double *x) {
+    if (d->waiting.former != NULL) return take_uncovered(d, x, true);
+    return d->waiting.pairs.count > 0 ? let_go(d, x) : CSCD_OK;
+}
+
+cscd_status waiting_look(cscd_detector *d, const double *x) {
+    return d->waiting.former != NULL ? take_uncovered(d, x, false) : CSCD_OK;
+}

@@ -1,0 +1,12 @@
+/* Pairs that wait on a live detector: what a change of seams, ignored pairs or rules uncovers while it touches. */
+#pragma once
+
+#include "runtime/detector/detector.h"
+
+/* To be called where a motion starts, or a check looks, in a call that has begun: pairs that a change since the last
+ * call has uncovered begin to wait if a step at rest would report them, and pairs that it would not report are let go.
+ * The trees follow to x where there was such a change. */
+cscd_status waiting_settle(cscd_detector *d, const double *x);
+
+/* The same for positions where no motion need start: no pair is let go. */
+cscd_status waiting_look(cscd_detector *d, const double *x);

@@ -1,0 +1,266 @@
+/* What a change of seams, ignored pairs or rules uncovers while it touches: a seam that opens in mid run, and who is let
+ * go, when. */
+#include "cscd/cscd.h"
+#include "tests/support/equal_panels.h"
+#include "tests/support/packed.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- a run --------------------------------------------------------------------------------------------- */
+
+/* The first panel wants to go up, the second one down; a sewn pair goes alike. */
+static void want_motion(equal_panels *p, random_stream *random, double speed, size_t sewn) {
+    for (uint32_t v = 0; v < PANEL; v++) {
+        for (uint32_t k = 0; k < 3; k++) {
+            double common = stream_between(random, -0.01, 0.01);
+            double *a = p->x1 + (size_t)3 * v + k, *b = a + (size_t)3 * PANEL;
+            *a = p->x0[3 * v + k] + common;
+            *b = p->x0[3 * (PANEL + v) + k] + common;
+            if (v < sewn || k < 2) continue;
+            *a += speed * stream_between(random, 0.2, 1.0);
+            *b -= speed * stream_between(random, 0.2, 1.0);
+        }
+    }
+}
+
+/* Goes as far as the call allows. Sewn pairs stay on each other, as their motions and rounding are the same. */
+static cscd_free_step go_there(equal_panels *p, bool by_line) {
+    cscd_free_step step;
+    if (by_line) {
+        assert_int_equal(line_begin_packed(p->line, p->x0, p->x1, 0.0), CSCD_OK);
+        assert_int_equal(line_max_step_packed(p->line, 1.0, p->reached, &step), CSCD_OK);
+    } else {
+        assert_int_equal(max_step_packed(p->detector, p->x0, p->x1, p->reached, &step), CSCD_OK);
+    }
+    memcpy(p->x0, p->reached, sizeof p->x0);
+    return step;
+}
+
+static double least_gap(const equal_panels *p) {
+    double least = INFINITY;
+    for (uint32_t v = 0; v < PANEL; v++) least = fmin(least, p->x0[3 * v + 2] - p->x0[3 * (PANEL + v) + 2]);
+    return least;
+}
+
+/* The panels move on, part, and are pressed together for long: they come near each other, and never pass. */
+static void run_panels(double min_separation, uint32_t threads, bool by_line) {
+    static equal_panels p;
+    random_stream random = stream_start(threads);
+    cscd_intersections crossing;
+    size_t waited = 0, sewn = PANEL;
+    double least = INFINITY;
+    panels_begin(&p, min_separation, threads, NULL);
+    for (int i = 0; i < 5; i++) {
+        want_motion(&p, &random, 0.05, sewn);
+        cscd_free_step step = go_there(&p, by_line);
+        assert_true(!step.limited && step.waiting == 0);
+    }
+    for (int i = 0; sewn > 0 || waited > 0; i++) { /* the seam opens, row by row */
+        assert_true(i < 100);
+        sewn = sewn > SIDE ? sewn - SIDE : 0;
+        assert_int_equal(cscd_detector_set_seams(p.detector, &p.seams[0][0], sewn), CSCD_OK);
+        want_motion(&p, &random, 0.05, sewn);
+        cscd_free_step step = go_there(&p, by_line);
+        assert_true(step.waiting > 0 || sewn == 0);
+        assert_true(step.moved);
+        waited = step.waiting;
+    }
+    assert_true(least_gap(&p) > min_separation);
+    for (int i = 0; i < 150; i++) {
+        want_motion(&p, &random, -0.03, 0);
+        cscd_free_step step = go_there(&p, by_line);
+        assert_int_equal(step.waiting, 0);
+        least = fmin(least, least_gap(&p));
+        assert_int_equal(check_packed(p.detector, p.x0, &crossing), CSCD_OK);
+        assert_int_equal(crossing.count, 0);
+    }
+    assert_true(least > 0.0 && least_gap(&p) < 0.1 + min_separation);
+    panels_end(&p);
+}
+
+static void a_seam_opens_in_mid_run(void **state) {
+    (void)state;
+    run_panels(0.0, 1, false);
+    run_panels(0.0, 2, true);
+    run_panels(0.01, 2, false);
+    run_panels(0.01, 1, true);
+}
+
+/* ---- who waits, and how long --------------------------------------------------------------------------- */
+
+/* Every function leaves out what waits, and says how many pairs do. */
+static void every_function_leaves_out_what_waits(void **state) {
+    (void)state;
+    static equal_panels p;
+    cscd_contacts contacts;
+    cscd_intersections crossing;
+    cscd_proximities near;
+    cscd_displacement_bounds bounded;
+    cscd_truncation cut;
+    static double bounds[VERTICES];
+    for (int first = 0; first < 5; first++) {
+        panels_begin(&p, 0.0, 1, NULL);
+        panels_open(&p);
+        for (int i = first; i < first + 5; i++) {
+            size_t waiting = 0;
+            switch (i % 5) {
+            case 0:
+                assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+                assert_int_equal(contacts.count, 0);
+                waiting = contacts.waiting;
+                break;
+            case 1:
+                assert_int_equal(find_near_packed(p.detector, p.x0, 0.01, &near), CSCD_OK);
+                assert_int_equal(near.count, 0);
+                waiting = near.waiting;
+                break;
+            case 2:
+                assert_int_equal(displacement_bounds_packed(p.detector, p.x0, 0.01, bounds, &bounded),
+                                 CSCD_OK);
+                assert_int_equal(bounded.blocked_count, 0);
+                waiting = bounded.waiting;
+                break;
+            case 3:
+                panels_part(&p, 0.004, p.x1);
+                assert_int_equal(truncate_packed(p.detector, p.x0, p.x1, 0.01, p.reached, &cut), CSCD_OK);
+                assert_int_equal(cut.held_count, 0);
+                assert_true(cut.fraction == 1.0);
+                waiting = cut.waiting;
+                break;
+            default:
+                assert_int_equal(check_packed(p.detector, p.x0, &crossing), CSCD_OK);
+                assert_int_equal(crossing.count, 0);
+                assert_true(crossing.waiting > TRIANGLES);
+                assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+                waiting = contacts.waiting;
+            }
+            assert_int_equal(waiting, p.touching);
+        }
+        panels_end(&p);
+    }
+}
+
+/* Positions at which a motion starts let go of what is apart there; those of find_near, and where a motion ends, do
+ * not. */
+static void a_pair_waits_until_it_is_apart_where_a_motion_starts(void **state) {
+    (void)state;
+    static equal_panels p;
+    static double apart[VERTICES * 3];
+    cscd_contacts contacts;
+    cscd_proximities near;
+    cscd_intersections crossing;
+    const double distance = 0.125;
+    panels_begin(&p, distance, 1, NULL);
+    panels_part(&p, distance, apart);
+    panels_open(&p);
+    assert_int_equal(step_packed(p.detector, p.x0, apart, &contacts), CSCD_OK);
+    size_t all = contacts.waiting;
+    panels_part(&p, 2.0, p.x1);
+    assert_int_equal(find_near_packed(p.detector, p.x1, 0.01, &near), CSCD_OK);
+    assert_int_equal(near.waiting, all);
+    assert_int_equal(step_packed(p.detector, p.x0, p.x1, &contacts), CSCD_OK);
+    assert_true(contacts.count == 0 && contacts.waiting == all);
+    assert_int_equal(step_packed(p.detector, apart, apart, &contacts), CSCD_OK);
+    assert_true(contacts.waiting > 0 && contacts.waiting <= all);
+    panels_part(&p, 1.5 * distance, apart);
+    assert_int_equal(step_packed(p.detector, apart, p.x1, &contacts), CSCD_OK);
+    assert_true(contacts.waiting < all && contacts.count == 0);
+    assert_int_equal(check_packed(p.detector, p.x1, &crossing), CSCD_OK);
+    assert_true(crossing.waiting == 0);
+    assert_int_equal(step_packed(p.detector, p.x1, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.waiting == 0 && contacts.count == all);
+    panels_end(&p);
+}
+
+/* A seam that is sewn anew leaves out its pairs itself. What opens where nothing touches does not wait. */
+static void what_is_left_out_anew_waits_no_more(void **state) {
+    (void)state;
+    static equal_panels p;
+    cscd_contacts contacts;
+    panels_begin(&p, 0.0, 1, NULL);
+    panels_open(&p);
+    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.waiting > 0 && contacts.count == 0);
+    assert_int_equal(cscd_detector_set_seams(p.detector, &p.seams[0][0], PANEL), CSCD_OK);
+    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.waiting == 0 && contacts.count == 0);
+    panels_part(&p, 0.5, p.x1);
+    panels_open(&p);
+    assert_int_equal(step_packed(p.detector, p.x1, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.waiting == 0 && contacts.count == p.touching);
+    panels_end(&p);
+}
+
+/* Rules and lists uncover as seams do. */
+static void rules_and_lists_uncover_too(void **state) {
+    (void)state;
+    static equal_panels p;
+    cscd_contacts contacts;
+    cscd_object_rule rules[] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    static uint32_t ignored[TRIANGLES * TRIANGLES][2];
+    rules[0].mask = 0;
+    for (uint32_t i = 0; i < TRIANGLES * TRIANGLES; i++) {
+        ignored[i][0] = i / TRIANGLES;
+        ignored[i][1] = TRIANGLES + i % TRIANGLES;
+    }
+    for (int by_rules = 0; by_rules < 2; by_rules++) {
+        panels_begin(&p, 0.0, 1, NULL);
+        if (by_rules == 1)
+            assert_int_equal(cscd_detector_set_rules(p.detector, rules, 2, NULL, 0), CSCD_OK);
+        else
+            assert_int_equal(cscd_detector_set_ignored(p.detector, &ignored[0][0], TRIANGLES * TRIANGLES),
+                             CSCD_OK);
+        panels_open(&p);
+        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+        assert_true(contacts.waiting == 0 && contacts.count == 0);
+        assert_int_equal(by_rules == 1 ? cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0)
+                                       : cscd_detector_set_ignored(p.detector, NULL, 0),
+                         CSCD_OK);
+        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+        assert_true(contacts.waiting == p.touching && contacts.count == 0);
+        panels_end(&p);
+    }
+}
+
+static bool ignore_all(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    (void)kind;
+    (void)a;
+    (void)b;
+    return *(const bool *)user;
+}
+
+/* The caller's function is asked for each list: what it does not leave out any more is reported at once. */
+static void what_a_function_uncovers_does_not_wait(void **state) {
+    (void)state;
+    static equal_panels p;
+    cscd_contacts contacts;
+    cscd_detector *other;
+    bool ignores = true;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignore = ignore_all;
+    options.ignore_user = &ignores;
+    panels_begin(&p, 0.0, 1, NULL);
+    assert_int_equal(detector_create_here(p.mesh, NULL, &options, &other), CSCD_OK);
+    assert_int_equal(step_packed(other, p.x0, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.count == 0);
+    ignores = false;
+    assert_int_equal(step_packed(other, p.x0, p.x0, &contacts), CSCD_OK);
+    assert_true(contacts.waiting == 0 && contacts.count == p.touching);
+    cscd_detector_destroy(other);
+    panels_end(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_seam_opens_in_mid_run),
+        cmocka_unit_test(every_function_leaves_out_what_waits),
+        cmocka_unit_test(a_pair_waits_until_it_is_apart_where_a_motion_starts),
+        cmocka_unit_test(what_is_left_out_anew_waits_no_more),
+        cmocka_unit_test(rules_and_lists_uncover_too),
+        cmocka_unit_test(what_a_function_uncovers_does_not_wait),
+    };
+    return cmocka_run_group_tests_name("waiting", tests, NULL, NULL);
+}
