@@ -1,23 +1,18 @@
 /* cscd_context_cancel: a callback, or another thread, ends the call that is running; nothing is written, and the call made
  * again gives what it would have given. */
-#include "src/core/context.h"
-#include "tests/support/panels.h"
+#include "tests/support/callback_host.h"
 #include "tests/support/test.h"
 
-#include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { SIDE = 16, CALLS = 5 };
 
 typedef struct cancelling_host {
-    panel_scene p;
+    callback_host host; /* the first member */
+    bool on_thread;     /* another thread cancels */
     cscd_line_search *line;
     double *reached;
-    host_callback from;
-    bool on_thread;     /* another thread cancels */
-    uint32_t calls, at; /* of the callback, counted from 1; 0: it never cancels */
 } cancelling_host;
 
 static void *cancel_on_thread(void *context) {
@@ -25,62 +20,29 @@ static void *cancel_on_thread(void *context) {
     return NULL;
 }
 
-static bool perhaps_cancel(cancelling_host *h, host_callback callback) {
+static void cancel_call(void *host) {
+    cancelling_host *h = host;
     pthread_t thread;
-    if (callback != h->from || ++h->calls != h->at) return false;
     if (h->on_thread) {
-        assert_int_equal(pthread_create(&thread, NULL, cancel_on_thread, h->p.context), 0);
+        assert_int_equal(pthread_create(&thread, NULL, cancel_on_thread, h->host.p.context), 0);
         assert_int_equal(pthread_join(thread, NULL), 0);
     } else {
-        cscd_context_cancel(h->p.context);
+        cscd_context_cancel(h->host.p.context);
     }
-    return true;
 }
 
-static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    perhaps_cancel(user, HOST_IGNORE);
-    return kind == CSCD_CONTACT_TT && a == b;
-}
-
-static bool report_progress(void *user, const char *stage, double fraction) {
-    perhaps_cancel(user, HOST_PROGRESS);
-    return stage != NULL && fraction >= 0.0;
-}
-
-static void *allocate_block(void *user, size_t size, size_t alignment) {
-    return perhaps_cancel(user, HOST_ALLOCATOR) ? NULL : aligned_alloc(alignment, size);
-}
-
-static void release_block(void *user, void *block, size_t size) {
-    assert_true(user != NULL && size > 0);
-    free(block);
-}
-
-static void run_tasks(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index), void *data) {
-    for (uint32_t i = 0; i < task_count; i++) task(data, i);
-    perhaps_cancel(user, HOST_PARALLEL_FOR);
-}
-
-static void make_host(cancelling_host *h) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_detector_options detector_options = cscd_detector_defaults();
-    detector_options.ignore = ignore_none;
-    detector_options.ignore_user = h;
-    options.thread_count = 2;
-    if (h->from == HOST_ALLOCATOR) options.allocator = (cscd_allocator){allocate_block, release_block, h};
-    if (h->from == HOST_PROGRESS) options.progress = (cscd_progress){report_progress, h};
-    if (h->from == HOST_PARALLEL_FOR) options.parallel_for = (cscd_parallel_for){run_tasks, h};
-    h->p = panels_create(SIDE, &options, &detector_options);
-    h->p.context->progress.interval_ms = 0.0;
-    h->reached = calloc((size_t)h->p.vertex_count * 3, sizeof *h->reached);
+static void make_host(cancelling_host *h, host_callback from, bool on_thread) {
+    *h = (cancelling_host){.host = {.from = from, .stop = cancel_call}, .on_thread = on_thread};
+    callback_host_open(&h->host, SIDE, 2);
+    h->reached = calloc((size_t)h->host.p.vertex_count * 3, sizeof *h->reached);
     assert_non_null(h->reached);
-    assert_int_equal(cscd_line_search_create(h->p.detector, &h->line), CSCD_OK);
+    assert_int_equal(cscd_line_search_create(h->host.p.detector, &h->line), CSCD_OK);
 }
 
 static void free_host(cancelling_host *h) {
     cscd_line_search_destroy(h->line);
     free(h->reached);
-    panels_destroy(&h->p);
+    callback_host_close(&h->host);
 }
 
 /* One of the calls of a solver; *out is its number of results, and must stay as it was when it fails. */
@@ -89,17 +51,18 @@ static cscd_status make_call(cancelling_host *h, int what, size_t *out) {
     cscd_intersections intersections = {.count = *out};
     cscd_proximities proximities = {.count = *out};
     cscd_free_step step = {.fraction = (double)*out};
-    uint32_t n = h->p.vertex_count;
-    h->calls = 0;
+    uint32_t n = h->host.p.vertex_count;
+    h->host.calls = 0;
     cscd_status status =
-        what == 0   ? panels_step(&h->p, &contacts)
-        : what == 1 ? panels_check(&h->p, &intersections)
-        : what == 2 ? cscd_detector_find_near(h->p.detector, CSCD_DOUBLES(h->p.x0, n), 1.2, CSCD_NEAR_PAIRS,
-                                              &proximities)
-        : what == 3
-            ? cscd_detector_max_step(h->p.detector, CSCD_DOUBLES(h->p.x0, n), CSCD_DOUBLES(h->p.x1, n),
-                                     CSCD_MUTABLE_DOUBLES(h->reached, n), &step)
-            : cscd_line_search_begin(h->line, CSCD_DOUBLES(h->p.x0, n), CSCD_DOUBLES(h->p.x1, n), 0.0);
+        what == 0   ? panels_step(&h->host.p, &contacts)
+        : what == 1 ? panels_check(&h->host.p, &intersections)
+        : what == 2 ? cscd_detector_find_near(h->host.p.detector, CSCD_DOUBLES(h->host.p.x0, n), 1.2,
+                                              CSCD_NEAR_PAIRS, &proximities)
+        : what == 3 ? cscd_detector_max_step(h->host.p.detector, CSCD_DOUBLES(h->host.p.x0, n),
+                                             CSCD_DOUBLES(h->host.p.x1, n),
+                                             CSCD_MUTABLE_DOUBLES(h->reached, n), &step)
+                    : cscd_line_search_begin(h->line, CSCD_DOUBLES(h->host.p.x0, n),
+                                             CSCD_DOUBLES(h->host.p.x1, n), 0.0);
     size_t counts[] = {contacts.count, intersections.count, proximities.count, (size_t)(step.fraction * 1e9),
                        status == CSCD_OK ? cscd_line_search_candidate_count(h->line) : *out};
     if (what == 3 && status != CSCD_OK) assert_true(step.fraction == (double)*out);
@@ -108,24 +71,23 @@ static cscd_status make_call(cancelling_host *h, int what, size_t *out) {
 }
 
 static void expect_untouched(const cancelling_host *h) {
-    for (size_t i = 0; i < (size_t)h->p.vertex_count * 3; i++) assert_true(h->reached[i] == 0.0);
+    for (size_t i = 0; i < (size_t)h->host.p.vertex_count * 3; i++) assert_true(h->reached[i] == 0.0);
 }
 
 /* Cancels one call at one place; false: there are fewer such places. */
 static bool cancel_and_repeat(host_callback from, bool on_thread, int what, uint32_t at, size_t expected) {
-    cancelling_host h = {.from = from, .on_thread = on_thread};
-    make_host(&h);
-    h.at = at;
+    cancelling_host h;
+    make_host(&h, from, on_thread);
+    h.host.at = at;
     size_t count = 12345;
     cscd_status status = make_call(&h, what, &count);
-    bool cancelled = h.calls >= at;
+    bool cancelled = h.host.calls >= at;
     if (cancelled) {
-        const char *sentence = cscd_context_detail(h.p.context);
-        assert_int_equal(status, from == HOST_ALLOCATOR ? CSCD_OUT_OF_MEMORY : CSCD_CANCELLED);
-        assert_non_null(strstr(sentence, from == HOST_ALLOCATOR ? "out of memory" : "cscd_context_cancel"));
+        assert_int_equal(status, CSCD_CANCELLED);
+        assert_non_null(strstr(cscd_context_detail(h.host.p.context), "cscd_context_cancel"));
         assert_int_equal(count, 12345);
         expect_untouched(&h);
-        h.at = 0;
+        h.host.at = 0;
         status = make_call(&h, what, &count);
     }
     assert_int_equal(status, CSCD_OK);
@@ -135,9 +97,9 @@ static bool cancel_and_repeat(host_callback from, bool on_thread, int what, uint
 }
 
 static size_t expected_of(int what) {
-    cancelling_host h = {.from = HOST_IGNORE};
+    cancelling_host h;
     size_t count = 0;
-    make_host(&h);
+    make_host(&h, HOST_IGNORE, false);
     assert_int_equal(make_call(&h, what, &count), CSCD_OK);
     assert_true(count > 0 || what == 1);
     free_host(&h);
@@ -169,12 +131,12 @@ static void threads_cancel(void **state) {
 
 /* The contacts of a call that comes after are all there. */
 static void without_a_call(void **state) {
-    cancelling_host h = {.from = HOST_IGNORE};
+    cancelling_host h;
     size_t count = 0;
     (void)state;
     cscd_context_cancel(NULL);
-    make_host(&h);
-    cscd_context_cancel(h.p.context);
+    make_host(&h, HOST_IGNORE, false);
+    cscd_context_cancel(h.host.p.context);
     assert_int_equal(make_call(&h, 0, &count), CSCD_OK);
     assert_int_equal(count, expected_of(0));
     free_host(&h);

@@ -1,76 +1,25 @@
 /* A callback that leaves the library by longjmp: later calls say so, nothing waits for ever, and everything is freed. */
 #include "src/core/context.h"
-#include "tests/support/counting_allocator.h"
-#include "tests/support/panels.h"
+#include "tests/support/callback_host.h"
 #include "tests/support/test.h"
 
-#include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* The host leaves from one call of one callback. It does so from its own thread only, where it has set out. */
+/* It leaves on its own thread only, where it has set out. */
 typedef struct leaving_host {
-    counting_allocator counter;
-    host_callback from;
-    uint32_t calls, at; /* counted from 1; 0: it stays */
-    pthread_t thread;
+    callback_host host; /* the first member */
     jmp_buf back;
 } leaving_host;
 
-static void perhaps_leave(leaving_host *h, host_callback callback) {
-    if (callback != h->from || !pthread_equal(h->thread, pthread_self())) return;
-    if (++h->calls == h->at) longjmp(h->back, 1);
-}
-
-static bool ignore_none(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    perhaps_leave(user, HOST_IGNORE);
-    return kind == CSCD_CONTACT_TT && a == b;
-}
-
-static bool report_progress(void *user, const char *stage, double fraction) {
-    perhaps_leave(user, HOST_PROGRESS);
-    return stage != NULL && fraction >= 0.0;
-}
-
-static void *allocate_block(void *user, size_t size, size_t alignment) {
-    leaving_host *h = user;
-    cscd_allocator system = counting_allocator_interface(&h->counter);
-    perhaps_leave(h, HOST_ALLOCATOR);
-    return system.allocate(system.user, size, alignment);
-}
-
-static void release_block(void *user, void *block, size_t size) {
-    leaving_host *h = user;
-    cscd_allocator system = counting_allocator_interface(&h->counter);
-    system.release(system.user, block, size);
-}
-
-static void run_tasks_here(void *user, uint32_t task_count, void (*task)(void *data, uint32_t index),
-                           void *data) {
-    for (uint32_t i = 0; i < task_count; i++) {
-        task(data, i);
-        perhaps_leave(user, HOST_PARALLEL_FOR);
-    }
+static void leave_library(void *host) {
+    longjmp(((leaving_host *)host)->back, 1);
 }
 
 enum { SIDE = 40 };
 
-static const char *const names[] = {"the allocator", "parallel_for", "the progress function", "ignore"};
-
-static panel_scene make_panels(leaving_host *h, uint32_t thread_count) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_detector_options detector_options = cscd_detector_defaults();
-    detector_options.ignore = ignore_none;
-    detector_options.ignore_user = h;
-    h->counter = counting_allocator_start();
-    h->thread = pthread_self();
-    options.thread_count = thread_count;
-    options.allocator = (cscd_allocator){allocate_block, release_block, h};
-    options.progress = (cscd_progress){report_progress, h};
-    if (h->from == HOST_PARALLEL_FOR) options.parallel_for = (cscd_parallel_for){run_tasks_here, h};
-    panel_scene p = panels_create(SIDE, &options, &detector_options);
-    p.context->progress.interval_ms = 0.0;
-    return p;
+static void make_host(leaving_host *h, host_callback from, uint32_t thread_count) {
+    *h = (leaving_host){.host = {.from = from, .stop = leave_library}};
+    callback_host_open(&h->host, SIDE, thread_count);
 }
 
 /* ---- what is left in its midst ------------------------------------------------------------------------- */
@@ -101,29 +50,28 @@ static cscd_status make_call(const panel_scene *p, int what) {
 }
 
 /* True: the host has left the call. */
-static bool leave_call(leaving_host *h, const panel_scene *p, int what, uint32_t at) {
-    h->calls = 0;
-    h->at = at;
+static bool leave_call(leaving_host *h, int what, uint32_t at) {
+    h->host.calls = 0;
+    h->host.at = at;
     if (setjmp(h->back) != 0) {
-        h->at = 0;
+        h->host.at = 0;
         return true;
     }
-    assert_int_equal(make_call(p, what), CSCD_OK);
-    h->at = 0;
+    assert_int_equal(make_call(&h->host.p, what), CSCD_OK);
+    h->host.at = 0;
     return false;
 }
 
 /* Leaves one call of one kind at one place; false: there are fewer such places. */
 static bool leave_and_look(host_callback from, uint32_t thread_count, int what, uint32_t at) {
-    leaving_host h = {.from = from};
-    panel_scene p = make_panels(&h, thread_count);
-    bool left = leave_call(&h, &p, what, at);
+    leaving_host h;
+    make_host(&h, from, thread_count);
+    bool left = leave_call(&h, what, at);
     for (int next = 0; left && next < CALLS; next++) {
-        assert_int_equal(make_call(&p, next), CSCD_BROKEN);
-        assert_non_null(strstr(cscd_context_detail(p.context), names[from]));
+        assert_int_equal(make_call(&h.host.p, next), CSCD_BROKEN);
+        assert_non_null(strstr(cscd_context_detail(h.host.p.context), callback_host_name(from)));
     }
-    panels_destroy(&p);
-    assert_int_equal(h.counter.live, 0);
+    callback_host_close(&h.host);
     return left;
 }
 
@@ -170,55 +118,55 @@ static void *call_from_thread(void *argument) {
 
 /* Where frames tell nothing the context is busy; the first call that can tell marks it for all. */
 static void doubtful_calls_are_busy(void **state) {
-    leaving_host h = {.from = HOST_IGNORE};
-    panel_scene p = make_panels(&h, 2);
+    leaving_host h;
+    panel_scene *p = &h.host.p;
     pthread_t thread;
     void *status;
     (void)state;
-    assert_true(leave_call(&h, &p, 0, 3));
+    make_host(&h, HOST_IGNORE, 2);
+    assert_true(leave_call(&h, 0, 3));
     for (int marked = 0; marked < 2; marked++) {
         cscd_status expected = marked ? CSCD_BROKEN : CSCD_BUSY;
-        assert_int_equal(call_from_deep(&p, 8), expected);
-        assert_int_equal(pthread_create(&thread, NULL, call_from_thread, &p), 0);
+        assert_int_equal(call_from_deep(p, 8), expected);
+        assert_int_equal(pthread_create(&thread, NULL, call_from_thread, p), 0);
         assert_int_equal(pthread_join(thread, &status), 0);
         assert_int_equal(*(cscd_status *)status, expected);
-        assert_int_equal(make_call(&p, 0), CSCD_BROKEN);
+        assert_int_equal(make_call(p, 0), CSCD_BROKEN);
     }
-    panels_destroy(&p);
-    assert_int_equal(h.counter.live, 0);
+    callback_host_close(&h.host);
 }
 
 /* Nothing but destruction follows, which notices by itself. */
 static void destruction_alone(void **state) {
     (void)state;
     for (uint32_t threads = 1; threads < 4; threads++) {
-        leaving_host h = {.from = HOST_ALLOCATOR};
-        panel_scene p = make_panels(&h, threads);
-        assert_true(leave_call(&h, &p, 0, 4));
-        panels_destroy(&p);
-        assert_int_equal(h.counter.live, 0);
+        leaving_host h;
+        make_host(&h, HOST_ALLOCATOR, threads);
+        assert_true(leave_call(&h, 0, 4));
+        callback_host_close(&h.host);
     }
 }
 
 /* A mesh that another context uses outlives its own context, although that is broken. */
 static void shared_meshes_live_on(void **state) {
-    leaving_host h = {.from = HOST_IGNORE};
-    panel_scene p = make_panels(&h, 2), other = {.vertex_count = p.vertex_count};
+    leaving_host h;
     cscd_contacts found;
     (void)state;
+    make_host(&h, HOST_IGNORE, 2);
+    panel_scene *p = &h.host.p, other = {.vertex_count = p->vertex_count};
     assert_int_equal(cscd_context_create(NULL, &other.context), CSCD_OK);
-    assert_int_equal(cscd_detector_create(other.context, p.mesh, NULL, NULL, &other.detector), CSCD_OK);
-    assert_true(leave_call(&h, &p, 0, 3));
-    cscd_detector_destroy(p.detector);
-    cscd_mesh_destroy(p.mesh);
-    cscd_context_destroy(p.context);
-    other.x0 = p.x0;
-    other.x1 = p.x1;
+    assert_int_equal(cscd_detector_create(other.context, p->mesh, NULL, NULL, &other.detector), CSCD_OK);
+    assert_true(leave_call(&h, 0, 3));
+    cscd_detector_destroy(p->detector);
+    cscd_mesh_destroy(p->mesh);
+    cscd_context_destroy(p->context);
+    other.x0 = p->x0;
+    other.x1 = p->x1;
     assert_int_equal(panels_step(&other, &found), CSCD_OK);
     assert_int_equal(found.count, 12168);
-    assert_true(h.counter.live > 0);
+    assert_true(h.host.counter.live > 0);
     panels_destroy(&other);
-    assert_int_equal(h.counter.live, 0);
+    assert_int_equal(h.host.counter.live, 0);
 }
 
 int main(void) {

@@ -35,11 +35,15 @@ static inline bool ask_host(binding *host, cscd_contact_kind kind, uint32_t a, u
     return true;
 }
 
-static inline double barrier(double distance) {
+/* Functions of the reader's own. */
+#define barrier(distance)              barrier_energy(distance)
+#define mollifier(vertices, threshold) mollifier_factor(vertices, threshold)
+
+static inline double barrier_energy(double distance) {
     return distance < 1.0 ? -(distance - 1.0) * (distance - 1.0) * log(distance) : 0.0;
 }
 
-static inline double mollifier(const uint32_t vertices[4], double threshold) {
+static inline double mollifier_factor(const uint32_t vertices[4], double threshold) {
     return vertices != NULL && threshold >= 0.0 ? 1.0 : 0.0;
 }
 
@@ -50,7 +54,7 @@ static inline double energy_at(const double *x, const cscd_proximities *list) {
     return energy;
 }
 
-static void succeed(cscd_status status) {
+static void expect_success(cscd_status status) {
     if (status == CSCD_OK) return;
     fprintf(stderr, "%s: %s\n", cscd_status_string(status), cscd_context_detail(context));
     exit(1);
@@ -86,12 +90,12 @@ static void set_up(void) {
     place_sheets();
     const cscd_object_desc sheet = cscd_object_of_triangles(SHEET, 18, &triangles[0][0]);
     const cscd_object_desc sheets[2] = {sheet, sheet}, body = cscd_object_of_triangles(4, 4, faces);
-    succeed(cscd_context_create(NULL, &context));
-    succeed(cscd_mesh_create(context, sheets, 2, &mesh));
-    succeed(cscd_mesh_create(context, &body, 1, &tetrahedron));
-    succeed(cscd_detector_create(context, mesh, NULL, NULL, &detector));
-    succeed(cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), 0.9, CSCD_NEAR_UNIQUE, &near));
-    succeed(cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts));
+    expect_success(cscd_context_create(NULL, &context));
+    expect_success(cscd_mesh_create(context, sheets, 2, &mesh));
+    expect_success(cscd_mesh_create(context, &body, 1, &tetrahedron));
+    expect_success(cscd_detector_create(context, mesh, NULL, NULL, &detector));
+    expect_success(cscd_detector_find_near(detector, CSCD_DOUBLES(x0, n), 0.9, CSCD_NEAR_UNIQUE, &near));
+    expect_success(cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts));
 }
 
 static void tear_down(void) {
