@@ -13,6 +13,14 @@ namespace cscd {
 /* Leaves out pairs; see cscd_detector_options. It may throw. */
 using ignore_function = std::function<bool(cscd_contact_kind kind, std::uint32_t a, std::uint32_t b)>;
 
+namespace detail {
+
+inline const std::uint32_t *indices_of(span<const std::array<std::uint32_t, 2>> pairs) noexcept {
+    return pairs.empty() ? nullptr : pairs.data()->data();
+}
+
+} // namespace detail
+
 /* The members of cscd_detector_options, at their defaults. Set arrays by the functions; they are read when the
  * detector is made. */
 struct detector_options : cscd_detector_options {
@@ -21,11 +29,11 @@ struct detector_options : cscd_detector_options {
     detector_options() noexcept : cscd_detector_options(cscd_detector_defaults()) {
     }
     void set_ignored(span<const std::array<std::uint32_t, 2>> triangles) noexcept {
-        ignored = triangles.empty() ? nullptr : triangles.data()->data();
+        ignored = detail::indices_of(triangles);
         ignored_count = triangles.size();
     }
     void set_seams(span<const std::array<std::uint32_t, 2>> vertices) noexcept {
-        seams = vertices.empty() ? nullptr : vertices.data()->data();
+        seams = detail::indices_of(vertices);
         seam_count = vertices.size();
     }
 
@@ -99,6 +107,15 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         call([&] {
             return cscd_detector_set_rules(get(), rules.data(), count,
                                            matrix.empty() ? nullptr : matrix.data(), classes);
+        });
+    }
+    /* Pairs that come to be looked at again, and are too near, wait. */
+    void set_seams(span<const std::array<std::uint32_t, 2>> vertices) {
+        call([&] { return cscd_detector_set_seams(get(), detail::indices_of(vertices), vertices.size()); });
+    }
+    void set_ignored(span<const std::array<std::uint32_t, 2>> triangles) {
+        call([&] {
+            return cscd_detector_set_ignored(get(), detail::indices_of(triangles), triangles.size());
         });
     }
     void set_rest(const positions &rest) {

@@ -131,6 +131,7 @@ void simulation::project() {
     for (int pass = 0; pass < passes; pass++) {
         for (const spring &s : scene_.springs) keep_length(s);
         keep_ball();
+        for (const barrier &b : opening_) keep_apart(b);
         for (const barrier &b : barriers_) keep_apart(b);
         sew_seams();
     }
@@ -142,7 +143,7 @@ void simulation::collect_barriers(report &out) {
     const cscd::proximities near = detector_.find_near(positions_of(scene_.particles), reach);
     barriers_.clear();
     for (const cscd_proximity &p : near) {
-        out.least = std::min(out.least, p.distance / static_cast<double>(separation));
+        if (opening_.empty()) out.least = std::min(out.least, p.distance / static_cast<double>(separation));
         if (!certified_) continue;
         barrier b;
         for (std::size_t i = 0; i < 4; i++) {
@@ -180,6 +181,7 @@ double simulation::go_as_far() {
         if (!certified_) break;
         const cscd_free_step step = detector_.max_step(positions_of(scene_.particles), positions_of(wanted_),
                                                        cscd::view_of(reached_, &particle::position));
+        waiting_ = step.waiting;
         if (!step.limited || round == rounds) return step.fraction;
         add_barrier(step.limit);
     }
@@ -203,12 +205,29 @@ void simulation::take_step(report &out) {
     const cscd_counters counters = detector_.counters();
     const std::uint64_t culled = counters.plus + counters.minus;
     out.culled = out.steps == 1 ? culled : std::min(out.culled, culled);
+    if (waiting_ == 0) opening_.clear();
+    out.waiting = std::max(out.waiting, waiting_);
     take_reached();
     seconds_ += step_seconds;
 }
 
 void simulation::advance(report &out) {
     for (int i = 0; i < steps_per_frame; i++) take_step(out);
+}
+
+/* What was sewn is drawn apart, along x, until it has parted for good. */
+void simulation::open_seam() {
+    detector_.set_seams({});
+    for (const pair &seam : scene_.seams)
+        opening_.push_back(
+            {{seam[1], seam[0], seam[0], seam[0]}, {1.0f, -1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, margin});
+    scene_.seams.clear();
+}
+
+std::size_t simulation::count_all_intersections() {
+    const cscd::context context;
+    cscd::detector fresh(context, mesh_);
+    return fresh.check(positions_of(scene_.particles)).size();
 }
 
 std::size_t simulation::count_intersections() {

@@ -10,10 +10,12 @@ namespace panels {
 
 /* What happened since the last report. */
 struct report {
+    std::size_t waiting =
+        0; /* pairs that have not been apart since their seam was opened, most at one time */
     unsigned steps = 0;
     double motion = 0.0;      /* the sum of the shares of the wanted motions that were free */
     std::size_t near = 0;     /* pairs, most at one time */
-    double least = HUGE_VAL;  /* the least distance of a pair, in separations */
+    double least = HUGE_VAL;  /* the least distance of a pair, in separations, while none waits */
     std::uint64_t culled = 0; /* triangles of the ball that no pair is looked at for, least in a step */
 };
 
@@ -25,8 +27,14 @@ class simulation {
     /* Goes on by one frame. Throws cscd::error. */
     void advance(report &out);
 
-    /* Every pair of triangles that intersect, but neighbours at the seam. */
+    /* The panels are no longer sewn together. */
+    void open_seam();
+
+    /* Every pair of triangles that intersect, but neighbours at the seam, and pairs of an opened one that wait. */
     std::size_t count_intersections();
+
+    /* Every pair, by a detector that knows of no seam and of no earlier step. */
+    std::size_t count_all_intersections();
 
     const std::vector<particle> &particles() const {
         return scene_.particles;
@@ -36,6 +44,9 @@ class simulation {
     }
     std::uint32_t triangle_count() const {
         return mesh_.triangle_count();
+    }
+    std::size_t waiting() const {
+        return waiting_;
     }
     float seconds() const {
         return seconds_;
@@ -71,7 +82,8 @@ class simulation {
     cscd::detector detector_;
     bool certified_;
     std::vector<particle> wanted_, reached_;
-    std::vector<barrier> barriers_;
+    std::vector<barrier> barriers_, opening_;
+    std::size_t waiting_ = 0; /* pairs, at the last step */
     float seconds_ = 0.0f;
 };
 

@@ -99,6 +99,39 @@ void options(void **) {
         assert_int_equal(contact.kind, CSCD_CONTACT_VF);
 }
 
+/* Seams and ignored pairs come and go; what was sewn and touches waits. */
+void live_changes(void **) {
+    twins t;
+    const std::size_t all = t.compare_steps();
+    std::vector<std::array<std::uint32_t, 2>> ignored;
+    const cscd_contact first = t.ours.step(t.x0, t.x1)[0];
+    if (first.kind == CSCD_CONTACT_VF) {
+        for (std::uint32_t triangle : t.mesh.vertex_triangles(first.a))
+            ignored.push_back({triangle, first.b});
+    } else {
+        for (std::uint32_t triangle : t.mesh.edge_triangles(first.a))
+            ignored.push_back({triangle, t.mesh.edge_triangles(first.b)[0]});
+    }
+    t.ours.set_ignored(ignored);
+    assert_int_equal(cscd_detector_set_ignored(t.c, ignored[0].data(), ignored.size()), CSCD_OK);
+    assert_true(t.compare_steps() < all);
+    t.ours.set_ignored({});
+    assert_int_equal(cscd_detector_set_ignored(t.c, nullptr, 0), CSCD_OK);
+    assert_int_equal(t.compare_steps(), all);
+
+    std::vector<std::array<std::uint32_t, 2>> seams;
+    for (std::uint32_t v = 0; v < 100; v++) seams.push_back({v, 100 + v});
+    std::copy(t.x0.begin(), t.x0.begin() + 300, t.x0.begin() + 300);
+    t.ours.set_seams(seams);
+    assert_true(t.ours.step(t.x0, t.x0).empty());
+    t.ours.set_seams({});
+    const cscd::contacts none = t.ours.step(t.x0, t.x0);
+    assert_true(none.empty() && none.waiting > 0);
+    assert_true(t.ours.check(t.x0).waiting > 0);
+    const std::vector<std::array<std::uint32_t, 2>> wrong{{3, 3}};
+    assert_int_equal(error_of([&] { t.ours.set_seams(wrong); }).status(), CSCD_INVALID_ARGUMENT);
+}
+
 void rules(void **) {
     std::vector<cscd_object_rule> rules(2, cscd_object_rule_default());
     cscd::detector_options o;
@@ -215,11 +248,11 @@ void line_searches(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(steps),        cmocka_unit_test(culling),
-                                cmocka_unit_test(proximity),    cmocka_unit_test(contact_stencils),
-                                cmocka_unit_test(options),      cmocka_unit_test(rules),
-                                cmocka_unit_test(separation),   cmocka_unit_test(motions),
-                                cmocka_unit_test(bounds),       cmocka_unit_test(touching_starts),
-                                cmocka_unit_test(line_searches)};
+    const CMUnitTest tests[] = {cmocka_unit_test(steps),           cmocka_unit_test(culling),
+                                cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
+                                cmocka_unit_test(options),         cmocka_unit_test(live_changes),
+                                cmocka_unit_test(rules),           cmocka_unit_test(separation),
+                                cmocka_unit_test(motions),         cmocka_unit_test(bounds),
+                                cmocka_unit_test(touching_starts), cmocka_unit_test(line_searches)};
     return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
 }
