@@ -60,7 +60,7 @@
  *
  * cscd/research.h (methods to compare with) and cscd/sensors.h (particle sensors) are not included here.
  *
- * docs/guarantees.md has the promises and their reasons, docs/tutorials/ three complete programs.
+ * docs/guarantees.md has the promises and their reasons, docs/tutorials/ complete programs, cscd/cscd.hpp the library in C++17.
  */
 #ifndef CSCD_H
 #define CSCD_H
