@@ -33,9 +33,8 @@ static double least_distance(const feature_moment *m, double enough) {
 
 enum { POWERS_MAX = 64 };
 
-/* Returns the greatest rung below a distance, 0 if that is 0. A rung k is the product of powers ratio^(2^i) over the
- * bits of k, from the highest on, so that it has one value. */
-static double rung_below(const floor_ladder *ladder, double distance) {
+/* A rung k is the product of powers ratio^(2^i) over the bits of k, from the highest on, so that it has one value. */
+double separation_floor_rung(const floor_ladder *ladder, double distance) {
     double powers[POWERS_MAX], power = ladder->ratio, rung = ladder->distance;
     int count = 0;
     if (!(distance > 0.0) || rung < distance) return distance > 0.0 ? rung : 0.0;
@@ -70,7 +69,7 @@ double separation_floor_at(const double x[4][3], cscd_contact_kind kind, const f
     double finest = FLOOR_FINEST * local_query_extent_at_start(&local),
            sure = sure_distance(&local, ladder, ladder->distance * local.scale);
     if (!(sure > finest)) return 0.0;
-    double floor = rung_below(ladder, sure / local.scale);
+    double floor = separation_floor_rung(ladder, sure / local.scale);
     return floor * local.scale < finest ? 0.0 : floor;
 }
 

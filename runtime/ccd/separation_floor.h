@@ -14,6 +14,9 @@ typedef struct floor_ladder {
  * largest difference of a coordinate from that of the first point. */
 #define FLOOR_FINEST 0x1p-40
 
+/* Returns the greatest rung below a distance, 0 if that is 0. */
+double separation_floor_rung(const floor_ladder *ladder, double distance);
+
 /* The floor of features at rest in these positions: the greatest rung that their distance surely exceeds, or 0. It
  * depends on nothing else, and a common translation changes the differences only, that is, nothing but rounding. */
 double separation_floor_at(const double x[4][3], cscd_contact_kind kind, const floor_ladder *ladder);
