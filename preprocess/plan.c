@@ -198,6 +198,9 @@ static cscd_status plan_from_positions(const cscd_mesh *mesh, const double *posi
                                        const cscd_plan_options *options, cscd_plan **out) {
     cscd_context *context = mesh->context;
     draft d = {.mesh = mesh, .positions = positions, .options = *options};
+    if (mesh->triangle_count == 0)
+        return context_fail(context, CSCD_INVALID_MESH,
+                            "the mesh has no triangles, so there is nothing to plan");
     cscd_status status = positions_check(context, positions, mesh->vertex_count, "positions");
     if (status != CSCD_OK) return status;
     d.regions = context_allocate(context, mesh->triangle_count, sizeof *d.regions);

@@ -11,7 +11,8 @@
  *               fails and names array, vertex and coordinate
  *   units       any one unit of length; nothing inside depends on it. A length is 0 or from 2^-300 to 2^300
  *   time        fraction of the interval: 0 is its start, 1 its end. Timings are milliseconds of wall clock
- *   features    vertices, edges and faces (triangles), borders included; indices begin at 0
+ *   features    vertices, edges and faces (triangles), borders included; wires are edges, and cscd_object_kind has
+ *               points and half-spaces. Indices begin at 0
  *   contact     two features without a common vertex touch during the interval or, with a minimum separation,
  *               come within it. Features in contact at the start are reported at time 0
  *   ownership   the library copies what it is given. What a _create function makes, one _destroy call gives back,

@@ -61,18 +61,20 @@ typedef enum cscd_volume {
 CSCD_API const char *cscd_volume_name(cscd_volume volume);
 CSCD_API bool cscd_volume_from_name(const char *name, cscd_volume *out);
 
-/* A vertex and a face, or two edges; for the static check two triangles; in lists of proximities without
- * repetitions also two vertices, and an edge and a vertex. Later versions may add values. */
+/* A vertex and a face, or two edges; for the static check two triangles; with points and wires, and in lists of
+ * proximities without repetitions, also two vertices, and an edge and a vertex; a vertex and a half-space. Later
+ * versions may add values. */
 typedef enum cscd_contact_kind {
     CSCD_CONTACT_VF,
     CSCD_CONTACT_EE,
     CSCD_CONTACT_TT,
     CSCD_CONTACT_VV,
     CSCD_CONTACT_EV,
+    CSCD_CONTACT_VH,
     CSCD_CONTACT_KIND_MAX_ENUM = 0x7fffffff
 } cscd_contact_kind;
 
-/* The names are "vf", "ee", "tt", "vv" and "ev"; static storage, never NULL. */
+/* The names are "vf", "ee", "tt", "vv", "ev" and "vh"; static storage, never NULL. */
 CSCD_API const char *cscd_contact_kind_name(cscd_contact_kind kind);
 
 /* What one object has to do with the others; start from cscd_object_rule_default. It never grows. */
@@ -187,13 +189,18 @@ CSCD_API const cscd_mesh *cscd_detector_mesh(const cscd_detector *detector);
 /* A contact: two features, when they touch, and where. u and v name the points that touch at time toi or,
  * with min_separation, the nearest points then:
  *   VF  a is a vertex, b a triangle (p0, p1, p2); the point on it is (1-u-v) p0 + u p1 + v p2
- *   EE  a < b are edges; the points are (1-u) a0 + u a1 and (1-v) b0 + v b1 */
+ *   EE  a < b are edges; the points are (1-u) a0 + u a1 and (1-v) b0 + v b1
+ *   VV  a < b are points
+ *   EV  a is a wire, b a point; the point on the wire is (1-u) a0 + u a1
+ *   VH  a is a vertex, b a half-space, by its object; its point is the one below the vertex. At time 0 the vertex
+ *       may be anywhere behind the plane */
 typedef struct cscd_contact {
     cscd_contact_kind kind;
-    uint32_t a, b;        /* vertex and triangle, or two edges, in the numbering of the mesh */
+    uint32_t a, b;        /* two features, in the numbering of the mesh */
     bool bounded;         /* only with min_separation: the limit of work was reached, so toi is safe but may
                            * be early, and the pair may stay farther apart than min_separation */
-    uint32_t vertices[4]; /* VF: the vertex, then the triangle's three; EE: the two of a, then those of b */
+    uint32_t vertices[4]; /* VF: the vertex, then the triangle's three; EE: the two of a, then those of b;
+                           * other kinds: see cscd_stencil */
     double toi;           /* time of impact in [0,1], never after the true time; without min_separation it is
                        * before it by less than 1e-9 */
     double u, v;          /* in [0,1], up to rounding */
@@ -241,8 +248,8 @@ typedef struct cscd_intersections {
 } cscd_intersections;
 
 /* The static check: lists exactly the triangle pairs that intersect or touch at the given positions
- * (docs/theory/static-check.md). A step that starts at positions that were checked need not check them
- * again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; the counters stay those of
+ * (docs/theory/static-check.md); of wires, points and half-spaces it says nothing. A step that starts at positions
+ * that were checked need not check them again. CANCELLED: see cscd_progress. Of the timings only check_ms changes; the counters stay those of
  * the last step. */
 CSCD_API cscd_status cscd_detector_check_sized(cscd_detector *detector, const cscd_view *positions,
                                                cscd_intersections *out, size_t size);
@@ -334,8 +341,8 @@ typedef struct cscd_counters {
     uint64_t pcp;              /* potentially colliding pairs: triangle pairs whose volumes overlap */
     uint64_t adjacent;         /* those of them that share a vertex and were left out, because other pairs
                                 * test their features (not so in the published methods) */
-    uint64_t feature_pairs;    /* VF and EE pairs whose own volumes overlap, each counted once; with BRUTE
-                                * all */
+    uint64_t feature_pairs;    /* pairs of features whose own volumes overlap, each counted once; with
+                                * BRUTE all */
     uint64_t tests;            /* elementary tests, one for each of these feature pairs */
     uint64_t by_signs;         /* tests that orientation signs have rejected */
     uint64_t by_roots;         /* tests that intervals around the roots of the coplanarity cubic have
@@ -343,7 +350,8 @@ typedef struct cscd_counters {
     uint64_t by_exact;         /* tests that took exact arithmetic; the three add up to all tests, and with
                                 * min_separation they are 0 */
     uint64_t vf, ee;           /* contacts reported */
-    uint64_t bounded;          /* those of them that are marked as bounded */
+    uint64_t bounded;          /* contacts that are marked as bounded */
+    uint64_t loose;            /* contacts of other kinds reported: VV, EV and VH */
 } cscd_counters;
 
 /* The timings of the last step, and of the last check. */

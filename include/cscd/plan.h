@@ -57,7 +57,8 @@ static inline cscd_plan_options cscd_plan_defaults(void) {
  * system: it takes 4 bytes for each pair of triangles of the largest component, and time with the cube of
  * their number. libcscd.so opens libcscd-charge.so for it, beside itself or where the system looks; libcscd.a has
  * it inside. OUT_OF_MEMORY: the sentence gives the amount. SYSTEM_ERROR: there is no libcscd-charge.so, or one of
- * another version; plans from parts do not need it. CANCELLED: see cscd_progress. Obstacles are left whole. */
+ * another version; plans from parts do not need it. CANCELLED: see cscd_progress. Obstacles are left whole. INVALID_MESH: it has no
+ * triangles; wires, points and half-spaces beside them do not matter. */
 CSCD_API cscd_status cscd_plan_create(cscd_context *context, const cscd_mesh *mesh,
                                       const cscd_view *positions, const cscd_plan_options *options,
                                       cscd_plan **out);

@@ -46,7 +46,8 @@ static inline cscd_partition_options cscd_partition_defaults(void) {
 }
 
 /* Creates the partition of a mesh, and keeps the mesh. plan: a plan of the same mesh, which may be
- * destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. */
+ * destroyed afterwards, or NULL. positions: the mesh at rest. options may be NULL. INVALID_MESH: it has objects
+ * that are not of triangles. */
 CSCD_API cscd_status cscd_partition_create(cscd_context *context, const cscd_mesh *mesh,
                                            const cscd_plan *plan, const cscd_view *positions,
                                            const cscd_partition_options *options, cscd_partition **out);

@@ -17,7 +17,10 @@ extern "C" {
  *   VF  the vertex a, then the triangle's three vertices; weights 1, -(1-u-v), -u, -v
  *   EE  the two vertices of a, then those of b; weights 1-u, u, -(1-v), -v
  *   VV  the vertex a, then b three times; weights 1, -1, 0, 0
- *   EV  the two vertices of a, then the vertex b twice; weights 1-u, u, -1, 0 */
+ *   EV  the two vertices of a, then the vertex b twice; weights 1-u, u, -1, 0
+ *   VH  the vertex a, then the half-space's point three times; weights 1, -1, 0, 0. The sum is the vector from
+ *       this point; its part along the normal is the distance, so the gradient is that of the others: weights
+ *       times normal */
 typedef struct cscd_stencil {
     uint32_t vertices[4];
     double weights[4];
@@ -34,12 +37,13 @@ CSCD_API cscd_stencil cscd_mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind
  * points. */
 typedef struct cscd_proximity {
     cscd_contact_kind kind;
-    uint32_t a, b;        /* VF: vertex and triangle. EE: edges a < b. VV: vertices a < b. EV: edge, vertex */
+    uint32_t a, b;        /* VF: vertex and triangle. EE: edges a < b. VV: vertices a < b. EV: edge, vertex.
+                           * VH: vertex, object */
     uint32_t count;       /* how many pairs of features it stands for: */
     uint32_t vf_count;    /* so many of a vertex and a face */
-    uint32_t ee_count;    /* and so many of two edges */
+    uint32_t ee_count;    /* and so many of two edges; the others are of points with points or wires, or VH */
     uint32_t vertices[4]; /* and weights: see cscd_stencil */
-    double distance;      /* between the nearest points */
+    double distance;      /* between the nearest points; VH: the height above the plane, below 0 behind it */
     double u, v;          /* in [0,1], as in cscd_contact; EV: u names the point on the edge. Exactly 0 or 1
                            * where a nearest point lies on the border of a feature */
     double weights[4];
@@ -72,8 +76,8 @@ typedef struct cscd_proximity {
  *     } // its gradient has count * mollifier * barrier'(distance) * weights[k] * normal at vertices[k]
  */
 typedef enum cscd_near_form {
-    CSCD_NEAR_PAIRS,  /* every pair of features, VF and EE; counts are 1 */
-    CSCD_NEAR_UNIQUE, /* no two items with the same nearest features: VF, EE, VV and EV */
+    CSCD_NEAR_PAIRS,  /* every pair of features, also those of points and half-spaces; counts are 1 */
+    CSCD_NEAR_UNIQUE, /* no two items with the same nearest features: VF, EE, VV, EV and VH */
     CSCD_NEAR_FORM_MAX_ENUM = 0x7fffffff
 } cscd_near_form;
 
@@ -318,7 +322,8 @@ CSCD_API const cscd_detector *cscd_line_search_detector(const cscd_line_search *
 CSCD_API cscd_status cscd_line_search_begin(cscd_line_search *search, const cscd_view *x0,
                                             const cscd_view *x1, double reach);
 
-/* The number of candidates: VF and EE pairs whose volumes come near each other. */
+/* The number of candidates: pairs of features whose volumes come near each other. Half-spaces have none: every
+ * vertex is tested with them each time. */
 CSCD_API size_t cscd_line_search_candidate_count(const cscd_line_search *search);
 
 /* Writes the positions at `fraction` in [0,1]: x0 + fraction (x1 - x0), rounded; x0 and x1 themselves at 0

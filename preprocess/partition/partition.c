@@ -145,6 +145,10 @@ static cscd_status create_partition(cscd_context *context, const cscd_mesh *mesh
         status = struct_take_options(context, &chosen, sizeof chosen, LEAST_SIZE(cscd_partition_options),
                                      options, "cscd_partition_defaults");
     if (status == CSCD_OK) status = check_options(context, &chosen);
+    if (status == CSCD_OK && mesh_has_loose_objects(mesh))
+        status =
+            context_fail(context, CSCD_INVALID_MESH,
+                         "a partition is of triangles alone, but the mesh has wires, points or half-spaces");
     if (status == CSCD_OK) status = check_plan(context, mesh, plan);
     if (status == CSCD_OK) status = views_read(context, mesh, positions, "positions", &buffer, &x);
     if (status == CSCD_OK) status = partition_at(&seen, plan, x, &chosen, out);

@@ -69,7 +69,7 @@ static cscd_status allocate_graph(const cscd_mesh *mesh, uint32_t link_count, du
 /* One link less than triangles for each edge; and as many between patches as join them to components, which
  * together are fewer than triangles. */
 static size_t link_count_bound(const cscd_mesh *mesh) {
-    return (size_t)mesh->triangle_count * 4 - mesh->edge_count;
+    return (size_t)mesh->triangle_count * 4 - (mesh->edge_count - mesh->loose.wire_count);
 }
 
 cscd_status dual_graph_build(const cscd_mesh *mesh, dual_graph *out) {

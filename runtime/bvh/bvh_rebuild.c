@@ -66,6 +66,7 @@ static bool same_growth(const volume_growth *a, const volume_growth *b) {
 /* The first volumes are widened as for a step, so that the first spread can be compared with later ones. */
 static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
                                   volume_growth growth, volume_growth step_growth) {
+    if (r->mesh->triangle_count == 0) return CSCD_OK;
     if (f->mesh == NULL) {
         cscd_status status = build_trees(r, x0, f);
         if (status != CSCD_OK) return status;
@@ -100,6 +101,7 @@ static void measure_trees(bvh_rebuild *r, bvh *f, const double *x0, const double
 cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
                              volume_growth step_growth) {
     r->rebuilt = false;
+    if (r->mesh->triangle_count == 0) return CSCD_OK;
     bool due = ++r->intervals_unmeasured >= (uint32_t)MEASURE_EVERY << r->useless_rebuilds;
     cscd_status status = refit_or_build(r, f, x0, x1, due ? step_growth : growth, step_growth);
     if (status != CSCD_OK || !due) return status;

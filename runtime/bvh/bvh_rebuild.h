@@ -28,7 +28,8 @@ typedef struct bvh_rebuild {
  * A refit keeps together what was near when the trees were built. So the spread is measured every 16th interval; where
  * it has grown by a quarter, the trees are rebuilt from x0. After a rebuild that was of no use the next measurement
  * waits twice as long. Spreads are compared with volumes that are widened by step_growth, whatever the growth.
- * All this depends on positions alone. Without memory for new trees the old ones stay. */
+ * All this depends on positions alone. Without memory for new trees the old ones stay. A mesh
+ * without triangles has no trees. */
 cscd_status bvh_rebuild_move(bvh_rebuild *r, bvh *f, const double *x0, const double *x1, volume_growth growth,
                              volume_growth step_growth);
 

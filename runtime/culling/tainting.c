@@ -25,9 +25,17 @@ static uint32_t taint_edge(const tainting *t, uint32_t edge) {
     return taint_star(t, mesh->edge_stars + mesh->edge_star_offsets[edge], edge_star_size(mesh, edge));
 }
 
-/* Returns the component that both features belong to; UINT32_MAX if they belong to different ones. */
+/* Does a feature belong to no triangle? */
+static bool is_loose(const cscd_mesh *mesh, const cscd_contact *contact) {
+    if (contact->kind == CSCD_CONTACT_VF) return vertex_has_no_triangle(mesh, contact->a);
+    return contact->kind != CSCD_CONTACT_EE || edge_is_loose(mesh, contact->a) ||
+           edge_is_loose(mesh, contact->b);
+}
+
+/* Returns the component that both features belong to; UINT32_MAX if they do not belong to one. */
 static uint32_t common_component(const cscd_mesh *mesh, const cscd_contact *contact) {
     bool vf = contact->kind == CSCD_CONTACT_VF;
+    if (is_loose(mesh, contact)) return UINT32_MAX;
     uint32_t first = vf ? mesh->vertex_stars[mesh->vertex_star_offsets[contact->a]]
                         : mesh->edge_stars[mesh->edge_star_offsets[contact->a]];
     uint32_t second = vf ? contact->b : mesh->edge_stars[mesh->edge_star_offsets[contact->b]];

@@ -95,9 +95,10 @@ static void add_lane(const contact_lane *lane, cscd_counters *counters) {
 }
 
 static void add_contact(const cscd_contact *contact, cscd_counters *counters) {
-    bool vf = contact->kind == CSCD_CONTACT_VF;
+    bool vf = contact->kind == CSCD_CONTACT_VF, ee = contact->kind == CSCD_CONTACT_EE;
     counters->vf += vf;
-    counters->ee += !vf;
+    counters->ee += ee;
+    counters->loose += !vf && !ee;
     counters->bounded += contact->bounded;
 }
 

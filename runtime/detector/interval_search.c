@@ -1,6 +1,7 @@
 /* The search of one interval: from the trees, refitted to it, to the lanes' contacts. */
 #include "runtime/detector/interval_search.h"
 
+#include "runtime/loose/loose_search.h"
 #include "runtime/narrow_phase/brute_force.h"
 #include "src/core/timer.h"
 
@@ -54,6 +55,7 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
     search_space *space = search->space;
     double since = timer_now_ms(), together = 0.0;
     bool last = pass == TRAVERSAL_NEWLY_KEPT;
+    if (space->bvh.mesh == NULL) return CSCD_OK; /* there are no triangles */
     progress_stage(&space->context->progress, last ? "further passes" : "traversal", last ? 0.9 : 0.3,
                    last ? 1.0 : 0.9);
     traversal_begin(&space->traversal, &space->bvh, pass);
@@ -116,12 +118,40 @@ cscd_status interval_search_everything(interval_search *search) {
     return search_space_status(space);
 }
 
+/* ---- loose features ------------------------------------------------------------------------------------ */
+
+static void test_loose_features(void *data, uint32_t index) {
+    interval_search *search = data;
+    const search_space *space = search->space;
+    const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
+    loose_search_test(&loose, index, &space->lanes[index]);
+    half_spaces_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
+    narrow_phase_finish(&search->interval, &space->lanes[index]);
+}
+
+cscd_status interval_search_loose(interval_search *search) {
+    search_space *space = search->space;
+    if (!mesh_has_loose_objects(space->mesh)) return CSCD_OK;
+    double since = timer_now_ms();
+    loose_elements_move(&space->loose, &search->interval);
+    timer_lap(&since, &search->timings.update_ms);
+    progress_stage(&space->context->progress, "loose features", 0.9, 1.0);
+    parallel_run(space->context->threads, space->traversal.lane_count, test_loose_features, search);
+    timer_lap(&since, &search->timings.contact_ms);
+    cscd_status status = search_space_status(space);
+    return status == CSCD_OK ? context_progress_status(space->context) : status;
+}
+
 /* ---- without trees ------------------------------------------------------------------------------------- */
 
 static void test_share_of_pairs(void *data, uint32_t index) {
     interval_search *search = data;
-    brute_force_test(&search->interval, index, search->space->traversal.lane_count,
-                     &search->space->lanes[index]);
+    const search_space *space = search->space;
+    const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
+    brute_force_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
+    loose_search_test_all(&loose, index, &space->lanes[index]);
+    half_spaces_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
+    narrow_phase_finish(&search->interval, &space->lanes[index]);
 }
 
 cscd_status interval_search_by_brute_force(interval_search *search) {

@@ -22,6 +22,10 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
  * test their features, and orphan pairs are tested separately. */
 cscd_status interval_search_everything(interval_search *search);
 
+/* Tests the pairs of loose features, with triangles, with each other, and vertices with half-spaces. The trees have been
+ * refitted. No other function here does, but brute force. */
+cscd_status interval_search_loose(interval_search *search);
+
 /* Skips the pairs of adjacent triangles of all components, or of none. */
 void interval_search_skip_adjacent(interval_search *search, bool everywhere);
 

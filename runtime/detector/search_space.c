@@ -6,6 +6,7 @@ cscd_status search_space_create(const cscd_mesh *mesh, search_space *out) {
     search_space s = {.context = mesh->context, .mesh = mesh};
     cscd_status status = traversal_create(s.context, &s.traversal);
     if (status == CSCD_OK) status = representatives_create(mesh, &s.representatives);
+    if (status == CSCD_OK) status = loose_elements_create(mesh, &s.loose);
     if (status == CSCD_OK) {
         s.lanes = context_allocate(s.context, s.traversal.lane_count, sizeof *s.lanes);
         s.skipped = context_allocate(s.context, mesh->component_count, sizeof *s.skipped);
@@ -35,6 +36,7 @@ void search_space_destroy(search_space *s) {
     bvh_free(&s->bvh);
     representatives_free(s->context, &s->representatives);
     orphan_pairs_free(s->context, &s->orphans);
+    loose_elements_destroy(&s->loose);
     context_free(s->context, s->skipped);
     *s = (search_space){.context = NULL};
 }

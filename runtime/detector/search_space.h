@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/bvh/traversal.h"
+#include "runtime/loose/loose_elements.h"
 #include "runtime/narrow_phase/contact_lane.h"
 #include "runtime/narrow_phase/orphan_pairs.h"
 #include "runtime/narrow_phase/pair_rules.h"
@@ -19,6 +20,7 @@ typedef struct search_space {
     orphan_pairs
         orphans; /* made by the first search that skips adjacent triangles, unless there are too many */
     bool orphans_known, orphans_usable;
+    loose_elements loose;
     bool *skipped; /* per component: pairs of its adjacent triangles are not traversed */
 } search_space;
 

@@ -212,6 +212,10 @@ static cscd_status search_every_feature_pair(step_work *work) {
     return interval_search_by_brute_force(&work->search);
 }
 
+static cscd_status test_loose_features(step_work *work) {
+    return interval_search_loose(&work->search);
+}
+
 static cscd_status collect_contacts(step_work *work) {
     cscd_detector *d = work->detector;
     work->search.counters.rebuilds = d->rebuild.rebuilt;
@@ -232,6 +236,7 @@ static step_stage *const stages_by_trees[] = {
     orient_triangles,       /* from which side does each detector point see its triangles? */
     traverse_pairs,         /* triangle pairs, feature pairs, contacts */
     close_contacts,         /* pairs that these contacts uncover */
+    test_loose_features,    /* wires, points and half-spaces */
     collect_contacts,       /* one sorted list */
     NULL};
 

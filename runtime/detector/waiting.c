@@ -1,6 +1,7 @@
 /* Pairs that wait on a live detector: what a change of seams, ignored pairs or rules uncovers while it touches. */
 #include "runtime/detector/waiting.h"
 
+#include "runtime/loose/loose_search.h"
 #include "src/mesh/triangle_intersection.h"
 
 /* The positions that pairs are looked at, and what is left out there without those that wait. */
@@ -21,29 +22,13 @@ static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set
 /* One thread looks at so many pairs at a time. */
 enum { PAIRS_PER_TASK = 1024 };
 
-static bool components_meet(const swept_interval *interval, uint32_t a, uint32_t b) {
-    const cscd_mesh *mesh = interval->mesh;
-    if (interval->rules != NULL) return components_look(interval, a, b);
-    return !component_is_obstacle(mesh, a) || !component_is_obstacle(mesh, b);
-}
-
 static bool is_left_out(const settling *s, const named_pair *pair) {
-    const cscd_mesh *mesh = s->detector->mesh;
-    const swept_interval *interval = &s->search.interval;
-    const uint32_t *components = mesh->triangle_components;
-    uint32_t a = pair->a, b = pair->b;
-    switch (pair->kind) {
-    case CSCD_CONTACT_VF:
-        if (!components_meet(interval, vertex_component(mesh, a), components[b])) return true;
-        break;
-    case CSCD_CONTACT_EE:
-        if (!components_meet(interval, edge_component(mesh, a), edge_component(mesh, b))) return true;
-        break;
-    default:
-        return !components_meet(interval, components[a], components[b]) ||
-               exclusions_cover_triangles(&s->others, a, b, s->x);
-    }
-    return exclusions_cover_features(&s->others, (cscd_contact_kind)pair->kind, a, b);
+    cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
+    uint32_t objects[2];
+    mesh_objects_of_pair(s->detector->mesh, kind, pair->a, pair->b, objects);
+    if (!objects_look(&s->search.interval, objects[0], objects[1])) return true;
+    if (kind == CSCD_CONTACT_TT) return exclusions_cover_triangles(&s->others, pair->a, pair->b, s->x);
+    return exclusions_cover_features(&s->others, kind, pair->a, pair->b);
 }
 
 static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane) {
@@ -51,9 +36,9 @@ static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
     pair->marked = 0;
     if (is_left_out(s, pair)) return;
-    if (pair->kind == CSCD_CONTACT_VF) narrow_phase_test_vf(interval, pair->a, pair->b, lane);
-    if (pair->kind == CSCD_CONTACT_EE) narrow_phase_test_ee(interval, pair->a, pair->b, lane);
-    if (pair->kind == CSCD_CONTACT_TT)
+    if (pair->kind != CSCD_CONTACT_TT)
+        loose_search_test_pair(interval, (cscd_contact_kind)pair->kind, pair->a, pair->b, lane);
+    else
         pair->marked = triangles_intersect(triangles[pair->a], triangles[pair->b], s->x);
 }
 
@@ -129,8 +114,9 @@ static cscd_status search_at_rest(settling *s) {
     cscd_status status =
         bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, s->x, detector_growth(d), detector_growth(d));
     if (status != CSCD_OK) return status;
-    return d->stages->brute_force ? interval_search_by_brute_force(&s->search)
-                                  : interval_search_everything(&s->search);
+    if (d->stages->brute_force) return interval_search_by_brute_force(&s->search);
+    status = interval_search_everything(&s->search);
+    return status == CSCD_OK ? interval_search_loose(&s->search) : status;
 }
 
 static cscd_status find_touching(settling *s) {

@@ -143,6 +143,7 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
     traversal *t = work->traversal;
     assert(check->lane_count == t->lane_count);
     parallel_run(context->threads, check->lane_count, count_zero_area, work);
+    if (check->mesh->triangle_count == 0) return CSCD_OK;
     bvh_skip_adjacent(f, NULL);
     traversal_begin(t, f, pass);
     for (bool more = true; more;) {

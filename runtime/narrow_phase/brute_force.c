@@ -1,12 +1,7 @@
-/* Every pair of features that share no vertex: the reference that the other methods must equal. */
+/* Every pair of features of triangles that share no vertex: the reference that the other methods must equal. */
 #include "runtime/narrow_phase/brute_force.h"
 
 #include "runtime/narrow_phase/swept_box.h"
-
-/* A vertex without a triangle is no feature of the surface. */
-static bool in_surface(const cscd_mesh *mesh, uint32_t vertex) {
-    return mesh->vertex_star_offsets[vertex + 1] > mesh->vertex_star_offsets[vertex];
-}
 
 /* Is a component looked at with all others, and with itself? */
 static bool meets_all(const swept_interval *interval, uint32_t component) {
@@ -26,7 +21,7 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
     uint32_t component = mesh->triangle_components[triangle];
     bool all = meets_all(interval, component);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        if (triangle_contains(corners, v) || !in_surface(mesh, v)) continue;
+        if (triangle_contains(corners, v) || vertex_has_no_triangle(mesh, v)) continue;
         if (!all && !may_meet(interval, component, vertex_component(mesh, v))) continue;
         lane->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
@@ -38,12 +33,13 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
 static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
     const uint32_t *ends_a = mesh->edges[a];
+    if (edge_is_loose(mesh, a)) return;
     swept_box box_a = swept_box_of(interval, ends_a, 2);
     uint32_t component = edge_component(mesh, a);
     bool all = meets_all(interval, component);
     for (uint32_t b = a + 1; b < mesh->edge_count; b++) {
         const uint32_t *ends_b = mesh->edges[b];
-        if (edges_share_vertex(ends_a, ends_b)) continue;
+        if (edges_share_vertex(ends_a, ends_b) || edge_is_loose(mesh, b)) continue;
         if (!all && !may_meet(interval, component, edge_component(mesh, b))) continue;
         lane->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);

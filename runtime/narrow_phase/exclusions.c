@@ -206,7 +206,7 @@ static bool any_pair_listed(const exclusions *e, triangle_list a, triangle_list 
 }
 
 static bool features_listed(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (e->ignored_count == 0) return false;
+    if (e->ignored_count == 0 || (kind != CSCD_CONTACT_VF && kind != CSCD_CONTACT_EE)) return false;
     if (kind == CSCD_CONTACT_VF) return any_pair_listed(e, vertex_star(e->mesh, a), (triangle_list){&b, 1});
     return any_pair_listed(e, edge_star(e->mesh, a), edge_star(e->mesh, b));
 }
@@ -221,14 +221,21 @@ static bool share_name(const uint32_t *names, const uint32_t *a, int a_count, co
     return false;
 }
 
-bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+/* Do two features have vertices of one seam? A half-space has its point. */
+static bool in_one_seam(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     const cscd_mesh *mesh = e->mesh;
-    bool vf = kind == CSCD_CONTACT_VF;
+    bool edge_a = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
+    const uint32_t *of_a = edge_a ? mesh->edges[a] : &a;
+    const uint32_t *of_b = kind == CSCD_CONTACT_VF   ? mesh->triangles[b]
+                           : kind == CSCD_CONTACT_EE ? mesh->edges[b]
+                           : kind == CSCD_CONTACT_VH ? &mesh->objects[b].first_vertex
+                                                     : &b;
+    int count_b = kind == CSCD_CONTACT_VF ? 3 : kind == CSCD_CONTACT_EE ? 2 : 1;
+    return share_name(e->names, of_a, edge_a ? 2 : 1, of_b, count_b);
+}
+
+bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     if (is_waiting(e, kind, a, b)) return true;
-    if (e->names != NULL) {
-        if (vf ? share_name(e->names, &a, 1, mesh->triangles[b], 3)
-               : share_name(e->names, mesh->edges[a], 2, mesh->edges[b], 2))
-            return true;
-    }
+    if (e->names != NULL && in_one_seam(e, kind, a, b)) return true;
     return features_listed(e, kind, a, b) || host_ignores(e, kind, a, b);
 }

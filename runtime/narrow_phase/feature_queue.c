@@ -5,9 +5,25 @@
 
 #include <assert.h>
 
+/* A point is an edge behind all others, so it is the second one; with another point it may be the first, too. Its own
+ * parameter says nothing. */
+static void add_contact_of_point(const cscd_mesh *mesh, uint32_t a, uint32_t b,
+                                 const elementary_contact *contact, bool bounded, contact_lane *lane) {
+    bool points = edge_is_point(mesh, a);
+    elementary_contact where = *contact;
+    where.u = points ? 0.0 : where.u;
+    where.v = 0.0;
+    contact_lane_add(mesh->context, lane, points ? CSCD_CONTACT_VV : CSCD_CONTACT_EV,
+                     points ? mesh->edges[a][0] : a, mesh->edges[b][0], &where, bounded);
+}
+
 static void add_contact(const swept_interval *interval, cscd_contact_kind kind, const feature_pairs *pairs,
                         uint32_t i, const elementary_contact *contact, bool bounded, contact_lane *lane) {
-    contact_lane_add(interval->mesh->context, lane, kind, pairs->a[i], pairs->b[i], contact, bounded);
+    const cscd_mesh *mesh = interval->mesh;
+    if (kind == CSCD_CONTACT_EE && edge_is_point(mesh, pairs->b[i]))
+        add_contact_of_point(mesh, pairs->a[i], pairs->b[i], contact, bounded, lane);
+    else
+        contact_lane_add(mesh->context, lane, kind, pairs->a[i], pairs->b[i], contact, bounded);
 }
 
 /* Fills up the last eight with the last pair. */

@@ -37,6 +37,11 @@ static double longest_edge_at(const cscd_mesh *mesh, const double *positions, ui
                 longest = fmax(longest, surface_edge_length(mesh, positions, edges[k]));
         }
     }
+    const loose_objects *loose = &mesh->loose;
+    for (uint32_t i = 0; i < wires_at_vertex(mesh, vertex); i++) {
+        uint32_t wire = loose->wire_stars[loose->wire_star_offsets[vertex] + i];
+        longest = fmax(longest, surface_edge_length(mesh, positions, wire));
+    }
     return longest;
 }
 

@@ -53,6 +53,26 @@ static inline bool components_look(const swept_interval *interval, uint32_t a, u
     return pair_rules_look_at(interval->rules, objects[a], objects[b]);
 }
 
+/* The same for two objects that need not be of triangles. */
+static inline bool objects_look(const swept_interval *interval, uint32_t a, uint32_t b) {
+    const cscd_object *objects = interval->mesh->objects;
+    if (interval->rules == NULL) return !objects[a].obstacle || !objects[b].obstacle;
+    return pair_rules_look_at(interval->rules, a, b);
+}
+
+/* With rules, the object of a vertex, and that of an edge or a point behind the edges. */
+static inline uint32_t object_of_vertex(const swept_interval *interval, uint32_t vertex) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (vertex_has_no_triangle(mesh, vertex)) return cscd_mesh_vertex_object(mesh, vertex);
+    return interval->rules->component_objects[vertex_component(mesh, vertex)];
+}
+
+static inline uint32_t object_of_edge(const swept_interval *interval, uint32_t edge) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (edge_is_loose(mesh, edge)) return cscd_mesh_vertex_object(mesh, mesh->edges[edge][0]);
+    return interval->rules->component_objects[edge_component(mesh, edge)];
+}
+
 /* How far two objects have to stay apart, and how exactly. */
 static inline separation object_separation(const swept_interval *interval, uint32_t a, uint32_t b) {
     if (!interval->thick) return interval->limit;
@@ -61,16 +81,18 @@ static inline separation object_separation(const swept_interval *interval, uint3
     return separation_limit(distance, interval->tolerance);
 }
 
-/* How far vertex a and triangle b, or the edges a and b, have to stay apart. */
+/* How far features a and b, as in cscd_contact, have to stay apart. Points may be named as edges. */
 static inline separation pair_separation(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                          uint32_t b) {
     if (!interval->thick) return interval->limit;
-    const cscd_mesh *mesh = interval->mesh;
     const uint32_t *objects = interval->rules->component_objects;
-    bool vf = kind == CSCD_CONTACT_VF;
-    uint32_t first = vf ? vertex_component(mesh, a) : edge_component(mesh, a);
-    uint32_t second = vf ? mesh->triangle_components[b] : edge_component(mesh, b);
-    return object_separation(interval, objects[first], objects[second]);
+    if (kind == CSCD_CONTACT_VF)
+        return object_separation(interval, object_of_vertex(interval, a),
+                                 objects[interval->mesh->triangle_components[b]]);
+    if (kind == CSCD_CONTACT_EE)
+        return object_separation(interval, object_of_edge(interval, a), object_of_edge(interval, b));
+    uint32_t first = kind == CSCD_CONTACT_EV ? object_of_edge(interval, a) : object_of_vertex(interval, a);
+    return object_separation(interval, first, kind == CSCD_CONTACT_VH ? b : object_of_vertex(interval, b));
 }
 
 /* The distance within which volumes of a pair are compared. */

@@ -46,27 +46,18 @@ void waiting_pairs_uncover_objects(waiting_pairs *w, pair_rules *before) {
 
 /* ---- what was left out --------------------------------------------------------------------------------- */
 
-static void components_of(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
-                          uint32_t out[2]) {
-    bool edges = kind == CSCD_CONTACT_EE;
-    out[0] = edges                     ? edge_component(mesh, a)
-             : kind == CSCD_CONTACT_VF ? vertex_component(mesh, a)
-                                       : mesh->triangle_components[a];
-    out[1] = edges ? edge_component(mesh, b) : mesh->triangle_components[b];
-}
-
 static bool objects_left_out(const cscd_mesh *mesh, const pair_rules *rules, const uint32_t of[2]) {
-    if (rules->sets == NULL) return component_is_obstacle(mesh, of[0]) && component_is_obstacle(mesh, of[1]);
-    return !pair_rules_look_at(rules, rules->component_objects[of[0]], rules->component_objects[of[1]]);
+    if (rules->sets == NULL) return mesh->objects[of[0]].obstacle && mesh->objects[of[1]].obstacle;
+    return !pair_rules_look_at(rules, of[0], of[1]);
 }
 
 bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd_contact_kind kind,
                              uint32_t a, uint32_t b, const double *positions) {
-    uint32_t components[2];
-    components_of(mesh, kind, a, b, components);
+    uint32_t objects[2];
+    mesh_objects_of_pair(mesh, kind, a, b, objects);
     for (const former_exclusions *f = w->former; f != NULL; f = f->next) {
         if (f->by_rules) {
-            if (objects_left_out(mesh, &f->rules, components)) return true;
+            if (objects_left_out(mesh, &f->rules, objects)) return true;
         } else if (kind == CSCD_CONTACT_TT ? exclusions_cover_triangles(&f->exclusions, a, b, positions)
                                            : exclusions_cover_features(&f->exclusions, kind, a, b)) {
             return true;

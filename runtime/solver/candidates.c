@@ -2,6 +2,8 @@
 #include "runtime/solver/candidates.h"
 
 #include "runtime/bvh/bvh_rebuild.h"
+#include "runtime/loose/loose_pairs.h"
+#include "runtime/loose/loose_search.h"
 #include "runtime/narrow_phase/swept_box.h"
 
 #include <string.h>
@@ -36,6 +38,7 @@ cscd_status candidates_collect(cscd_detector *d, const double *x0, const double 
     search.interval.beyond = margin;
     cscd_status status = bvh_rebuild_move(&d->rebuild, &d->space.bvh, x0, x1, growth, detector_growth(d));
     if (status == CSCD_OK) status = interval_search_everything(&search);
+    if (status == CSCD_OK) status = interval_search_loose(&search);
     if (status != CSCD_OK) return status;
     bool taken = join_lists(&d->space, CSCD_CONTACT_VF, &out->lists[CSCD_CONTACT_VF]) &&
                  join_lists(&d->space, CSCD_CONTACT_EE, &out->lists[CSCD_CONTACT_EE]);
@@ -64,6 +67,7 @@ static void test_vf(const swept_interval *interval, const uint32_t pair[2], cont
 }
 
 static void test_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (!loose_edges_meet(interval, pair[0], pair[1])) return;
     swept_box a = swept_box_of(interval, interval->mesh->edges[pair[0]], 2);
     swept_box b = swept_box_of(interval, interval->mesh->edges[pair[1]], 2);
     if (!swept_boxes_within(&a, &b, pair_reach(interval, CSCD_CONTACT_EE, pair[0], pair[1]))) return;
@@ -91,6 +95,7 @@ static void test_share(void *data, uint32_t index) {
             (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
         }
     }
+    half_spaces_test(interval, index, space->traversal.lane_count, lane);
     narrow_phase_finish(interval, lane);
 }
 

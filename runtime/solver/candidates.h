@@ -14,5 +14,5 @@ cscd_status candidates_collect(cscd_detector *d, const double *x0, const double 
                                double margin, candidates *out);
 void candidates_free(cscd_context *context, candidates *c);
 
-/* Tests all candidates in the interval that the search has begun with. */
+/* Tests all candidates in the interval that the search has begun with, and all vertices against half-spaces. */
 cscd_status candidates_test(const candidates *c, interval_search *search);

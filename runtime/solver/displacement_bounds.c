@@ -1,7 +1,6 @@
 /* How far each vertex may go, on any path, before two features can come together. */
 #include "runtime/solver/displacement_bounds.h"
 
-#include "runtime/ccd/pair_plane.h"
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/stored_scalar.h"
 #include "src/core/floating.h"
@@ -31,7 +30,7 @@ static void measure_share(void *data, uint32_t index) {
         cscd_stencil stencil = near_pair_stencil(d->mesh, pair);
         double points[4][3];
         near_pair_load(w->x0, &stencil, points);
-        double gap = pair_gap(pair->kind, (const double(*)[3])points, near_pair_separation(d, pair));
+        double gap = near_pair_gap(d, pair, (const double(*)[3])points);
         w->limits[i] = stored_below(share_of_gap * gap, w->scalar);
     }
 }

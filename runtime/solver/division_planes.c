@@ -1,7 +1,7 @@
 /* Planes that divide the space between near pairs, and how far each vertex may go towards them. */
 #include "runtime/solver/division_planes.h"
 
-#include "runtime/ccd/pair_plane.h"
+#include "runtime/ccd/half_space.h"
 #include "src/core/vec3.h"
 
 #include <string.h>
@@ -45,7 +45,7 @@ static approach approach_of(const division_work *w, const pair_plane *plane, con
 }
 
 static bool vertex_of_obstacle(const cscd_mesh *mesh, uint32_t vertex) {
-    return component_is_obstacle(mesh, vertex_component(mesh, vertex));
+    return mesh->objects[cscd_mesh_vertex_object(mesh, vertex)].obstacle;
 }
 
 /* Returns what a gets of a room that both sides share. */
@@ -58,6 +58,14 @@ static double share_of_a(const cscd_mesh *mesh, const division_plane *plane, con
     return room * (wanted->a / sum);
 }
 
+/* Finds the plane between the features of a pair. Returns how long its normal is, at the most. */
+static double find_plane(const cscd_detector *d, const cscd_proximity *pair, const double points[4][3],
+                         pair_plane *out) {
+    if (pair->kind == CSCD_CONTACT_VH) return half_space_plane(points, d->mesh->loose.normals[pair->b], out);
+    pair_plane_find(stencil_points(pair->kind), points, out);
+    return 1.0;
+}
+
 /* The vertices of a pair without a plane stay where they are. A pair within its separation has a plane and no room, so
  * that its sides may part. */
 static void divide_pair(const division_work *w, const cscd_proximity *pair, division_plane *out) {
@@ -66,11 +74,11 @@ static void divide_pair(const division_work *w, const cscd_proximity *pair, divi
     double points[4][3];
     pair_plane plane;
     near_pair_load(w->x0, &stencil, points);
-    pair_plane_find(pair->kind, (const double(*)[3])points, &plane);
+    double length = find_plane(d, pair, (const double(*)[3])points, &plane);
     *out = (division_plane){.kind = pair->kind, .room = {-1.0, -1.0, -1.0, -1.0}};
     memcpy(out->vertices, stencil.vertices, sizeof out->vertices);
     if (!(plane.gap > 0.0)) return;
-    double room = max_of(plane.gap - near_pair_separation(d, pair), 0.0) * share_of_gap;
+    double room = max_of(plane.gap - near_pair_separation(d, pair) * length, 0.0) * share_of_gap;
     approach wanted = approach_of(w, &plane, out);
     double for_a = share_of_a(d->mesh, out, &wanted, room), for_b = max_of(room - for_a, 0.0);
     memcpy(out->normal, plane.normal, sizeof out->normal);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/solver/near_pairs.h"
+#include "src/mesh/stencil.h"
 
 /* Ends a list of limits. */
 #define DIVISION_NONE SIZE_MAX
@@ -9,16 +10,18 @@
 /* A pair, and the plane between its features. A vertex, the i-th of the pair, may go by room[i] along sign * normal,
  * where the sign is that of division_sign. */
 typedef struct division_plane {
-    double normal[3]; /* from b to a; 0: no plane divides the pair, and its vertices stay */
-    double room[4];   /* -1 if they stay */
-    size_t next[4];   /* the next limit of the same vertex: 4 * pair + place */
+    double normal
+        [3]; /* from b to a; 0: no plane divides the pair, and its vertices stay. That of a half-space has
+                       * a length from 1 to 4, in which room counts */
+    double room[4]; /* -1 if they stay */
+    size_t next[4]; /* the next limit of the same vertex: 4 * pair + place */
     uint32_t vertices[4];
     cscd_contact_kind kind;
 } division_plane;
 
 /* Vertices of a, which lies above the plane, are limited downwards. */
 static inline double division_sign(const division_plane *plane, int place) {
-    return place < (plane->kind == CSCD_CONTACT_VF ? 1 : 2) ? -1.0 : 1.0;
+    return place < points_of_first(stencil_points(plane->kind)) ? -1.0 : 1.0;
 }
 
 typedef struct division_planes {

@@ -108,13 +108,29 @@ static cscd_status try_between(trial *t, const double *from, const double *to) {
     return CSCD_OK;
 }
 
+static const char *name_of_first(const cscd_contact *at) {
+    return at->kind == CSCD_CONTACT_EE || at->kind == CSCD_CONTACT_EV ? "edge" : "vertex";
+}
+
+static const char *name_of_second(const cscd_contact *at) {
+    switch (at->kind) {
+    case CSCD_CONTACT_VF:
+        return "triangle";
+    case CSCD_CONTACT_EE:
+        return "edge";
+    case CSCD_CONTACT_VH:
+        return "the half-space, object";
+    default:
+        return "vertex";
+    }
+}
+
 static cscd_status fail_in_contact(cscd_detector *d, const cscd_contact *at) {
-    bool vf = at->kind == CSCD_CONTACT_VF;
     return context_fail(
         d->context, CSCD_IN_CONTACT,
         "%s %u and %s %u touch at the start, so no step is free of contact: part them, or leave the "
         "pair out",
-        vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b);
+        name_of_first(at), at->a, name_of_second(at), at->b);
 }
 
 /* Tests an interval in which nothing moves. IN_CONTACT: something touches, which is t->first. */
@@ -138,12 +154,11 @@ static bool is_moved(const straight_motion *m, const double *reached) {
 
 /* x0 is given in doubles, is rounded to floats, and cannot get there. */
 static cscd_status fail_to_round(cscd_detector *d, const cscd_contact *at) {
-    bool vf = at->kind == CSCD_CONTACT_VF;
     return context_fail(
         d->context, CSCD_IN_CONTACT,
         "%s %u and %s %u do not stay apart where x0 is rounded to floats: give x0 in floats, or ask "
         "for doubles",
-        vf ? "vertex" : "edge", at->a, vf ? "triangle" : "edge", at->b);
+        name_of_first(at), at->a, name_of_second(at), at->b);
 }
 
 /* A step of step_factor times the first contact's time is mostly free. Where its rounded end has contacts of its own,

@@ -1,8 +1,11 @@
 /* The pairs that displacement bounds and truncation look at: those near each other where a motion starts. */
 #include "runtime/solver/near_pairs.h"
 
+#include "runtime/ccd/half_space.h"
+#include "runtime/ccd/pair_plane.h"
 #include "src/core/check.h"
 #include "src/core/floating.h"
+#include "src/mesh/stencil.h"
 
 #include <string.h>
 
@@ -19,6 +22,12 @@ double near_pair_separation(const cscd_detector *d, const cscd_proximity *pair) 
     return pair_separation(&rules, pair->kind, pair->a, pair->b).distance;
 }
 
+double near_pair_gap(const cscd_detector *d, const cscd_proximity *pair, const double points[4][3]) {
+    double apart = near_pair_separation(d, pair);
+    if (pair->kind == CSCD_CONTACT_VH) return half_space_gap(points, d->mesh->loose.normals[pair->b], apart);
+    return pair_gap(stencil_points(pair->kind), points, apart);
+}
+
 static double search_distance(const cscd_detector *d, double search_radius) {
     return (search_radius + greatest_separation(d)) * farther;
 }
@@ -32,8 +41,21 @@ cscd_status near_pairs_check_radius(const cscd_detector *d, double search_radius
                         search_radius);
 }
 
+/* Points that have no distance to keep from a wire, or from each other, may go where they want. */
+static size_t keep_counting(const cscd_detector *d, cscd_proximity *items, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool of_points = items[i].kind == CSCD_CONTACT_VV || items[i].kind == CSCD_CONTACT_EV;
+        if (!of_points || near_pair_separation(d, &items[i]) > 0.0) items[kept++] = items[i];
+    }
+    return kept;
+}
+
 cscd_status near_pairs_find(cscd_detector *d, const double *x, double search_radius, cscd_proximities *out) {
-    return proximity_find(d, x, search_distance(d, search_radius), CSCD_NEAR_PAIRS, out);
+    cscd_status status = proximity_find(d, x, search_distance(d, search_radius), CSCD_NEAR_PAIRS, out);
+    if (status == CSCD_OK && d->mesh->loose.point_count > 0)
+        out->count = keep_counting(d, d->proximities.items, out->count);
+    return status;
 }
 
 void *near_pairs_scratch(cscd_detector *d, size_t count, size_t size) {

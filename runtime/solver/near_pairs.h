@@ -19,6 +19,10 @@ void *near_pairs_scratch(cscd_detector *d, size_t count, size_t size);
 /* The distance that the pair must keep: 0, the detector's separation, or that of the rules for its objects. */
 double near_pair_separation(const cscd_detector *d, const cscd_proximity *pair);
 
+/* Returns a number that is at most the pair's distance less what it must keep, and at least 0.985 times that; see
+ * pair_gap. */
+double near_pair_gap(const cscd_detector *d, const cscd_proximity *pair, const double points[4][3]);
+
 /* Copies the points of a pair, in the order of cscd_stencil. */
 void near_pair_load(const double *x, const cscd_stencil *stencil, double points[4][3]);
 

@@ -87,6 +87,7 @@ cscd_status proximity_find(cscd_detector *d, const double *positions, double dis
         status = bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(distance),
                                      detector_growth(d));
         if (status == CSCD_OK) status = interval_search_everything(&search);
+        if (status == CSCD_OK) status = interval_search_loose(&search);
     }
     return status == CSCD_OK ? proximity_collect(d, positions, form, out) : status;
 }

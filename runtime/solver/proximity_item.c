@@ -2,13 +2,15 @@
 #include "runtime/solver/proximity_item.h"
 
 #include "runtime/ccd/connection.h"
+#include "runtime/ccd/elementary.h"
 #include "src/core/vec3.h"
+#include "src/mesh/stencil.h"
 
 #include <string.h>
 
 /* Returns how many of the four vertices of a stencil belong to the first feature. */
 static int vertices_of_first(cscd_contact_kind kind) {
-    return kind == CSCD_CONTACT_VF || kind == CSCD_CONTACT_VV ? 1 : 2;
+    return points_of_first(stencil_points(kind));
 }
 
 static const double *position_of(const proximity_scene *scene, uint32_t vertex) {
@@ -40,12 +42,13 @@ void proximity_describe(const proximity_scene *scene, const cscd_contact *found,
     double apart[3];
     begin_item(scene->mesh, found->kind, found->a, found->b, found->u, found->v, out);
     connect_points(scene, out, apart);
-    bool vf = found->kind == CSCD_CONTACT_VF;
-    out->distance = connection_length(apart);
+    bool vf = found->kind == CSCD_CONTACT_VF, ee = found->kind == CSCD_CONTACT_EE;
+    out->distance =
+        found->kind == CSCD_CONTACT_VH ? vec3_dot(apart, found->normal) : connection_length(apart);
     out->count = 1;
     out->vf_count = vf;
-    out->ee_count = !vf;
-    out->threshold = vf ? 0.0 : edge_rest_threshold(scene->rest, found->a, found->b);
+    out->ee_count = ee;
+    out->threshold = ee ? edge_rest_threshold(scene->rest, found->a, found->b) : 0.0;
     memcpy(out->point, found->point, sizeof out->point);
     memcpy(out->normal, found->normal, sizeof out->normal);
 }

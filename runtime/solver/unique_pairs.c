@@ -67,12 +67,16 @@ static void name_ee(const cscd_mesh *mesh, const cscd_contact *c, pair_name *nam
     if (end_b && !end_a) name_edge_vertex(c->a, vertex_b, name);
 }
 
+/* A point and a wire. Where the point is nearest to an end it may be so to other wires there. */
+static void name_ev(const cscd_mesh *mesh, const cscd_contact *c, pair_name *name) {
+    if (c->u == 0.0 || c->u == 1.0) name_vertices(mesh->edges[c->a][c->u == 1.0], c->b, name);
+}
+
 static void name_pair(const proximity_scene *scene, const cscd_contact *c, pair_name *name) {
     *name = (pair_name){c->kind, c->a, c->b, c};
-    if (c->kind == CSCD_CONTACT_VF)
-        name_vf(scene->mesh, c, name);
-    else if (!edges_mollified(scene, c->a, c->b))
-        name_ee(scene->mesh, c, name);
+    if (c->kind == CSCD_CONTACT_VF) name_vf(scene->mesh, c, name);
+    if (c->kind == CSCD_CONTACT_EE && !edges_mollified(scene, c->a, c->b)) name_ee(scene->mesh, c, name);
+    if (c->kind == CSCD_CONTACT_EV) name_ev(scene->mesh, c, name);
 }
 
 static void name_share(void *data, uint32_t index) {
@@ -106,15 +110,15 @@ static void find_groups(merging *m) {
 static void describe_group(const merging *m, size_t group) {
     const pair_name *name = m->keys[m->begins[group]].name;
     cscd_proximity *item = &m->items[group];
-    if (name->kind == CSCD_CONTACT_VF || name->kind == CSCD_CONTACT_EE) {
+    if (name->kind != CSCD_CONTACT_VV && name->kind != CSCD_CONTACT_EV) {
         proximity_describe(m->scene, name->contact, item);
         return;
     }
     proximity_describe_parts(m->scene, name->kind, name->a, name->b, item);
     for (size_t i = m->begins[group]; i < m->begins[group + 1]; i++) {
-        bool vf = m->keys[i].name->contact->kind == CSCD_CONTACT_VF;
-        item->vf_count += vf;
-        item->ee_count += !vf;
+        cscd_contact_kind kind = m->keys[i].name->contact->kind;
+        item->vf_count += kind == CSCD_CONTACT_VF;
+        item->ee_count += kind == CSCD_CONTACT_EE;
         item->count++;
     }
 }

@@ -49,6 +49,8 @@ const char *cscd_contact_kind_name(cscd_contact_kind kind) {
         return "vv";
     case CSCD_CONTACT_EV:
         return "ev";
+    case CSCD_CONTACT_VH:
+        return "vh";
     default:
         return "unknown";
     }

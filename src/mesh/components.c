@@ -49,6 +49,7 @@ static void count_edge(const cscd_mesh *mesh, uint32_t edge) {
     const uint32_t *star = mesh->edge_stars + mesh->edge_star_offsets[edge];
     const uint32_t *ends = mesh->edges[edge];
     uint32_t size = edge_star_size(mesh, edge);
+    if (size == 0) return; /* a wire */
     cscd_component *component = &mesh->components[mesh->triangle_components[star[0]]];
     component->edge_count++;
     if (size == 1) count_one(&component->open_edges, &component->first_open_edge, edge);

@@ -51,6 +51,8 @@ static cscd_status check_triangle(cscd_context *context, const cscd_object_desc 
 }
 
 static cscd_status check_desc(cscd_context *context, const cscd_object_desc *desc, const char *object) {
+    cscd_status status = loose_desc_check(context, desc, object);
+    if (status != CSCD_OK || desc->kind != CSCD_OBJECT_TRIANGLES) return status;
     if (desc->vertex_count == 0 || desc->triangle_count == 0)
         return context_fail(context, CSCD_INVALID_MESH, "%sthe mesh is empty: %u vertices, %u triangles",
                             object, desc->vertex_count, desc->triangle_count);
@@ -60,14 +62,15 @@ static cscd_status check_desc(cscd_context *context, const cscd_object_desc *des
     return CSCD_OK;
 }
 
-static cscd_status check_totals(cscd_context *context, uint64_t vertices, uint64_t triangles) {
+static cscd_status check_totals(cscd_context *context, uint64_t vertices, uint64_t triangles,
+                                const loose_totals *loose) {
     if (triangles > TRIANGLE_COUNT_MAX)
         return context_fail(context, CSCD_INVALID_MESH, "%llu triangles are too many: the ceiling is %d",
                             (unsigned long long)triangles, TRIANGLE_COUNT_MAX);
     if (vertices >= UINT32_MAX)
         return context_fail(context, CSCD_INVALID_MESH, "%llu vertices are too many: the ceiling is 2^32 - 2",
                             (unsigned long long)vertices);
-    uint64_t most = SPARE_VERTICES + triangles * SPARE_VERTICES_OF_TRIANGLE;
+    uint64_t most = SPARE_VERTICES + triangles * SPARE_VERTICES_OF_TRIANGLE + loose_totals_vertices(loose);
     if (vertices > most)
         return context_fail(
             context, CSCD_INVALID_MESH,
@@ -84,14 +87,17 @@ static uint32_t number_of(const described_objects *objects, uint32_t index) {
 
 cscd_status mesh_check_objects(cscd_context *context, const described_objects *objects) {
     uint64_t vertices = objects->other_vertices, triangles = objects->other_triangles;
+    loose_totals loose = objects->other_loose;
     for (uint32_t i = 0; i < objects->count; i++) {
         object_name name = name_of(number_of(objects, i), objects->total);
         cscd_status status = check_desc(context, &objects->descs[i], name.text);
         if (status != CSCD_OK) return status;
         vertices += objects->descs[i].vertex_count;
         triangles += objects->descs[i].triangle_count;
+        loose_totals_add(&loose, &objects->descs[i]);
     }
-    cscd_status status = check_totals(context, vertices, triangles);
+    cscd_status status = check_totals(context, vertices, triangles, &loose);
+    if (status == CSCD_OK) status = loose_totals_check(context, &loose, triangles);
     for (uint32_t i = 0; i < objects->count && status == CSCD_OK; i++) {
         object_name name = name_of(number_of(objects, i), objects->total);
         for (uint32_t t = 0; t < objects->descs[i].triangle_count && status == CSCD_OK; t++)
@@ -112,7 +118,8 @@ static cscd_status join_objects(cscd_mesh *mesh, const cscd_object_desc *objects
                                          .vertex_count = desc->vertex_count,
                                          .first_triangle = mesh->triangle_count,
                                          .triangle_count = desc->triangle_count,
-                                         .obstacle = desc->obstacle};
+                                         .obstacle = desc->obstacle,
+                                         .kind = desc->kind};
         mesh->vertex_count += desc->vertex_count;
         mesh->triangle_count += desc->triangle_count;
     }
@@ -158,9 +165,14 @@ static cscd_status mark_obstacles(cscd_mesh *mesh) {
 cscd_status mesh_build_objects(cscd_mesh *mesh, const cscd_object_desc *objects, uint32_t count) {
     cscd_status status = join_objects(mesh, objects, count);
     if (status == CSCD_OK) status = mesh_build_topology(mesh);
+    if (status == CSCD_OK) status = mesh_add_wires(mesh, objects);
     if (status == CSCD_OK) status = mesh_build_components(mesh);
     if (status == CSCD_OK) status = mark_obstacles(mesh);
-    if (status == CSCD_OK) find_edges_of_objects(mesh);
+    if (status != CSCD_OK) return status;
+    find_edges_of_objects(mesh);
+    status = mesh_list_loose_objects(mesh);
+    for (uint32_t i = 0; status == CSCD_OK && mesh->loose.normals != NULL && i < count; i++)
+        memcpy(mesh->loose.normals[i], objects[i].normal, sizeof objects[i].normal);
     return status;
 }
 
@@ -234,11 +246,12 @@ cscd_status cscd_mesh_create_sized(cscd_context *context, const cscd_object_desc
 /* The arrays are allocated one stage after the other, since the size of one follows from what another
  * holds. */
 static array_list mesh_arrays(cscd_mesh *mesh) {
-    return (array_list){{ARRAY(mesh->triangles, 0), ARRAY(mesh->edges, 0), ARRAY(mesh->triangle_edges, 0),
-                         ARRAY(mesh->vertex_star_offsets, 0), ARRAY(mesh->vertex_stars, 0),
-                         ARRAY(mesh->edge_star_offsets, 0), ARRAY(mesh->edge_stars, 0),
-                         ARRAY(mesh->triangle_components, 0), ARRAY(mesh->components, 0),
-                         ARRAY(mesh->objects, 0), ARRAY(mesh->obstacles, 0)}};
+    return (array_list){
+        {ARRAY(mesh->triangles, 0), ARRAY(mesh->edges, 0), ARRAY(mesh->triangle_edges, 0),
+         ARRAY(mesh->vertex_star_offsets, 0), ARRAY(mesh->vertex_stars, 0), ARRAY(mesh->edge_star_offsets, 0),
+         ARRAY(mesh->edge_stars, 0), ARRAY(mesh->triangle_components, 0), ARRAY(mesh->components, 0),
+         ARRAY(mesh->objects, 0), ARRAY(mesh->obstacles, 0), ARRAY(mesh->loose.wire_star_offsets, 0),
+         ARRAY(mesh->loose.wire_stars, 0), ARRAY(mesh->loose.normals, 0)}};
 }
 
 static void free_mesh(reference_count *references) {
@@ -359,7 +372,8 @@ static void copy_vertices(const uint32_t *from, int count, uint32_t *to) {
 
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
                           double v) {
-    cscd_stencil s = {.vertices = {a, b, b, b}};
+    uint32_t last = kind == CSCD_CONTACT_VH ? mesh->objects[b].first_vertex : b;
+    cscd_stencil s = {.vertices = {a, last, last, last}};
     if (kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV) copy_vertices(mesh->edges[a], 2, s.vertices);
     if (kind == CSCD_CONTACT_EE) copy_vertices(mesh->edges[b], 2, s.vertices + 2);
     if (kind == CSCD_CONTACT_VF) copy_vertices(mesh->triangles[b], 3, s.vertices + 1);

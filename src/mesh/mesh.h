@@ -1,7 +1,7 @@
 /* A mesh with its connectivity: edges, stars and components, which are built once. */
 #pragma once
 
-#include "src/core/context.h"
+#include "src/mesh/loose_objects.h"
 
 /* What it says of the triangles never changes, and any number of objects in any contexts read it at the same time.
  * Each of them has a copy of this struct, its own view of the mesh, whose context is the one that the object works
@@ -12,7 +12,7 @@ struct cscd_mesh {
     uint32_t vertex_count, triangle_count, edge_count, component_count;
 
     uint32_t (*triangles)[3];
-    uint32_t (*edges)[2];          /* smaller vertex first, sorted */
+    uint32_t (*edges)[2];          /* smaller vertex first, sorted; loose points follow (loose_objects.h) */
     uint32_t (*triangle_edges)[3]; /* edge i joins the corners i and i + 1 */
 
     /* The star of x is the list of triangles stars[offsets[x] .. offsets[x + 1]), ascending. */
@@ -27,6 +27,8 @@ struct cscd_mesh {
     bool *
         obstacles; /* per component: it is an obstacle, whose features are not tested with those of obstacles;
                       * NULL: there are no obstacles */
+
+    loose_objects loose; /* objects that are not of triangles */
 };
 
 /* An object that keeps a mesh holds it, and with it the context whose allocator has its memory. */
@@ -43,6 +45,10 @@ const cscd_mesh *mesh_of_creator(const cscd_mesh *mesh);
 static inline bool mesh_is_same(const cscd_mesh *a, const cscd_mesh *b) {
     return a->shared == b->shared;
 }
+
+/* The objects of two features, or triangles, as in a cscd_contact. */
+void mesh_objects_of_pair(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                          uint32_t out[2]);
 
 /* cscd_mesh_stencil, in whatever floating-point environment is set. Not inline, so that no arithmetic leaves it. */
 cscd_stencil mesh_stencil(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b, double u,
@@ -65,6 +71,7 @@ typedef struct described_objects {
     const uint32_t *numbers;                  /* which objects of the mesh they are; NULL: 0, 1, 2, ... */
     uint32_t total;                           /* objects of the mesh */
     uint64_t other_vertices, other_triangles; /* those of its other objects */
+    loose_totals other_loose;                 /* the same */
 } described_objects;
 
 /* What cscd_mesh_create does, step by step. Copies descriptions of the caller's size to descriptions of this library's. */
@@ -92,9 +99,36 @@ static inline bool triangle_of_obstacle(const cscd_mesh *mesh, uint32_t triangle
     return component_is_obstacle(mesh, mesh->triangle_components[triangle]);
 }
 
+/* Are some objects not of triangles? */
+static inline bool mesh_has_loose_objects(const cscd_mesh *mesh) {
+    const loose_objects *loose = &mesh->loose;
+    return loose->wire_count > 0 || loose->point_count > 0 || loose->half_space_count > 0;
+}
+
+/* Is this the number of a point behind the edges? */
+static inline bool edge_is_point(const cscd_mesh *mesh, uint32_t edge) {
+    return mesh->loose.point_count > 0 && edge >= mesh->edge_count;
+}
+
 /* The number of triangles that contain an edge. */
 static inline uint32_t edge_star_size(const cscd_mesh *mesh, uint32_t edge) {
     return mesh->edge_star_offsets[edge + 1] - mesh->edge_star_offsets[edge];
+}
+
+/* Does it belong to no triangle? Such a vertex is loose, or takes no part in anything. */
+static inline bool vertex_has_no_triangle(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] == mesh->vertex_star_offsets[vertex];
+}
+
+/* The number of wires at a vertex. */
+static inline uint32_t wires_at_vertex(const cscd_mesh *mesh, uint32_t vertex) {
+    const uint32_t *offsets = mesh->loose.wire_star_offsets;
+    return offsets != NULL ? offsets[vertex + 1] - offsets[vertex] : 0;
+}
+
+/* Is it a wire, or a point behind the edges? */
+static inline bool edge_is_loose(const cscd_mesh *mesh, uint32_t edge) {
+    return edge_is_point(mesh, edge) || edge_star_size(mesh, edge) == 0;
 }
 
 static inline bool triangle_contains(const uint32_t triangle[3], uint32_t vertex) {

@@ -117,8 +117,11 @@ static cscd_status check_descriptions(const change_plan *p) {
         .descs = p->descs, .count = p->desc_count, .numbers = p->numbers, .total = p->object_count};
     for (uint32_t i = 0; i < p->object_count; i++) {
         if (p->origins[i].changed) continue;
-        described.other_vertices += p->old->objects[p->origins[i].old_object].vertex_count;
-        described.other_triangles += p->old->objects[p->origins[i].old_object].triangle_count;
+        const cscd_object *other = &p->old->objects[p->origins[i].old_object];
+        described.other_vertices += other->vertex_count;
+        described.other_triangles += other->triangle_count;
+        if (other->kind == CSCD_OBJECT_WIRES) described.other_loose.wires += other->edge_count;
+        if (other->kind == CSCD_OBJECT_POINTS) described.other_loose.points += other->vertex_count;
     }
     return mesh_check_objects(p->context, &described);
 }

@@ -51,14 +51,24 @@ static bool any_obstacle(const object_move *moves, uint32_t count) {
     return false;
 }
 
-static bool allocate_arrays(cscd_mesh *mesh, bool obstacles) {
+/* Points stand behind the edges. */
+static size_t count_points(const object_move *moves, uint32_t count) {
+    size_t points = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const cscd_object *object = &moves[i].source.mesh->objects[moves[i].source.object];
+        if (object->kind == CSCD_OBJECT_POINTS) points += object->vertex_count;
+    }
+    return points;
+}
+
+static bool allocate_arrays(cscd_mesh *mesh, bool obstacles, size_t points) {
     size_t vertices = mesh->vertex_count, edges = mesh->edge_count, triangles = mesh->triangle_count;
     array_list list = {
-        {ARRAY(mesh->triangles, triangles), ARRAY(mesh->edges, edges), ARRAY(mesh->triangle_edges, triangles),
-         ARRAY(mesh->vertex_star_offsets, vertices + 1), ARRAY(mesh->vertex_stars, triangles * 3),
-         ARRAY(mesh->edge_star_offsets, edges + 1), ARRAY(mesh->edge_stars, triangles * 3),
-         ARRAY(mesh->triangle_components, triangles), ARRAY(mesh->components, mesh->component_count),
-         ARRAY(mesh->objects, mesh->object_count),
+        {ARRAY(mesh->triangles, triangles), ARRAY(mesh->edges, edges + points),
+         ARRAY(mesh->triangle_edges, triangles), ARRAY(mesh->vertex_star_offsets, vertices + 1),
+         ARRAY(mesh->vertex_stars, triangles * 3), ARRAY(mesh->edge_star_offsets, edges + 1),
+         ARRAY(mesh->edge_stars, triangles * 3), ARRAY(mesh->triangle_components, triangles),
+         ARRAY(mesh->components, mesh->component_count), ARRAY(mesh->objects, mesh->object_count),
          ARRAY_IF(obstacles, mesh->obstacles, mesh->component_count)}};
     return context_allocate_all(mesh->context, list);
 }
@@ -121,11 +131,20 @@ static void copy_object(const object_move *m, uint32_t index, cscd_mesh *to) {
     copy_components(from, m, to);
 }
 
+static void copy_normal(const object_source *source, double normal[3]) {
+    const double(*normals)[3] = (const double(*)[3])source->mesh->loose.normals;
+    if (normals != NULL) memcpy(normal, normals[source->object], sizeof normals[0]);
+}
+
 cscd_status mesh_splice(cscd_mesh *mesh, object_move *moves, uint32_t count) {
     place_objects(mesh, moves, count);
-    if (!allocate_arrays(mesh, any_obstacle(moves, count))) return CSCD_OUT_OF_MEMORY;
+    if (!allocate_arrays(mesh, any_obstacle(moves, count), count_points(moves, count)))
+        return CSCD_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < count; i++) copy_object(&moves[i], i, mesh);
     mesh->vertex_star_offsets[mesh->vertex_count] = mesh->triangle_count * 3;
     mesh->edge_star_offsets[mesh->edge_count] = mesh->triangle_count * 3;
-    return CSCD_OK;
+    cscd_status status = mesh_list_loose_objects(mesh);
+    for (uint32_t i = 0; status == CSCD_OK && mesh->loose.normals != NULL && i < count; i++)
+        copy_normal(&moves[i].source, mesh->loose.normals[i]);
+    return status;
 }

@@ -116,6 +116,32 @@ static const char *check_objects(const cscd_mesh *mesh) {
     return whole ? NULL : "the objects of a mesh do not hold every feature once";
 }
 
+/* ---- loose objects --------------------------------------------------------------------------------------- */
+
+/* Wires have no triangle, and every other edge has one; points stand behind the edges, in their order. */
+static const char *check_loose_objects(const cscd_mesh *mesh) {
+    uint32_t wires = 0, place = mesh->edge_count;
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        const cscd_object *o = &mesh->objects[i];
+        if (o->kind != CSCD_OBJECT_TRIANGLES && o->triangle_count > 0) return "a loose object has triangles";
+        for (uint32_t e = o->first_edge; e < o->first_edge + o->edge_count; e++) {
+            bool loose = edge_is_loose(mesh, e);
+            if (loose != (o->kind == CSCD_OBJECT_WIRES))
+                return "an edge without a triangle is no wire, or one with is";
+            wires += loose;
+        }
+        for (uint32_t v = 0; o->kind == CSCD_OBJECT_POINTS && v < o->vertex_count; v++, place++) {
+            if (mesh->edges[place][0] != o->first_vertex + v || mesh->edges[place][1] != o->first_vertex + v)
+                return "a point does not stand behind the edges";
+        }
+    }
+    if (wires != mesh->loose.wire_count || place - mesh->edge_count != mesh->loose.point_count)
+        return "wires or points of a mesh are not counted";
+    uint32_t ends = 0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) ends += wires_at_vertex(mesh, v);
+    return ends == 2 * wires ? NULL : "the wires of a mesh are not at their ends";
+}
+
 const char *mesh_validate(const cscd_mesh *mesh) {
     const star_list vertices = {mesh->vertex_star_offsets, mesh->vertex_stars, mesh->vertex_count, false};
     const star_list edges = {mesh->edge_star_offsets, mesh->edge_stars, mesh->edge_count, true};
@@ -125,5 +151,6 @@ const char *mesh_validate(const cscd_mesh *mesh) {
     if (fault == NULL) fault = check_stars(mesh, edges);
     if (fault == NULL) fault = check_components(mesh);
     if (fault == NULL) fault = check_objects(mesh);
+    if (fault == NULL) fault = check_loose_objects(mesh);
     return fault;
 }

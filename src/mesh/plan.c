@@ -4,9 +4,27 @@
 #include "src/core/struct_size.h"
 
 #include <assert.h>
+#include <string.h>
 
 static uint64_t hash_word(uint64_t hash, uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) hash = (hash ^ (word >> shift & 0xff)) * 0x100000001b3u;
+    return hash;
+}
+
+/* So that meshes that differ in loose objects alone have different hashes. */
+static uint64_t hash_loose_objects(const cscd_mesh *mesh, uint64_t hash) {
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        const cscd_object *object = &mesh->objects[i];
+        hash = hash_word(hash_word(hash, (uint32_t)object->kind), object->vertex_count);
+        for (uint32_t e = 0; object->kind == CSCD_OBJECT_WIRES && e < object->edge_count; e++) {
+            for (int k = 0; k < 2; k++) hash = hash_word(hash, mesh->edges[object->first_edge + e][k]);
+        }
+        for (int k = 0; object->kind == CSCD_OBJECT_HALF_SPACE && k < 3; k++) {
+            uint64_t bits;
+            memcpy(&bits, &mesh->loose.normals[i][k], sizeof bits);
+            hash = hash_word(hash_word(hash, (uint32_t)bits), (uint32_t)(bits >> 32));
+        }
+    }
     return hash;
 }
 
@@ -16,7 +34,7 @@ uint64_t cscd_mesh_hash(const cscd_mesh *mesh) {
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         for (int i = 0; i < 3; i++) hash = hash_word(hash, mesh->triangles[t][i]);
     }
-    return hash;
+    return mesh_has_loose_objects(mesh) ? hash_loose_objects(mesh, hash) : hash;
 }
 
 static array_list list_arrays(cscd_plan *plan) {

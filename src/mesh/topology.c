@@ -53,7 +53,7 @@ static bool same_edge(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
 
 /* sides lists all corners, with those of one edge next to each other. */
 static uint32_t count_edges(const cscd_mesh *mesh, const uint32_t *sides) {
-    uint32_t corner_count = mesh->triangle_count * 3, edge_count = 1;
+    uint32_t corner_count = mesh->triangle_count * 3, edge_count = corner_count > 0;
     for (uint32_t i = 1; i < corner_count; i++) edge_count += !same_edge(mesh, sides[i - 1], sides[i]);
     return edge_count;
 }

@@ -1,0 +1,232 @@
+/* What wires and points may touch: pairs with triangles, by the trees of these, and with each other. */
+#include "runtime/loose/loose_search.h"
+
+#include "runtime/loose/loose_pairs.h"
+#include "runtime/narrow_phase/narrow_phase.h"
+
+/* A lane takes so many elements at a time, which are neighbours in space. */
+enum { ELEMENTS_AT_ONCE = 64 };
+
+/* ---- a box in a tree's frame --------------------------------------------------------------------------- */
+
+/* Where an element is at both ends, in the frame of a tree, rounded outward and widened by its half of the distance. */
+typedef struct framed_box {
+    float low[2][3], high[2][3];
+} framed_box;
+
+static float float_below(double x) {
+    return (float)(x - fabs(x) * 0x1p-23 - 0x1p-120);
+}
+
+static float float_above(double x) {
+    return (float)(x + fabs(x) * 0x1p-23 + 0x1p-120);
+}
+
+/* In doubles the coordinates are off by 2^-51 of themselves, which the floats' 2^-23 cover. */
+static framed_box box_in_frame(const swept_interval *interval, const loose_element *element,
+                               const bvh_tree *tree) {
+    const double *ends[2] = {interval->x0, interval->x1};
+    double scale = interval->bvh->scale, reach = loose_reach(interval, element->object) * scale;
+    framed_box box;
+    for (int e = 0; e < 2; e++) {
+        const double *a = ends[e] + (size_t)interval->mesh->edges[element->edge][0] * 3;
+        const double *b = ends[e] + (size_t)interval->mesh->edges[element->edge][1] * 3;
+        for (int k = 0; k < 3; k++) {
+            double x = (a[k] - tree->origin[e][k]) * scale, y = (b[k] - tree->origin[e][k]) * scale;
+            box.low[e][k] = float_below(fmin(x, y) - reach);
+            box.high[e][k] = float_above(fmax(x, y) + reach);
+        }
+    }
+    return box;
+}
+
+/* The children of a block whose bounds overlap the box during the interval. In bounds without a value nothing is sure. */
+static uint32_t children_near(const bvh *f, int level, uint32_t block, const framed_box *box) {
+    const float *bounds = f->levels[level].bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+    uint32_t apart[LANES] = {0}, near = 0;
+    for (int k = 0; k < BOX_AXES; k++) {
+        float low = fminf(box->low[0][k], box->low[1][k]), high = fmaxf(box->high[0][k], box->high[1][k]);
+        const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
+        for (int lane = 0; lane < LANES; lane++) apart[lane] |= (lows[lane] > high) | (highs[lane] < low);
+    }
+    for (int lane = 0; lane < LANES; lane++) near |= (uint32_t)(apart[lane] == 0) << lane;
+    return near & f->levels[level].flags[block].used;
+}
+
+/* ---- triangles ----------------------------------------------------------------------------------------- */
+
+/* An element on its way through the trees. */
+typedef struct tree_walk {
+    const swept_interval *interval;
+    const loose_element *element;
+    const bvh_tree *tree;
+    framed_box box; /* in the frame of the tree */
+    contact_lane *lane;
+} tree_walk;
+
+/* The slack of a tree covers the rounding of its records and the triangles' half of the distance. */
+static bool triangle_parted(const tree_walk *w, const bvh_leaf *leaf, int lane) {
+    const float(*records)[8] = (const float(*)[8])w->interval->bvh->records;
+    for (int k = 0; k < 3; k++) {
+        int before = 0, behind = 0;
+        for (int e = 0; e < 2; e++) {
+            float a = records[leaf->corners[0][lane]][4 * e + k],
+                  b = records[leaf->corners[1][lane]][4 * e + k];
+            float c = records[leaf->corners[2][lane]][4 * e + k];
+            before += w->box.high[e][k] < fminf(fminf(a, b), c) - w->tree->slack[0];
+            behind += w->box.low[e][k] > fmaxf(fmaxf(a, b), c) + w->tree->slack[0];
+        }
+        if (before == 2 || behind == 2) return true;
+    }
+    return false;
+}
+
+/* Only a tree of several objects leaves this to us. */
+static bool triangle_looks(const tree_walk *w, uint32_t triangle) {
+    const cscd_mesh *mesh = w->interval->mesh;
+    if (w->tree->object != OBJECT_SEVERAL) return true;
+    return objects_look(w->interval, w->element->object,
+                        cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]));
+}
+
+static void test_leaf(const tree_walk *w, uint32_t index) {
+    const bvh *f = w->interval->bvh;
+    const bvh_leaf *leaf = &f->leaves[index];
+    for (uint32_t used = f->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
+        uint32_t triangle = leaf->triangles[lane];
+        if (triangle_parted(w, leaf, (int)lane) || !triangle_looks(w, triangle)) continue;
+        loose_pairs_with_triangle(w->interval, w->element, triangle, w->lane);
+    }
+}
+
+typedef struct open_block {
+    int level;
+    uint32_t block;
+} open_block;
+
+/* Each block takes one place and leaves eight, and there are no more levels than this. */
+enum { STACK_SIZE = BVH_LEVEL_MAX * LANES };
+
+static void walk_tree(tree_walk *w) {
+    const bvh *f = w->interval->bvh;
+    open_block stack[STACK_SIZE];
+    int count = 0, top = f->tree_level - 1;
+    w->box = box_in_frame(w->interval, w->element, w->tree);
+    stack[count++] = (open_block){top, w->tree->first_blocks[top]};
+    while (count > 0) {
+        open_block at = stack[--count];
+        uint32_t first = f->levels[at.level].first_children[at.block];
+        for (uint32_t near = children_near(f, at.level, at.block, &w->box); near != 0; near &= near - 1) {
+            uint32_t child = first + (uint32_t)__builtin_ctz(near);
+            if (at.level == 0)
+                test_leaf(w, child);
+            else
+                stack[count++] = (open_block){at.level - 1, child};
+        }
+    }
+}
+
+static void test_tree(tree_walk *w, uint32_t tree) {
+    w->tree = &w->interval->bvh->trees[tree];
+    bool several = w->tree->object == OBJECT_SEVERAL;
+    if (several || objects_look(w->interval, w->element->object, w->tree->object)) walk_tree(w);
+}
+
+/* Above the trees bounds are in the frame of the first one; if it is the only one, there are none. */
+static void test_trees(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
+    const bvh *f = interval->bvh;
+    tree_walk w = {.interval = interval, .element = element, .lane = lane};
+    if (f->tree_count <= 1) {
+        if (f->tree_count == 1) test_tree(&w, 0);
+        return;
+    }
+    framed_box box = box_in_frame(interval, element, &f->trees[0]);
+    open_block stack[STACK_SIZE];
+    int count = 0;
+    stack[count++] = (open_block){f->level_count - 1, 0};
+    while (count > 0) {
+        open_block at = stack[--count];
+        uint32_t first = f->levels[at.level].first_children[at.block];
+        for (uint32_t near = children_near(f, at.level, at.block, &box); near != 0; near &= near - 1) {
+            uint32_t child = first + (uint32_t)__builtin_ctz(near);
+            if (at.level == f->tree_level)
+                test_tree(&w, child);
+            else
+                stack[count++] = (open_block){at.level - 1, child};
+        }
+    }
+}
+
+/* ---- each other ---------------------------------------------------------------------------------------- */
+
+static bool boxes_overlap(const swept_box *a, const swept_box *b) {
+    return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
+           b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
+}
+
+static const loose_element *element_at(const loose_elements *e, uint32_t place) {
+    return &e->items[e->order[place].element];
+}
+
+/* Can the node have a pair with the element? */
+static bool node_counts(const loose_search *s, uint32_t place, int level, uint32_t node) {
+    const loose_level *own = &s->elements->levels[0], *at = &s->elements->levels[level];
+    if (!boxes_overlap(&own->boxes[place], &at->boxes[node])) return false;
+    return s->interval->rules == NULL || object_sets_may_meet(&own->sets[place], &at->sets[node]);
+}
+
+/* Compares an element with all that come after it in the tree. */
+static void test_elements(const loose_search *s, uint32_t place, contact_lane *lane) {
+    const loose_elements *e = s->elements;
+    open_block stack[LOOSE_LEVEL_MAX * LOOSE_NODE_CHILDREN];
+    int count = 0;
+    stack[count++] = (open_block){e->level_count - 1, 0};
+    while (count > 0) {
+        open_block at = stack[--count];
+        uint32_t last = (uint32_t)((((uint64_t)at.block + 1) << (3 * at.level)) - 1);
+        if (last <= place || !node_counts(s, place, at.level, at.block)) continue;
+        if (at.level == 0) {
+            loose_pairs_of_elements(s->interval, element_at(e, place), element_at(e, at.block), lane);
+            continue;
+        }
+        uint32_t begin = at.block * LOOSE_NODE_CHILDREN, rest = e->levels[at.level - 1].count - begin;
+        for (uint32_t i = 0; i < LOOSE_NODE_CHILDREN && i < rest; i++)
+            stack[count++] = (open_block){at.level - 1, begin + i};
+    }
+}
+
+/* ---- all of it ----------------------------------------------------------------------------------------- */
+
+/* Do points have distances to keep? Wires meet each other without. */
+static bool elements_meet(const swept_interval *interval, const loose_element *element) {
+    return !edge_is_point(interval->mesh, element->edge) || interval->limit.distance > 0.0 || interval->thick;
+}
+
+void loose_search_test(const loose_search *s, uint32_t lane_index, contact_lane *lane) {
+    const swept_interval *interval = s->interval;
+    uint32_t count = s->elements->count, stride = s->lane_count * ELEMENTS_AT_ONCE;
+    for (uint64_t begin = (uint64_t)lane_index * ELEMENTS_AT_ONCE; begin < count; begin += stride) {
+        if (lane->out_of_memory || !progress_go_on(&interval->mesh->context->progress, (double)begin / count))
+            break;
+        for (uint64_t i = begin; i < count && i < begin + ELEMENTS_AT_ONCE; i++) {
+            const loose_element *element = element_at(s->elements, (uint32_t)i);
+            test_trees(interval, element, lane);
+            if (elements_meet(interval, element)) test_elements(s, (uint32_t)i, lane);
+        }
+    }
+}
+
+static void test_edges(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
+    if (loose_edges_meet(interval, a, b)) narrow_phase_test_ee(interval, a, b, lane);
+}
+
+void loose_search_test_pair(const swept_interval *interval, cscd_contact_kind kind, uint32_t a, uint32_t b,
+                            contact_lane *lane) {
+    const cscd_mesh *mesh = interval->mesh;
+    if (kind == CSCD_CONTACT_VF) narrow_phase_test_vf(interval, a, b, lane);
+    if (kind == CSCD_CONTACT_EE) narrow_phase_test_ee(interval, a, b, lane);
+    if (kind == CSCD_CONTACT_EV) test_edges(interval, a, mesh_edge_of_point(mesh, b), lane);
+    if (kind == CSCD_CONTACT_VV)
+        test_edges(interval, mesh_edge_of_point(mesh, a), mesh_edge_of_point(mesh, b), lane);
+    if (kind == CSCD_CONTACT_VH) half_spaces_test_vertex(interval, a, b, lane);
+}

@@ -1,0 +1,355 @@
+/* Scenes with loose objects beside the rest of the API: threads, instruction sets, starts in contact, floats and views,
+ * memory; and triangles to which nothing has changed. */
+#include "cscd/cscd.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/loose/loose_scene.h"
+#include "tests/support/packed.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static loose_scene scene;
+
+static const loose_recipe everything = {
+    .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5};
+
+static cscd_detector *open_detector(const cscd_detector_options *options) {
+    cscd_detector *detector = NULL;
+    cscd_status status = detector_create_here(scene.mesh, NULL, options, &detector);
+    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
+    return detector;
+}
+
+/* ---- the same bits ------------------------------------------------------------------------------------------ */
+
+enum { LIST_MAX = 20000 };
+static cscd_contact first_contacts[LIST_MAX];
+static cscd_proximity first_near[LIST_MAX];
+
+typedef struct call_outcome {
+    size_t contacts, near;
+    double fraction, least;
+} call_outcome;
+
+static call_outcome run_all(const cscd_detector_options *options, cscd_contact *contacts,
+                            cscd_proximity *near) {
+    call_outcome out = {0, 0, 0.0, 0.0};
+    double bounds[LOOSE_VERTICES_MAX], reached[LOOSE_VERTICES_MAX * 3];
+    cscd_contacts found;
+    cscd_proximities close;
+    cscd_free_step step;
+    cscd_displacement_bounds limits;
+    cscd_detector *detector = open_detector(options);
+    assert_int_equal(step_packed(detector, scene.x0, scene.x1, &found), CSCD_OK);
+    assert_true(found.count <= LIST_MAX);
+    out.contacts = found.count;
+    memcpy(contacts, found.items, found.count * sizeof *contacts);
+    assert_int_equal(find_unique_packed(detector, scene.x0, 0.3, &close), CSCD_OK);
+    assert_true(close.count <= LIST_MAX);
+    out.near = close.count;
+    memcpy(near, close.items, close.count * sizeof *near);
+    cscd_status status = max_step_packed(detector, scene.x0, scene.x1, reached, &step);
+    assert_true(status == CSCD_OK || status == CSCD_IN_CONTACT);
+    out.fraction = status == CSCD_OK ? step.fraction : -1.0;
+    assert_int_equal(displacement_bounds_packed(detector, scene.x0, 0.3, bounds, &limits), CSCD_OK);
+    out.least = limits.least;
+    cscd_detector_destroy(detector);
+    return out;
+}
+
+static void same_bits(void **state) {
+    static cscd_contact contacts[LIST_MAX];
+    static cscd_proximity near[LIST_MAX];
+    (void)state;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        call_outcome first = {0, 0, 0.0, 0.0};
+        loose_recipe recipe = everything;
+        recipe.thickness = seed % 2 == 1;
+        for (uint32_t run = 0; run < 6; run++) {
+            random_stream random = stream_start(seed);
+            static const cscd_simd levels[6] = {CSCD_SIMD_SCALAR, CSCD_SIMD_AVX2, CSCD_SIMD_AVX512,
+                                                CSCD_SIMD_AUTO,   CSCD_SIMD_AUTO, CSCD_SIMD_SCALAR};
+            loose_scene_make(&scene, &recipe, &random, 1 + run, levels[run]);
+            cscd_detector_options options = loose_scene_options(&scene);
+            call_outcome now =
+                run_all(&options, run == 0 ? first_contacts : contacts, run == 0 ? first_near : near);
+            if (run == 0) first = now;
+            assert_memory_equal(&now, &first, sizeof now);
+            assert_true(now.contacts > 20 && now.near > 100);
+            if (run > 0) assert_memory_equal(contacts, first_contacts, now.contacts * sizeof *contacts);
+            if (run > 0) assert_memory_equal(near, first_near, now.near * sizeof *near);
+            loose_scene_free(&scene);
+        }
+    }
+}
+
+/* ---- triangles are what they were --------------------------------------------------------------------------- */
+
+/* A mesh of the triangles alone, whose vertices and edges are numbered as if the loose ones were missing. */
+static cscd_mesh *triangles_alone(uint32_t *vertex_of, double *x0, double *x1) {
+    cscd_object_desc descs[LOOSE_OBJECTS_MAX];
+    cscd_mesh *mesh = NULL;
+    uint32_t count = 0, vertices = 0;
+    for (uint32_t i = 0; i < scene.object_count; i++) {
+        cscd_object o = cscd_mesh_object(scene.mesh, i);
+        if (o.kind != CSCD_OBJECT_TRIANGLES) continue;
+        descs[count++] = scene.objects[i];
+        for (uint32_t v = 0; v < o.vertex_count; v++) vertex_of[vertices++] = o.first_vertex + v;
+    }
+    for (size_t i = 0; i < (size_t)vertices * 3; i++) {
+        x0[i] = scene.x0[vertex_of[i / 3] * 3 + i % 3];
+        x1[i] = scene.x1[vertex_of[i / 3] * 3 + i % 3];
+    }
+    assert_int_equal(cscd_mesh_create(scene.context, descs, count, &mesh), CSCD_OK);
+    return mesh;
+}
+
+static bool of_triangles(const cscd_contact *c) {
+    for (int i = 0; i < 4; i++) {
+        uint32_t object = cscd_mesh_vertex_object(scene.mesh, c->vertices[i]);
+        if (scene.objects[object].kind != CSCD_OBJECT_TRIANGLES) return false;
+    }
+    return true;
+}
+
+static void triangles_unchanged(void **state) {
+    size_t compared = 0;
+    (void)state;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        random_stream random = stream_start(100 + seed);
+        uint32_t vertex_of[LOOSE_VERTICES_MAX];
+        double x0[LOOSE_VERTICES_MAX * 3], x1[LOOSE_VERTICES_MAX * 3];
+        loose_scene_make(&scene, &everything, &random, 1, CSCD_SIMD_AUTO);
+        cscd_detector_options options = cscd_detector_defaults();
+        options.method = seed % 2 == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
+        options.min_separation = seed % 3 == 2 ? 0.1 : 0.0;
+        cscd_mesh *mesh = triangles_alone(vertex_of, x0, x1);
+        cscd_detector *with = open_detector(&options), *without = NULL;
+        cscd_contacts all, few;
+        assert_int_equal(detector_create_here(mesh, NULL, &options, &without), CSCD_OK);
+        assert_int_equal(step_packed(with, scene.x0, scene.x1, &all), CSCD_OK);
+        assert_int_equal(step_packed(without, x0, x1, &few), CSCD_OK);
+        size_t at = 0;
+        for (size_t i = 0; i < all.count; i++) {
+            if (!of_triangles(&all.items[i])) continue;
+            const cscd_contact *a = &all.items[i], *b = &few.items[at++];
+            assert_true(at <= few.count && a->kind == b->kind && a->toi == b->toi && a->u == b->u &&
+                        a->v == b->v);
+            for (int k = 0; k < 4; k++) assert_int_equal(a->vertices[k], vertex_of[b->vertices[k]]);
+            compared++;
+        }
+        assert_int_equal(at, few.count);
+        cscd_detector_destroy(with);
+        cscd_detector_destroy(without);
+        cscd_mesh_destroy(mesh);
+        loose_scene_free(&scene);
+    }
+    assert_true(compared > 100);
+}
+
+/* ---- touching at the start --------------------------------------------------------------------------------- */
+
+/* A vertex behind the plane, a point in a face and crossing wires are in contact, and say so. */
+static void contact_at_the_start(void **state) {
+    static const uint32_t triangle[3] = {0, 1, 2}, wire[2] = {0, 1};
+    static const double up[3] = {0, 0, 2};
+    double x[] = {0,  0,  0,   1, 0, 0,   0, 1, 0,  0.25, 0.25, 1, 0, 0,
+                  -1, -1, 0.5, 2, 1, 0.5, 2, 0, -1, 3,    0,    1, 3};
+    cscd_object_desc objects[5] = {cscd_object_of_triangles(3, 1, triangle), cscd_object_of_points(1),
+                                   cscd_object_half_space(up), cscd_object_of_wires(2, 1, wire),
+                                   cscd_object_of_wires(2, 1, wire)};
+    static const char *const texts[3] = {"vertex 3 and triangle 0 touch",
+                                         "vertex 3 and the half-space, object 2 touch",
+                                         "edge 3 and edge 4 touch"};
+    static const cscd_contact_kind kinds[3] = {CSCD_CONTACT_VF, CSCD_CONTACT_VH, CSCD_CONTACT_EE};
+    (void)state;
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, objects, 5, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, NULL, &detector), CSCD_OK);
+    for (int i = 0; i < 3; i++) {
+        double moved[27], end[27];
+        cscd_free_step step;
+        memcpy(moved, x, sizeof moved);
+        if (i == 0) moved[3 * 3 + 2] = 0.0;  /* the point in the face */
+        if (i == 1) moved[3 * 3 + 2] = -1.0; /* on the plane */
+        if (i == 2) moved[7 * 3 + 2] = moved[8 * 3 + 2] = 2.0;
+        assert_int_equal(max_step_packed(detector, moved, moved, end, &step), CSCD_IN_CONTACT);
+        if (strstr(cscd_context_detail(context), texts[i]) == NULL)
+            fail_msg("%s", cscd_context_detail(context));
+        assert_int_equal(step.limit.kind, kinds[i]);
+    }
+    double end[27];
+    cscd_free_step step;
+    assert_int_equal(max_step_packed(detector, x, x, end, &step), CSCD_OK);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
+/* ---- floats and views --------------------------------------------------------------------------------------- */
+
+/* Positions as a float solver keeps them: a view for each object, floats in structs. What it stores is certified. */
+static void marching_in_floats(void **state) {
+    typedef struct particle {
+        float mass, x[3];
+    } particle;
+    size_t moved = 0, steps = 0;
+    (void)state;
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        random_stream random = stream_start(400 + seed);
+        loose_recipe recipe = everything;
+        recipe.thickness = true;
+        loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
+        cscd_detector_options options = loose_scene_options(&scene);
+        cscd_detector *detector = open_detector(&options);
+        particle now[LOOSE_VERTICES_MAX], next[LOOSE_VERTICES_MAX];
+        cscd_view from[LOOSE_OBJECTS_MAX], to[LOOSE_OBJECTS_MAX];
+        cscd_mutable_view reached[LOOSE_OBJECTS_MAX];
+        for (uint32_t i = 0; i < scene.object_count; i++) {
+            cscd_object o = cscd_mesh_object(scene.mesh, i);
+            size_t size = o.vertex_count * sizeof(particle) - offsetof(particle, x);
+            from[i] = (cscd_view){now[o.first_vertex].x, size, sizeof(particle), sizeof(float),
+                                  CSCD_SCALAR_FLOAT,     1};
+            to[i] = from[i];
+            to[i].data = next[o.first_vertex].x;
+            reached[i] = (cscd_mutable_view){next[o.first_vertex].x, size, sizeof(particle), sizeof(float),
+                                             CSCD_SCALAR_FLOAT,      1};
+        }
+        for (uint32_t v = 0; v < scene.vertex_count; v++) {
+            bool low = scene.objects[cscd_mesh_vertex_object(scene.mesh, v)].kind == CSCD_OBJECT_HALF_SPACE;
+            for (size_t k = 0; k < 3; k++)
+                now[v].x[k] = (float)(100.0 + scene.x0[v * 3 + k] - (low && k > 0 ? 3.0 : 0.0));
+        }
+        for (int i = 0; i < 60; i++) {
+            cscd_free_step step;
+            for (uint32_t v = 0; v < scene.vertex_count; v++) {
+                for (size_t k = 0; k < 3; k++)
+                    next[v].x[k] =
+                        now[v].x[k] + (float)(stream_between(&random, -0.05, 0.05) +
+                                              0.05 * (scene.x1[v * 3 + k] - scene.x0[v * 3 + k]) / 20.0);
+            }
+            cscd_status status = cscd_detector_max_step(detector, from, to, reached, &step);
+            if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
+            moved += step.moved;
+            steps++;
+            memcpy(now, next, sizeof now);
+        }
+        cscd_detector_destroy(detector);
+        loose_scene_free(&scene);
+    }
+    assert_true(moved > steps / 2);
+}
+
+/* ---- memory -------------------------------------------------------------------------------------------------- */
+
+/* Everything from the mesh to a line search; after a failure the same call once more. */
+static cscd_status use_library(counting_allocator *counter, size_t *contacts) {
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    cscd_line_search *line = NULL;
+    cscd_context_options options = cscd_context_defaults();
+    options.allocator = counting_allocator_interface(counter);
+    options.thread_count = 2;
+    cscd_detector_options chosen = loose_scene_options(&scene);
+    double reached[LOOSE_VERTICES_MAX * 3];
+    cscd_status status = cscd_context_create(&options, &context);
+    if (status == CSCD_OK) status = cscd_mesh_create(context, scene.objects, scene.object_count, &mesh);
+    if (status == CSCD_OK) status = detector_create_here(mesh, NULL, &chosen, &detector);
+    if (status == CSCD_OK) status = cscd_line_search_create(detector, &line);
+    for (int again = 0; line != NULL && again < 2; again++) {
+        cscd_contacts found = {.count = 0};
+        cscd_proximities near;
+        cscd_free_step step;
+        cscd_truncation cut;
+        status = step_packed(detector, scene.x0, scene.x1, &found);
+        if (status == CSCD_OK) *contacts = found.count;
+        if (status == CSCD_OK) status = find_unique_packed(detector, scene.x0, 0.3, &near);
+        if (status == CSCD_OK) status = truncate_packed(detector, scene.x0, scene.x1, 0.2, reached, &cut);
+        if (status == CSCD_OK) status = line_begin_packed(line, scene.x0, scene.x1, 0.1);
+        if (status == CSCD_OK) status = line_max_step_packed(line, 1.0, reached, &step);
+        if (status == CSCD_IN_CONTACT) status = CSCD_OK;
+        if (status == CSCD_OK) break;
+        assert_true(again == 0 && status == CSCD_OUT_OF_MEMORY);
+    }
+    cscd_line_search_destroy(line);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    assert_int_equal(counter->live, 0);
+    return line != NULL ? CSCD_OK : status;
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    for (int triangles = 0; triangles < 2; triangles++) {
+        random_stream random = stream_start(500);
+        loose_recipe recipe = everything;
+        recipe.triangles = triangles == 1;
+        recipe.thickness = true;
+        loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
+        size_t expected = 0, contacts, failed = 0;
+        counting_allocator counter = counting_allocator_start();
+        assert_int_equal(use_library(&counter, &expected), CSCD_OK);
+        size_t calls = counter.calls;
+        assert_true(expected > 20 && calls > 60);
+        for (size_t n = 0; n < calls; n++) {
+            counter = counting_allocator_start();
+            counter.fail_at = n;
+            contacts = expected;
+            cscd_status status = use_library(&counter, &contacts);
+            assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
+            assert_int_equal(contacts, expected);
+            failed += status != CSCD_OK;
+        }
+        assert_true(failed > 30 && failed < calls);
+        loose_scene_free(&scene);
+    }
+}
+
+/* A steady step allocates nothing. */
+static void steady_state(void **state) {
+    counting_allocator counter = counting_allocator_start();
+    random_stream random = stream_start(600);
+    loose_recipe recipe = everything;
+    recipe.thickness = true;
+    (void)state;
+    loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
+    cscd_context_options options = cscd_context_defaults();
+    options.allocator = counting_allocator_interface(&counter);
+    options.thread_count = 3;
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    cscd_detector_options chosen = loose_scene_options(&scene);
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, scene.objects, scene.object_count, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &chosen, &detector), CSCD_OK);
+    size_t calls = 0;
+    for (int i = 0; i < 10; i++) {
+        cscd_contacts found;
+        if (i == 2) calls = counter.calls;
+        assert_int_equal(step_packed(detector, scene.x0, scene.x1, &found), CSCD_OK);
+        assert_true(found.count > 20);
+    }
+    assert_int_equal(counter.calls, calls);
+    cscd_detector_destroy(detector);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+    loose_scene_free(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits),
+                                       cmocka_unit_test(triangles_unchanged),
+                                       cmocka_unit_test(contact_at_the_start),
+                                       cmocka_unit_test(marching_in_floats),
+                                       cmocka_unit_test(every_allocation_may_fail),
+                                       cmocka_unit_test(steady_state)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
