@@ -4,6 +4,7 @@
 #define CSCD_LIVE_API_H
 
 #include <cscd/detector.h>
+#include <cscd/mesh_change.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -64,6 +65,61 @@ CSCD_API cscd_status cscd_detector_set_ignored(cscd_detector *detector, const ui
 CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_rule *rules,
                                              uint32_t rule_count, const double *thickness_matrix,
                                              uint32_t thickness_class_count);
+
+/* ---- another mesh ---------------------------------------------------------------------------------------- */
+
+/* Moves the detector over to the new mesh of a change whose old mesh is the detector's, and which may be of another
+ * context. On failure the detector stays as it was.
+ *   trees         components that are untouched keep theirs, all others get new ones at the next call
+ *   regions       untouched components keep theirs, with detector points and weights, numbered first and in their
+ *                 order; each other component becomes one region, as method SINGLE does. The method stays
+ *   starts        what is known of untouched components stays known, if the next call begins where the last ended
+ *   pairs         a seam joins what has become of its vertices: of vertices that came apart, the first. A pair of
+ *                 ignored triangles becomes all pairs of triangles that came from the two. Pairs that wait go on to
+ *                 wait, and so do neighbours that the change parts: features of vertices that were one vertex, or one
+ *                 seam, unless they are apart at the first positions that the detector is given then
+ *   rules         each object keeps its rule; a new one gets cscd_object_rule_default
+ *   rest          edges keep the lengths of their origins; for all others the mollifier's threshold is 0 until
+ *                 cscd_detector_set_rest
+ * Lists, timings, counters, guarantees and orientations of earlier calls are gone. Line searches must begin again;
+ * until then they return INVALID_ARGUMENT. */
+CSCD_API cscd_status cscd_detector_change_mesh(cscd_detector *detector, const cscd_mesh_change *change);
+
+/* Creates a second detector on the same mesh in a context that may be another one. It begins with a copy of all that
+ * the first one has: trees, regions, options, rules, pairs to leave out and pairs that wait, rest lengths, and what is known of the start.
+ * From then on they have nothing to do with each other. It has no lists, and no line searches. BUSY also where the
+ * first one's context is inside another call. */
+CSCD_API cscd_status cscd_detector_clone(cscd_context *context, const cscd_detector *detector,
+                                         cscd_detector **out);
+
+/* ---- what is known of the start ---------------------------------------------------------------------------- */
+
+/* What is known of a triangle at the positions that a detector saw last: the end of the last step, or what was checked
+ * last. See cscd_start: only clean triangles are culled. Without culling nothing is known. */
+typedef enum cscd_start_state {
+    CSCD_START_STATE_UNKNOWN,
+    CSCD_START_STATE_CROSSING, /* it intersects or touches its component, or has no area */
+    CSCD_START_STATE_FREE,     /* it does not, but may not be on the outer side of its component */
+    CSCD_START_STATE_CLEAN,    /* it is free and on the outer side */
+    CSCD_START_STATE_MAX_ENUM = 0x7fffffff
+} cscd_start_state;
+
+/* The state of a triangle. */
+CSCD_API cscd_start_state cscd_detector_start_state(const cscd_detector *detector, uint32_t triangle);
+
+/* How many triangles of a component are in which state. */
+typedef struct cscd_start_knowledge {
+    uint32_t clean, free, crossing, unknown;
+} cscd_start_knowledge;
+
+CSCD_API void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t component,
+                                                  cscd_start_knowledge *out, size_t size);
+static inline cscd_start_knowledge cscd_detector_start_knowledge(const cscd_detector *detector,
+                                                                 uint32_t component) {
+    cscd_start_knowledge found;
+    cscd_detector_start_knowledge_sized(detector, component, &found, sizeof found);
+    return found;
+}
 
 #ifdef __cplusplus
 }

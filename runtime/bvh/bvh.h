@@ -60,6 +60,7 @@ typedef struct bvh_level {
 typedef struct bvh_tree {
     uint32_t region;
     uint32_t object;    /* OBJECT_SEVERAL: only where a baseline has joined components */
+    uint32_t missing;   /* so many triangles are still to be put into it; 0: it is whole */
     bool skip_adjacent; /* the traversal leaves out pairs of its triangles that share a vertex */
     uint32_t first_leaf, leaf_count, first_record, record_count;
     uint32_t first_blocks[TREE_LEVEL_MAX]; /* per level below the tree level */
@@ -69,6 +70,8 @@ typedef struct bvh_tree {
     float detector[2][3];  /* its detector point in its frame */
     double weighted[2][3]; /* the mean of its records by their weights, at the start and at the end */
 } bvh_tree;
+
+enum { BVH_CHUNK_RECORDS = 1024 };
 
 /* Records begin to end - 1 of a tree. One thread copies in one chunk at a time. */
 typedef struct record_chunk {
@@ -80,7 +83,7 @@ typedef struct bvh {
     const cscd_mesh *mesh;
     const bvh_kernels *kernels;
     int axis_count; /* of the volumes of blocks' children: BOX_AXES or KDOP_AXES */
-    uint32_t tree_count, leaf_count, record_count;
+    uint32_t tree_count, leaf_count, record_count, record_capacity;
     bvh_tree *trees;
     bvh_leaf *leaves;
     lane_flags *leaf_flags;             /* of triangles */
@@ -112,6 +115,16 @@ typedef struct bvh_regions {
 cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *positions, int axis_count,
                       bvh *out);
 void bvh_free(bvh *f);
+
+/* Builds what bvh_move_over (bvh_move.h) has left out, as a step of its own; positions shape the trees that are missing.
+ * sets: as for bvh_set_objects. On failure everything that was there stays, so that it can be called again. */
+cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const double *positions);
+
+/* Adds all blocks above the leaves, as a step of bvh_build; counts: scratch, one number per tree. False: no memory. */
+bool bvh_build_levels(bvh *f, uint32_t *counts);
+
+/* Frees them, as a step of bvh_free. */
+void bvh_free_levels(bvh *f);
 
 /* Names the objects of trees and fills in obstacle_lanes, as a step of bvh_build. False: no memory. */
 bool bvh_mark_objects(bvh *f);

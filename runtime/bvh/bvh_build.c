@@ -1,119 +1,42 @@
 /* Builds the trees: the order of triangles, leaves, blocks and records. */
 #include "runtime/bvh/bvh.h"
+#include "runtime/bvh/bvh_order.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-enum { CHUNK_RECORDS = 1024 };
-
-/* Items to be ordered so that neighbours are near each other: the triangles of a region, or regions. */
-typedef struct ordering {
-    uint32_t *items;
-    float (*centres)[3]; /* indexed by what items holds */
-} ordering;
 
 typedef struct builder {
     cscd_context *context;
     const cscd_mesh *mesh;
     bvh_regions given;
     ordering triangles, regions;
+    const uint32_t *names;    /* the triangles that items of `triangles` stand for; NULL: each for itself */
     uint32_t *region_offsets; /* the triangles of region r: items[offsets[r] .. offsets[r + 1]) */
     uint32_t *record_of;      /* per vertex: its last record; in an earlier tree if below the tree's first */
 } builder;
 
-/* ---- order --------------------------------------------------------------------------------------------- */
+/* ---- order ------------------------------------------------------------------------------------------- */
 
-static int longest_axis(const ordering *o, uint32_t begin, uint32_t end) {
-    float longest_extent = -1.0f;
-    int longest = 0;
-    for (int k = 0; k < 3; k++) {
-        float low = INFINITY, high = -INFINITY;
-        for (uint32_t i = begin; i < end; i++) {
-            float value = o->centres[o->items[i]][k];
-            low = value < low ? value : low;
-            high = value > high ? value : high;
-        }
-        if (high - low > longest_extent) {
-            longest_extent = high - low;
-            longest = k;
-        }
-    }
-    return longest;
-}
-
-static bool comes_before(const ordering *o, int axis, uint32_t a, uint32_t b) {
-    float x = o->centres[a][axis], y = o->centres[b][axis];
-    return x != y ? x < y : a < b;
-}
-
-static void swap_items(uint32_t *items, uint32_t i, uint32_t j) {
-    uint32_t item = items[i];
-    items[i] = items[j];
-    items[j] = item;
-}
-
-/* Hoare's selection: moves the items of the least coordinates before position nth. */
-static void select_nth(const ordering *o, int axis, uint32_t begin, uint32_t end, uint32_t nth) {
-    uint32_t *items = o->items;
-    while (end - begin > 1) {
-        uint32_t pivot = items[begin + (end - begin) / 2], i = begin, j = end - 1;
-        for (;;) {
-            while (comes_before(o, axis, items[i], pivot)) i++;
-            while (comes_before(o, axis, pivot, items[j])) j--;
-            if (i >= j) break;
-            swap_items(items, i++, j--);
-        }
-        /* If i and j end on the same item, this is the pivot and already in its place. */
-        if (i == j && nth == i) return;
-        if (nth < i)
-            end = i;
-        else
-            begin = j + 1;
-    }
-}
-
-/* Returns the number of items in the first half of a run: the largest power of two below count. So runs of 8^k items
- * begin at multiples of 8^k, and all runs at multiples of their size. */
-static uint32_t first_share(uint32_t count) {
-    uint32_t share = 1;
-    while (share < count - share) share *= 2;
-    return share;
-}
-
-/* Splits at the middle of the longest extent, then each side, down to single items. */
-static void order_run(const ordering *o, uint32_t begin, uint32_t end) {
-    uint32_t begins[64], ends[64], depth = 0;
-    begins[depth] = begin;
-    ends[depth++] = end;
-    while (depth > 0) {
-        depth--;
-        uint32_t from = begins[depth], to = ends[depth];
-        if (to - from < 2) continue;
-        uint32_t middle = from + first_share(to - from);
-        select_nth(o, longest_axis(o, from, to), from, to, middle);
-        /* The longer side is pushed first, so the stack holds at most one side per halving. */
-        bool first_longer = middle - from > to - middle;
-        begins[depth] = first_longer ? from : middle;
-        ends[depth++] = first_longer ? middle : to;
-        begins[depth] = first_longer ? middle : from;
-        ends[depth++] = first_longer ? to : middle;
-    }
-}
-
-/* Computes the centres of triangles relative to the first corner, scaled to floats; those of regions are their means. */
-static void find_centres(builder *b, const double *positions, double scale) {
-    const cscd_mesh *mesh = b->mesh;
+/* Computes the centre of a triangle relative to the first corner, scaled to floats. */
+static void find_centre(const cscd_mesh *mesh, const double *positions, double scale, uint32_t triangle,
+                        float *centre) {
     const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    for (size_t k = 0; k < 3; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < 3; i++)
+            sum += positions[(size_t)mesh->triangles[triangle][i] * 3 + k] - origin[k];
+        centre[k] = (float)(sum / 3.0 * scale);
+    }
+}
+
+/* The centres of regions are the means of those of their triangles. */
+static void find_centres(builder *b, const double *positions, double scale) {
+    for (uint32_t t = 0; t < b->mesh->triangle_count; t++) {
         uint32_t region = b->given.of_triangle[t];
         float share = 1.0f / (float)(b->region_offsets[region + 1] - b->region_offsets[region]);
-        for (size_t k = 0; k < 3; k++) {
-            double sum = 0.0;
-            for (int i = 0; i < 3; i++) sum += positions[(size_t)mesh->triangles[t][i] * 3 + k] - origin[k];
-            b->triangles.centres[t][k] = (float)(sum / 3.0 * scale);
-            b->regions.centres[region][k] += share * b->triangles.centres[t][k];
-        }
+        find_centre(b->mesh, positions, scale, t, b->triangles.centres[t]);
+        for (size_t k = 0; k < 3; k++) b->regions.centres[region][k] += share * b->triangles.centres[t][k];
     }
 }
 
@@ -146,13 +69,17 @@ static uint32_t record_of(builder *b, bvh *f, const bvh_tree *tree, uint32_t ver
     return b->record_of[vertex] = f->record_count++;
 }
 
-static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *triangles, uint32_t count) {
+static uint32_t triangle_of(const builder *b, uint32_t item) {
+    return b->names != NULL ? b->names[item] : item;
+}
+
+static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *items, uint32_t count) {
     uint32_t index = f->leaf_count++;
     bvh_leaf *out = &f->leaves[index];
     f->leaf_trees[index] = (uint32_t)(tree - f->trees);
-    f->leaf_flags[index].used = (uint8_t)((1u << count) - 1);
+    f->leaf_flags[index] = (lane_flags){.used = (uint8_t)((1u << count) - 1)};
     for (uint32_t lane = 0; lane < LANES; lane++) {
-        uint32_t t = triangles[lane < count ? lane : 0];
+        uint32_t t = triangle_of(b, items[lane < count ? lane : 0]);
         out->triangles[lane] = lane < count ? t : UINT32_MAX;
         for (int i = 0; i < 3; i++) {
             uint32_t record = record_of(b, f, tree, b->mesh->triangles[t][i]);
@@ -163,21 +90,20 @@ static void fill_leaf(builder *b, bvh *f, const bvh_tree *tree, const uint32_t *
     }
 }
 
-/* Cuts the records of a tree into chunks. */
-static void add_chunks(bvh *f, uint32_t index) {
-    const bvh_tree *tree = &f->trees[index];
-    uint32_t end = tree->first_record + tree->record_count;
-    for (uint32_t i = tree->first_record; i < end; i += CHUNK_RECORDS) {
-        uint32_t stop = end - i < CHUNK_RECORDS ? end : i + CHUNK_RECORDS;
-        f->chunks[f->chunk_count++] = (record_chunk){.tree = index, .begin = i, .end = stop};
+/* Cuts the records of all trees into chunks. */
+static void cut_chunks(bvh *f) {
+    f->chunk_count = 0;
+    for (uint32_t index = 0; index < f->tree_count; index++) {
+        uint32_t begin = f->trees[index].first_record, end = begin + f->trees[index].record_count;
+        for (uint32_t i = begin; i < end; i += BVH_CHUNK_RECORDS) {
+            uint32_t stop = end - i < BVH_CHUNK_RECORDS ? end : i + BVH_CHUNK_RECORDS;
+            f->chunks[f->chunk_count++] = (record_chunk){.tree = index, .begin = i, .end = stop};
+        }
     }
 }
 
-static void fill_tree(builder *b, bvh *f, uint32_t index) {
-    bvh_tree *tree = &f->trees[index];
-    uint32_t region = b->regions.items[index];
-    uint32_t begin = b->region_offsets[region], end = b->region_offsets[region + 1];
-    order_run(&b->triangles, begin, end);
+static void fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end) {
+    bvh_order_run(&b->triangles, begin, end);
     *tree = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
     for (uint32_t i = begin; i < end; i += LANES)
         fill_leaf(b, f, tree, b->triangles.items + i, end - i < LANES ? end - i : LANES);
@@ -185,80 +111,6 @@ static void fill_tree(builder *b, bvh *f, uint32_t index) {
     while (f->record_count % LANES != 0)
         f->record_vertices[f->record_count++] = f->record_vertices[tree->first_record];
     tree->record_count = f->record_count - tree->first_record;
-    add_chunks(f, index);
-}
-
-/* ---- levels -------------------------------------------------------------------------------------------- */
-
-static uint32_t blocks_over(uint32_t children) {
-    return (children + LANES - 1) / LANES;
-}
-
-static bool allocate_level(cscd_context *context, bvh_level *level, uint32_t block_count, int axis_count) {
-    size_t floats = (size_t)axis_count * 2 * LANES;
-    level->block_count = block_count;
-    level->first_children = context_allocate(context, block_count, sizeof *level->first_children);
-    level->bounds = context_allocate(context, block_count * floats, sizeof *level->bounds);
-    level->flags = context_allocate(context, block_count, sizeof *level->flags);
-    return level->first_children != NULL && level->bounds != NULL && level->flags != NULL;
-}
-
-static uint32_t add_blocks(bvh_level *level, uint32_t at, uint32_t first_child, uint32_t child_count) {
-    for (uint32_t i = 0; i < child_count; i += LANES, at++) {
-        uint32_t count = child_count - i < LANES ? child_count - i : LANES;
-        level->first_children[at] = first_child + i;
-        level->flags[at].used = (uint8_t)((1u << count) - 1);
-    }
-    return at;
-}
-
-/* Returns the number of levels of the largest tree, at least one. */
-static int height_of(const bvh *f) {
-    int height = 1;
-    for (uint32_t p = 0; p < f->tree_count; p++) {
-        int own = 1;
-        for (uint32_t n = blocks_over(f->trees[p].leaf_count); n > 1; n = blocks_over(n)) own++;
-        height = own > height ? own : height;
-    }
-    return height;
-}
-
-/* Adds the blocks of one level of all trees. On entry counts holds the number of children of each tree on this
- * level, on return the number of its blocks. */
-static bool add_tree_level(bvh *f, int level, uint32_t *counts) {
-    uint32_t total = 0, at = 0, child = 0;
-    for (uint32_t p = 0; p < f->tree_count; p++) total += blocks_over(counts[p]);
-    if (!allocate_level(f->mesh->context, &f->levels[level], total, f->axis_count)) return false;
-    for (uint32_t p = 0; p < f->tree_count; p++) {
-        uint32_t first = f->trees[p].first_blocks[level] = at;
-        at = add_blocks(&f->levels[level], at, child, counts[p]);
-        for (uint32_t i = first; level == 0 && i < at; i++) f->block_trees[i] = p;
-        child += counts[p];
-        counts[p] = at - first;
-    }
-    return true;
-}
-
-static bool build_levels(bvh *f, uint32_t *counts) {
-    uint32_t blocks = 0;
-    f->tree_level = f->level_count = height_of(f);
-    for (uint32_t p = 0; p < f->tree_count; p++) {
-        counts[p] = f->trees[p].leaf_count;
-        blocks += blocks_over(counts[p]);
-    }
-    f->block_trees = context_allocate(f->mesh->context, blocks, sizeof *f->block_trees);
-    if (f->block_trees == NULL) return false;
-    for (int level = 0; level < f->tree_level; level++) {
-        if (!add_tree_level(f, level, counts)) return false;
-    }
-    uint32_t children = f->tree_count;
-    do {
-        bvh_level *level = &f->levels[f->level_count++];
-        if (!allocate_level(f->mesh->context, level, blocks_over(children), f->axis_count)) return false;
-        add_blocks(level, 0, 0, children);
-        children = level->block_count;
-    } while (children > 1);
-    return true;
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------------- */
@@ -317,22 +169,25 @@ static bool allocate_bvh(const builder *b, bvh *f) {
     f->record_vertices = context_allocate(context, record_count, sizeof *f->record_vertices);
     f->record_weights = context_allocate(context, record_count, sizeof *f->record_weights);
     f->records = context_allocate(context, record_count, sizeof *f->records);
-    f->chunks = context_allocate(context, record_count / CHUNK_RECORDS + f->tree_count, sizeof *f->chunks);
+    f->record_capacity = record_count;
+    f->chunks =
+        context_allocate(context, record_count / BVH_CHUNK_RECORDS + f->tree_count, sizeof *f->chunks);
     f->slots = context_allocate(context, f->mesh->triangle_count, sizeof *f->slots);
     return f->trees != NULL && f->leaves != NULL && f->leaf_flags != NULL && f->flags_before != NULL &&
            f->leaf_trees != NULL && f->record_vertices != NULL && f->record_weights != NULL &&
            f->records != NULL && f->chunks != NULL && f->slots != NULL;
 }
 
-/* Returns the power of two that brings the extent of the positions near 1. */
-static double scale_for(const cscd_mesh *mesh, const double *positions) {
-    const uint32_t *corners = mesh->triangles[0];
-    const double *origin = positions + (size_t)corners[0] * 3;
+/* Returns the power of two that brings the extent of these triangles' positions near 1; names NULL: of all. */
+static double scale_for(const cscd_mesh *mesh, const double *positions, const uint32_t *names,
+                        uint32_t count) {
+    const double *origin = positions + (size_t)mesh->triangles[0][0] * 3;
     double extent = 0.0;
     int exponent = 0;
-    for (size_t i = 0; i < (size_t)mesh->triangle_count * 3; i++) {
+    for (size_t i = 0; i < (size_t)count * 3; i++) {
+        const uint32_t *corners = mesh->triangles[names != NULL ? names[i / 3] : i / 3];
         for (size_t k = 0; k < 3; k++) {
-            double distance = fabs(positions[(size_t)corners[i] * 3 + k] - origin[k]);
+            double distance = fabs(positions[(size_t)corners[i % 3] * 3 + k] - origin[k]);
             extent = distance > extent ? distance : extent;
         }
     }
@@ -347,15 +202,19 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
              .kernels = bvh_kernels_of(mesh->context),
              .axis_count = axis_count,
              .tree_count = regions.count,
-             .scale = scale_for(mesh, positions)};
+             .scale = scale_for(mesh, positions, NULL, mesh->triangle_count)};
     bool made = allocate_builder(&b);
     if (made) {
         list_triangles(&b);
         find_centres(&b, positions, f.scale);
-        order_run(&b.regions, 0, regions.count);
+        bvh_order_run(&b.regions, 0, regions.count);
         made = allocate_bvh(&b, &f);
-        for (uint32_t p = 0; made && p < f.tree_count; p++) fill_tree(&b, &f, p);
-        made = made && build_levels(&f, b.regions.items) && bvh_mark_objects(&f);
+        for (uint32_t p = 0; made && p < f.tree_count; p++) {
+            uint32_t region = b.regions.items[p];
+            fill_run(&b, &f, &f.trees[p], region, b.region_offsets[region], b.region_offsets[region + 1]);
+        }
+        if (made) cut_chunks(&f);
+        made = made && bvh_build_levels(&f, b.regions.items) && bvh_mark_objects(&f);
     }
     free_builder(&b);
     if (!made) {
@@ -367,6 +226,100 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
     return CSCD_OK;
 }
 
+/* ---- trees that are missing ---------------------------------------------------------------------------- */
+
+/* Lists the triangles of missing trees, tree by tree. */
+static void list_missing(builder *b, const bvh *f, uint32_t *names) {
+    uint32_t sum = 0, *next = b->region_offsets + 1;
+    for (uint32_t i = 0; i < f->tree_count; i++) next[f->trees[i].region] = f->trees[i].missing;
+    for (uint32_t r = 0; r < b->given.count; r++) {
+        uint32_t size = next[r];
+        next[r] = size > 0 ? sum : UINT32_MAX;
+        sum += size;
+    }
+    for (uint32_t t = 0; t < b->mesh->triangle_count; t++) {
+        uint32_t *place = &next[b->given.of_triangle[t]];
+        if (*place != UINT32_MAX) names[(*place)++] = t;
+    }
+    for (uint32_t i = 0; i < sum; i++) b->triangles.items[i] = i;
+    /* Now next has the end of each run, and the run before a missing one need not be missing. */
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        const bvh_tree *tree = &f->trees[i];
+        if (tree->missing > 0) b->regions.items[i] = next[tree->region] - tree->missing;
+    }
+}
+
+/* Fills the place that a missing tree has been given. */
+static void fill_missing(builder *b, bvh *f, uint32_t index) {
+    bvh_tree place = f->trees[index], *tree = &f->trees[index];
+    uint32_t leaves = f->leaf_count, records = f->record_count, begin = b->regions.items[index];
+    memset(f->record_weights + place.first_record, 0, place.record_count * sizeof *f->record_weights);
+    f->leaf_count = place.first_leaf;
+    f->record_count = place.first_record;
+    fill_run(b, f, tree, place.region, begin, begin + place.missing);
+    assert(tree->leaf_count == place.leaf_count && tree->record_count == place.record_count);
+    f->leaf_count = leaves;
+    f->record_count = records;
+}
+
+static void drop_levels(bvh *f) {
+    cscd_context *context = f->mesh->context;
+    bvh_free_objects(f);
+    bvh_free_levels(f);
+    context_free(context, f->block_trees);
+    f->block_trees = NULL;
+    f->level_count = 0;
+}
+
+static bool allocate_missing(builder *b, bvh *f, uint32_t missing, uint32_t **names) {
+    cscd_context *context = b->context;
+    b->triangles.items = context_allocate(context, missing, sizeof(uint32_t));
+    b->triangles.centres = context_allocate(context, missing, sizeof(float[3]));
+    b->regions.items = context_allocate(context, f->tree_count, sizeof(uint32_t));
+    b->region_offsets = context_allocate(context, (size_t)b->given.count + 1, sizeof(uint32_t));
+    b->record_of = context_reserve(context, b->mesh->vertex_count, sizeof(uint32_t));
+    b->names = *names = context_allocate(context, missing, sizeof(uint32_t));
+    if (f->records == NULL) {
+        f->record_capacity = f->record_count + f->record_count / 16;
+        f->records = context_allocate(context, f->record_capacity, sizeof *f->records);
+    }
+    return b->triangles.items != NULL && b->triangles.centres != NULL && b->regions.items != NULL &&
+           b->region_offsets != NULL && b->record_of != NULL && b->names != NULL && f->records != NULL;
+}
+
+static uint32_t count_missing(const bvh *f) {
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < f->tree_count; i++) sum += f->trees[i].missing;
+    return sum;
+}
+
+static void fill_all_missing(builder *b, bvh *f, const double *positions, uint32_t *names, uint32_t missing) {
+    memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
+    list_missing(b, f, names);
+    f->scale = fmin(f->scale, scale_for(b->mesh, positions, names, missing));
+    for (uint32_t i = 0; i < missing; i++)
+        find_centre(b->mesh, positions, f->scale, names[i], b->triangles.centres[i]);
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        if (f->trees[i].missing > 0) fill_missing(b, f, i);
+    }
+}
+
+cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const double *positions) {
+    builder b = {.context = f->mesh->context, .mesh = f->mesh, .given = regions};
+    uint32_t missing = count_missing(f), *names = NULL;
+    bool made = allocate_missing(&b, f, missing, &names);
+    if (made) {
+        fill_all_missing(&b, f, positions, names, missing);
+        cut_chunks(f);
+        made = bvh_build_levels(f, b.regions.items) && bvh_mark_objects(f) && bvh_set_objects(f, sets);
+        if (!made) drop_levels(f);
+    }
+    free_builder(&b);
+    context_free(b.context, names);
+    assert(!made || bvh_validate(f, false) == NULL);
+    return made ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
 void bvh_free(bvh *f) {
     if (f->mesh == NULL) return;
     cscd_context *context = f->mesh->context;
@@ -374,13 +327,8 @@ void bvh_free(bvh *f) {
                       f->leaf_self_pairs, f->block_trees, f->record_vertices, f->record_weights,
                       f->records,         f->slots,       f->chunks,          f->leaf_trees};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
-    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
-        context_free(context, f->levels[i].first_children);
-        context_free(context, f->levels[i].bounds);
-        context_free(context, f->levels[i].flags);
-        context_free(context, f->levels[i].self_pairs);
-    }
     bvh_free_objects(f);
+    bvh_free_levels(f);
     *f = (bvh){0};
 }
 

@@ -63,15 +63,33 @@ static bool same_growth(const volume_growth *a, const volume_growth *b) {
     return a->distance == b->distance && a->of_objects == b->of_objects && a->beyond == b->beyond;
 }
 
+static cscd_status finish_kept(bvh_rebuild *r, const double *positions, bvh *out) {
+    cscd_status status = bvh_finish(&r->kept, r->regions, r->objects, positions);
+    if (status != CSCD_OK) return status;
+    *out = r->kept;
+    r->kept = (bvh){0};
+    return CSCD_OK;
+}
+
+/* Trees that were loose when they moved over are as loose now: what they were at first goes on to count, unless it was
+ * looser than what they are. */
+static bvh_spread least_spread(bvh_spread now, bvh_spread before) {
+    if (before.leaves > 0.0) now.leaves = fmin(now.leaves, before.leaves);
+    if (before.trees > 0.0) now.trees = fmin(now.trees, before.trees);
+    return now;
+}
+
 /* The first volumes are widened as for a step, so that the first spread can be compared with later ones. */
 static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, const double *x1,
                                   volume_growth growth, volume_growth step_growth) {
     if (r->mesh->triangle_count == 0) return CSCD_OK;
     if (f->mesh == NULL) {
-        cscd_status status = build_trees(r, x0, f);
+        bool moved = r->kept.mesh != NULL;
+        cscd_status status = moved ? finish_kept(r, x0, f) : build_trees(r, x0, f);
         if (status != CSCD_OK) return status;
         bvh_refit(f, x0, x1, step_growth);
-        r->spread_when_built = spread_of(f);
+        bvh_spread spread = spread_of(f);
+        r->spread_when_built = moved ? least_spread(spread, r->spread_when_built) : spread;
         if (same_growth(&growth, &step_growth)) return CSCD_OK;
     }
     bvh_refit(f, x0, x1, growth);

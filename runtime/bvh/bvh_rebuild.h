@@ -16,13 +16,14 @@ typedef struct bvh_rebuild {
     int axis_count;
     const object_set *objects; /* the rules for objects, one for each; NULL: there are none */
 
+    bvh kept; /* trees that have moved over from another mesh and are finished when trees are needed; mesh NULL: none */
     bvh_spread spread_when_built;
     uint32_t intervals_unmeasured; /* intervals since the spread was last measured */
     uint32_t useless_rebuilds;     /* in a row, at most 4: each doubles the time to the next measurement */
     bool rebuilt;                  /* by the last call of bvh_rebuild_move */
 } bvh_rebuild;
 
-/* Builds the trees from x0 if there are none, and refits them to the interval from x0 to x1, with volumes widened by
+/* Builds the trees from x0 if there are none, or those that are missing from `kept`, and refits them to the interval from x0 to x1, with volumes widened by
  * growth.
  *
  * A refit keeps together what was near when the trees were built. So the spread is measured every 16th interval; where

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static array_list list_arrays(culling *c) {
+array_list culling_arrays(culling *c) {
     size_t triangles = c->mesh->triangle_count, regions = c->region_count;
     return (array_list){{ARRAY(c->triangle_regions, triangles), ARRAY(c->triangle_weights, triangles),
                          ARRAY(c->detector_offsets, regions), ARRAY(c->detector_points, regions),
@@ -14,7 +14,7 @@ static array_list list_arrays(culling *c) {
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out) {
     culling c = {.context = mesh->context, .mesh = mesh};
     c.region_count = plan != NULL ? plan->region_count : mesh->component_count;
-    if (!context_allocate_all(c.context, list_arrays(&c))) return CSCD_OUT_OF_MEMORY;
+    if (!context_allocate_all(c.context, culling_arrays(&c))) return CSCD_OUT_OF_MEMORY;
     const uint32_t *regions = plan != NULL ? plan->triangle_regions : mesh->triangle_components;
     memcpy(c.triangle_regions, regions, mesh->triangle_count * sizeof *regions);
     for (uint32_t t = 0; plan == NULL && t < mesh->triangle_count; t++)
@@ -29,7 +29,7 @@ cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling
 }
 
 void culling_destroy(culling *c) {
-    context_free_all(c->context, list_arrays(c));
+    context_free_all(c->context, culling_arrays(c));
     *c = (culling){0};
 }
 

@@ -18,6 +18,9 @@ typedef struct culling {
     uint64_t plus, minus;  /* how many triangles face PLUS, and MINUS */
 } culling;
 
+/* Its arrays, for those who copy them; mesh and region_count say their sizes. */
+array_list culling_arrays(culling *c);
+
 /* Copies what the detector needs from a plan. Without a plan, each component is one region, and the mean of its
  * triangles is its detector point. Nothing is culled yet. */
 cscd_status culling_create(const cscd_mesh *mesh, const cscd_plan *plan, culling *out);

@@ -10,7 +10,7 @@ static const double share_worth_it = 0.9;
 
 enum { BACKOFF_MAX = 16, VERTICES_PER_TASK = 2048 };
 
-static array_list list_arrays(start_states *s) {
+array_list start_states_arrays(start_states *s) {
     size_t triangles = s->mesh->triangle_count, components = s->mesh->component_count;
     return (array_list){{ARRAY(s->positions, (size_t)s->mesh->vertex_count * 3),
                          ARRAY(s->triangles, triangles), ARRAY(s->saved, triangles),
@@ -20,13 +20,13 @@ static array_list list_arrays(start_states *s) {
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out) {
     start_states s = {.context = mesh->context, .mesh = mesh, .share_worth_it = share_worth_it};
-    if (!context_allocate_all(s.context, list_arrays(&s))) return CSCD_OUT_OF_MEMORY;
+    if (!context_allocate_all(s.context, start_states_arrays(&s))) return CSCD_OUT_OF_MEMORY;
     *out = s;
     return CSCD_OK;
 }
 
 void start_states_destroy(start_states *s) {
-    context_free_all(s->context, list_arrays(s));
+    context_free_all(s->context, start_states_arrays(s));
     *s = (start_states){0};
 }
 
@@ -71,10 +71,11 @@ static void remember_positions(start_states *s, const double *x) {
     position_work work = {.s = s, .x = x};
     run_over_vertices(copy_task, &work);
     s->known = true;
+    s->partly = false;
 }
 
 bool start_states_hold(start_states *s, const double *x) {
-    if (!s->known) return false;
+    if (!s->known || s->partly) return false;
     position_work work = {.s = s, .x = x};
     run_over_vertices(compare_task, &work);
     return !atomic_load(&work.differ);
@@ -86,17 +87,28 @@ static bool vertex_moved(const start_states *s, const double *x, uint32_t vertex
     return a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
 }
 
+/* Mostly an object rests as a whole or moves as a whole. */
+static void begin_object(start_states *s, const double *x, const cscd_object *object, bool *moved) {
+    const cscd_mesh *mesh = s->mesh;
+    const uint32_t *components = mesh->triangle_components;
+    size_t first = (size_t)object->first_vertex * 3, size = object->vertex_count * sizeof(double[3]);
+    uint32_t begin = object->first_triangle, end = begin + object->triangle_count;
+    if (memcmp(s->positions + first, x + first, size) == 0) return;
+    for (uint32_t t = begin; t < end; t++) {
+        for (int i = 0; i < 3; i++) moved[components[t]] |= vertex_moved(s, x, mesh->triangles[t][i]);
+    }
+    for (uint32_t t = begin; t < end; t++) {
+        if (moved[components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
+    }
+}
+
 void start_states_begin(start_states *s, const double *x) {
     const cscd_mesh *mesh = s->mesh;
     bool *moved = s->component_scratch;
     for (uint32_t c = 0; c < mesh->component_count; c++) moved[c] = !s->known;
-    for (uint32_t t = 0; s->known && t < mesh->triangle_count; t++) {
-        for (int i = 0; i < 3; i++)
-            moved[mesh->triangle_components[t]] |= vertex_moved(s, x, mesh->triangles[t][i]);
-    }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        if (moved[mesh->triangle_components[t]]) s->triangles[t] = TRIANGLE_UNKNOWN;
-    }
+    if (!s->known) memset(s->triangles, TRIANGLE_UNKNOWN, mesh->triangle_count);
+    for (uint32_t i = 0; s->known && i < mesh->object_count; i++)
+        begin_object(s, x, &mesh->objects[i], moved);
     s->counted = false;
     remember_positions(s, x);
 }

@@ -31,6 +31,7 @@ typedef struct start_states {
     const cscd_mesh *mesh;
     double *positions;
     bool known;               /* positions have been seen */
+    bool partly;              /* ... but not those of all vertices; the others are no numbers */
     bool vouched;             /* some triangles are clean only because the caller says so */
     uint8_t *triangles;       /* the triangle_state of each */
     component_start *of;      /* per component; its numbers of triangles are valid if counted is set */
@@ -49,6 +50,9 @@ typedef struct start_states {
 static inline bool start_states_pay(const start_states *s, uint32_t clean, uint32_t triangle_count) {
     return clean > 0 && (double)clean >= s->share_worth_it * (double)triangle_count;
 }
+
+/* Its arrays, for those who copy them. */
+array_list start_states_arrays(start_states *s);
 
 cscd_status start_states_create(const cscd_mesh *mesh, start_states *out);
 void start_states_destroy(start_states *s);

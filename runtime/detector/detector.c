@@ -63,7 +63,7 @@ static cscd_status choose_method(const cscd_mesh *mesh, const cscd_plan *plan,
     return CSCD_OK;
 }
 
-static array_list list_arrays(cscd_detector *d) {
+array_list detector_arrays(cscd_detector *d) {
     size_t components = d->mesh->component_count, lanes = d->space.traversal.lane_count;
     return (array_list){{ARRAY(d->culled, components), ARRAY(d->wants_all_contacts, components),
                          ARRAY(d->touched, components), ARRAY(d->incomplete, components),
@@ -71,7 +71,7 @@ static array_list list_arrays(cscd_detector *d) {
                          ARRAY(d->contacts_seen, lanes), ARRAY(d->never_culled, components)}};
 }
 
-static void choose_regions(cscd_detector *d) {
+void detector_choose_regions(cscd_detector *d) {
     const culling *c = &d->culling;
     d->rebuild = (bvh_rebuild){
         .mesh = d->mesh,
@@ -80,7 +80,7 @@ static void choose_regions(cscd_detector *d) {
     };
 }
 
-static cscd_status create_hider(cscd_detector *d) {
+cscd_status detector_create_hider(cscd_detector *d) {
     if (d->stages->hider == NULL) return CSCD_OK;
     d->hider_state = d->stages->hider->create(d->context);
     return d->hider_state != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
@@ -92,22 +92,24 @@ static cscd_status create_parts(cscd_detector *d, const cscd_plan *plan) {
     cscd_status status = search_space_create(d->mesh, &d->space);
     if (status == CSCD_OK) status = culling_create(d->mesh, own_regions ? NULL : plan, &d->culling);
     if (status == CSCD_OK && d->rules.joins_components) culling_join_components(&d->culling);
-    if (status == CSCD_OK) choose_regions(d);
+    if (status == CSCD_OK) detector_choose_regions(d);
     if (status == CSCD_OK) status = start_states_create(d->mesh, &d->starts);
     if (status == CSCD_OK) status = static_check_create(d->mesh, d->space.traversal.lane_count, &d->check);
-    if (status == CSCD_OK) status = create_hider(d);
+    if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
-    if (status == CSCD_OK && !context_allocate_all(d->context, list_arrays(d))) status = CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
+        status = CSCD_OUT_OF_MEMORY;
     return status;
 }
 
-static void free_memory(cscd_detector *d) {
+void detector_free(cscd_detector *d) {
     cscd_context *context = d->context;
     if (d->hider_state != NULL) d->stages->hider->destroy(context, d->hider_state);
     if (d->culling.mesh != NULL) culling_destroy(&d->culling);
     if (d->starts.mesh != NULL) start_states_destroy(&d->starts);
     static_check_destroy(&d->check);
     search_space_destroy(&d->space);
+    bvh_free(&d->rebuild.kept);
     exclusions_free(context, &d->exclusions);
     waiting_pairs_free(d->mesh, &d->waiting);
     pair_rules_free(d->mesh, &d->pair_rules);
@@ -117,21 +119,22 @@ static void free_memory(cscd_detector *d) {
     result_buffer_free(context, &d->intersections);
     result_buffer_free(context, &d->names);
     edge_rest_free(context, &d->rest);
-    context_free_all(context, list_arrays(d));
+    context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);
     context_free(context, d->reached);
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
     context_free(context, d->scalars);
+    context_free(context, d->seen);
     context_free(context, d);
 }
 
 static void free_detector(reference_count *references) {
     cscd_detector *d = (cscd_detector *)references;
     cscd_context *context = d->context;
-    cscd_mesh mesh = d->seen;
-    if (!context_broken(context)) free_memory(d);
+    cscd_mesh mesh = *d->seen;
+    if (!context_broken(context)) detector_free(d);
     mesh_release(&mesh);
     context_release(context);
 }
@@ -140,22 +143,37 @@ static const char *validate_listed(const reference_count *object) {
     return detector_validate((const cscd_detector *)object);
 }
 
+void detector_list(cscd_detector *d) {
+    context_list_object(d->context, &d->references, validate_listed);
+}
+
+cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh) {
+    cscd_detector *d = context_allocate(context, 1, sizeof *d);
+    cscd_mesh *seen = context_allocate(context, 1, sizeof *seen);
+    if (d == NULL || seen == NULL) {
+        context_free(context, d);
+        context_free(context, seen);
+        return NULL;
+    }
+    mesh_hold(mesh);
+    d->context = context;
+    *seen = mesh_seen_from(context, mesh);
+    d->mesh = d->seen = seen;
+    context_add_object(context, &d->references, free_detector);
+    return d;
+}
+
 /* Creates a detector with checked options. */
 static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh, const cscd_plan *plan,
                                    cscd_detector_options chosen, cscd_detector **out) {
-    cscd_detector *d = context_allocate(context, 1, sizeof *d);
+    cscd_detector *d = detector_begin(context, mesh);
     if (d == NULL) return context_out_of_memory(context);
-    mesh_hold(mesh);
-    d->context = context;
-    d->seen = mesh_seen_from(context, mesh);
-    d->mesh = mesh = &d->seen;
-    context_add_object(context, &d->references, free_detector);
     d->options = chosen;
     d->traits = method_traits_of(chosen.method);
     d->stages = method_stages_of(chosen.method);
     d->rules = *d->stages->rules;
     d->limit = separation_limit(chosen.min_separation, chosen.tolerance);
-    cscd_status status = exclusions_create(mesh, &chosen, &d->exclusions);
+    cscd_status status = exclusions_create(d->mesh, &chosen, &d->exclusions);
     d->exclusions.waiting = &d->waiting.pairs;
     if (status == CSCD_OK && create_parts(d, plan) != CSCD_OK) status = context_out_of_memory(context);
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
@@ -165,7 +183,7 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
         cscd_detector_destroy(d);
         return status;
     }
-    context_list_object(context, &d->references, validate_listed);
+    detector_list(d);
     *out = d;
     return CSCD_OK;
 }

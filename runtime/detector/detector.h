@@ -19,8 +19,9 @@
 struct cscd_detector {
     reference_count references; /* the caller, and lines */
     cscd_context *context;
-    cscd_mesh seen;        /* the mesh, which the detector holds, in its context */
-    const cscd_mesh *mesh; /* &seen */
+    cscd_mesh *seen;        /* the mesh, which the detector holds, in its context */
+    const cscd_mesh *mesh;  /* seen */
+    uint32_t mesh_revision; /* so many times another one has come */
     cscd_detector_options options;
     separation limit; /* of the options, with the default tolerance filled in */
     const method_traits *traits;
@@ -70,6 +71,24 @@ struct cscd_detector {
 /* Lines hold their detector. */
 void detector_hold(cscd_detector *d);
 void detector_release(cscd_detector *d);
+
+/* A detector without any parts, which holds the mesh and the context; NULL: no memory. */
+cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh);
+
+/* The detector is whole: see context_list_object. */
+void detector_list(cscd_detector *d);
+
+/* Its own arrays, whose sizes follow from the mesh and the number of lanes. */
+array_list detector_arrays(cscd_detector *d);
+
+/* Says which regions the trees are of. */
+void detector_choose_regions(cscd_detector *d);
+
+/* Creates the state of the method's own hider, if there is one. */
+cscd_status detector_create_hider(cscd_detector *d);
+
+/* Frees the detector and all that it has, without letting go of its mesh and context. */
+void detector_free(cscd_detector *d);
 
 /* Begins a call that can be cancelled or fail. Its positions have been checked, and the states are those of its
  * start. */

@@ -32,8 +32,7 @@ static void choose_never_culled(cscd_detector *d) {
     }
 }
 
-/* From here on nothing fails. */
-static void take_rules(cscd_detector *d, const pair_rules *rules) {
+void detector_take_rules(cscd_detector *d, const pair_rules *rules) {
     pair_rules_free(d->mesh, &d->pair_rules);
     d->pair_rules = *rules;
     d->rules_revision++;
@@ -91,7 +90,7 @@ static cscd_status replace_rules(cscd_detector *d, const given_rules *given, boo
         return status;
     }
     if (uncovers) waiting_pairs_uncover_objects(&d->waiting, &d->pair_rules);
-    take_rules(d, &rules);
+    detector_take_rules(d, &rules);
     return CSCD_OK;
 }
 

@@ -82,7 +82,7 @@ static const char *check_rules(const cscd_detector *d) {
 
 static const char *check_parts(const cscd_detector *d) {
     const cscd_mesh *mesh = d->mesh;
-    if (mesh != &d->seen || d->space.mesh != mesh || d->starts.mesh != mesh || d->culling.mesh != mesh ||
+    if (mesh != d->seen || d->space.mesh != mesh || d->starts.mesh != mesh || d->culling.mesh != mesh ||
         d->rebuild.mesh != mesh || d->exclusions.mesh != mesh)
         return "the parts of a detector are of different meshes";
     if (mesh->shared != NULL && mesh_of_creator(mesh)->triangle_count != mesh->triangle_count)

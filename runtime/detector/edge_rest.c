@@ -39,6 +39,37 @@ cscd_status edge_rest_set(cscd_context *context, const cscd_mesh *mesh, const do
     return CSCD_OK;
 }
 
+/* Vertices of one origin are at one place at rest, so an edge is as long as its origin. */
+cscd_status edge_rest_move(cscd_context *context, const edge_rest *r, const cscd_mesh_change *change,
+                           edge_rest *out) {
+    *out = (edge_rest){NULL};
+    if (r->squared_lengths == NULL) return CSCD_OK;
+    double *moved = context_reserve(context, change->edges.new_count, sizeof *moved);
+    if (moved == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < change->run_count; i++) {
+        const object_run *run = &change->runs[i];
+        memcpy(moved + run->to.edge, r->squared_lengths + run->from.edge,
+               run->from.edge_count * sizeof *moved);
+    }
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        for (uint32_t e = range->edge; e < range->edge + range->edge_count; e++) {
+            uint32_t origin = change->edges.to_old[e];
+            moved[e] = origin != UINT32_MAX ? r->squared_lengths[origin] : 0.0;
+        }
+    }
+    out->squared_lengths = moved;
+    return CSCD_OK;
+}
+
+cscd_status edge_rest_copy(const edge_rest *r, const cscd_mesh *mesh, edge_rest *out) {
+    edge_rest copy = *r;
+    array_list list = {{ARRAY(copy.squared_lengths, mesh->edge_count)}};
+    if (!context_copy_all(mesh->context, list)) return CSCD_OUT_OF_MEMORY;
+    *out = copy;
+    return CSCD_OK;
+}
+
 void edge_rest_free(cscd_context *context, edge_rest *r) {
     context_free(context, r->squared_lengths);
     *r = (edge_rest){NULL};

@@ -61,13 +61,39 @@ static void mark_share(void *data, uint32_t index) {
 }
 
 /* Lets go of the pairs that are apart now, or that are left out otherwise. */
-static cscd_status let_go(cscd_detector *d, const double *x) {
-    settling s = settle_at(d, x, &d->waiting.pairs);
+static cscd_status let_go(cscd_detector *d, const double *x, named_pair_set *set) {
+    settling s = settle_at(d, x, set);
     parallel_run(d->context->threads, d->space.traversal.lane_count, mark_share, &s);
     cscd_status status = search_space_status(&d->space);
     if (status == CSCD_OK) status = context_progress_status(d->context);
-    if (status == CSCD_OK) named_pair_set_keep_marked(&d->waiting.pairs);
+    if (status == CSCD_OK) named_pair_set_keep_marked(set);
     return status;
+}
+
+/* ---- pairs that the mesh has parted ---------------------------------------------------------------------- */
+
+static bool add_all(cscd_context *context, const named_pair_set *from, named_pair_set *to) {
+    for (size_t i = 0; i < from->count; i++) {
+        const named_pair *p = &from->items[i];
+        if (!named_pair_set_add(context, to, (cscd_contact_kind)p->kind, p->a, p->b)) return false;
+    }
+    return true;
+}
+
+/* Those that are not apart begin to wait. */
+static cscd_status take_torn(cscd_detector *d, const double *x) {
+    waiting_pairs *w = &d->waiting;
+    if (w->torn.count == 0) return CSCD_OK;
+    cscd_status status = let_go(d, x, &w->torn);
+    if (status != CSCD_OK) return status;
+    named_pair_set all = {.items = NULL};
+    bool made = add_all(d->context, &w->pairs, &all) && add_all(d->context, &w->torn, &all) &&
+                named_pair_set_sort(d->context, &all);
+    named_pair_set_free(d->context, made ? &w->pairs : &all);
+    if (!made) return CSCD_OUT_OF_MEMORY;
+    named_pair_set_free(d->context, &w->torn);
+    w->pairs = all;
+    return CSCD_OK;
 }
 
 /* ---- pairs that a change has uncovered ------------------------------------------------------------------ */
@@ -129,22 +155,13 @@ static cscd_status find_touching(settling *s) {
     return status;
 }
 
-static cscd_status keep_all_waiting(settling *s) {
-    const named_pair_set *before = &s->detector->waiting.pairs;
-    for (size_t i = 0; i < before->count; i++) {
-        const named_pair *p = &before->items[i];
-        if (!named_pair_set_add(s->detector->context, s->set, (cscd_contact_kind)p->kind, p->a, p->b))
-            return CSCD_OUT_OF_MEMORY;
-    }
-    return CSCD_OK;
-}
-
 /* The search finds the pairs that wait already, too, unless they are apart. */
 static cscd_status take_uncovered(cscd_detector *d, const double *x, bool letting_go) {
     named_pair_set set = {.items = NULL};
     settling s = settle_at(d, x, &set);
     progress_part(&d->context->progress, 0.0, 0.2);
-    cscd_status status = letting_go ? CSCD_OK : keep_all_waiting(&s);
+    cscd_status status = CSCD_OK;
+    if (!letting_go && !add_all(d->context, &d->waiting.pairs, &set)) status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = find_touching(&s);
     progress_part(&d->context->progress, 0.2, 1.0);
     if (status != CSCD_OK) {
@@ -160,10 +177,14 @@ static cscd_status take_uncovered(cscd_detector *d, const double *x, bool lettin
 /* ---- either --------------------------------------------------------------------------------------------- */
 
 cscd_status waiting_settle(cscd_detector *d, const double *x) {
+    cscd_status status = take_torn(d, x);
+    if (status != CSCD_OK) return status;
     if (d->waiting.former != NULL) return take_uncovered(d, x, true);
-    return d->waiting.pairs.count > 0 ? let_go(d, x) : CSCD_OK;
+    return d->waiting.pairs.count > 0 ? let_go(d, x, &d->waiting.pairs) : CSCD_OK;
 }
 
 cscd_status waiting_look(cscd_detector *d, const double *x) {
+    cscd_status status = take_torn(d, x);
+    if (status != CSCD_OK) return status;
     return d->waiting.former != NULL ? take_uncovered(d, x, false) : CSCD_OK;
 }

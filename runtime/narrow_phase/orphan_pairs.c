@@ -34,6 +34,18 @@ static bool are_orphan_edges(const cscd_mesh *mesh, uint32_t a, uint32_t b) {
     return true;
 }
 
+/* There are too many, or memory has run out. */
+static bool has_enough(const orphan_search *f) {
+    return f->out_of_memory || f->vf.count + f->ee.count > f->most;
+}
+
+static cscd_status end_search(const orphan_search *f, orphan_pairs *out, bool *too_many) {
+    *out = (orphan_pairs){f->vf.items, f->ee.items, f->vf.count, f->ee.count};
+    *too_many = has_enough(f) && !f->out_of_memory;
+    if (has_enough(f)) orphan_pairs_free(f->mesh->context, out);
+    return f->out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
+}
+
 static void add_pair(orphan_search *f, growing_list *list, uint32_t a, uint32_t b) {
     if (list->count == list->capacity) {
         size_t capacity = list->capacity * 2 + 64;
@@ -70,35 +82,72 @@ static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
     }
 }
 
-/* Returns false when there are too many, or memory runs out. */
-static bool find_all(orphan_search *f) {
+/* Looks at the pairs of one triangle with those adjacent to it. */
+static void find_around(orphan_search *f, uint32_t t) {
     const cscd_mesh *mesh = f->mesh;
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corners = mesh->triangles[t];
-        if (triangle_of_obstacle(mesh, t)) continue;
-        for (int i = 0; i < 3; i++) {
-            uint32_t begin = mesh->vertex_star_offsets[corners[i]];
-            uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];
-            for (uint32_t s = begin; s < end; s++) {
-                uint32_t u = mesh->vertex_stars[s];
-                const uint32_t *other = mesh->triangles[u];
-                bool seen = (i > 0 && triangle_contains(other, corners[0])) ||
-                            (i > 1 && triangle_contains(other, corners[1]));
-                if (u != t && !seen) find_between(f, t, u);
-            }
-            if (f->out_of_memory || f->vf.count + f->ee.count > f->most) return false;
+    const uint32_t *corners = mesh->triangles[t];
+    for (int i = 0; i < 3; i++) {
+        uint32_t begin = mesh->vertex_star_offsets[corners[i]];
+        uint32_t end = mesh->vertex_star_offsets[corners[i] + 1];
+        for (uint32_t s = begin; s < end; s++) {
+            uint32_t u = mesh->vertex_stars[s];
+            const uint32_t *other = mesh->triangles[u];
+            bool seen = (i > 0 && triangle_contains(other, corners[0])) ||
+                        (i > 1 && triangle_contains(other, corners[1]));
+            if (u != t && !seen) find_between(f, t, u);
         }
+        if (has_enough(f)) return;
     }
-    return true;
 }
 
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many) {
     orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
-    bool all = find_all(&f);
-    *out = (orphan_pairs){f.vf.items, f.ee.items, f.vf.count, f.ee.count};
-    *too_many = !all && !f.out_of_memory;
-    if (!all) orphan_pairs_free(mesh->context, out);
-    return f.out_of_memory ? CSCD_OUT_OF_MEMORY : CSCD_OK;
+    for (uint32_t t = 0; t < mesh->triangle_count && !has_enough(&f); t++) {
+        if (!triangle_of_obstacle(mesh, t)) find_around(&f, t);
+    }
+    return end_search(&f, out, too_many);
+}
+
+/* ---- a mesh that was made from another one --------------------------------------------------------------- */
+
+/* Both features are of one component. */
+static void move_pairs(orphan_search *f, const orphan_pairs *pairs, const cscd_mesh_change *change) {
+    const cscd_mesh *old = change->old_mesh;
+    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++) {
+        uint32_t v = pairs->vf[i][0], t = pairs->vf[i][1];
+        if (change->components.to_new[old->triangle_components[t]] != UINT32_MAX)
+            add_pair(f, &f->vf, change->vertices.to_new[v], change->triangles.to_new[t]);
+    }
+    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++) {
+        uint32_t a = pairs->ee[i][0], b = pairs->ee[i][1];
+        uint32_t t = old->edge_stars[old->edge_star_offsets[a]];
+        if (change->components.to_new[old->triangle_components[t]] == UINT32_MAX) continue;
+        a = change->edges.to_new[a];
+        b = change->edges.to_new[b];
+        add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
+    }
+}
+
+cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
+                              const cscd_mesh_change *change, orphan_pairs *out, bool *too_many) {
+    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
+    move_pairs(&f, pairs, change);
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        for (uint32_t t = range->triangle; t < range->triangle + range->triangle_count; t++) {
+            bool touched = change->components.to_old[mesh->triangle_components[t]] == UINT32_MAX;
+            if (touched && !has_enough(&f) && !triangle_of_obstacle(mesh, t)) find_around(&f, t);
+        }
+    }
+    return end_search(&f, out, too_many);
+}
+
+cscd_status orphan_pairs_copy(const orphan_pairs *pairs, cscd_context *context, orphan_pairs *out) {
+    orphan_pairs copy = *pairs;
+    array_list list = {{ARRAY(copy.vf, copy.vf_count), ARRAY(copy.ee, copy.ee_count)}};
+    if (!context_copy_all(context, list)) return CSCD_OUT_OF_MEMORY;
+    *out = copy;
+    return CSCD_OK;
 }
 
 void orphan_pairs_free(cscd_context *context, orphan_pairs *pairs) {

@@ -79,7 +79,7 @@ static cscd_status check_rules(const cscd_mesh *mesh, const given_rules *given) 
 static array_list list_arrays(const cscd_mesh *mesh, pair_rules *r) {
     size_t objects = r->object_count, classes = r->class_count;
     return (array_list){
-        {ARRAY(r->sets, objects), ARRAY(r->reaches, objects),
+        {ARRAY(r->sets, objects), ARRAY(r->given, objects), ARRAY(r->reaches, objects),
          ARRAY(r->component_objects, mesh->component_count), ARRAY_IF(classes == 0, r->halves, objects),
          ARRAY_IF(classes > 0, r->classes, objects), ARRAY_IF(classes > 0, r->matrix, classes * classes)}};
 }
@@ -109,6 +109,7 @@ static double greatest_of_row(const pair_rules *r, uint32_t row) {
 static void fill_objects(const cscd_mesh *mesh, const given_rules *given, pair_rules *r) {
     for (uint32_t i = 0; i < r->object_count; i++) {
         cscd_object_rule rule = given->count > 0 ? given->objects[i] : cscd_object_rule_default();
+        r->given[i] = rule;
         r->sets[i] = set_of(mesh, &rule, i);
         if (r->matrix != NULL) r->classes[i] = rule.thickness_class;
         if (r->halves != NULL) r->halves[i] = 0.5 * rule.thickness;
@@ -139,6 +140,13 @@ cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, p
     fill_objects(mesh, given, &r);
     name_objects(mesh, r.component_objects);
     *out = r;
+    return CSCD_OK;
+}
+
+cscd_status pair_rules_copy(const pair_rules *r, const cscd_mesh *mesh, pair_rules *out) {
+    pair_rules copy = *r;
+    if (!context_copy_all(mesh->context, list_arrays(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
+    *out = copy;
     return CSCD_OK;
 }
 

@@ -18,6 +18,7 @@ enum { THICKNESS_CLASSES_MAX = 256 };
 typedef struct pair_rules {
     uint32_t object_count;
     object_set *sets;            /* one for each object */
+    cscd_object_rule *given;     /* as the caller has said */
     uint32_t *component_objects; /* the object that each component lies in */
     double *reaches;             /* per object: the greatest distance of its pairs, or more */
 
@@ -33,6 +34,9 @@ typedef struct pair_rules {
 /* Copies and checks what the caller says. INVALID_ARGUMENT names the object or the place in the matrix. On failure *out
  * holds nothing. */
 cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, pair_rules *out);
+
+/* Copies all of it; mesh: the same one in the context of the copy. On failure *out is untouched. */
+cscd_status pair_rules_copy(const pair_rules *r, const cscd_mesh *mesh, pair_rules *out);
 void pair_rules_free(const cscd_mesh *mesh, pair_rules *rules);
 
 /* Is object a looked at with object b? They may be one object. */

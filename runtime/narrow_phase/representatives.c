@@ -5,31 +5,69 @@
 #include "runtime/narrow_phase/orphan_pairs.h"
 
 #include <assert.h>
+#include <string.h>
 
 /* The kernel marks the undecided features of so many pairs at a time. */
 enum { PAIRS_AT_ONCE = 256 };
 
-cscd_status representatives_create(const cscd_mesh *mesh, representatives *out) {
-    cscd_context *context = mesh->context;
-    representatives r = {.owned = context_allocate(context, mesh->triangle_count, sizeof *r.owned),
-                         .others = context_allocate(context, mesh->vertex_count, sizeof *r.others),
-                         .opposite = context_allocate(context, mesh->edge_count, sizeof *r.opposite)};
-    if (r.owned == NULL || r.others == NULL || r.opposite == NULL) {
-        representatives_free(context, &r);
-        return CSCD_OUT_OF_MEMORY;
-    }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+static array_list list_arrays(const cscd_mesh *mesh, representatives *r) {
+    return (array_list){{ARRAY(r->owned, mesh->triangle_count), ARRAY(r->others, mesh->vertex_count),
+                         ARRAY(r->opposite, mesh->edge_count)}};
+}
+
+/* Notes which features these triangles represent. */
+static void represent_features(const cscd_mesh *mesh, uint32_t begin, uint32_t end, representatives *r) {
+    for (uint32_t t = begin; t < end; t++) {
         for (int i = 0; i < 3; i++) {
             const uint32_t *corners = mesh->triangles[t];
             uint32_t vertex = corners[i], edge = mesh->triangle_edges[t][i];
             bool first_at_vertex = mesh->vertex_stars[mesh->vertex_star_offsets[vertex]] == t;
             bool first_at_edge = mesh->edge_stars[mesh->edge_star_offsets[edge]] == t;
-            r.owned[t] |= (uint8_t)(first_at_vertex << i | first_at_edge << (3 + i));
-            for (int k = 0; first_at_vertex && k < 2; k++) r.others[vertex][k] = corners[(i + 1 + k) % 3];
-            if (first_at_edge) r.opposite[edge] = corners[(i + 2) % 3];
+            r->owned[t] |= (uint8_t)(first_at_vertex << i | first_at_edge << (3 + i));
+            for (int k = 0; first_at_vertex && k < 2; k++) r->others[vertex][k] = corners[(i + 1 + k) % 3];
+            if (first_at_edge) r->opposite[edge] = corners[(i + 2) % 3];
         }
     }
+}
+
+cscd_status representatives_create(const cscd_mesh *mesh, representatives *out) {
+    representatives r;
+    if (!context_allocate_all(mesh->context, list_arrays(mesh, &r))) return CSCD_OUT_OF_MEMORY;
+    represent_features(mesh, 0, mesh->triangle_count, &r);
     *out = r;
+    return CSCD_OK;
+}
+
+static void copy_run(const representatives *r, const object_run *run, representatives *out) {
+    uint32_t by = run->to.vertex - run->from.vertex;
+    memcpy(out->owned + run->to.triangle, r->owned + run->from.triangle, run->from.triangle_count);
+    for (uint32_t i = 0; i < run->from.vertex_count; i++) {
+        for (int k = 0; k < 2; k++)
+            out->others[run->to.vertex + i][k] = r->others[run->from.vertex + i][k] + by;
+    }
+    for (uint32_t i = 0; i < run->from.edge_count; i++)
+        out->opposite[run->to.edge + i] = r->opposite[run->from.edge + i] + by;
+}
+
+cscd_status representatives_move(const representatives *r, const cscd_mesh *mesh,
+                                 const cscd_mesh_change *change, representatives *out) {
+    representatives moved;
+    if (!context_reserve_all(mesh->context, list_arrays(mesh, &moved))) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < change->run_count; i++) copy_run(r, &change->runs[i], &moved);
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        memset(moved.owned + range->triangle, 0, range->triangle_count);
+        memset(moved.others + range->vertex, 0, range->vertex_count * sizeof *moved.others);
+        represent_features(mesh, range->triangle, range->triangle + range->triangle_count, &moved);
+    }
+    *out = moved;
+    return CSCD_OK;
+}
+
+cscd_status representatives_copy(const representatives *r, const cscd_mesh *mesh, representatives *out) {
+    representatives copy = *r;
+    if (!context_copy_all(mesh->context, list_arrays(mesh, &copy))) return CSCD_OUT_OF_MEMORY;
+    *out = copy;
     return CSCD_OK;
 }
 

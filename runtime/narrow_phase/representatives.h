@@ -13,6 +13,15 @@ typedef struct representatives {
 
 /* On failure *out holds nothing. */
 cscd_status representatives_create(const cscd_mesh *mesh, representatives *out);
+
+/* Those of a mesh that was made from another one, of objects that have not changed from r; mesh: the new one. On
+ * failure *out is untouched. */
+cscd_status representatives_move(const representatives *r, const cscd_mesh *mesh,
+                                 const cscd_mesh_change *change, representatives *out);
+
+/* In this and other functions that copy, mesh is the same one in the context of the copy, and on failure *out is
+ * untouched. */
+cscd_status representatives_copy(const representatives *r, const cscd_mesh *mesh, representatives *out);
 void representatives_free(cscd_context *context, representatives *r);
 
 /* Keeps, of the pairs of features of pairs of triangles, bits as in FEATURE_VERTEX_B and FEATURE_EDGES, those

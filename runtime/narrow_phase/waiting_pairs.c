@@ -19,6 +19,7 @@ void waiting_pairs_free(const cscd_mesh *mesh, waiting_pairs *w) {
     waiting_pairs_settled(mesh, w);
     context_free(mesh->context, w->spare);
     named_pair_set_free(mesh->context, &w->pairs);
+    named_pair_set_free(mesh->context, &w->torn);
 }
 
 cscd_status waiting_pairs_reserve(const cscd_mesh *mesh, waiting_pairs *w) {

@@ -14,6 +14,9 @@ typedef struct former_exclusions {
 
 typedef struct waiting_pairs {
     named_pair_set pairs; /* of features, which searches leave out, and of triangles, which the check does */
+    named_pair_set
+        torn; /* pairs of neighbours that the mesh has parted: they wait if they are not apart at the next
+                          * positions */
     former_exclusions *former; /* changes since positions were last seen, the last one first; NULL: none */
     former_exclusions *spare;  /* for the next change; NULL: none */
 } waiting_pairs;

@@ -18,6 +18,7 @@ struct cscd_line_search {
     cscd_scalar *scalars;      /* per object: of positions on the line */
 
     uint32_t rules_revision; /* of the detector, at the begin */
+    uint32_t mesh_revision;  /* of the detector, when the arrays were allocated */
     double reach, covered;   /* covered: all pairs that come within this distance are candidates */
     double beyond;           /* ... as are those that are so much farther apart */
     bool begun;
@@ -81,6 +82,7 @@ static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) 
     if (line == NULL) return context_out_of_memory(context);
     line->detector = detector;
     line->context = context;
+    line->mesh_revision = detector->mesh_revision;
     if (!context_allocate_all(context, list_arrays(line))) {
         context_free(context, line);
         return context_out_of_memory(context);
@@ -150,11 +152,29 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     return CSCD_OK;
 }
 
+/* The arrays have the sizes of another mesh, if the detector has moved since. */
+static cscd_status follow_mesh(cscd_line_search *line) {
+    cscd_detector *d = line->detector;
+    if (line->mesh_revision == d->mesh_revision) return CSCD_OK;
+    cscd_line_search fresh = {.detector = d};
+    if (!context_allocate_all(d->context, list_arrays(&fresh))) return context_out_of_memory(d->context);
+    context_free_all(d->context, list_arrays(line));
+    line->x0 = fresh.x0;
+    line->x1 = fresh.x1;
+    line->reached = fresh.reached;
+    line->scalars = fresh.scalars;
+    line->states = fresh.states;
+    line->mesh_revision = d->mesh_revision;
+    line->begun = false;
+    return CSCD_OK;
+}
+
 static cscd_status begin_views(cscd_line_search *line, const cscd_view *x0, const cscd_view *x1,
                                double reach) {
     cscd_detector *d = line->detector;
     const double *from = NULL, *to = NULL;
     cscd_status status = check_reach(d->context, reach);
+    if (status == CSCD_OK) status = follow_mesh(line);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x0, "x0", &d->unpacked[0], &from);
     if (status == CSCD_OK) status = views_read(d->context, d->mesh, x1, "x1", &d->unpacked[1], &to);
     if (status != CSCD_OK) return status;
@@ -172,7 +192,12 @@ cscd_status cscd_line_search_begin(cscd_line_search *line, const cscd_view *x0, 
 }
 
 static cscd_status check_begun(const cscd_line_search *line, const char *function) {
-    if (line->begun) return CSCD_OK;
+    if (line->begun && line->mesh_revision == line->detector->mesh_revision) return CSCD_OK;
+    if (line->begun)
+        return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                            "%s: the detector has moved to another mesh since the line was begun; call "
+                            "cscd_line_search_begin again",
+                            function);
     return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
                         "%s: the line has no motion; call cscd_line_search_begin first", function);
 }
@@ -183,7 +208,8 @@ const cscd_detector *cscd_line_search_detector(const cscd_line_search *line) {
 
 size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
     const candidate_list *lists = line->candidates.lists;
-    return line->begun ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
+    bool current = line->mesh_revision == line->detector->mesh_revision;
+    return line->begun && current ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
 }
 
 /* Were the candidates collected under the rules of now? */

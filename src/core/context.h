@@ -49,6 +49,10 @@ static inline void *context_allocate(cscd_context *context, size_t count, size_t
     return memory_allocate(&context->memory, count, size);
 }
 
+static inline void *context_reserve(cscd_context *context, size_t count, size_t size) {
+    return memory_reserve(&context->memory, count, size);
+}
+
 static inline void *context_grow(cscd_context *context, void *block, size_t old_count, size_t new_count,
                                  size_t size) {
     return memory_grow(&context->memory, block, old_count, new_count, size);
@@ -60,6 +64,14 @@ static inline void context_free(cscd_context *context, void *block) {
 
 static inline bool context_allocate_all(cscd_context *context, array_list list) {
     return memory_allocate_all(&context->memory, list);
+}
+
+static inline bool context_reserve_all(cscd_context *context, array_list list) {
+    return memory_reserve_all(&context->memory, list);
+}
+
+static inline bool context_copy_all(cscd_context *context, array_list list) {
+    return memory_copy_all(&context->memory, list);
 }
 
 static inline void context_free_all(cscd_context *context, array_list list) {

@@ -60,6 +60,14 @@ static void end_turn(host_memory **m) {
 /* The turn ends with the block of code in which this stands, in whatever way that is left. */
 #define TURN(name, m) __attribute__((cleanup(end_turn))) host_memory *name = begin_turn(m)
 
+/* What is reserved holds nonsense in debug builds, so that who reads it too early is noticed. */
+enum { AS_IT_WAS = -1 };
+#ifdef NDEBUG
+enum { RESERVED = AS_IT_WAS };
+#else
+enum { RESERVED = 0xcd };
+#endif
+
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
 static void link_block(host_memory *m, memory_block *block, size_t size) {
@@ -99,10 +107,21 @@ static void give_back(host_memory *m, memory_block *block) {
     host_call_end(&call);
 }
 
-void *memory_allocate(host_memory *m, size_t count, size_t size) {
+static void *allocate_filled(host_memory *m, size_t count, size_t size, int byte) {
     if (size != 0 && count > (SIZE_MAX / 2 - MEMORY_ALIGNMENT) / size) return NULL;
     memory_block *block = take_block(m, count * size + MEMORY_ALIGNMENT);
-    return block != NULL ? memset((char *)block + MEMORY_ALIGNMENT, 0, count * size) : NULL;
+    if (block == NULL) return NULL;
+    void *array = (char *)block + MEMORY_ALIGNMENT;
+    if (byte != AS_IT_WAS) memset(array, byte, count * size);
+    return array;
+}
+
+void *memory_allocate(host_memory *m, size_t count, size_t size) {
+    return allocate_filled(m, count, size, 0);
+}
+
+void *memory_reserve(host_memory *m, size_t count, size_t size) {
+    return allocate_filled(m, count, size, RESERVED);
 }
 
 void memory_free(host_memory *m, void *block) {
@@ -143,12 +162,12 @@ void memory_free_all(host_memory *m, array_list list) {
     }
 }
 
-bool memory_allocate_all(host_memory *m, array_list list) {
+static bool take_all(host_memory *m, array_list list, void *(*take)(host_memory *, size_t, size_t)) {
     for (const array_block *block = list.blocks; block->pointer != NULL; block++)
         set_pointer(block->pointer, NULL);
     for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
         if (block->size == 0) continue;
-        void *array = memory_allocate(m, block->count, block->size);
+        void *array = take(m, block->count, block->size);
         if (array == NULL) {
             memory_free_all(m, list);
             return false;
@@ -156,4 +175,31 @@ bool memory_allocate_all(host_memory *m, array_list list) {
         set_pointer(block->pointer, array);
     }
     return true;
+}
+
+bool memory_allocate_all(host_memory *m, array_list list) {
+    return take_all(m, list, memory_allocate);
+}
+
+bool memory_reserve_all(host_memory *m, array_list list) {
+    return take_all(m, list, memory_reserve);
+}
+
+static void *get_pointer(const void *pointer) {
+    void *value;
+    memcpy(&value, pointer, sizeof value);
+    return value;
+}
+
+bool memory_copy_all(host_memory *m, array_list list) {
+    bool copied = true;
+    for (const array_block *block = list.blocks; block->pointer != NULL; block++) {
+        const void *from = get_pointer(block->pointer);
+        void *to = from != NULL && copied ? memory_reserve(m, block->count, block->size) : NULL;
+        copied = copied && (from == NULL || to != NULL);
+        if (to != NULL) memcpy(to, from, block->count * block->size);
+        set_pointer(block->pointer, to);
+    }
+    if (!copied) memory_free_all(m, list);
+    return copied;
 }

@@ -35,6 +35,9 @@ void memory_end(host_memory *m);
  * that other contexts share is freed by whoever lets go of it last. */
 void *memory_allocate(host_memory *m, size_t count, size_t size);
 
+/* The same without the zeros, for arrays that are written at once, every element. */
+void *memory_reserve(host_memory *m, size_t count, size_t size);
+
 /* A block of new_count elements that begins with the first old_count of block; block is then freed, or,
  * when NULL is returned, still valid. */
 void *memory_grow(host_memory *m, void *block, size_t old_count, size_t new_count, size_t size);
@@ -70,6 +73,12 @@ typedef struct array_list {
 /* Allocates all arrays of a list, or none: on failure every pointer is NULL. What the pointers were before
  * does not matter. */
 bool memory_allocate_all(host_memory *m, array_list list);
+
+bool memory_reserve_all(host_memory *m, array_list list);
+
+/* The pointers are those of a structure that has been copied; each becomes a copy of its array, or stays NULL. On failure
+ * all are NULL. */
+bool memory_copy_all(host_memory *m, array_list list);
 
 /* Frees all arrays of a list, whatever their counts say, and sets their pointers to NULL. */
 void memory_free_all(host_memory *m, array_list list);

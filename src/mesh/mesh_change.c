@@ -182,7 +182,8 @@ static array_list map_arrays(cscd_mesh_change *c) {
          ARRAY(c->triangles.to_new, c->triangles.old_count),
          ARRAY(c->triangles.to_old, c->triangles.new_count), ARRAY(c->objects.to_new, c->objects.old_count),
          ARRAY(c->objects.to_old, c->objects.new_count), ARRAY(c->components.to_new, c->components.old_count),
-         ARRAY(c->components.to_old, c->components.new_count)}};
+         ARRAY(c->components.to_old, c->components.new_count), ARRAY(c->runs, c->objects.new_count),
+         ARRAY(c->described, c->objects.new_count)}};
 }
 
 static void count_features(cscd_mesh_change *c) {
@@ -215,7 +216,7 @@ static cscd_status begin_change(change_plan *p, cscd_mesh *mesh, cscd_mesh_chang
     change->old_mesh = p->old;
     change->mesh = mesh;
     count_features(change);
-    if (!context_allocate_all(p->context, map_arrays(change))) {
+    if (!context_reserve_all(p->context, map_arrays(change))) {
         context_free(p->context, change);
         return CSCD_OUT_OF_MEMORY;
     }

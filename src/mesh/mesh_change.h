@@ -9,18 +9,28 @@ typedef struct number_map {
     uint32_t old_count, new_count;
 } number_map;
 
+/* Where what belongs to one object stands in the arrays of a mesh; or to several that follow each other. */
+typedef struct object_range {
+    uint32_t vertex, vertex_count, edge, edge_count, triangle, triangle_count, component, component_count;
+} object_range;
+
+/* Objects that have not changed: what stood at `from` stands at `to`, in the same order. */
+typedef struct object_run {
+    object_range from, to;
+} object_run;
+
 struct cscd_mesh_change {
     reference_count references; /* the caller alone */
     cscd_context *context;
     const cscd_mesh *old_mesh, *mesh; /* as their creators see them; held */
     number_map vertices, edges, triangles, objects;
     number_map components; /* the untouched ones; in these, features have one origin and are its only ones */
-};
 
-/* Where what belongs to one object stands in the arrays of a mesh. */
-typedef struct object_range {
-    uint32_t vertex, vertex_count, edge, edge_count, triangle, triangle_count, component, component_count;
-} object_range;
+    object_run *runs; /* all objects of the new mesh that have not changed, in their order */
+    uint32_t run_count;
+    object_range *described; /* all others */
+    uint32_t described_count;
+};
 
 /* An object of a mesh that becomes the next object of another one. */
 typedef struct object_source {

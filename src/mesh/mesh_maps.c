@@ -10,7 +10,32 @@ static void map_range(number_map *map, uint32_t from, uint32_t to, uint32_t coun
     for (uint32_t i = 0; i < count; i++) map->to_old[to + i] = from + i;
 }
 
-static void map_whole_object(cscd_mesh_change *change, const object_move *m) {
+static bool range_follows(const object_range *range, const object_range *next) {
+    return next->vertex == range->vertex + range->vertex_count &&
+           next->edge == range->edge + range->edge_count &&
+           next->triangle == range->triangle + range->triangle_count &&
+           next->component == range->component + range->component_count;
+}
+
+static void extend_range(object_range *range, const object_range *next) {
+    range->vertex_count += next->vertex_count;
+    range->edge_count += next->edge_count;
+    range->triangle_count += next->triangle_count;
+    range->component_count += next->component_count;
+}
+
+/* The object goes on with the last run, if it follows that in both meshes. */
+static void add_to_runs(cscd_mesh_change *change, const object_move *m) {
+    object_run *last = change->run_count > 0 ? &change->runs[change->run_count - 1] : NULL;
+    if (last != NULL && range_follows(&last->from, &m->from) && range_follows(&last->to, &m->to)) {
+        extend_range(&last->from, &m->from);
+        extend_range(&last->to, &m->to);
+    } else {
+        change->runs[change->run_count++] = (object_run){m->from, m->to};
+    }
+}
+
+static void map_run(cscd_mesh_change *change, const object_run *m) {
     map_range(&change->vertices, m->from.vertex, m->to.vertex, m->from.vertex_count);
     map_range(&change->edges, m->from.edge, m->to.edge, m->from.edge_count);
     map_range(&change->triangles, m->from.triangle, m->to.triangle, m->from.triangle_count);
@@ -182,11 +207,13 @@ void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, c
     }
     for (uint32_t i = 0; i < change->objects.new_count; i++) {
         if (!origins[i].changed) {
-            map_whole_object(change, &moves[i]);
+            add_to_runs(change, &moves[i]);
             continue;
         }
+        change->described[change->described_count++] = moves[i].to;
         unmap_new_object(change, &moves[i].to);
         if (origins[i].old_object != UINT32_MAX)
             map_changed_object(change, &old_ranges[origins[i].old_object], &moves[i].to, &origins[i]);
     }
+    for (uint32_t i = 0; i < change->run_count; i++) map_run(change, &change->runs[i]);
 }

@@ -70,7 +70,7 @@ static bool allocate_arrays(cscd_mesh *mesh, bool obstacles, size_t points) {
          ARRAY(mesh->edge_stars, triangles * 3), ARRAY(mesh->triangle_components, triangles),
          ARRAY(mesh->components, mesh->component_count), ARRAY(mesh->objects, mesh->object_count),
          ARRAY_IF(obstacles, mesh->obstacles, mesh->component_count)}};
-    return context_allocate_all(mesh->context, list);
+    return context_reserve_all(mesh->context, list);
 }
 
 /* ---- copies ------------------------------------------------------------------------------------------- */
@@ -108,12 +108,12 @@ static void copy_components(const cscd_mesh *from, const object_move *m, cscd_me
     copy_shifted(from->triangle_components + m->from.triangle, m->from.triangle_count,
                  m->to.component - m->from.component, to->triangle_components + m->to.triangle);
     for (uint32_t i = 0; i < m->from.component_count; i++) {
-        cscd_component component = from->components[m->from.component + i];
-        shift_feature(&component.first_open_edge, edges);
-        shift_feature(&component.first_non_manifold_edge, edges);
-        shift_feature(&component.first_inconsistent_edge, edges);
-        shift_feature(&component.first_non_manifold_vertex, vertices);
-        to->components[m->to.component + i] = component;
+        cscd_component *component = &to->components[m->to.component + i];
+        memcpy(component, &from->components[m->from.component + i], sizeof *component);
+        shift_feature(&component->first_open_edge, edges);
+        shift_feature(&component->first_non_manifold_edge, edges);
+        shift_feature(&component->first_inconsistent_edge, edges);
+        shift_feature(&component->first_non_manifold_vertex, vertices);
         if (to->obstacles != NULL)
             to->obstacles[m->to.component + i] = component_is_obstacle(from, m->from.component + i);
     }
@@ -121,11 +121,11 @@ static void copy_components(const cscd_mesh *from, const object_move *m, cscd_me
 
 static void copy_object(const object_move *m, uint32_t index, cscd_mesh *to) {
     const cscd_mesh *from = m->source.mesh;
-    cscd_object object = from->objects[m->source.object];
-    object.first_vertex = m->to.vertex;
-    object.first_edge = m->to.edge;
-    object.first_triangle = m->to.triangle;
-    to->objects[index] = object;
+    cscd_object *object = &to->objects[index];
+    memcpy(object, &from->objects[m->source.object], sizeof *object);
+    object->first_vertex = m->to.vertex;
+    object->first_edge = m->to.edge;
+    object->first_triangle = m->to.triangle;
     copy_features(from, m, to);
     copy_stars(from, m, to);
     copy_components(from, m, to);

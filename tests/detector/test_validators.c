@@ -146,7 +146,7 @@ static void faults_of_detectors(void **state) {
     whole_set w = whole_set_create();
     cscd_detector *d = w.detector;
     PLANT(detector_validate, d, d->rebuild.mesh, w.mesh, "the parts of a detector are of different meshes");
-    PLANT(detector_validate, d, d->seen.triangle_count, 5, "the mesh of a detector has changed");
+    PLANT(detector_validate, d, d->seen->triangle_count, 5, "the mesh of a detector has changed");
     PLANT(detector_validate, d, d->limit.distance, 1.0,
           "the distance of a detector is not that of its options");
     PLANT(detector_validate, d, d->culling.triangle_regions[4], d->culling.region_count,

@@ -1,58 +1,11 @@
 /* Meshes that are made from others: bit for bit what would be made anew, with maps that say what became of what. */
-#include "src/mesh/mesh.h"
-#include "tests/support/changing_mesh.h"
-#include "tests/support/counting_allocator.h"
+#include "tests/support/same_mesh.h"
 #include "tests/support/test.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
 #include <string.h>
 
-static changing_scene changing, before;
+static changing_scene changing;
 static scene_change change;
-
-static cscd_context *new_context(counting_allocator *counter) {
-    cscd_context_options options = cscd_context_defaults();
-    cscd_context *context = NULL;
-    options.allocator = counting_allocator_interface(counter);
-    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
-    return context;
-}
-
-static cscd_mesh *mesh_of(cscd_context *context, const changing_scene *s) {
-    cscd_object_desc descs[CHANGING_OBJECTS_MAX];
-    cscd_mesh *mesh = NULL;
-    changing_scene_describe(s, descs);
-    assert_int_equal(cscd_mesh_create(context, descs, s->object_count, &mesh), CSCD_OK);
-    return mesh;
-}
-
-/* ---- the new mesh ---------------------------------------------------------------------------------------- */
-
-#define SAME_ARRAY(a, b, member, count)                                                                      \
-    assert_memory_equal((a)->member, (b)->member, (count) * sizeof *(a)->member)
-
-static void check_same_mesh(const cscd_mesh *a, const cscd_mesh *b) {
-    assert_int_equal(a->vertex_count, b->vertex_count);
-    assert_int_equal(a->edge_count, b->edge_count);
-    assert_int_equal(a->triangle_count, b->triangle_count);
-    assert_int_equal(a->component_count, b->component_count);
-    assert_int_equal(a->object_count, b->object_count);
-    size_t corners = (size_t)a->triangle_count * 3;
-    SAME_ARRAY(a, b, triangles, a->triangle_count);
-    SAME_ARRAY(a, b, edges, a->edge_count);
-    SAME_ARRAY(a, b, triangle_edges, a->triangle_count);
-    SAME_ARRAY(a, b, vertex_star_offsets, a->vertex_count + 1u);
-    SAME_ARRAY(a, b, vertex_stars, corners);
-    SAME_ARRAY(a, b, edge_star_offsets, a->edge_count + 1u);
-    SAME_ARRAY(a, b, edge_stars, corners);
-    SAME_ARRAY(a, b, triangle_components, a->triangle_count);
-    SAME_ARRAY(a, b, components, a->component_count);
-    SAME_ARRAY(a, b, objects, a->object_count);
-    assert_true((a->obstacles == NULL) == (b->obstacles == NULL));
-    if (a->obstacles != NULL) SAME_ARRAY(a, b, obstacles, a->component_count);
-    assert_true(cscd_mesh_hash(a) == cscd_mesh_hash(b));
-}
 
 /* ---- the maps, by brute force ------------------------------------------------------------------------------ */
 
@@ -171,9 +124,9 @@ static void equal_new_meshes(void **state) {
     uint32_t untouched = 0, components = 0;
     for (int round = 0; round < 60; round++) {
         counting_allocator counter = counting_allocator_start();
-        cscd_context *context = new_context(&counter);
+        cscd_context *context = counted_context(&counter);
         changing_scene_make(&random, true, &changing);
-        cscd_mesh *first = mesh_of(context, &changing);
+        cscd_mesh *first = changing_scene_mesh(context, &changing);
         const cscd_mesh *old = first;
         cscd_mesh_change *last = NULL;
         for (int i = 0; i < 6; i++) {
@@ -181,7 +134,7 @@ static void equal_new_meshes(void **state) {
             cscd_mesh_change *made = NULL;
             assert_int_equal(cscd_mesh_change_create(context, old, change.list, change.count, &made),
                              CSCD_OK);
-            cscd_mesh *expected = mesh_of(context, &changing);
+            cscd_mesh *expected = changing_scene_mesh(context, &changing);
             check_same_mesh(cscd_mesh_change_mesh(made), expected);
             check_features(made, old);
             untouched += check_components(made, old);
@@ -218,7 +171,7 @@ static void refused_changes(void **state) {
     static const uint32_t far_origins[] = {0, 1, 4, 3};
     (void)state;
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
+    cscd_context *context = counted_context(&counter);
     cscd_object_desc desc = cscd_object_of_triangles(4, 2, triangles), wrong = desc, empty = desc;
     cscd_object_desc both[2] = {desc, desc};
     wrong.triangles = bad;
@@ -264,9 +217,9 @@ static void no_change(void **state) {
     (void)state;
     random_stream random = stream_start(2);
     counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
+    cscd_context *context = counted_context(&counter);
     changing_scene_make(&random, true, &changing);
-    cscd_mesh *old = mesh_of(context, &changing);
+    cscd_mesh *old = changing_scene_mesh(context, &changing);
     cscd_mesh_change *made = NULL;
     change.count = 0;
     assert_int_equal(cscd_mesh_change_create(context, old, NULL, 0, &made), CSCD_OK);
@@ -279,134 +232,8 @@ static void no_change(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-/* ---- memory, lifetimes, threads ------------------------------------------------------------------------------ */
-
-static void failing_allocations(void **state) {
-    (void)state;
-    random_stream random = stream_start(3);
-    changing_scene_make(&random, true, &before);
-    counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
-    cscd_mesh *old = mesh_of(context, &before);
-    for (int kind = 0; kind < 12; kind++) {
-        changing = before;
-        changing_scene_change(&random, &changing, &change);
-        size_t held = counter.live;
-        cscd_mesh *expected = mesh_of(context, &changing);
-        size_t live = counter.live;
-        cscd_mesh_change *made = NULL;
-        cscd_status status = CSCD_OUT_OF_MEMORY;
-        for (size_t n = 0; status != CSCD_OK; n++) {
-            counter.fail_at = counter.calls + n;
-            status = cscd_mesh_change_create(context, old, change.list, change.count, &made);
-            counter.fail_at = SIZE_MAX;
-            assert_true(status == CSCD_OK ? n > 15 : status == CSCD_OUT_OF_MEMORY && made == NULL);
-            if (status != CSCD_OK) assert_int_equal(counter.live, live);
-        }
-        check_same_mesh(cscd_mesh_change_mesh(made), expected);
-        cscd_mesh_change_destroy(made);
-        cscd_mesh_destroy(expected);
-        assert_int_equal(counter.live, held);
-    }
-    cscd_mesh_destroy(old);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.live, 0);
-}
-
-/* The change keeps both meshes, and each of the three contexts lives as long as it is needed. */
-static void any_order_of_destruction(void **state) {
-    (void)state;
-    random_stream random = stream_start(4);
-    for (int order = 0; order < 6; order++) {
-        counting_allocator counters[2] = {counting_allocator_start(), counting_allocator_start()};
-        cscd_context *contexts[2] = {new_context(&counters[0]), new_context(&counters[1])};
-        changing_scene_make(&random, false, &changing);
-        cscd_mesh *old = mesh_of(contexts[0], &changing);
-        changing_scene_change(&random, &changing, &change);
-        cscd_mesh_change *made = NULL;
-        assert_int_equal(cscd_mesh_change_create(contexts[1], old, change.list, change.count, &made),
-                         CSCD_OK);
-        assert_ptr_equal(cscd_mesh_context(cscd_mesh_change_mesh(made)), contexts[1]);
-        cscd_detector *detector = NULL;
-        assert_int_equal(
-            cscd_detector_create(contexts[order % 2], cscd_mesh_change_mesh(made), NULL, NULL, &detector),
-            CSCD_OK);
-        for (int i = 0; i < 5; i++) {
-            int what = (i * (order < 3 ? 1 : 2) + order) % 5;
-            if (what == 0) cscd_mesh_destroy(old);
-            if (what == 1) cscd_context_destroy(contexts[0]);
-            if (what == 2) cscd_context_destroy(contexts[1]);
-            if (what == 3) cscd_mesh_change_destroy(made);
-            if (what == 4) {
-                cscd_mesh *expected = mesh_of(cscd_mesh_context(cscd_detector_mesh(detector)), &changing);
-                check_same_mesh(cscd_detector_mesh(detector), expected);
-                cscd_mesh_destroy(expected);
-                cscd_detector_destroy(detector);
-            }
-        }
-        assert_int_equal(counters[0].live + counters[1].live, 0);
-    }
-}
-
-typedef struct mesh_reader {
-    const cscd_mesh *mesh;
-    atomic_bool stop;
-    uint64_t hash;
-} mesh_reader;
-
-static void *read_mesh(void *data) {
-    mesh_reader *r = data;
-    while (!atomic_load(&r->stop)) {
-        if (cscd_mesh_hash(r->mesh) != r->hash) return r;
-        for (uint32_t v = 0; v < cscd_mesh_vertex_count(r->mesh); v++) {
-            uint32_t count;
-            cscd_mesh_vertex_triangles(r->mesh, v, &count);
-            if (cscd_mesh_vertex_object(r->mesh, v) >= cscd_mesh_object_count(r->mesh)) return r;
-        }
-    }
-    return NULL;
-}
-
-/* Both meshes are read from other threads while the next one is made. */
-static void read_by_other_threads(void **state) {
-    (void)state;
-    random_stream random = stream_start(5);
-    counting_allocator counter = counting_allocator_start();
-    cscd_context *context = new_context(&counter);
-    changing_scene_make(&random, true, &changing);
-    cscd_mesh *first = mesh_of(context, &changing);
-    cscd_mesh_change *changes[20];
-    mesh_reader readers[20];
-    pthread_t threads[20];
-    const cscd_mesh *old = first;
-    for (int i = 0; i < 20; i++) {
-        readers[i].mesh = old;
-        readers[i].hash = cscd_mesh_hash(old);
-        atomic_init(&readers[i].stop, false);
-        assert_int_equal(pthread_create(&threads[i], NULL, read_mesh, &readers[i]), 0);
-        changing_scene_change(&random, &changing, &change);
-        assert_int_equal(cscd_mesh_change_create(context, old, change.list, change.count, &changes[i]),
-                         CSCD_OK);
-        old = cscd_mesh_change_mesh(changes[i]);
-    }
-    for (int i = 0; i < 20; i++) {
-        void *wrong = NULL;
-        atomic_store(&readers[i].stop, true);
-        assert_int_equal(pthread_join(threads[i], &wrong), 0);
-        assert_null(wrong);
-        cscd_mesh_change_destroy(changes[i]);
-    }
-    cscd_mesh_destroy(first);
-    cscd_context_destroy(context);
-    assert_int_equal(counter.live, 0);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_new_meshes),
-                                       cmocka_unit_test(refused_changes),
-                                       cmocka_unit_test(no_change),
-                                       cmocka_unit_test(failing_allocations),
-                                       cmocka_unit_test(any_order_of_destruction),
-                                       cmocka_unit_test(read_by_other_threads)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_new_meshes), cmocka_unit_test(refused_changes),
+                                       cmocka_unit_test(no_change)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -180,6 +180,13 @@ static void ask_detector(caller_state *s) {
     cscd_detector_counters_sized(s->detector, &counters.value, sizeof counters.value);
     EXPECT_FILLED(cscd_counters, counters);
     expect_that(counters.value.vf + counters.value.ee == contacts.value.count, "cscd_counters", "its values");
+    GUARDED(cscd_start_knowledge, knowledge);
+    cscd_detector_start_knowledge_sized(s->detector, 0, &knowledge.value, sizeof knowledge.value);
+    EXPECT_FILLED(cscd_start_knowledge, knowledge);
+    expect_that(knowledge.value.clean + knowledge.value.free + knowledge.value.crossing +
+                        knowledge.value.unknown ==
+                    OWN_TRIANGLES,
+                "cscd_start_knowledge", "its values");
     GUARDED(cscd_guarantee, guarantee);
     cscd_detector_guarantee_sized(s->detector, 1, &guarantee.value, sizeof guarantee.value);
     EXPECT_FILLED(cscd_guarantee, guarantee);

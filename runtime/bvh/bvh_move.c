@@ -1,0 +1,195 @@
+/* Trees that move over to another mesh: what is kept is renumbered and copied, what is missing gets a place. */
+#include "runtime/bvh/bvh_move.h"
+
+#include <string.h>
+
+/* ---- order -------------------------------------------------------------------------------------------- */
+
+/* Which tree stands where: an old tree, or a region without one. */
+typedef struct tree_order {
+    uint32_t
+        *trees; /* per new tree: the old one, or tree_count of the old BVH plus the place in move->fresh */
+    uint32_t *first,
+        *next; /* lists of fresh regions, by the old region that they follow and by the place of the last one */
+    uint32_t count;
+} tree_order;
+
+static array_list order_arrays(const bvh_move *move, tree_order *o) {
+    return (array_list){{ARRAY(o->trees, move->region_count),
+                         ARRAY(o->first, (size_t)move->old_region_count + 1),
+                         ARRAY(o->next, move->fresh_count)}};
+}
+
+static void add_list(const bvh *f, tree_order *o, uint32_t first) {
+    for (uint32_t i = first; i != UINT32_MAX; i = o->next[i]) o->trees[o->count++] = f->tree_count + i;
+}
+
+static void order_trees(const bvh *f, const bvh_move *move, tree_order *o) {
+    memset(o->first, 0xff, ((size_t)move->old_region_count + 1) * sizeof *o->first);
+    for (uint32_t i = move->fresh_count; i-- > 0;) {
+        uint32_t after = move->fresh[i].after;
+        uint32_t *first = &o->first[after != UINT32_MAX ? after : move->old_region_count];
+        o->next[i] = *first;
+        *first = i;
+    }
+    for (uint32_t i = 0; i < f->tree_count; i++) {
+        if (move->regions[f->trees[i].region] != UINT32_MAX) o->trees[o->count++] = i;
+        add_list(f, o, o->first[f->trees[i].region]);
+    }
+    add_list(f, o, o->first[move->old_region_count]);
+}
+
+/* ---- places ------------------------------------------------------------------------------------------- */
+
+static uint32_t rounded_up(uint32_t count) {
+    return (count + LANES - 1) / LANES * LANES;
+}
+
+static bvh_tree place_of(const bvh *f, const bvh_move *move, uint32_t item) {
+    if (item >= f->tree_count) {
+        const fresh_region *fresh = &move->fresh[item - f->tree_count];
+        return (bvh_tree){.region = fresh->region,
+                          .missing = fresh->triangle_count,
+                          .leaf_count = rounded_up(fresh->triangle_count) / LANES,
+                          .record_count = rounded_up(fresh->vertex_count)};
+    }
+    const bvh_tree *old = &f->trees[item];
+    return (bvh_tree){.region = move->regions[old->region],
+                      .missing = old->missing,
+                      .leaf_count = old->leaf_count,
+                      .record_count = old->record_count};
+}
+
+static void place_trees(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {
+    for (uint32_t i = 0; i < o->count; i++) {
+        bvh_tree tree = place_of(f, move, o->trees[i]);
+        tree.first_leaf = out->leaf_count;
+        tree.first_record = out->record_count;
+        out->leaf_count += tree.leaf_count;
+        out->record_count += tree.record_count;
+        out->trees[out->tree_count++] = tree;
+    }
+}
+
+static bool allocate_places(bvh *out) {
+    cscd_context *context = out->mesh->context;
+    size_t leaves = out->leaf_count, records = out->record_count;
+    out->flags_before = context_allocate(context, leaves, sizeof *out->flags_before);
+    if (out->flags_before == NULL) return false;
+    array_list list = {{ARRAY(out->leaves, leaves), ARRAY(out->leaf_flags, leaves),
+                        ARRAY(out->leaf_trees, leaves), ARRAY(out->record_vertices, records),
+                        ARRAY(out->record_weights, records),
+                        ARRAY(out->chunks, records / BVH_CHUNK_RECORDS + out->tree_count),
+                        ARRAY(out->slots, out->mesh->triangle_count)}};
+    return context_reserve_all(context, list);
+}
+
+/* ---- copies ------------------------------------------------------------------------------------------- */
+
+static void move_leaf(const bvh *f, const bvh_move *move, uint32_t from, uint32_t to, uint32_t records,
+                      bvh *out) {
+    const bvh_leaf *old = &f->leaves[from];
+    bvh_leaf *leaf = &out->leaves[to];
+    uint32_t used = f->leaf_flags[from].used;
+    for (int i = 0; i < 3; i++) {
+        for (int lane = 0; lane < LANES; lane++) leaf->corners[i][lane] = old->corners[i][lane] + records;
+    }
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        bool filled = (used >> lane & 1) != 0;
+        uint32_t triangle = filled ? move->triangles[old->triangles[lane]] : UINT32_MAX;
+        leaf->triangles[lane] = triangle;
+        if (filled) out->slots[triangle] = to * LANES + lane;
+    }
+    out->leaf_flags[to] = (lane_flags){.used = (uint8_t)used};
+}
+
+static void move_tree(const bvh *f, const bvh_move *move, const bvh_tree *from, uint32_t index, bvh *out) {
+    const bvh_tree *to = &out->trees[index];
+    for (uint32_t i = 0; i < to->leaf_count; i++) out->leaf_trees[to->first_leaf + i] = index;
+    if (from == NULL || from->missing > 0) return;
+    uint32_t records = to->first_record - from->first_record;
+    for (uint32_t i = 0; i < to->leaf_count; i++)
+        move_leaf(f, move, from->first_leaf + i, to->first_leaf + i, records, out);
+    for (uint32_t i = 0; i < to->record_count; i++)
+        out->record_vertices[to->first_record + i] =
+            move->vertices[f->record_vertices[from->first_record + i]];
+    memcpy(out->record_weights + to->first_record, f->record_weights + from->first_record,
+           to->record_count * sizeof *out->record_weights);
+}
+
+static bool move_all(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {
+    out->trees = context_allocate(out->mesh->context, move->region_count, sizeof *out->trees);
+    if (out->trees == NULL) return false;
+    place_trees(f, move, o, out);
+    if (!allocate_places(out)) return false;
+    for (uint32_t i = 0; i < o->count; i++)
+        move_tree(f, move, o->trees[i] < f->tree_count ? &f->trees[o->trees[i]] : NULL, i, out);
+    return true;
+}
+
+cscd_status bvh_move_over(const bvh *f, const bvh_move *move, bvh *out) {
+    bvh moved = {.mesh = move->mesh, .kernels = f->kernels, .axis_count = f->axis_count, .scale = f->scale};
+    tree_order order = {.count = 0};
+    if (!context_allocate_all(move->mesh->context, order_arrays(move, &order))) return CSCD_OUT_OF_MEMORY;
+    order_trees(f, move, &order);
+    bool made = move_all(f, move, &order, &moved);
+    context_free_all(move->mesh->context, order_arrays(move, &order));
+    if (!made) {
+        bvh_free(&moved);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = moved;
+    return CSCD_OK;
+}
+
+void bvh_take_records(bvh *f, bvh *from) {
+    if (from->records == NULL || from->record_capacity < f->record_count || f->records != NULL) return;
+    f->records = from->records;
+    f->record_capacity = from->record_capacity;
+    from->records = NULL;
+}
+
+/* ---- copies of all ------------------------------------------------------------------------------------- */
+
+static array_list bvh_arrays(bvh *f) {
+    size_t leaves = f->leaf_count, records = f->record_capacity, blocks = f->levels[0].block_count;
+    return (array_list){{ARRAY(f->trees, f->tree_count), ARRAY(f->leaves, leaves),
+                         ARRAY(f->leaf_flags, leaves), ARRAY(f->flags_before, leaves),
+                         ARRAY(f->leaf_self_pairs, leaves), ARRAY(f->block_trees, blocks),
+                         ARRAY(f->leaf_trees, leaves), ARRAY(f->record_vertices, f->record_count),
+                         ARRAY(f->record_weights, f->record_count),
+                         ARRAY(f->chunks, f->record_count / BVH_CHUNK_RECORDS + f->tree_count),
+                         ARRAY(f->records, records), ARRAY(f->slots, f->mesh->triangle_count)}};
+}
+
+static array_list level_arrays(bvh_level *level, int axis_count) {
+    size_t blocks = level->block_count;
+    return (array_list){{ARRAY(level->first_children, blocks),
+                         ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
+                         ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks),
+                         ARRAY(level->obstacle_lanes, blocks), ARRAY(level->child_sets, blocks * LANES)}};
+}
+
+/* A level that is not whole belongs to the other BVH. */
+static bool copy_levels(cscd_context *context, bvh *f) {
+    bool whole = true;
+    for (int i = 0; i < BVH_LEVEL_MAX; i++) {
+        if (whole) whole = context_copy_all(context, level_arrays(&f->levels[i], f->axis_count));
+        if (!whole) f->levels[i] = (bvh_level){.block_count = 0};
+    }
+    return whole;
+}
+
+cscd_status bvh_copy(const bvh *f, const cscd_mesh *mesh, bvh *out) {
+    bvh copy = *f;
+    copy.mesh = mesh;
+    copy.kernels = bvh_kernels_of(mesh->context);
+    bool arrays = context_copy_all(mesh->context, bvh_arrays(&copy));
+    bool levels = copy_levels(mesh->context, &copy);
+    if (!arrays || !levels) {
+        bvh_free(&copy);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = copy;
+    return CSCD_OK;
+}

@@ -1,0 +1,26 @@
+/* What is known of the positions seen last, of the public API. */
+#include "runtime/detector/detector.h"
+#include "src/core/struct_size.h"
+
+_Static_assert((int)TRIANGLE_UNKNOWN == (int)CSCD_START_STATE_UNKNOWN &&
+                   (int)TRIANGLE_CROSSING == (int)CSCD_START_STATE_CROSSING &&
+                   (int)TRIANGLE_FREE == (int)CSCD_START_STATE_FREE &&
+                   (int)TRIANGLE_CLEAN == (int)CSCD_START_STATE_CLEAN,
+               "states have the numbers of the public API");
+
+void cscd_detector_start_knowledge_sized(const cscd_detector *detector, uint32_t component,
+                                         cscd_start_knowledge *out, size_t size) {
+    const cscd_mesh *mesh = detector->mesh;
+    uint32_t counts[4] = {0};
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        counts[detector->starts.triangles[t]] += mesh->triangle_components[t] == component;
+    const cscd_start_knowledge found = {.clean = counts[TRIANGLE_CLEAN],
+                                        .free = counts[TRIANGLE_FREE],
+                                        .crossing = counts[TRIANGLE_CROSSING],
+                                        .unknown = counts[TRIANGLE_UNKNOWN]};
+    struct_give(out, size, &found, sizeof found);
+}
+
+cscd_start_state cscd_detector_start_state(const cscd_detector *detector, uint32_t triangle) {
+    return (cscd_start_state)detector->starts.triangles[triangle];
+}

@@ -1,0 +1,271 @@
+/* Waiting pairs that move over to another mesh, and those that the change itself parts. */
+#include "runtime/narrow_phase/waiting_move.h"
+
+#include "src/core/sort.h"
+
+/* ---- pairs that wait already --------------------------------------------------------------------------- */
+
+typedef struct heirs_of_kinds {
+    mesh_heirs vertices, edges, triangles;
+} heirs_of_kinds;
+
+static bool share_vertex(const uint32_t *a, int a_count, const uint32_t *b, int b_count) {
+    for (int i = 0; i < a_count; i++) {
+        for (int j = 0; j < b_count; j++) {
+            if (a[i] == b[j]) return true;
+        }
+    }
+    return false;
+}
+
+static bool are_neighbours(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    if (kind == CSCD_CONTACT_VF) return share_vertex(&a, 1, mesh->triangles[b], 3);
+    if (kind == CSCD_CONTACT_EE) return share_vertex(mesh->edges[a], 2, mesh->edges[b], 2);
+    return a == b;
+}
+
+/* Adds a pair, unless it is a vertex in common, which is never looked at. */
+static bool add_pair(const cscd_mesh *mesh, named_pair_set *set, cscd_contact_kind kind, uint32_t a,
+                     uint32_t b) {
+    bool ordered = kind == CSCD_CONTACT_VF || a < b;
+    return are_neighbours(mesh, kind, a, b) ||
+           named_pair_set_add(mesh->context, set, kind, ordered ? a : b, ordered ? b : a);
+}
+
+static bool move_pair(const named_pair *pair, const heirs_of_kinds *h, const cscd_mesh *mesh,
+                      named_pair_set *out) {
+    cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
+    const mesh_heirs *first = kind == CSCD_CONTACT_VF   ? &h->vertices
+                              : kind == CSCD_CONTACT_EE ? &h->edges
+                                                        : &h->triangles;
+    const mesh_heirs *second = kind == CSCD_CONTACT_EE ? &h->edges : &h->triangles;
+    for (uint32_t i = first->offsets[pair->a]; i < first->offsets[pair->a + 1]; i++) {
+        for (uint32_t j = second->offsets[pair->b]; j < second->offsets[pair->b + 1]; j++) {
+            if (!add_pair(mesh, out, kind, first->items[i], second->items[j])) return false;
+        }
+    }
+    return true;
+}
+
+static bool move_set(const named_pair_set *set, const heirs_of_kinds *h, const cscd_mesh *mesh,
+                     named_pair_set *out) {
+    for (size_t i = 0; i < set->count; i++) {
+        if (!move_pair(&set->items[i], h, mesh, out)) return false;
+    }
+    return true;
+}
+
+static cscd_status move_sets(const waiting_pairs *w, const cscd_mesh *mesh, const cscd_mesh_change *change,
+                             waiting_pairs *out) {
+    if (w->pairs.count == 0 && w->torn.count == 0) return CSCD_OK;
+    heirs_of_kinds h = {{NULL, NULL}, {NULL, NULL}, {NULL, NULL}};
+    cscd_status status = mesh_heirs_find(mesh->context, &change->vertices, &h.vertices);
+    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->edges, &h.edges);
+    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->triangles, &h.triangles);
+    bool moved = status == CSCD_OK && move_set(&w->pairs, &h, mesh, &out->pairs) &&
+                 move_set(&w->torn, &h, mesh, &out->torn) && named_pair_set_sort(mesh->context, &out->pairs);
+    mesh_heirs_free(mesh->context, &h.vertices);
+    mesh_heirs_free(mesh->context, &h.edges);
+    mesh_heirs_free(mesh->context, &h.triangles);
+    return moved ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+/* ---- neighbours that have parted ------------------------------------------------------------------------- */
+
+/* Vertices that were one vertex, or one seam, some of which have come apart: a name in the upper half, the vertex in
+ * the lower one. */
+typedef struct parted_vertices {
+    uint64_t *items;
+    size_t count, capacity;
+} parted_vertices;
+
+static bool add_vertex(cscd_context *context, parted_vertices *p, uint32_t name, uint32_t vertex) {
+    if (p->count == p->capacity) {
+        size_t capacity = p->capacity * 2 + 64;
+        uint64_t *grown = context_grow(context, p->items, p->count, capacity, sizeof *grown);
+        if (grown == NULL) return false;
+        p->items = grown;
+        p->capacity = capacity;
+    }
+    p->items[p->count++] = (uint64_t)name << 32 | vertex;
+    return true;
+}
+
+/* Without seams: vertices that are not the first to come from their origin, and those that are. */
+static bool list_copies(const cscd_mesh_change *change, cscd_context *context, parted_vertices *p) {
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        for (uint32_t v = range->vertex; v < range->vertex + range->vertex_count; v++) {
+            uint32_t origin = change->vertices.to_old[v];
+            if (origin == UINT32_MAX || change->vertices.to_new[origin] == v) continue;
+            if (!add_vertex(context, p, origin, v) ||
+                !add_vertex(context, p, origin, change->vertices.to_new[origin]))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* With seams: everything that came from a seam one of whose vertices has come apart. */
+static bool list_seams(const cscd_mesh_change *change, const uint32_t *names, cscd_context *context,
+                       parted_vertices *p) {
+    bool *parted = context_allocate(context, change->vertices.old_count, sizeof *parted);
+    bool made = parted != NULL;
+    for (size_t i = 0; made && i < p->count; i++) parted[names[p->items[i] >> 32]] = true;
+    p->count = 0;
+    for (uint32_t v = 0; made && v < change->vertices.new_count; v++) {
+        uint32_t origin = change->vertices.to_old[v];
+        if (origin != UINT32_MAX && parted[names[origin]]) made = add_vertex(context, p, names[origin], v);
+    }
+    context_free(context, parted);
+    return made;
+}
+
+/* Calls of this come for both orders of the two vertices. */
+static bool part_features(const cscd_mesh *mesh, uint32_t v, uint32_t t, uint32_t w, uint32_t u,
+                          named_pair_set *out) {
+    if (!add_pair(mesh, out, CSCD_CONTACT_VF, v, u) || !add_pair(mesh, out, CSCD_CONTACT_TT, t, u))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        uint32_t a = mesh->triangle_edges[t][i];
+        if (!share_vertex(&v, 1, mesh->edges[a], 2)) continue;
+        for (int j = 0; j < 3; j++) {
+            uint32_t b = mesh->triangle_edges[u][j];
+            if (share_vertex(&w, 1, mesh->edges[b], 2) && !add_pair(mesh, out, CSCD_CONTACT_EE, a, b))
+                return false;
+        }
+    }
+    return true;
+}
+
+static bool part_vertices(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
+        for (uint32_t j = mesh->vertex_star_offsets[w]; j < mesh->vertex_star_offsets[w + 1]; j++) {
+            if (!part_features(mesh, v, mesh->vertex_stars[i], w, mesh->vertex_stars[j], out)) return false;
+        }
+    }
+    return true;
+}
+
+static bool part_groups(const cscd_mesh *mesh, const parted_vertices *p, named_pair_set *out) {
+    for (size_t begin = 0, end; begin < p->count; begin = end) {
+        for (end = begin + 1; end < p->count && p->items[end] >> 32 == p->items[begin] >> 32;) end++;
+        for (size_t i = begin; i < end; i++) {
+            for (size_t j = begin; j < end; j++) {
+                uint32_t v = (uint32_t)p->items[i], w = (uint32_t)p->items[j];
+                if (v != w && !part_vertices(mesh, v, w, out)) return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* The first of several copies has been listed with each of the others. */
+static bool sort_vertices(cscd_context *context, parted_vertices *p) {
+    uint64_t *scratch = context_allocate(context, p->count, sizeof *scratch);
+    if (scratch == NULL) return false;
+    sort_by_number(p->items, scratch, p->count, sizeof *p->items);
+    context_free(context, scratch);
+    size_t kept = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        if (i == 0 || p->items[i] != p->items[i - 1]) p->items[kept++] = p->items[i];
+    }
+    p->count = kept;
+    return true;
+}
+
+static cscd_status part_neighbours(const exclusions *e, const cscd_mesh *mesh, const cscd_mesh_change *change,
+                                   named_pair_set *out) {
+    parted_vertices p = {.items = NULL};
+    bool made = list_copies(change, mesh->context, &p);
+    if (made && p.count > 0 && e->names != NULL) made = list_seams(change, e->names, mesh->context, &p);
+    if (made && p.count > 0) made = sort_vertices(mesh->context, &p) && part_groups(mesh, &p, out);
+    context_free(mesh->context, p.items);
+    return made && named_pair_set_sort(mesh->context, out) ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+}
+
+/* ---- changes whose positions have not been seen ------------------------------------------------------------ */
+
+/* What makes the new one from one of the changes. */
+typedef struct former_maker {
+    const cscd_mesh *mesh;
+    const cscd_mesh_change *change; /* NULL: it is copied */
+} former_maker;
+
+static cscd_status move_rules(const pair_rules *r, const cscd_mesh *mesh, const cscd_mesh_change *change,
+                              pair_rules *out) {
+    *out = (pair_rules){.object_count = 0};
+    if (r->sets == NULL) return CSCD_OK;
+    uint32_t count = mesh->object_count;
+    cscd_object_rule *rules = context_allocate(mesh->context, count, sizeof *rules);
+    if (rules == NULL) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t origin = change->objects.to_old[i];
+        rules[i] = origin != UINT32_MAX ? r->given[origin] : cscd_object_rule_default();
+    }
+    const given_rules given = {rules, count, r->matrix, r->class_count};
+    cscd_status status = pair_rules_create(mesh, &given, out);
+    context_free(mesh->context, rules);
+    return status;
+}
+
+static cscd_status make_former(const former_maker *m, const former_exclusions *from, former_exclusions *to) {
+    to->by_rules = from->by_rules;
+    if (m->change == NULL)
+        return from->by_rules ? pair_rules_copy(&from->rules, m->mesh, &to->rules)
+                              : exclusions_copy(&from->exclusions, m->mesh, &to->exclusions);
+    return from->by_rules ? move_rules(&from->rules, m->mesh, m->change, &to->rules)
+                          : exclusions_move_former(&from->exclusions, m->mesh, m->change, &to->exclusions);
+}
+
+static cscd_status make_formers(const former_maker *m, const former_exclusions *from, waiting_pairs *out) {
+    former_exclusions **next = &out->former;
+    for (; from != NULL; from = from->next) {
+        former_exclusions *made = context_allocate(m->mesh->context, 1, sizeof *made);
+        if (made == NULL) return CSCD_OUT_OF_MEMORY;
+        *next = made;
+        next = &made->next;
+        cscd_status status = make_former(m, from, made);
+        if (status != CSCD_OK) return status;
+    }
+    return CSCD_OK;
+}
+
+/* ---- all of it ------------------------------------------------------------------------------------------- */
+
+static cscd_status give_pairs(cscd_status status, const cscd_mesh *mesh, waiting_pairs *made,
+                              waiting_pairs *out) {
+    if (status != CSCD_OK) {
+        waiting_pairs_free(mesh, made);
+        *made = (waiting_pairs){.former = NULL};
+    }
+    *out = *made;
+    return status;
+}
+
+cscd_status waiting_pairs_move(const waiting_pairs *w, const exclusions *e, const cscd_mesh *mesh,
+                               const cscd_mesh_change *change, waiting_pairs *out) {
+    waiting_pairs moved = {.former = NULL};
+    const former_maker maker = {mesh, change};
+    cscd_status status = move_sets(w, mesh, change, &moved);
+    if (status == CSCD_OK) status = part_neighbours(e, mesh, change, &moved.torn);
+    if (status == CSCD_OK) status = make_formers(&maker, w->former, &moved);
+    return give_pairs(status, mesh, &moved, out);
+}
+
+static bool copy_set(cscd_context *context, const named_pair_set *from, named_pair_set *to) {
+    *to = *from;
+    array_list list = {{ARRAY(to->items, to->capacity)}};
+    if (context_copy_all(context, list)) return true;
+    *to = (named_pair_set){.items = NULL};
+    return false;
+}
+
+cscd_status waiting_pairs_copy(const waiting_pairs *w, const cscd_mesh *mesh, waiting_pairs *out) {
+    waiting_pairs copy = {.former = NULL};
+    const former_maker maker = {mesh, NULL};
+    bool sets =
+        copy_set(mesh->context, &w->pairs, &copy.pairs) && copy_set(mesh->context, &w->torn, &copy.torn);
+    cscd_status status = sets ? make_formers(&maker, w->former, &copy) : CSCD_OUT_OF_MEMORY;
+    return give_pairs(status, mesh, &copy, out);
+}
