@@ -26,7 +26,7 @@
  *               functions of C that are called with get(), callbacks must not throw
  *   plain       functions without an object (cscd_method_name, cscd_version_string ...) and structs are used as in C
  *
- * cscd/sensors.h and cscd/research.h have no classes.
+ * cscd/sensors.hpp has classes for cscd/sensors.h; cscd/research.h is used as in C.
  */
 #ifndef CSCD_HPP
 #define CSCD_HPP
