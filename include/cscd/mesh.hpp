@@ -27,7 +27,21 @@ inline cscd_object_desc object_of_triangles(std::uint32_t vertex_count,
     return object_of_triangles(vertex_count, span<const std::uint32_t>(indices, 3 * triangles.size()));
 }
 
-/* The same for an obstacle, which the caller moves. */
+/* The same of wires, points, and a half-space, whose normal points out of it. */
+inline cscd_object_desc object_of_wires(std::uint32_t vertex_count,
+                                        span<const std::array<std::uint32_t, 2>> wires) {
+    if (wires.size() > UINT32_MAX) throw error(CSCD_INVALID_ARGUMENT, "there are too many wires");
+    return cscd_object_of_wires(vertex_count, static_cast<std::uint32_t>(wires.size()),
+                                wires.empty() ? nullptr : wires.data()->data());
+}
+inline cscd_object_desc object_of_points(std::uint32_t vertex_count) noexcept {
+    return cscd_object_of_points(vertex_count);
+}
+inline cscd_object_desc object_half_space(const std::array<double, 3> &normal) noexcept {
+    return cscd_object_half_space(normal.data());
+}
+
+/* Triangles for an obstacle, which the caller moves. */
 template <class Triangles>
 cscd_object_desc obstacle_of_triangles(std::uint32_t vertex_count, const Triangles &triangles) {
     cscd_object_desc desc = object_of_triangles(vertex_count, triangles);

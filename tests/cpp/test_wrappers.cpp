@@ -93,6 +93,20 @@ void meshes(void **) {
     assert_non_null(std::strstr(refused.what(), "9"));
 }
 
+/* Wires, points and a half-space are the objects that C makes. */
+void loose_objects(void **) {
+    const cscd::context context;
+    const std::vector<std::array<std::uint32_t, 2>> wires{{0, 1}, {1, 2}};
+    const cscd::mesh mesh(context,
+                          {cscd::object_of_triangles(8, body_triangles), cscd::object_of_wires(3, wires),
+                           cscd::object_of_points(5), cscd::object_half_space({0.0, 0.0, 1.0})});
+    assert_int_equal(mesh.object(1).kind, CSCD_OBJECT_WIRES);
+    assert_int_equal(mesh.object(2).kind, CSCD_OBJECT_POINTS);
+    assert_int_equal(mesh.object(3).kind, CSCD_OBJECT_HALF_SPACE);
+    assert_int_equal(mesh.edge_count(), 14);
+    assert_int_equal(mesh.vertex_count(), 17);
+}
+
 /* ---- plans ------------------------------------------------------------------------------------------------- */
 
 void plans(void **) {
@@ -180,7 +194,8 @@ void moved_objects(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(contexts), cmocka_unit_test(meshes), cmocka_unit_test(plans),
-                                cmocka_unit_test(pairs), cmocka_unit_test(moved_objects)};
+    const CMUnitTest tests[] = {cmocka_unit_test(contexts),      cmocka_unit_test(meshes),
+                                cmocka_unit_test(loose_objects), cmocka_unit_test(plans),
+                                cmocka_unit_test(pairs),         cmocka_unit_test(moved_objects)};
     return cmocka_run_group_tests_name("wrappers", tests, nullptr, nullptr);
 }

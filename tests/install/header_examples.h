@@ -11,6 +11,9 @@
 
 enum { SIDE = 4, SHEET = SIDE * SIDE, VERTICES = 2 * SHEET };
 
+/* The faces of the tetrahedron, which an example takes for a roof. */
+static const uint32_t vertex_count = 4, triangle_count = 4, roof[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+
 static cscd_context *context;
 static cscd_mesh *mesh, *tetrahedron;
 static cscd_detector *detector;
@@ -86,10 +89,9 @@ static void place_sheets(void) {
 }
 
 static void set_up(void) {
-    static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
     place_sheets();
     const cscd_object_desc sheet = cscd_object_of_triangles(SHEET, 18, &triangles[0][0]);
-    const cscd_object_desc sheets[2] = {sheet, sheet}, body = cscd_object_of_triangles(4, 4, faces);
+    const cscd_object_desc sheets[2] = {sheet, sheet}, body = cscd_object_of_triangles(4, 4, roof);
     expect_success(cscd_context_create(NULL, &context));
     expect_success(cscd_mesh_create(context, sheets, 2, &mesh));
     expect_success(cscd_mesh_create(context, &body, 1, &tetrahedron));
