@@ -4,6 +4,7 @@
 
 #include <cscd/lists.hpp>
 #include <cscd/live.h>
+#include <cscd/mesh_change.hpp>
 #include <cscd/plan.hpp>
 
 namespace cscd {
@@ -93,6 +94,13 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         create_from(context, mesh, plan.get(), options);
     }
 
+    /* A second detector on the same mesh, which has all that this one has. */
+    detector clone(const context &of) const {
+        detector made(of.state(), ignore_);
+        made.create([&](cscd_detector **out) { return cscd_detector_clone(of.get(), get(), out); });
+        return made;
+    }
+
     mesh_ref mesh() const noexcept {
         return mesh_ref(cscd_detector_mesh(get()));
     }
@@ -117,6 +125,10 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         call([&] {
             return cscd_detector_set_ignored(get(), detail::indices_of(triangles), triangles.size());
         });
+    }
+    /* Goes over to the new mesh of a change of its own mesh. */
+    void change_mesh(const mesh_change &change) {
+        call([&] { return cscd_detector_change_mesh(get(), change.get()); });
     }
     void set_rest(const positions &rest) {
         const cscd_view *views = covering(rest);
@@ -192,8 +204,21 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         return cscd_detector_counters(get());
     }
 
+    /* ---- what is known of the start of the next one */
+
+    cscd_start_state start_state(std::uint32_t triangle) const noexcept {
+        return cscd_detector_start_state(get(), triangle);
+    }
+    cscd_start_knowledge start_knowledge(std::uint32_t component) const noexcept {
+        return cscd_detector_start_knowledge(get(), component);
+    }
+
   private:
     friend class line_search;
+
+    detector(detail::state_pointer state, std::shared_ptr<const ignore_function> ignore)
+        : owner(std::move(state)), ignore_(std::move(ignore)) {
+    }
 
     void create_from(const context &context, mesh_ref mesh, const cscd_plan *plan,
                      const detector_options &options) {

@@ -54,9 +54,65 @@ void changes(void **) {
                      CSCD_INVALID_ARGUMENT);
 }
 
+/* ---- detectors ------------------------------------------------------------------------------------------- */
+
+/* A detector that goes over to a mesh without the lower panel finds nothing; its clone stays, and finds what it found,
+ * also when the first one is gone. `ignore` goes with both. */
+void detectors_move(void **) {
+    const panel_scene scene(10);
+    const std::vector<float> x0 = packed(scene.particles), x1 = packed(scene.moved());
+    const std::vector<float> upper0(x0.begin() + 300, x0.end()), upper1(x1.begin() + 300, x1.end());
+    cscd::context context;
+    const cscd::context other;
+    const cscd::mesh mesh(context, scene.objects());
+    unsigned asked = 0;
+    cscd::detector_options options;
+    options.ignore_if = [&](cscd_contact_kind kind, std::uint32_t, std::uint32_t) {
+        asked++;
+        if (kind == CSCD_CONTACT_TT) throw 5;
+        return kind == CSCD_CONTACT_EE;
+    };
+    auto detector = std::make_unique<cscd::detector>(context, mesh, options);
+    const std::size_t count = detector->step(x0, x1).size();
+    cscd::detector clone = detector->clone(other);
+    const cscd::mesh_change change(context, mesh, {cscd::object_change{0, std::nullopt, {}, {}}});
+    detector->change_mesh(change);
+    assert_ptr_equal(detector->mesh().get(), change.mesh().get());
+    assert_true(detector->step(upper0, upper1).empty());
+    detector.reset();
+    asked = 0;
+    assert_int_equal(clone.step(x0, x1).size(), count);
+    assert_true(count > 0 && asked > count);
+
+    /* What the clone's callback throws arrives in the clone's call. */
+    std::vector<float> across = x0;
+    for (std::size_t i = 302; i < across.size(); i += 3) across[i] -= 2.0f;
+    bool arrived = false;
+    try {
+        clone.check(across);
+    } catch (int five) {
+        arrived = five == 5;
+    }
+    assert_true(arrived);
+    assert_int_equal(clone.step(x0, x1).size(), count);
+}
+
+void starts_are_known(void **) {
+    const cscd::context context;
+    const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
+    cscd::detector detector(context, mesh, cscd::plan(context, mesh, body_positions));
+    assert_int_equal(detector.start_state(0), CSCD_START_STATE_UNKNOWN);
+    detector.check(body_positions);
+    assert_int_equal(detector.start_state(0), CSCD_START_STATE_CLEAN);
+    const cscd_start_knowledge known = detector.start_knowledge(1);
+    assert_int_equal(known.clean, 4);
+    assert_int_equal(known.unknown, 0);
+}
+
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(changes)};
+    const CMUnitTest tests[] = {cmocka_unit_test(changes), cmocka_unit_test(detectors_move),
+                                cmocka_unit_test(starts_are_known)};
     return cmocka_run_group_tests_name("mesh_changes", tests, nullptr, nullptr);
 }
