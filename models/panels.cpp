@@ -1,6 +1,6 @@
-/* Two sewn panels of cloth, a ball and a floor, by a C++ program: it uses cscd/cscd.hpp, has its positions as floats in an
- * array of structs, and runs cscd on its own threads. It checks itself in every frame, and ends with 1 if anything passes
- * through anything. */
+/* Two sewn panels of cloth, a seam that opens, a tear, a ball and a floor, by a C++ program: it uses cscd/cscd.hpp, has its
+ * positions as floats in an array of structs, and runs cscd on its own threads. It checks itself in every frame, and ends
+ * with 1 if anything passes through anything. */
 #include "models/panels/simulation.hpp"
 
 #include <cstdio>
@@ -15,7 +15,7 @@ struct options {
     bool certified = true;
 };
 
-constexpr unsigned frames_per_row = 15, opening_frame = 61;
+constexpr unsigned frames_per_row = 15, opening_frame = 61, tear_frame = 106;
 
 /* A number for the bits of all positions, to compare runs. */
 std::uint64_t digest_of(const std::vector<panels::particle> &particles) {
@@ -55,6 +55,11 @@ int run(const options &o) {
         if (frame == opening_frame) {
             s.open_seam();
             std::puts("the seam is opened");
+        }
+        if (frame == tear_frame) {
+            const std::size_t before = s.particles().size();
+            s.tear_right_panel();
+            std::printf("the right panel tears: %zu vertices more\n", s.particles().size() - before);
         }
         s.advance(row);
         const std::size_t intersections = s.count_intersections();

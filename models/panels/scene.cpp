@@ -85,22 +85,19 @@ float inverse_mass_of(std::uint32_t which, const object &o, const vec3 &point) {
     return count / (which == BALL ? ball_mass : cloth_mass);
 }
 
-void place_objects(scene &s) {
+void place_particles(scene &s) {
     for (std::uint32_t which = 0; which < OBJECTS; which++) {
-        s.first[which] = static_cast<std::uint32_t>(s.particles.size());
         for (const vec3 &point : s.objects[which].points)
-            s.particles.push_back({point, {}, inverse_mass_of(which, s.objects[which], point)});
+            s.particles.push_back({point, {}, point, inverse_mass_of(which, s.objects[which], point)});
     }
-    s.first[OBJECTS] = static_cast<std::uint32_t>(s.particles.size());
 }
 
-} // namespace
-
+/* The springs of a panel: along its edges, and across each edge between two triangles. */
 void add_springs(const std::vector<particle> &particles, const std::vector<triple> &triangles,
                  std::uint32_t first_vertex, std::vector<spring> &out) {
     std::map<pair, std::uint32_t> opposite; /* of an edge that one triangle has shown */
     const auto add = [&](std::uint32_t a, std::uint32_t b) {
-        out.push_back({a, b, length(particles[a].position - particles[b].position)});
+        out.push_back({a, b, length(particles[a].rest - particles[b].rest)});
     };
     for (const triple &t : triangles) {
         for (std::size_t i = 0; i < 3; i++) {
@@ -117,15 +114,56 @@ void add_springs(const std::vector<particle> &particles, const std::vector<tripl
     }
 }
 
+} // namespace
+
+void number_vertices(scene &s) {
+    s.first[0] = 0;
+    for (std::uint32_t which = 0; which < OBJECTS; which++)
+        s.first[which + 1] = s.first[which] + static_cast<std::uint32_t>(s.objects[which].points.size());
+}
+
+void make_springs(scene &s) {
+    s.springs.clear();
+    for (std::uint32_t which : {LEFT_PANEL, RIGHT_PANEL})
+        add_springs(s.particles, s.objects[which].triangles, s.first[which], s.springs);
+}
+
+tear tear_panel(scene &s) {
+    object &panel = s.objects[RIGHT_PANEL];
+    tear done;
+    std::map<std::uint32_t, std::uint32_t> upper; /* of a vertex on the tear */
+    float row = -1.0f;                            /* the y of its vertices */
+    for (const vec3 &point : panel.points) row = std::fabs(point.y) < std::fabs(row) ? point.y : row;
+    for (std::uint32_t v = 0; v < panel.points.size(); v++) done.origins.push_back(v);
+    for (std::uint32_t v : done.origins) {
+        const vec3 &point = panel.points[v];
+        if (point.y != row || point.x > 0.66f) continue;
+        upper[v] = static_cast<std::uint32_t>(done.origins.size() + done.sides.size());
+        done.sides.push_back({v, upper[v]});
+    }
+    for (const pair &side : done.sides) {
+        panel.points.push_back(panel.points[side[0]]);
+        done.origins.push_back(side[0]);
+    }
+    for (triple &t : panel.triangles) {
+        const float middle = panel.points[t[0]].y + panel.points[t[1]].y + panel.points[t[2]].y;
+        for (std::uint32_t &v : t) {
+            if (middle > 3.0f * row && upper.count(v) > 0) v = upper[v];
+        }
+    }
+    number_vertices(s);
+    return done;
+}
+
 scene make_scene(std::uint32_t side) {
     scene s;
     s.objects = {make_panel(side, -1.0f), make_panel(side, 0.0f), make_ball(), make_floor()};
-    place_objects(s);
+    number_vertices(s);
+    place_particles(s);
     for (std::uint32_t j = 0; j <= side; j++)
         s.seams.push_back(
             {s.first[LEFT_PANEL] + j * (side + 1) + side, s.first[RIGHT_PANEL] + j * (side + 1)});
-    for (std::uint32_t which : {LEFT_PANEL, RIGHT_PANEL})
-        add_springs(s.particles, s.objects[which].triangles, s.first[which], s.springs);
+    make_springs(s);
     for (const vec3 &point : s.objects[BALL].points) s.ball_shape.push_back(point - vec3{0.0f, 0.0f, 0.4f});
     return s;
 }

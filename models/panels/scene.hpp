@@ -11,7 +11,7 @@
 namespace panels {
 
 struct particle {
-    vec3 position, velocity;
+    vec3 position, velocity, rest;
     float inverse_mass; /* 0: it is held, or belongs to the floor */
 };
 
@@ -47,9 +47,19 @@ struct scene {
 /* side: squares along a panel's side. */
 scene make_scene(std::uint32_t side);
 
-/* The springs of a panel of these triangles at rest: along its edges, and across each edge between two triangles. */
-void add_springs(const std::vector<particle> &particles, const std::vector<triple> &triangles,
-                 std::uint32_t first_vertex, std::vector<spring> &out);
+/* What a tear has done to a panel. */
+struct tear {
+    std::vector<std::uint32_t> origins; /* which vertex of the panel each one was */
+    std::vector<pair> sides;            /* vertices of the panel that were one: towards -y, and towards y */
+};
+
+/* Tears the right panel in its middle, from the seam two thirds of the way to its held side. Its vertices are more then,
+ * and the caller places the particles anew. */
+tear tear_panel(scene &s);
+
+/* Numbers the vertices of all objects, and makes the springs of the panels from the particles' rest. */
+void number_vertices(scene &s);
+void make_springs(scene &s);
 
 /* How far the floor is from its place after so many seconds. */
 vec3 floor_sway(float seconds);

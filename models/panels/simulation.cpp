@@ -160,7 +160,7 @@ void simulation::collect_barriers(report &out) {
 
 /* The pair that has limited a motion, if none of the barriers did. */
 void simulation::add_barrier(const cscd_contact &limit) {
-    const cscd_stencil stencil = mesh_.stencil(limit.kind, limit.a, limit.b, limit.u, limit.v);
+    const cscd_stencil stencil = detector_.mesh().stencil(limit.kind, limit.a, limit.b, limit.u, limit.v);
     barrier b;
     for (std::size_t i = 0; i < 4; i++) {
         b.vertices[i] = stencil.vertices[i];
@@ -224,9 +224,33 @@ void simulation::open_seam() {
     scene_.seams.clear();
 }
 
+/* The detector moves over to a new mesh, in which the left panel, the ball and the floor are what they were; the two
+ * sides of the tear are drawn apart, along y. */
+void simulation::tear_right_panel() {
+    const tear done = panels::tear_panel(scene_);
+    const object &panel = scene_.objects[RIGHT_PANEL];
+    const cscd::object_change torn{
+        RIGHT_PANEL,
+        cscd::object_of_triangles(static_cast<std::uint32_t>(panel.points.size()), panel.triangles),
+        done.origins,
+        {}};
+    const cscd::mesh_change change(context_, detector_.mesh(), {torn});
+    detector_.change_mesh(change);
+    std::vector<particle> particles;
+    for (std::uint32_t origin : change.vertex_origins()) particles.push_back(scene_.particles[origin]);
+    scene_.particles = reached_ = particles;
+    make_springs(scene_);
+    for (const pair &side : done.sides) {
+        const std::uint32_t lower = scene_.first[RIGHT_PANEL] + side[0],
+                            upper = scene_.first[RIGHT_PANEL] + side[1];
+        opening_.push_back(
+            {{upper, lower, lower, lower}, {1.0f, -1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, margin});
+    }
+}
+
 std::size_t simulation::count_all_intersections() {
     const cscd::context context;
-    cscd::detector fresh(context, mesh_);
+    cscd::detector fresh(context, detector_.mesh());
     return fresh.check(positions_of(scene_.particles)).size();
 }
 

@@ -30,6 +30,9 @@ class simulation {
     /* The panels are no longer sewn together. */
     void open_seam();
 
+    /* The right panel tears in its middle. */
+    void tear_right_panel();
+
     /* Every pair of triangles that intersect, but neighbours at the seam, and pairs of an opened one that wait. */
     std::size_t count_intersections();
 
@@ -43,7 +46,7 @@ class simulation {
         return pool_.tasks_run();
     }
     std::uint32_t triangle_count() const {
-        return mesh_.triangle_count();
+        return detector_.mesh().triangle_count();
     }
     std::size_t waiting() const {
         return waiting_;
