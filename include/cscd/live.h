@@ -16,6 +16,10 @@ extern "C" {
 CSCD_API cscd_status cscd_detector_set_separation(cscd_detector *detector, double min_separation,
                                                   double tolerance);
 
+/* Changes longest_list (see the options) from the next call on; 0: lists may have any length. A call that failed with
+ * LIST_TOO_LONG may then be made again. */
+CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, size_t longest_list);
+
 /* ---- what is left out, on a live detector ----------------------------------------------------------------
  *
  * Pairs that such a change uncovers may touch, or cross, where they are, as the two sides of a seam that opens. They

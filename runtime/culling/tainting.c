@@ -1,8 +1,7 @@
 /* Applies the contacts found so far: taints the triangles that are in contact with their own component. */
 #include "runtime/culling/tainting.h"
 
-/* Returns 1 if the triangle's pairs are newly kept, 0 if not. */
-static uint32_t taint_triangle(const tainting *t, uint32_t triangle) {
+uint32_t tainting_triangle(const tainting *t, uint32_t triangle) {
     start_states_taint(t->starts, triangle);
     return t->wants_all_contacts[t->mesh->triangle_components[triangle]] &&
            culling_taint(t->culling, triangle);
@@ -10,7 +9,7 @@ static uint32_t taint_triangle(const tainting *t, uint32_t triangle) {
 
 static uint32_t taint_star(const tainting *t, const uint32_t *star, uint32_t count) {
     uint32_t newly_kept = 0;
-    for (uint32_t i = 0; i < count; i++) newly_kept += taint_triangle(t, star[i]);
+    for (uint32_t i = 0; i < count; i++) newly_kept += tainting_triangle(t, star[i]);
     return newly_kept;
 }
 
@@ -51,9 +50,26 @@ uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t c
         if (component == UINT32_MAX) continue;
         t->touched[component] = true;
         if (contact->kind == CSCD_CONTACT_VF)
-            newly_kept += taint_vertex(t, contact->a) + taint_triangle(t, contact->b);
+            newly_kept += taint_vertex(t, contact->a) + tainting_triangle(t, contact->b);
         else
             newly_kept += taint_edge(t, contact->a) + taint_edge(t, contact->b);
     }
     return newly_kept;
+}
+
+static void mark_star(const uint32_t *stars, const uint32_t *offsets, uint32_t feature, bool *triangles) {
+    for (uint32_t i = offsets[feature]; i < offsets[feature + 1]; i++) triangles[stars[i]] = true;
+}
+
+void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, bool *touched) {
+    uint32_t component = common_component(mesh, contact);
+    if (component == UINT32_MAX) return;
+    touched[component] = true;
+    if (contact->kind == CSCD_CONTACT_VF) {
+        mark_star(mesh->vertex_stars, mesh->vertex_star_offsets, contact->a, triangles);
+        triangles[contact->b] = true;
+    } else {
+        mark_star(mesh->edge_stars, mesh->edge_star_offsets, contact->a, triangles);
+        mark_star(mesh->edge_stars, mesh->edge_star_offsets, contact->b, triangles);
+    }
 }

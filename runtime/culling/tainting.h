@@ -16,3 +16,8 @@ typedef struct tainting {
 /* Taints the stars of both features of every contact of a component with itself, also of contacts that the caller
  * ignores. Returns how many triangles have lost their orientations, so that pairs of them are newly kept. */
 uint32_t tainting_look(const tainting *t, const cscd_contact *contacts, size_t count);
+
+/* The same in two parts, for a contact that is not kept: first the triangles that it taints are marked, and its
+ * component as touched; later each is tainted, which returns 1 if its pairs are newly kept, else 0. */
+void tainting_mark(const cscd_mesh *mesh, const cscd_contact *contact, bool *triangles, bool *touched);
+uint32_t tainting_triangle(const tainting *t, uint32_t triangle);

@@ -1,4 +1,5 @@
 /* The static check of the public API: which triangles intersect at one moment? */
+#include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
@@ -25,18 +26,23 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
         const intersection_lane *lane = &check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             cscd_intersection pair = lane->items[j];
-            if (!is_excluded(&d->exclusions, pair, positions))
+            if (j < lane->settled || !is_excluded(&d->exclusions, pair, positions))
                 pairs[kept++] = (uint64_t)pair.a << 32 | pair.b;
         }
         result.zero_area_triangles += lane->zero_area_triangles;
         if (lane->first_zero_area < result.first_zero_area) result.first_zero_area = lane->first_zero_area;
     }
+    result.waiting = d->waiting.pairs.triangle_pairs;
+    result.count = d->cap.counted + kept;
+    if (d->options.longest_list > 0 && result.count > d->options.longest_list) {
+        result.items = NULL;
+        *out = result;
+        return list_cap_fail(d, result.count);
+    }
     sort_by_number(pairs, d->intersections.spare_keys, kept, sizeof *pairs);
     cscd_intersection *items = d->intersections.items;
     for (size_t i = 0; i < kept; i++)
         items[i] = (cscd_intersection){(uint32_t)(pairs[i] >> 32), (uint32_t)pairs[i]};
-    result.count = kept;
-    result.waiting = d->waiting.pairs.triangle_pairs;
     *out = result;
     return CSCD_OK;
 }
@@ -45,8 +51,10 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
 static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
     cscd_status status =
         bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0), detector_growth(d));
+    list_cap_begin_check(d, positions);
     if (status == CSCD_OK)
         status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
+    list_cap_end_check(d);
     if (status == CSCD_OK) status = collect_intersections(d, positions, out);
     if (status != CSCD_OK) return status;
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
@@ -81,7 +89,7 @@ static cscd_status check_views(cscd_detector *detector, const cscd_view *positio
     cscd_status status =
         views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = check_at(detector, x, &found);
-    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
     return status;
 }
 

@@ -48,11 +48,11 @@ cscd_status contact_list_gather(search_space *s, const exclusions *e, size_t ite
         const contact_lane *lane = &s->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             keys[kept] = (contact_key){0, &lane->contacts[j]};
-            kept += !is_excluded(e, &lane->contacts[j]);
+            kept += j < lane->settled || !is_excluded(e, &lane->contacts[j]);
         }
     }
-    *count = kept;
-    return CSCD_OK;
+    *count = s->counted + kept;
+    return s->longest > 0 && *count > s->longest ? CSCD_LIST_TOO_LONG : CSCD_OK;
 }
 
 /* ---- sorting --------------------------------------------------------------------------------------- */
@@ -128,6 +128,7 @@ cscd_status contact_list_collect(search_space *s, const exclusions *e, result_bu
                                  cscd_counters *counters, cscd_contacts *out) {
     size_t count;
     cscd_status status = contact_list_gather(s, e, sizeof(cscd_contact), buffer, &count);
+    if (status == CSCD_LIST_TOO_LONG) *out = (cscd_contacts){.count = count};
     if (status != CSCD_OK) return status;
     contact_key *keys = buffer->keys;
     for (uint32_t i = 0; i < s->traversal.lane_count; i++) add_lane(&s->lanes[i], counters);

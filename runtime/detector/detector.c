@@ -3,6 +3,7 @@
 
 #include "runtime/detector/detector_rules.h"
 #include "runtime/detector/detector_validate.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/narrow_phase/limits.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
@@ -123,6 +124,7 @@ void detector_free(cscd_detector *d) {
     context_free(context, d->unpacked[0]);
     context_free(context, d->unpacked[1]);
     context_free(context, d->reached);
+    context_free(context, d->cap.tainted);
     context_free(context, d->pair_scratch);
     context_free(context, d->vertex_scratch);
     context_free(context, d->scalars);
@@ -179,6 +181,7 @@ static cscd_status create_detector(cscd_context *context, const cscd_mesh *mesh,
     const given_rules given = {chosen.rules, chosen.rule_count, chosen.thickness_matrix,
                                chosen.thickness_class_count};
     if (status == CSCD_OK) status = detector_set_rules(d, &given);
+    if (status == CSCD_OK) status = list_cap_set(d, chosen.longest_list);
     if (status != CSCD_OK) {
         cscd_detector_destroy(d);
         return status;
@@ -280,7 +283,7 @@ void detector_begin_call(cscd_detector *d) {
 cscd_status detector_fail_call(cscd_detector *d, cscd_status status) {
     if (status == CSCD_IN_CONTACT) return status;
     rollback_restore(&d->before, &d->starts, &d->rebuild);
-    return context_explain(d->context, status);
+    return status == CSCD_LIST_TOO_LONG ? status : context_explain(d->context, status);
 }
 
 void cscd_detector_timings_sized(const cscd_detector *detector, cscd_timings *out, size_t size) {

@@ -44,6 +44,15 @@ struct cscd_detector {
     void *hider_state; /* of stages->hider */
     rollback before;   /* the current call */
 
+    struct {           /* of lists, where the options have one */
+        bool *tainted; /* per triangle: by contacts that have left the lanes; NULL: there never was a cap */
+        bool any_tainted;
+        size_t beside;  /* so much room has a lane beside its share of the cap */
+        int taint;      /* a cap_taint */
+        size_t counted; /* pairs of triangles of the list that found no room; then none is given out */
+        const double *positions; /* of the check */
+    } cap;
+
     /* Per component, in the current interval: */
     bool *culled;             /* its pairs are culled */
     bool *wants_all_contacts; /* it is culled, and the closing pass finds all its contacts */

@@ -3,6 +3,7 @@
 #include "runtime/culling/culling_move.h"
 #include "runtime/detector/detector.h"
 #include "runtime/detector/detector_rules.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/narrow_phase/waiting_move.h"
 
 /* All that depends on the mesh is made anew in a detector beside, and exchanged when nothing can fail any more. */
@@ -132,6 +133,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = edge_rest_move(d->context, &from->rest, m->change, &d->rest);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
         status = CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = list_cap_set(d, from->options.longest_list);
     return status == CSCD_OK ? move_rules(m) : status;
 }
 
@@ -189,6 +191,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(check);
     EXCHANGE(hider_state);
     EXCHANGE(before);
+    EXCHANGE(cap);
     EXCHANGE(culled);
     EXCHANGE(wants_all_contacts);
     EXCHANGE(touched);

@@ -1,6 +1,7 @@
 /* A second detector on the same mesh, which knows what the first one knows: everything is copied, nothing is built. */
 #include "runtime/bvh/bvh_move.h"
 #include "runtime/detector/detector.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/narrow_phase/waiting_move.h"
 
 #include <string.h>
@@ -83,6 +84,7 @@ static cscd_status clone_parts(const cscd_detector *from, cscd_detector *d) {
     if (status == CSCD_OK) status = edge_rest_copy(&from->rest, mesh, &d->rest);
     if (status == CSCD_OK) status = clone_lists(from, d);
     if (status == CSCD_OK) join_rules(d);
+    if (status == CSCD_OK) status = list_cap_set(d, from->options.longest_list);
     return status;
 }
 

@@ -1,6 +1,8 @@
 /* What is left out, changed on a live detector: by rules for objects, seams and ignored pairs. */
 #include "runtime/detector/detector_rules.h"
 
+#include "runtime/detector/list_cap.h"
+
 static bool is_neutral(const cscd_object_rule *rule) {
     cscd_object_rule neutral = cscd_object_rule_default();
     return rule->category == neutral.category && rule->mask == neutral.mask && rule->thickness == 0.0 &&
@@ -106,6 +108,13 @@ cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd_object_r
     context_entry entry;
     if (!object_enter(detector, &entry)) return entry.status;
     return context_leave(&entry, replace_rules(detector, &given, true));
+}
+
+cscd_status cscd_detector_set_longest_list(cscd_detector *detector, size_t longest_list) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, list_cap_set(detector, longest_list));
 }
 
 /* ---- seams and ignored pairs --------------------------------------------------------------------------- */

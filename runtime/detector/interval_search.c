@@ -8,6 +8,8 @@
 interval_search interval_search_begin(search_space *space, const double *x0, const double *x1,
                                       separation limit) {
     for (uint32_t i = 0; i < space->traversal.lane_count; i++) contact_lane_reset(&space->lanes[i]);
+    space->longest = 0;
+    space->counted = 0;
     return (interval_search){.space = space,
                              .interval = {.mesh = space->mesh,
                                           .x0 = x0,
@@ -18,6 +20,41 @@ interval_search interval_search_begin(search_space *space, const double *x0, con
                                           .limit = limit}};
 }
 
+static bool any_suspended(const search_space *s) {
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        if (s->lanes[i].suspended) return true;
+    }
+    return false;
+}
+
+void interval_search_run(interval_search *search, uint32_t lanes, parallel_task *task, void *data) {
+    search_space *s = search->space;
+    for (uint32_t i = 0; i < s->traversal.lane_count; i++) {
+        s->lanes[i].cursor = 0;
+        s->lanes[i].suspended = false;
+    }
+    for (;;) {
+        parallel_run(s->context->threads, lanes, task, data);
+        if (!any_suspended(s)) return;
+        search->spill(search->spill_data);
+    }
+}
+
+/* A lane with a limit looks at it after so many pairs, which narrow_phase_test takes at once. */
+enum { PAIRS_BETWEEN_LOOKS = 256 };
+
+/* Tests the rest of the batch. False: the lane is suspended before its end. */
+static bool test_found(const interval_search *search, const traversal_lane *batch, contact_lane *lane) {
+    const uint32_t most = lane->limit == SIZE_MAX ? TRAVERSAL_BATCH_SIZE : PAIRS_BETWEEN_LOOKS;
+    while (lane->cursor < batch->pair_count) {
+        uint32_t begin = (uint32_t)lane->cursor, rest = batch->pair_count - begin;
+        uint32_t count = rest < most ? rest : most;
+        narrow_phase_test(&search->interval, batch->pairs + begin, count, lane);
+        if (contact_lane_suspend(lane, begin + count)) return false;
+    }
+    return true;
+}
+
 /* Each lane searches and tests in turn. It tests what it has found itself, so no lane waits for another one. */
 static void search_and_test(void *data, uint32_t index) {
     interval_search *search = data;
@@ -25,15 +62,18 @@ static void search_and_test(void *data, uint32_t index) {
     traversal *t = &search->space->traversal;
     traversal_lane *batch = &t->lanes[index];
     contact_lane *lane = &search->space->lanes[index];
-    double begin = timer_now_ms(), spent = 0.0;
-    while (!lane->out_of_memory && progress_go_on(&context->progress, traversal_done(t)) &&
+    double begin = timer_now_ms(), spent = 0.0, searched = batch->search_ms;
+    lane->suspended = false;
+    bool done = test_found(search, batch, lane);
+    while (done && !lane->out_of_memory && progress_go_on(&context->progress, traversal_done(t)) &&
            traversal_fill(t, index)) {
         batch->pairs_found += batch->pair_count;
-        narrow_phase_test(&search->interval, batch->pairs, batch->pair_count, lane);
+        lane->cursor = 0;
+        done = test_found(search, batch, lane);
     }
-    narrow_phase_finish(&search->interval, lane);
+    if (done) narrow_phase_finish(&search->interval, lane);
     timer_lap(&begin, &spent);
-    batch->consume_ms = spent - batch->search_ms;
+    batch->consume_ms += spent - (batch->search_ms - searched);
 }
 
 /* Divides the time that the lanes took together between the two stages, in the proportion of the lanes' own times. */
@@ -60,7 +100,7 @@ cscd_status interval_search_traverse(interval_search *search, traversal_pass pas
                    last ? 1.0 : 0.9);
     traversal_begin(&space->traversal, &space->bvh, pass);
     timer_lap(&since, &search->timings.traversal_ms);
-    parallel_run(space->context->threads, space->traversal.busy_lanes, search_and_test, search);
+    interval_search_run(search, space->traversal.busy_lanes, search_and_test, search);
     timer_lap(&since, &together);
     divide_time(search, together);
     search->counters.boxes_tested += traversal_boxes_tested(&space->traversal);
@@ -75,9 +115,10 @@ static void test_orphan_pairs(void *data, uint32_t index) {
     interval_search *search = data;
     search_space *space = search->space;
     contact_lane *lane = &space->lanes[index];
+    lane->suspended = false;
     narrow_phase_test_orphan_pairs(&search->interval, &space->orphans, index, space->traversal.busy_lanes,
                                    lane);
-    narrow_phase_finish(&search->interval, lane);
+    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
 }
 
 /* Skips pairs of adjacent triangles everywhere except in culled components (NULL: there are none), or
@@ -113,20 +154,33 @@ cscd_status interval_search_everything(interval_search *search) {
     if (status == CSCD_OK) status = interval_search_traverse(search, TRAVERSAL_KEPT);
     if (status != CSCD_OK || !search->interval.skip_adjacent) return status;
     double since = timer_now_ms();
-    parallel_run(space->context->threads, space->traversal.busy_lanes, test_orphan_pairs, search);
+    interval_search_run(search, space->traversal.busy_lanes, test_orphan_pairs, search);
     timer_lap(&since, &search->timings.contact_ms);
     return search_space_status(space);
 }
 
 /* ---- loose features ------------------------------------------------------------------------------------ */
 
-static void test_loose_features(void *data, uint32_t index) {
+static void test_loose_elements(void *data, uint32_t index) {
     interval_search *search = data;
     const search_space *space = search->space;
+    contact_lane *lane = &space->lanes[index];
     const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
-    loose_search_test(&loose, index, &space->lanes[index]);
-    half_spaces_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
-    narrow_phase_finish(&search->interval, &space->lanes[index]);
+    lane->suspended = false;
+    loose_search_test(&loose, index, lane);
+    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
+}
+
+static void test_half_spaces(void *data, uint32_t index) {
+    interval_search *search = data;
+    contact_lane *lane = &search->space->lanes[index];
+    lane->suspended = false;
+    half_spaces_test(&search->interval, index, search->space->traversal.lane_count, lane);
+}
+
+void interval_search_half_spaces(interval_search *search) {
+    if (search->space->mesh->loose.half_space_count > 0)
+        interval_search_run(search, search->space->traversal.lane_count, test_half_spaces, search);
 }
 
 cscd_status interval_search_loose(interval_search *search) {
@@ -136,7 +190,8 @@ cscd_status interval_search_loose(interval_search *search) {
     loose_elements_move(&space->loose, &search->interval);
     timer_lap(&since, &search->timings.update_ms);
     progress_stage(&space->context->progress, "loose features", 0.9, 1.0);
-    parallel_run(space->context->threads, space->traversal.lane_count, test_loose_features, search);
+    interval_search_run(search, space->traversal.lane_count, test_loose_elements, search);
+    interval_search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
@@ -146,19 +201,28 @@ cscd_status interval_search_loose(interval_search *search) {
 
 static void test_share_of_pairs(void *data, uint32_t index) {
     interval_search *search = data;
+    brute_force_test(&search->interval, index, search->space->traversal.lane_count,
+                     &search->space->lanes[index]);
+}
+
+static void test_all_loose_elements(void *data, uint32_t index) {
+    interval_search *search = data;
     const search_space *space = search->space;
+    contact_lane *lane = &space->lanes[index];
     const loose_search loose = {&search->interval, &space->loose, space->traversal.lane_count};
-    brute_force_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
-    loose_search_test_all(&loose, index, &space->lanes[index]);
-    half_spaces_test(&search->interval, index, loose.lane_count, &space->lanes[index]);
-    narrow_phase_finish(&search->interval, &space->lanes[index]);
+    lane->suspended = false;
+    loose_search_test_all(&loose, index, lane);
+    if (!lane->suspended) narrow_phase_finish(&search->interval, lane);
 }
 
 cscd_status interval_search_by_brute_force(interval_search *search) {
     search_space *space = search->space;
     double since = timer_now_ms();
     progress_stage(&space->context->progress, "brute force", 0.0, 1.0);
-    parallel_run(space->context->threads, space->traversal.lane_count, test_share_of_pairs, search);
+    interval_search_run(search, space->traversal.lane_count, test_share_of_pairs, search);
+    if (mesh_has_loose_objects(space->mesh))
+        interval_search_run(search, space->traversal.lane_count, test_all_loose_elements, search);
+    interval_search_half_spaces(search);
     timer_lap(&since, &search->timings.contact_ms);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;

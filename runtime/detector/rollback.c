@@ -6,9 +6,22 @@
 cscd_status rollback_create(const cscd_mesh *mesh, rollback *out) {
     cscd_context *context = mesh->context;
     if (!progress_wanted(&context->progress)) return CSCD_OK;
-    out->triangles = context_allocate(context, mesh->triangle_count, sizeof *out->triangles);
-    out->components = context_allocate(context, mesh->component_count, sizeof *out->components);
-    return out->triangles != NULL && out->components != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    return rollback_reserve(mesh, out);
+}
+
+cscd_status rollback_reserve(const cscd_mesh *mesh, rollback *r) {
+    cscd_context *context = mesh->context;
+    if (r->triangles != NULL) return CSCD_OK;
+    uint8_t *triangles = context_allocate(context, mesh->triangle_count, sizeof *triangles);
+    component_start *components = context_allocate(context, mesh->component_count, sizeof *components);
+    if (triangles == NULL || components == NULL) {
+        context_free(context, triangles);
+        context_free(context, components);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    r->triangles = triangles;
+    r->components = components;
+    return CSCD_OK;
 }
 
 void rollback_free(cscd_context *context, rollback *r) {

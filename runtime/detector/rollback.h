@@ -20,6 +20,8 @@ typedef struct rollback {
 /* In a context without a progress function, where calls fail only because memory runs out or a callback has called
  * cscd_context_cancel, it takes no memory, and nothing is restored. On failure the caller frees what was allocated. */
 cscd_status rollback_create(const cscd_mesh *mesh, rollback *out);
+/* Takes the memory after all, where calls fail for other reasons, too. On failure nothing changes. */
+cscd_status rollback_reserve(const cscd_mesh *mesh, rollback *r);
 void rollback_free(cscd_context *context, rollback *r);
 
 void rollback_save(rollback *r, const start_states *starts, const bvh_rebuild *trees);

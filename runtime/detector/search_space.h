@@ -16,6 +16,8 @@ typedef struct search_space {
     traversal traversal;
     const pair_rules *rules; /* NULL: all objects are looked at */
     contact_lane *lanes;     /* one per lane of the traversal */
+    size_t longest;          /* list of the present search; 0: there is no cap */
+    size_t counted; /* contacts of the list that found no room in the lanes; then no list is given out */
     representatives representatives;
     orphan_pairs
         orphans; /* made by the first search that skips adjacent triangles, unless there are too many */

@@ -4,6 +4,7 @@
 #include "runtime/culling/tainting.h"
 #include "runtime/detector/contact_list.h"
 #include "runtime/detector/interval_search.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "src/core/struct_size.h"
 #include "src/core/timer.h"
@@ -45,8 +46,10 @@ enum { UNPROVEN_SHARE = 16 };
 static cscd_status check_start(step_work *work) {
     cscd_detector *d = work->detector;
     progress_stage(&d->context->progress, "start", 0.0, 0.3);
+    list_cap_begin_check(d, NULL);
     cscd_status status =
         static_check_unproven(&d->check, &d->space.traversal, &d->space.bvh, work->search.interval.x0);
+    list_cap_end_check(d);
     work->unproven = 0;
     if (status != CSCD_OK) return status;
     start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
@@ -183,6 +186,7 @@ static uint32_t taint_by_contacts(const step_work *work) {
             tainting_look(&t, lane->contacts + d->contacts_seen[i], lane->count - d->contacts_seen[i]);
         d->contacts_seen[i] = lane->count;
     }
+    if (detector_culls(d)) newly_kept += list_cap_taint(d, &t);
     return newly_kept;
 }
 
@@ -283,7 +287,9 @@ cscd_status step_find(cscd_detector *d, const double *x0, const double *x1, cscd
                       .rehearsal = rehearsal,
                       .all_clean = true};
     begin_interval(&work);
+    if (!rehearsal) list_cap_begin(d, &work.search, CAP_TAINTS_ALL);
     cscd_status status = run_stages(d->stages->brute_force ? stages_by_brute_force : stages_by_trees, &work);
+    if (status == CSCD_LIST_TOO_LONG) out->contacts = work.contacts;
     if (status != CSCD_OK) return status;
     for (uint32_t c = 0; c < d->mesh->component_count; c++) d->guarantees[c] = guarantee_of(&work, c);
     out->contacts = work.contacts;
@@ -333,6 +339,11 @@ static cscd_status step_between(cscd_detector *d, const double *x0, const double
     status = waiting_settle(d, x0);
     if (status == CSCD_OK) status = step_find(d, x0, x1, d->options.mode, false, &found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
+    if (status == CSCD_LIST_TOO_LONG) {
+        *out = found.contacts;
+        out->waiting = waiting_features(&d->waiting);
+        list_cap_fail(d, out->count);
+    }
     if (status != CSCD_OK) return detector_fail_call(d, status);
     step_take(d, x1);
     timer_lap(&since, &found.timings.total_ms);
@@ -354,7 +365,7 @@ static cscd_status step_views(cscd_detector *detector, const cscd_view *x0, cons
     if (status == CSCD_OK)
         status = views_read(context, detector->mesh, x1, "x1", &detector->unpacked[1], &to);
     if (status == CSCD_OK) status = step_between(detector, from, to, &found);
-    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
     return status;
 }
 

@@ -14,7 +14,7 @@ static array_list list_arrays(static_check *c) {
 }
 
 cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, static_check *out) {
-    static_check c = {.mesh = mesh, .lane_count = lane_count};
+    static_check c = {.mesh = mesh, .lane_count = lane_count, .limit = SIZE_MAX};
     if (!context_allocate_all(mesh->context, list_arrays(&c))) return CSCD_OUT_OF_MEMORY;
     *out = c;
     return CSCD_OK;
@@ -130,15 +130,36 @@ static void count_zero_area(void *data, uint32_t index) {
     intersection_lane *lane = &check->lanes[index];
     uint64_t count = check->mesh->triangle_count, lanes = check->lane_count;
     uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
-    *lane = (intersection_lane){lane->items, 0, lane->capacity, 0, UINT32_MAX, false};
+    *lane =
+        (intersection_lane){.items = lane->items, .capacity = lane->capacity, .first_zero_area = UINT32_MAX};
     for (uint32_t t = begin; t < end; t += AREA_BATCH)
         mark_zero_area(work, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
 
 /* ---- all of it ------------------------------------------------------------------------------------------ */
 
+static void mark_crossing(static_check *c) {
+    const uint32_t *components = c->mesh->triangle_components;
+    for (uint32_t i = 0; i < c->lane_count; i++) {
+        const intersection_lane *lane = &c->lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            cscd_intersection pair = lane->items[j];
+            if (components[pair.a] == components[pair.b]) c->crossing[pair.a] = c->crossing[pair.b] = true;
+        }
+    }
+}
+
+static void spill_pairs(static_check *c) {
+    bool full = false;
+    for (uint32_t i = 0; i < c->lane_count; i++) full |= c->lanes[i].count - c->lanes[i].settled >= c->limit;
+    if (!full) return;
+    mark_crossing(c);
+    if (c->spill != NULL) c->spill(c->spill_data);
+    for (uint32_t i = 0; c->spill == NULL && i < c->lane_count; i++) c->lanes[i].count = 0;
+}
+
 static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
-    const static_check *check = work->check;
+    static_check *check = work->check;
     cscd_context *context = check->mesh->context;
     traversal *t = work->traversal;
     assert(check->lane_count == t->lane_count);
@@ -154,19 +175,9 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
         for (uint32_t i = 0; i < check->lane_count; i++) {
             if (check->lanes[i].out_of_memory) return CSCD_OUT_OF_MEMORY;
         }
+        spill_pairs(check);
     }
     return context_progress_status(context); /* before the caller believes that nothing more was found */
-}
-
-static void mark_crossing(static_check *c) {
-    const uint32_t *components = c->mesh->triangle_components;
-    for (uint32_t i = 0; i < c->lane_count; i++) {
-        const intersection_lane *lane = &c->lanes[i];
-        for (size_t j = 0; j < lane->count; j++) {
-            cscd_intersection pair = lane->items[j];
-            if (components[pair.a] == components[pair.b]) c->crossing[pair.a] = c->crossing[pair.b] = true;
-        }
-    }
 }
 
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions) {

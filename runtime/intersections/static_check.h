@@ -7,6 +7,7 @@
 typedef struct intersection_lane {
     _Alignas(CACHE_LINE_SIZE) cscd_intersection *items;
     size_t count, capacity;
+    size_t settled; /* so many of the first ones are there to stay: they do not count for the limit */
     uint32_t zero_area_triangles, first_zero_area; /* UINT32_MAX: none */
     bool out_of_memory;
 } intersection_lane;
@@ -19,6 +20,12 @@ typedef struct static_check {
     intersection_lane
         *lanes; /* one per lane of the traversal; their pairs include those that the caller ignores */
     uint32_t lane_count;
+
+    /* With a limit, lanes that have so many pairs beside settled ones are asked to be emptied, on the calling thread, after the triangles of
+     * these pairs have been marked as crossing. SIZE_MAX: none has a limit. */
+    size_t limit;
+    void (*spill)(void *data); /* NULL: the pairs are dropped */
+    void *spill_data;
 
     /* The rules for objects, and the object of each component. They are read where trees mix objects; elsewhere the
      * traversal has left out what they say. NULL: there are none. */

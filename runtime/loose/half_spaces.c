@@ -93,7 +93,8 @@ void half_spaces_test(const swept_interval *interval, uint32_t lane_index, uint3
     const cscd_mesh *mesh = interval->mesh;
     uint64_t count = mesh->vertex_count, stride = (uint64_t)lane_count * VERTICES_AT_ONCE;
     if (mesh->loose.half_space_count == 0 || interval->collecting) return;
-    for (uint64_t begin = (uint64_t)lane_index * VERTICES_AT_ONCE; begin < count; begin += stride) {
+    for (uint64_t begin = (uint64_t)lane_index * VERTICES_AT_ONCE + lane->cursor * stride; begin < count;
+         begin += stride) {
         uint64_t end = begin + VERTICES_AT_ONCE < count ? begin + VERTICES_AT_ONCE : count;
         if (lane->out_of_memory || !progress_go_on(&mesh->context->progress, (double)begin / (double)count))
             return;
@@ -101,5 +102,6 @@ void half_spaces_test(const swept_interval *interval, uint32_t lane_index, uint3
             if (mesh->objects[i].kind == CSCD_OBJECT_HALF_SPACE)
                 test_range(interval, i, (uint32_t)begin, (uint32_t)end, lane);
         }
+        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
     }
 }

@@ -53,9 +53,11 @@ static void test_edges(const loose_search *s, uint32_t index, contact_lane *lane
 
 void loose_search_test_all(const loose_search *s, uint32_t lane_index, contact_lane *lane) {
     cscd_context *context = s->interval->mesh->context;
-    for (uint32_t i = lane_index; i < s->elements->count && !lane->out_of_memory; i += s->lane_count) {
+    for (uint32_t i = lane_index + (uint32_t)lane->cursor * s->lane_count;
+         i < s->elements->count && !lane->out_of_memory; i += s->lane_count) {
         if (!progress_go_on(&context->progress, (double)i / s->elements->count)) break;
         test_triangles(s->interval, &s->elements->items[i], lane);
         test_edges(s, i, lane);
+        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
     }
 }

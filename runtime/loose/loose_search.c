@@ -205,7 +205,8 @@ static bool elements_meet(const swept_interval *interval, const loose_element *e
 void loose_search_test(const loose_search *s, uint32_t lane_index, contact_lane *lane) {
     const swept_interval *interval = s->interval;
     uint32_t count = s->elements->count, stride = s->lane_count * ELEMENTS_AT_ONCE;
-    for (uint64_t begin = (uint64_t)lane_index * ELEMENTS_AT_ONCE; begin < count; begin += stride) {
+    for (uint64_t begin = (uint64_t)lane_index * ELEMENTS_AT_ONCE + lane->cursor * stride; begin < count;
+         begin += stride) {
         if (lane->out_of_memory || !progress_go_on(&interval->mesh->context->progress, (double)begin / count))
             break;
         for (uint64_t i = begin; i < count && i < begin + ELEMENTS_AT_ONCE; i++) {
@@ -213,6 +214,7 @@ void loose_search_test(const loose_search *s, uint32_t lane_index, contact_lane 
             test_trees(interval, element, lane);
             if (elements_meet(interval, element)) test_elements(s, (uint32_t)i, lane);
         }
+        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
     }
 }
 

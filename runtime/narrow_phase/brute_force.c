@@ -48,17 +48,20 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
     }
 }
 
+/* A row is a triangle with all vertices, or an edge with all edges behind it. The cursor is that of the lane's rows. */
 void brute_force_test(const swept_interval *interval, uint32_t lane_index, uint32_t lane_count,
                       contact_lane *lane) {
     const cscd_mesh *mesh = interval->mesh;
-    double rows = (double)mesh->triangle_count + mesh->edge_count;
-    for (uint32_t t = lane_index; t < mesh->triangle_count && !lane->out_of_memory; t += lane_count) {
-        if (!progress_go_on(&mesh->context->progress, t / rows)) break;
-        test_face(interval, t, lane);
-    }
-    for (uint32_t e = lane_index; e < mesh->edge_count && !lane->out_of_memory; e += lane_count) {
-        if (!progress_go_on(&mesh->context->progress, ((double)mesh->triangle_count + e) / rows)) break;
-        test_edge(interval, e, lane);
+    uint64_t rows = (uint64_t)mesh->triangle_count + mesh->edge_count;
+    lane->suspended = false;
+    for (uint64_t row = lane_index + lane->cursor * lane_count; row < rows && !lane->out_of_memory;
+         row += lane_count) {
+        if (!progress_go_on(&mesh->context->progress, (double)row / (double)rows)) break;
+        if (row < mesh->triangle_count)
+            test_face(interval, (uint32_t)row, lane);
+        else
+            test_edge(interval, (uint32_t)(row - mesh->triangle_count), lane);
+        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
     }
     narrow_phase_finish(interval, lane);
 }

@@ -4,7 +4,10 @@
 #include <string.h>
 
 void contact_lane_reset(contact_lane *lane) {
-    lane->count = 0;
+    lane->count = lane->settled = 0;
+    lane->limit = SIZE_MAX;
+    lane->suspended = false;
+    lane->cursor = 0;
     lane->feature_pairs = 0;
     for (int i = 0; i < ELEMENTARY_LEVEL_COUNT; i++) lane->decided[i] = 0;
     lane->separations = 0;

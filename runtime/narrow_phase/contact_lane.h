@@ -37,6 +37,10 @@ typedef struct candidate_list {
 typedef struct contact_lane {
     _Alignas(CACHE_LINE_SIZE) cscd_contact *contacts;
     size_t count, capacity;
+    size_t settled; /* the first ones, of which it is known that they are in the list */
+    size_t limit;   /* with so many contacts the lane is suspended as soon as it can be; SIZE_MAX: never */
+    bool suspended; /* it has more to do, from the cursor on, once there is room */
+    uint64_t cursor;
     uint64_t feature_pairs;
     uint64_t decided[ELEMENTARY_LEVEL_COUNT]; /* elementary tests, by the level that decided them */
     uint64_t separations;                     /* tests for minimum separation */
@@ -45,7 +49,18 @@ typedef struct contact_lane {
     candidate_list candidates[2]; /* by cscd_contact_kind */
 } contact_lane;
 
-/* Empties the lane; it keeps its memory. */
+/* Is the lane to be suspended? */
+static inline bool contact_lane_full(const contact_lane *lane) {
+    return lane->count >= lane->limit;
+}
+
+/* Remembers where the lane is to go on; returns whether it is suspended there. */
+static inline bool contact_lane_suspend(contact_lane *lane, uint64_t cursor) {
+    lane->cursor = cursor;
+    return lane->suspended = contact_lane_full(lane);
+}
+
+/* Empties the lane; it keeps its memory, and has no limit. */
 void contact_lane_reset(contact_lane *lane);
 
 /* Both set lane->out_of_memory when there is no room. */

@@ -106,21 +106,29 @@ static bool left_to_others(const swept_interval *interval, uint32_t component) {
            !components_look(interval, component, component);
 }
 
+static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (left_to_others(interval, interval->mesh->triangle_components[pair[1]])) return;
+    if (parted_by_directions(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
+    lane->feature_pairs++;
+    narrow_phase_test_vf(interval, pair[0], pair[1], lane);
+}
+
+static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (left_to_others(interval, edge_component(interval->mesh, pair[0]))) return;
+    if (parted_by_directions(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
+    lane->feature_pairs++;
+    narrow_phase_test_ee(interval, pair[0], pair[1], lane);
+}
+
+/* The cursor counts the pairs of the lane, those of vertices and faces first. */
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
                                     uint32_t index, uint32_t stride, contact_lane *lane) {
-    const cscd_mesh *mesh = interval->mesh;
-    for (size_t i = index; i < orphans->vf_count; i += stride) {
-        uint32_t vertex = orphans->vf[i][0], triangle = orphans->vf[i][1];
-        if (left_to_others(interval, mesh->triangle_components[triangle])) continue;
-        if (parted_by_directions(interval, CSCD_CONTACT_VF, vertex, triangle)) continue;
-        lane->feature_pairs++;
-        narrow_phase_test_vf(interval, vertex, triangle, lane);
-    }
-    for (size_t i = index; i < orphans->ee_count; i += stride) {
-        uint32_t a = orphans->ee[i][0], b = orphans->ee[i][1];
-        if (left_to_others(interval, edge_component(mesh, a))) continue;
-        if (parted_by_directions(interval, CSCD_CONTACT_EE, a, b)) continue;
-        lane->feature_pairs++;
-        narrow_phase_test_ee(interval, a, b, lane);
+    size_t all = orphans->vf_count + orphans->ee_count;
+    for (size_t i = index + lane->cursor * stride; i < all; i += stride) {
+        if (i < orphans->vf_count)
+            test_orphan_vf(interval, orphans->vf[i], lane);
+        else
+            test_orphan_ee(interval, orphans->ee[i - orphans->vf_count], lane);
+        if (contact_lane_suspend(lane, lane->cursor + 1)) return;
     }
 }

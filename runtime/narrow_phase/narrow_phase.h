@@ -13,7 +13,8 @@ void narrow_phase_finish(const swept_interval *interval, contact_lane *lane);
 void narrow_phase_test(const swept_interval *interval, const triangle_pair *pairs, uint32_t count,
                        contact_lane *lane);
 
-/* The orphan pairs index, index + stride, and so on, but those that a direction parts. */
+/* The orphan pairs index, index + stride, and so on from the lane's cursor on, but those that a direction parts. The
+ * lane may be suspended on the way. */
 void narrow_phase_test_orphan_pairs(const swept_interval *interval, const orphan_pairs *orphans,
                                     uint32_t index, uint32_t stride, contact_lane *lane);
 

@@ -3,7 +3,6 @@
 
 #include "runtime/bvh/bvh_rebuild.h"
 #include "runtime/loose/loose_pairs.h"
-#include "runtime/loose/loose_search.h"
 #include "runtime/narrow_phase/swept_box.h"
 
 #include <string.h>
@@ -78,24 +77,28 @@ static void test_ee(const swept_interval *interval, const uint32_t pair[2], cont
 /* After so many candidates the host is asked whether to go on. */
 enum { CANDIDATES_AT_ONCE = 1024 };
 
-/* Tests a lane's share of both lists. */
+/* Tests a lane's share of both lists; the cursor counts the candidates of the two. */
 static void test_share(void *data, uint32_t index) {
     const testing *t = data;
     const swept_interval *interval = &t->search->interval;
     const search_space *space = t->search->space;
     contact_lane *lane = &space->lanes[index];
+    size_t done = 0;
+    lane->suspended = false;
     for (int kind = 0; kind < 2; kind++) {
         const candidate_list *list = &t->candidates->lists[kind];
         size_t begin = list->count * index / space->traversal.lane_count;
         size_t end = list->count * (index + 1) / space->traversal.lane_count;
-        for (size_t i = begin; i < end && !lane->out_of_memory; i++) {
+        uint64_t skipped = lane->cursor - done < end - begin ? lane->cursor - done : end - begin;
+        for (size_t i = begin + skipped; i < end && !lane->out_of_memory; i++) {
             double share = 0.5 * (kind + (double)(i - begin) / (double)(end - begin));
             if ((i - begin) % CANDIDATES_AT_ONCE == 0 && !progress_go_on(&space->context->progress, share))
                 return;
             (kind == CSCD_CONTACT_VF ? test_vf : test_ee)(interval, list->pairs[i], lane);
+            if (contact_lane_suspend(lane, lane->cursor + 1)) return;
         }
+        done += end - begin;
     }
-    half_spaces_test(interval, index, space->traversal.lane_count, lane);
     narrow_phase_finish(interval, lane);
 }
 
@@ -103,7 +106,8 @@ cscd_status candidates_test(const candidates *c, interval_search *search) {
     search_space *space = search->space;
     testing t = {c, search};
     progress_stage(&space->context->progress, "candidates", 0.0, 1.0);
-    parallel_run(space->context->threads, space->traversal.lane_count, test_share, &t);
+    interval_search_run(search, space->traversal.lane_count, test_share, &t);
+    interval_search_half_spaces(search);
     cscd_status status = search_space_status(space);
     return status == CSCD_OK ? context_progress_status(space->context) : status;
 }

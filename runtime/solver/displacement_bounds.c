@@ -78,6 +78,8 @@ cscd_status displacement_bounds_find(cscd_detector *d, const double *x0, double 
                                      cscd_scalar scalar, double *bounds, cscd_displacement_bounds *out) {
     cscd_proximities near;
     cscd_status status = near_pairs_find(d, x0, search_radius, &near);
+    if (status == CSCD_LIST_TOO_LONG)
+        *out = (cscd_displacement_bounds){.near_count = near.count, .waiting = near.waiting};
     if (status != CSCD_OK) return status;
     gap_work work = {d, x0, &near, scalar, near_pairs_scratch(d, near.count, sizeof *work.limits)};
     if (work.limits == NULL) return CSCD_OUT_OF_MEMORY;
@@ -148,7 +150,7 @@ static cscd_status find_bounds_of_views(cscd_detector *detector, const cscd_view
     if (status == CSCD_OK) status = check_array(detector, search_radius, scalar, bounds, size);
     if (status == CSCD_OK) status = views_read(context, detector->mesh, x0, "x0", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = find_bounds_at(detector, x, search_radius, scalar, bounds, &found);
-    if (status == CSCD_OK) struct_give(out, out_size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, out_size, &found, sizeof found);
     return status;
 }
 

@@ -294,6 +294,7 @@ static cscd_status find_near_on_line(cscd_line_search *line, double fraction, do
     interval_search search = proximity_search(d, line->reached, distance);
     if (status == CSCD_OK) status = candidates_test(&line->candidates, &search);
     if (status == CSCD_OK) status = proximity_collect(d, line->reached, form, &found);
+    if (status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
     struct_give(out, size, &found, sizeof found);

@@ -2,6 +2,7 @@
 #include "runtime/solver/proximity.h"
 
 #include "runtime/detector/contact_list.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/unique_pairs.h"
 #include "src/core/check.h"
@@ -57,6 +58,10 @@ cscd_status proximity_collect(cscd_detector *d, const double *positions, cscd_ne
     size_t found, count;
     cscd_status status =
         contact_list_gather(&d->space, &d->exclusions, sizeof(cscd_proximity), buffer, &found);
+    if (status == CSCD_LIST_TOO_LONG) {
+        *out = (cscd_proximities){.count = found, .waiting = waiting_features(&d->waiting)};
+        return list_cap_fail(d, found);
+    }
     if (status != CSCD_OK) return status;
     count = found;
     if (form == CSCD_NEAR_UNIQUE)
@@ -74,7 +79,10 @@ cscd_status proximity_check_form(cscd_context *context, cscd_near_form form) {
 }
 
 interval_search proximity_search(cscd_detector *d, const double *positions, double distance) {
-    return interval_search_begin(&d->space, positions, positions, proximity_limit(distance));
+    interval_search search =
+        interval_search_begin(&d->space, positions, positions, proximity_limit(distance));
+    list_cap_begin(d, &search, CAP_TAINTS_LEFT_OUT);
+    return search;
 }
 
 cscd_status proximity_find(cscd_detector *d, const double *positions, double distance, cscd_near_form form,
@@ -116,7 +124,7 @@ static cscd_status find_near_views(cscd_detector *detector, const cscd_view *pos
     if (status == CSCD_OK)
         status = views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
     if (status == CSCD_OK) status = find_near_at(detector, x, distance, form, &found);
-    if (status == CSCD_OK) struct_give(out, size, &found, sizeof found);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
     return status;
 }
 

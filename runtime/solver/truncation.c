@@ -2,6 +2,7 @@
 #include "runtime/solver/truncation.h"
 
 #include "runtime/culling/tainting.h"
+#include "runtime/detector/list_cap.h"
 #include "runtime/detector/step.h"
 #include "runtime/detector/waiting.h"
 #include "runtime/solver/division_planes.h"
@@ -185,6 +186,7 @@ static void taint_left_out(cscd_detector *d) {
                 tainting_look(&t, near, 1);
         }
     }
+    list_cap_taint(d, &t);
 }
 
 /* Lemma 6: triangles that were clean at x0 are so at the end. */
@@ -217,6 +219,8 @@ cscd_status truncation_find(cscd_detector *d, const wanted_motion *motion, doubl
     cscd_proximities near;
     cscd_status status = reserve_vertices(d, &work, &first);
     if (status == CSCD_OK) status = near_pairs_find(d, motion->x0, search_radius, &near);
+    if (status == CSCD_LIST_TOO_LONG)
+        *out = (cscd_truncation){.near_count = near.count, .waiting = near.waiting};
     if (status == CSCD_OK)
         status = division_planes_find(d, motion->x0, motion->x1, work.farthest, &near, first, &work.planes);
     if (status != CSCD_OK) return status;
@@ -280,10 +284,9 @@ static cscd_status truncate_views(cscd_detector *detector, const cscd_view *x0, 
     if (status == CSCD_OK) status = views_check_mutable(context, mesh, reached, "reached");
     if (status == CSCD_OK) status = choose_scalars(detector, x0, reached, &motion.scalars);
     if (status == CSCD_OK) status = truncate_between(detector, &motion, search_radius, &found);
-    if (status != CSCD_OK) return status;
-    views_write(mesh, reached, detector->reached);
-    struct_give(out, size, &found, sizeof found);
-    return CSCD_OK;
+    if (status == CSCD_OK) views_write(mesh, reached, detector->reached);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    return status;
 }
 
 cscd_status cscd_detector_truncate_sized(cscd_detector *detector, const cscd_view *x0, const cscd_view *x1,

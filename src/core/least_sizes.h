@@ -8,7 +8,7 @@
 #define LEAST_SIZE(type)             LEAST_##type
 
 #define LEAST_cscd_context_options   STRUCT_THROUGH(cscd_context_options, reason_size)
-#define LEAST_cscd_detector_options  STRUCT_THROUGH(cscd_detector_options, seam_reach)
+#define LEAST_cscd_detector_options  STRUCT_THROUGH(cscd_detector_options, longest_list)
 #define LEAST_cscd_object_desc       STRUCT_THROUGH(cscd_object_desc, normal)
 #define LEAST_cscd_object_change     STRUCT_THROUGH(cscd_object_change, triangle_origins)
 #define LEAST_cscd_plan_options      STRUCT_THROUGH(cscd_plan_options, memory_limit)

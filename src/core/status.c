@@ -32,6 +32,8 @@ const char *cscd_status_string(cscd_status status) {
         return "broken: a callback has left a call with this context by an exception or longjmp";
     case CSCD_NULL_OBJECT:
         return "an object that the call needs is NULL; the context keeps its older sentence";
+    case CSCD_LIST_TOO_LONG:
+        return "the list is longer than the caller allows";
     default:
         return "unknown status";
     }

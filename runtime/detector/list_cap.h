@@ -1,0 +1,26 @@
+/* A cap on the length of lists: contacts that find no room are counted, and leave nothing behind but taint. */
+#pragma once
+
+#include "runtime/culling/tainting.h"
+#include "runtime/detector/detector.h"
+
+/* Which contacts that leave the lanes taint triangles: all of them, or, in a search of a moment, those that are left
+ * out and may touch on the way of a motion that begins there. */
+typedef enum cap_taint { CAP_TAINTS_ALL, CAP_TAINTS_LEFT_OUT } cap_taint;
+
+/* Sets the cap of the options from now on; 0: none. */
+cscd_status list_cap_set(cscd_detector *d, size_t longest);
+
+/* Lets the search that has just begun keep no more contacts than the cap allows. */
+void list_cap_begin(cscd_detector *d, interval_search *search, cap_taint taint);
+
+/* Taints by the contacts that have left the lanes since the last call. Returns how many triangles are newly kept. */
+uint32_t list_cap_taint(cscd_detector *d, const tainting *t);
+
+/* LIST_TOO_LONG, with its sentence. */
+cscd_status list_cap_fail(const cscd_detector *d, size_t count);
+
+/* Lets static checks keep no more pairs than the cap allows, until list_cap_end_check. A check for a list has its
+ * positions; a proof of the start, NULL, drops pairs once their triangles are marked. */
+void list_cap_begin_check(cscd_detector *d, const double *positions);
+void list_cap_end_check(cscd_detector *d);
