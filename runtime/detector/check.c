@@ -47,7 +47,6 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     return CSCD_OK;
 }
 
-/* States and positions belong together, so both are written once nothing can fail any more. */
 static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
     cscd_status status =
         bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0), detector_growth(d));
@@ -56,11 +55,18 @@ static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_
         status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
     list_cap_end_check(d);
     if (status == CSCD_OK) status = collect_intersections(d, positions, out);
-    if (status != CSCD_OK) return status;
+    return status == CSCD_OK ? context_progress_status(d->context) : status;
+}
+
+/* States and positions belong together, so both are written when all is found. If the call is cancelled even now, or the
+ * host's loop leaves out a task, the states may be those of other positions, and nothing is known. */
+static cscd_status keep_states(cscd_detector *d, const double *positions) {
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
     detector_unmark_masked(d, d->check.unproven);
     start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
-    return CSCD_OK;
+    cscd_status status = context_progress_status(d->context);
+    if (status != CSCD_OK) start_states_forget(&d->starts);
+    return status;
 }
 
 static cscd_status check_at(cscd_detector *d, const double *positions, cscd_intersections *out) {
@@ -73,8 +79,9 @@ static cscd_status check_at(cscd_detector *d, const double *positions, cscd_inte
     progress_stage(&d->context->progress, "static check", 0.0, 1.0);
     status = waiting_settle(d, positions);
     if (status == CSCD_OK) status = check_moment(d, positions, out);
-    if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status != CSCD_OK) return detector_fail_call(d, status);
+    status = keep_states(d, positions);
+    if (status != CSCD_OK) return status;
     timer_lap(&since, &spent);
     d->timings.check_ms = spent;
     return CSCD_OK;
