@@ -172,8 +172,9 @@ static inline void store_nearest(const nearest *n, f64w distance, f64w factor, i
  * direction, itself off by 4 of 1, by 3 (1 + 4 + 3) each, three of them below 80. 2^-45 is 256. Distances
  * from 2^-40 on then have a direction that is right to 2^-4 of that bound. Along one direction the gap is the
  * least of differences that are linear in time, so it is least at an end. Pairs that come within the
- * tolerance are left to the test that knows it: 2^-40 is more than the finest that this takes
- * (SEPARATION_FINEST). */
+ * tolerance are left to the test that knows it. So are those within 2^-38 beyond it: no point is farther than 2
+ * from the first one, so the finest tolerance (SEPARATION_FINEST) is less, and at the next start the pair surely
+ * exceeds its distance, by 2^-40 of that extent (floors.md, lemma 3). */
 static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i, const separations_x8 *limits,
                                     proximity_outcomes *out) {
     vectors_at_end start, end;
@@ -185,7 +186,7 @@ static inline void decide_proximity(points_x8 *p, cscd_contact_kind kind, int i,
     vectors_at(p->x1, kind, &end);
     f64w extent = f64w_max(extent_of(start.a, start.b, start.c), extent_of(end.a, end.b, end.c));
     f64w factor = to_one(extent), near = limit * factor;
-    f64w far = near + tolerance * factor + 0x1p-40;
+    f64w far = near + tolerance * factor + 0x1p-38;
     scale_vectors(&start, factor);
     scale_vectors(&end, factor);
     nearest n = kind == CSCD_CONTACT_VF ? nearest_in_triangle(start.c, start.a, start.b)

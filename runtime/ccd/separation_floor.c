@@ -4,6 +4,7 @@
 
 #include "src/core/vec3.h"
 
+#include <stdint.h>
 #include <string.h>
 
 /* ---- the floor at a moment --------------------------------------------------------------------------- */
@@ -33,16 +34,31 @@ static double least_distance(const feature_moment *m, double enough) {
 
 enum { POWERS_MAX = 64 };
 
-/* A rung k is the product of powers ratio^(2^i) over the bits of k, from the highest on, so that it has one value. */
+/* Rung k is the product of the powers ratio^(2^i) over the bits of k, from the highest on. So it has one value, bit for
+ * bit, wherever it comes from: pairs that are pressed come as near to it as doubles allow. */
+static double rung_of(const floor_ladder *ladder, uint64_t k) {
+    double powers[POWERS_MAX], rung = ladder->distance;
+    powers[0] = ladder->ratio;
+    for (int i = 1; i < POWERS_MAX; i++) powers[i] = powers[i - 1] * powers[i - 1];
+    for (int i = POWERS_MAX; i-- > 0;) {
+        if ((k >> i & 1) != 0) rung *= powers[i];
+    }
+    return rung;
+}
+
+/* Rungs are so far from each other that their products have the order of their numbers. */
 double separation_floor_rung(const floor_ladder *ladder, double distance) {
     double powers[POWERS_MAX], power = ladder->ratio, rung = ladder->distance;
+    uint64_t k = 0;
     int count = 0;
     if (!(distance > 0.0) || rung < distance) return distance > 0.0 ? rung : 0.0;
     for (; count < POWERS_MAX && rung * power >= distance; power *= power) powers[count++] = power;
     while (count-- > 0) {
-        if (rung * powers[count] >= distance) rung *= powers[count];
+        if (rung * powers[count] < distance) continue;
+        rung *= powers[count];
+        k |= (uint64_t)1 << count;
     }
-    return rung * ladder->ratio;
+    return rung_of(ladder, k + 1);
 }
 
 /* What the distance must exceed at the start beside the floor, in local units: the tolerance and the rounding. */
