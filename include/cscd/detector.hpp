@@ -110,6 +110,10 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     void set_separation(double min_separation, double tolerance = 0.0) {
         call([&] { return cscd_detector_set_separation(get(), min_separation, tolerance); });
     }
+    /* The error of a list that is longer has its count(). */
+    void set_longest_list(std::size_t longest_list) {
+        call([&] { return cscd_detector_set_longest_list(get(), longest_list); });
+    }
     void set_rules(span<const cscd_object_rule> rules, span<const double> matrix = {}) {
         std::uint32_t classes = detail::class_count(matrix), count = detail::rule_count(rules);
         call([&] {
@@ -241,6 +245,11 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     template <class Call> void call(Call &&of_c) {
         detail::make_call(state_, of_c);
     }
+    /* The near pairs of the result may be too many. */
+    template <class Result, class Call> void call_near(const Result &found, Call &&of_c) {
+        cscd_status status = detail::try_call(state_, of_c);
+        if (status != CSCD_OK) detail::fail(state_, status, found.near_count);
+    }
     template <class List, class Call> List find(Call &&of_c) {
         return detail::find_list<List>(state_, of_c);
     }
@@ -254,7 +263,7 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
                                        void *bounds, std::size_t size) {
         const cscd_view *from = covering(x0);
         cscd_displacement_bounds found{};
-        call([&] {
+        call_near(found, [&] {
             return cscd_detector_displacement_bounds(get(), from, search_radius, scalar, bounds, size,
                                                      &found);
         });
@@ -264,7 +273,8 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
                                 const cscd_mutable_view *reached) {
         const cscd_view *from = covering(x0), *to = covering(x1);
         cscd_truncation found{};
-        call([&] { return cscd_detector_truncate(get(), from, to, search_radius, reached, &found); });
+        call_near(found,
+                  [&] { return cscd_detector_truncate(get(), from, to, search_radius, reached, &found); });
         return found;
     }
 

@@ -154,6 +154,24 @@ void rules(void **) {
     assert_int_equal(error_of([&] { t.ours.set_rules(rules, odd); }).status(), CSCD_INVALID_ARGUMENT);
 }
 
+/* What is too long says how long it is. */
+void long_lists(void **) {
+    twins t;
+    const std::size_t all = t.compare_steps(), near = t.ours.find_near(t.x0, 1.2, CSCD_NEAR_PAIRS).size();
+    t.ours.set_longest_list(10);
+    const cscd::error step = error_of([&] { t.ours.step(t.x0, t.x1); });
+    assert_int_equal(step.status(), CSCD_LIST_TOO_LONG);
+    assert_int_equal(step.count(), all);
+    cscd::line_search search(t.ours);
+    search.begin(t.x0, t.x1, 1.2);
+    assert_int_equal(error_of([&] { search.find_near(0.0, 1.2, CSCD_NEAR_PAIRS); }).count(), near);
+    std::vector<double> bounds(t.mesh.vertex_count());
+    assert_true(error_of([&] { t.ours.displacement_bounds(t.x0, 1.2, bounds); }).count() > 10);
+    assert_true(error_of([&] { t.ours.truncate(t.x0, t.x1, 1.2); }).count() > 10);
+    t.ours.set_longest_list(0);
+    assert_int_equal(t.ours.step(t.x0, t.x1).size(), all);
+}
+
 void separation(void **) {
     twins t;
     t.compare_steps();
@@ -248,11 +266,12 @@ void line_searches(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(steps),           cmocka_unit_test(culling),
-                                cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
-                                cmocka_unit_test(options),         cmocka_unit_test(live_changes),
-                                cmocka_unit_test(rules),           cmocka_unit_test(separation),
-                                cmocka_unit_test(motions),         cmocka_unit_test(bounds),
-                                cmocka_unit_test(touching_starts), cmocka_unit_test(line_searches)};
+    const CMUnitTest tests[] = {cmocka_unit_test(steps),        cmocka_unit_test(culling),
+                                cmocka_unit_test(proximity),    cmocka_unit_test(contact_stencils),
+                                cmocka_unit_test(options),      cmocka_unit_test(live_changes),
+                                cmocka_unit_test(rules),        cmocka_unit_test(long_lists),
+                                cmocka_unit_test(separation),   cmocka_unit_test(motions),
+                                cmocka_unit_test(bounds),       cmocka_unit_test(touching_starts),
+                                cmocka_unit_test(line_searches)};
     return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
 }
