@@ -85,6 +85,7 @@ static cscd_status move_space(const detector_move *m) {
     if (to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
     cscd_status status =
         representatives_move(&m->from->space.representatives, to->mesh, m->change, &to->representatives);
+    if (status == CSCD_OK) status = loose_elements_create(to->mesh, &to->loose);
     return status == CSCD_OK ? move_orphans(m) : status;
 }
 
@@ -170,6 +171,7 @@ static void exchange_space(search_space *a, search_space *b) {
     EXCHANGE(bvh);
     EXCHANGE(representatives);
     EXCHANGE(orphans);
+    EXCHANGE(loose);
     EXCHANGE(orphans_known);
     EXCHANGE(orphans_usable);
     EXCHANGE(skipped);

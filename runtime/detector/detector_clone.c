@@ -36,6 +36,7 @@ static cscd_status clone_space(const search_space *from, const cscd_mesh *mesh, 
     to->skipped = context_allocate(context, mesh->component_count, sizeof *to->skipped);
     if (to->lanes == NULL || to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
     status = representatives_copy(&from->representatives, mesh, &to->representatives);
+    if (status == CSCD_OK) status = loose_elements_create(mesh, &to->loose);
     if (status == CSCD_OK) status = orphan_pairs_copy(&from->orphans, context, &to->orphans);
     if (status == CSCD_OK) to->orphans_known = from->orphans_known;
     if (status == CSCD_OK) to->orphans_usable = from->orphans_usable;

@@ -6,7 +6,7 @@
 /* ---- pairs that wait already --------------------------------------------------------------------------- */
 
 typedef struct heirs_of_kinds {
-    mesh_heirs vertices, edges, triangles;
+    mesh_heirs vertices, edges, triangles, objects;
 } heirs_of_kinds;
 
 static bool share_vertex(const uint32_t *a, int a_count, const uint32_t *b, int b_count) {
@@ -21,13 +21,14 @@ static bool share_vertex(const uint32_t *a, int a_count, const uint32_t *b, int 
 static bool are_neighbours(const cscd_mesh *mesh, cscd_contact_kind kind, uint32_t a, uint32_t b) {
     if (kind == CSCD_CONTACT_VF) return share_vertex(&a, 1, mesh->triangles[b], 3);
     if (kind == CSCD_CONTACT_EE) return share_vertex(mesh->edges[a], 2, mesh->edges[b], 2);
-    return a == b;
+    return a == b && (kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_TT);
 }
 
 /* Adds a pair, unless it is a vertex in common, which is never looked at. */
 static bool add_pair(const cscd_mesh *mesh, named_pair_set *set, cscd_contact_kind kind, uint32_t a,
                      uint32_t b) {
-    bool ordered = kind == CSCD_CONTACT_VF || a < b;
+    bool alike = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_VV || kind == CSCD_CONTACT_TT;
+    bool ordered = !alike || a < b;
     return are_neighbours(mesh, kind, a, b) ||
            named_pair_set_add(mesh->context, set, kind, ordered ? a : b, ordered ? b : a);
 }
@@ -35,10 +36,12 @@ static bool add_pair(const cscd_mesh *mesh, named_pair_set *set, cscd_contact_ki
 static bool move_pair(const named_pair *pair, const heirs_of_kinds *h, const cscd_mesh *mesh,
                       named_pair_set *out) {
     cscd_contact_kind kind = (cscd_contact_kind)pair->kind;
-    const mesh_heirs *first = kind == CSCD_CONTACT_VF   ? &h->vertices
-                              : kind == CSCD_CONTACT_EE ? &h->edges
-                                                        : &h->triangles;
-    const mesh_heirs *second = kind == CSCD_CONTACT_EE ? &h->edges : &h->triangles;
+    bool of_edge = kind == CSCD_CONTACT_EE || kind == CSCD_CONTACT_EV;
+    const mesh_heirs *first = of_edge ? &h->edges : kind == CSCD_CONTACT_TT ? &h->triangles : &h->vertices;
+    const mesh_heirs *second = kind == CSCD_CONTACT_EE                              ? &h->edges
+                               : kind == CSCD_CONTACT_EV || kind == CSCD_CONTACT_VV ? &h->vertices
+                               : kind == CSCD_CONTACT_VH                            ? &h->objects
+                                                                                    : &h->triangles;
     for (uint32_t i = first->offsets[pair->a]; i < first->offsets[pair->a + 1]; i++) {
         for (uint32_t j = second->offsets[pair->b]; j < second->offsets[pair->b + 1]; j++) {
             if (!add_pair(mesh, out, kind, first->items[i], second->items[j])) return false;
@@ -58,15 +61,17 @@ static bool move_set(const named_pair_set *set, const heirs_of_kinds *h, const c
 static cscd_status move_sets(const waiting_pairs *w, const cscd_mesh *mesh, const cscd_mesh_change *change,
                              waiting_pairs *out) {
     if (w->pairs.count == 0 && w->torn.count == 0) return CSCD_OK;
-    heirs_of_kinds h = {{NULL, NULL}, {NULL, NULL}, {NULL, NULL}};
+    heirs_of_kinds h = {{NULL, NULL}, {NULL, NULL}, {NULL, NULL}, {NULL, NULL}};
     cscd_status status = mesh_heirs_find(mesh->context, &change->vertices, &h.vertices);
     if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->edges, &h.edges);
     if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->triangles, &h.triangles);
+    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->objects, &h.objects);
     bool moved = status == CSCD_OK && move_set(&w->pairs, &h, mesh, &out->pairs) &&
                  move_set(&w->torn, &h, mesh, &out->torn) && named_pair_set_sort(mesh->context, &out->pairs);
     mesh_heirs_free(mesh->context, &h.vertices);
     mesh_heirs_free(mesh->context, &h.edges);
     mesh_heirs_free(mesh->context, &h.triangles);
+    mesh_heirs_free(mesh->context, &h.objects);
     return moved ? CSCD_OK : CSCD_OUT_OF_MEMORY;
 }
 
@@ -138,7 +143,22 @@ static bool part_features(const cscd_mesh *mesh, uint32_t v, uint32_t t, uint32_
     return true;
 }
 
+/* Wires that had a vertex in common, and points that were one. */
+static bool part_loose_features(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    const uint32_t *offsets = mesh->loose.wire_star_offsets, *wires = mesh->loose.wire_stars;
+    for (uint32_t i = 0; i < wires_at_vertex(mesh, v); i++) {
+        for (uint32_t j = 0; j < wires_at_vertex(mesh, w); j++) {
+            if (!add_pair(mesh, out, CSCD_CONTACT_EE, wires[offsets[v] + i], wires[offsets[w] + j]))
+                return false;
+        }
+    }
+    bool points = mesh->loose.point_count > 0 &&
+                  mesh->objects[cscd_mesh_vertex_object(mesh, v)].kind == CSCD_OBJECT_POINTS;
+    return !points || add_pair(mesh, out, CSCD_CONTACT_VV, v, w);
+}
+
 static bool part_vertices(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    if (mesh_has_loose_objects(mesh) && !part_loose_features(mesh, v, w, out)) return false;
     for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
         for (uint32_t j = mesh->vertex_star_offsets[w]; j < mesh->vertex_star_offsets[w + 1]; j++) {
             if (!part_features(mesh, v, mesh->vertex_stars[i], w, mesh->vertex_stars[j], out)) return false;

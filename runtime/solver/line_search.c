@@ -69,9 +69,9 @@ static const char *validate_listed(const reference_count *object) {
     if (line->detector->references.alive != REFERENCE_ALIVE) return "the detector of a line search was freed";
     if (!line->begun || line->rules_revision != line->detector->rules_revision) return NULL;
     const candidate_list *lists = line->candidates.lists;
+    uint32_t edges = mesh->edge_count + mesh->loose.point_count;
     const char *fault = check_candidates(&lists[CSCD_CONTACT_VF], mesh->vertex_count, mesh->triangle_count);
-    return fault != NULL ? fault
-                         : check_candidates(&lists[CSCD_CONTACT_EE], mesh->edge_count, mesh->edge_count);
+    return fault != NULL ? fault : check_candidates(&lists[CSCD_CONTACT_EE], edges, edges);
 }
 
 static cscd_status create_line(cscd_detector *detector, cscd_line_search **out) {

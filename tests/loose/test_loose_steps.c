@@ -75,7 +75,7 @@ static void check_contact(const loose_pair *pair, const cscd_contact *c, double 
 static void compare_contacts(const cscd_contacts *found, kind_tally *tally) {
     size_t count = loose_scene_pairs(&scene, false, pairs), at = 0;
     assert_true(found->count < LOOSE_LIST_MAX);
-    memcpy(sorted, found->items, found->count * sizeof *sorted);
+    if (found->count > 0) memcpy(sorted, found->items, found->count * sizeof *sorted);
     qsort(sorted, found->count, sizeof *sorted, compare_names);
     for (size_t i = 0; i < count; i++) {
         const loose_pair *p = &pairs[i];

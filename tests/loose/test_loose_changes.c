@@ -1,0 +1,167 @@
+/* Loose objects while a mesh changes under a detector, and in clones: what is found is what a new detector finds. */
+#include "cscd/cscd.h"
+#include "tests/support/loose/loose_scene.h"
+#include "tests/support/packed.h"
+#include "tests/support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static loose_scene scene;
+
+static const loose_recipe everything = {
+    .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5, .thickness = true};
+
+static void expect_ok(cscd_status status) {
+    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
+}
+
+static void expect_same(const cscd_contacts *a, const cscd_contacts *b) {
+    assert_int_equal(a->count, b->count);
+    if (a->count > 0) assert_memory_equal(a->items, b->items, a->count * sizeof *a->items);
+}
+
+static void clones_find_the_same(void **state) {
+    size_t contacts = 0;
+    (void)state;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        random_stream random = stream_start(seed);
+        loose_recipe recipe = everything;
+        recipe.triangles = seed % 3 != 0;
+        loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
+        cscd_detector_options options = loose_scene_options(&scene);
+        cscd_detector *detector = NULL, *copy = NULL;
+        cscd_contacts found, again;
+        expect_ok(detector_create_here(scene.mesh, NULL, &options, &detector));
+        if (seed % 2 == 0) expect_ok(step_packed(detector, scene.x0, scene.x1, &found));
+        expect_ok(cscd_detector_clone(scene.context, detector, &copy));
+        expect_ok(step_packed(detector, scene.x0, scene.x1, &found));
+        expect_ok(step_packed(copy, scene.x0, scene.x1, &again));
+        contacts += found.count;
+        expect_same(&found, &again);
+        cscd_detector_destroy(detector);
+        cscd_detector_destroy(copy);
+        loose_scene_free(&scene);
+    }
+    assert_true(contacts > 200);
+}
+
+/* ---- changes ------------------------------------------------------------------------------------------------ */
+
+/* A scene to which a sphere has come and in which one object is missing. */
+typedef struct changed_scene {
+    cscd_mesh_change *change;
+    double x0[LOOSE_VERTICES_MAX * 3], x1[LOOSE_VERTICES_MAX * 3];
+} changed_scene;
+
+static void map_positions(const cscd_mesh_change *change, const double *old, double *out) {
+    uint32_t count;
+    const uint32_t *origins = cscd_mesh_change_vertex_origins(change, &count);
+    for (uint32_t v = 0; v < count; v++) {
+        for (size_t k = 0; k < 3; k++)
+            out[v * 3 + k] = origins[v] != UINT32_MAX ? old[origins[v] * 3 + k] : 0.1 * (double)(v % 7);
+    }
+}
+
+static void change_scene(uint32_t removed, changed_scene *out) {
+    const cscd_object_desc points = cscd_object_of_points(3);
+    const cscd_object_change changes[2] = {{.object = removed}, {.object = UINT32_MAX, .desc = &points}};
+    expect_ok(cscd_mesh_change_create(scene.context, scene.mesh, changes, 2, &out->change));
+    map_positions(out->change, scene.x0, out->x0);
+    map_positions(out->change, scene.x1, out->x1);
+}
+
+static cscd_detector *new_detector(const cscd_mesh *mesh, uint32_t removed) {
+    cscd_object_rule rules[LOOSE_OBJECTS_MAX + 1];
+    cscd_detector_options options = loose_scene_options(&scene);
+    cscd_detector *detector = NULL;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene.object_count; i++) {
+        if (i != removed) rules[count++] = scene.rules[i];
+    }
+    rules[count++] = cscd_object_rule_default();
+    options.rules = rules;
+    options.rule_count = count;
+    expect_ok(detector_create_here(mesh, NULL, &options, &detector));
+    return detector;
+}
+
+static void changed_meshes(void **state) {
+    size_t contacts = 0;
+    (void)state;
+    for (uint32_t removed = 0; removed < 8; removed++) {
+        random_stream random = stream_start(100 + removed);
+        loose_scene_make(&scene, &everything, &random, 2, CSCD_SIMD_AUTO);
+        assert_int_equal(scene.object_count, 8);
+        cscd_detector_options options = loose_scene_options(&scene);
+        cscd_detector *detector = NULL, *fresh = NULL;
+        changed_scene changed;
+        cscd_contacts found, expected;
+        expect_ok(detector_create_here(scene.mesh, NULL, &options, &detector));
+        expect_ok(step_packed(detector, scene.x0, scene.x1, &found));
+        change_scene(removed, &changed);
+        expect_ok(cscd_detector_change_mesh(detector, changed.change));
+        fresh = new_detector(cscd_detector_mesh(detector), removed);
+        expect_ok(step_packed(detector, changed.x0, changed.x1, &found));
+        expect_ok(step_packed(fresh, changed.x0, changed.x1, &expected));
+        expect_same(&found, &expected);
+        contacts += found.count;
+        cscd_detector_destroy(detector);
+        cscd_detector_destroy(fresh);
+        cscd_mesh_change_destroy(changed.change);
+        loose_scene_free(&scene);
+    }
+    assert_true(contacts > 200);
+}
+
+/* ---- tears ---------------------------------------------------------------------------------------------------- */
+
+/* A rope is cut at vertex 1, and particle 0 becomes two: what was one vertex waits until it has been apart. */
+static void cut_rope(void **state) {
+    static const uint32_t rope[4] = {0, 1, 1, 2}, cut[4] = {0, 1, 3, 2}, origins[4] = {0, 1, 2, 1},
+                          twins[2] = {0, 0};
+    const double x[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 1, 0, 0, 0, 5, 0, 0, 5, 0};
+    double parted[18], old[12];
+    cscd_object_desc before[2] = {cscd_object_of_wires(3, 2, rope), cscd_object_of_points(1)};
+    cscd_object_desc after[2] = {cscd_object_of_wires(4, 2, cut), cscd_object_of_points(2)};
+    const cscd_object_change changes[2] = {{.object = 0, .desc = &after[0], .vertex_origins = origins},
+                                           {.object = 1, .desc = &after[1], .vertex_origins = twins}};
+    (void)state;
+    cscd_mesh *mesh = NULL;
+    cscd_mesh_change *change = NULL;
+    cscd_detector *detector = NULL;
+    cscd_contacts found;
+    cscd_free_step step;
+    assert_int_equal(cscd_context_create(NULL, &scene.context), CSCD_OK);
+    expect_ok(cscd_mesh_create(scene.context, before, 2, &mesh));
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = 0.1;
+    expect_ok(detector_create_here(mesh, NULL, &options, &detector));
+    memcpy(old, x, 9 * sizeof *x);
+    memcpy(old + 9, x + 12, 3 * sizeof *x);
+    expect_ok(step_packed(detector, old, old, &found));
+    assert_int_equal(found.count, 0);
+    expect_ok(cscd_mesh_change_create(scene.context, mesh, changes, 2, &change));
+    expect_ok(cscd_detector_change_mesh(detector, change));
+    expect_ok(step_packed(detector, x, x, &found));
+    assert_true(found.count == 0 && found.waiting == 2);
+    memcpy(parted, x, sizeof parted);
+    parted[9] = 1.5;  /* the second half of the rope begins farther on */
+    parted[16] = 5.5; /* and the twin is away */
+    expect_ok(max_step_packed(detector, x, parted, parted, &step));
+    assert_true(step.fraction == 1.0 && step.waiting == 2);
+    expect_ok(step_packed(detector, parted, x, &found));
+    assert_true(found.count == 2 && found.waiting == 0);
+    assert_true(found.items[0].kind == CSCD_CONTACT_EE || found.items[1].kind == CSCD_CONTACT_EE);
+    assert_true(found.items[0].kind == CSCD_CONTACT_VV || found.items[1].kind == CSCD_CONTACT_VV);
+    cscd_detector_destroy(detector);
+    cscd_mesh_change_destroy(change);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(scene.context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(clones_find_the_same),
+                                       cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
