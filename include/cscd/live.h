@@ -27,8 +27,10 @@ CSCD_API cscd_status cscd_detector_set_longest_list(cscd_detector *detector, siz
  * features begins to wait if it is left out before the change, not left out after it, and not farther apart than
  * min_separation, or its thickness, in the first positions that the detector is given then; without a distance, if it
  * touches. It waits until it is farther apart than that in positions where a motion starts, that is, in x0 of any
- * call, or in those of cscd_detector_check. While it waits, nobody watches it: a pair that parts and comes back
- * within one motion passes unseen. The check has pairs of triangles instead, which wait while they intersect or
+ * call, or in those of cscd_detector_check. While it waits, no list has it: a pair that parts and comes back
+ * within one motion passes unseen. cscd_detector_max_step, cscd_line_search_max_step and cscd_detector_truncate,
+ * however, leave out only what touches at x0: a pair that waits and does not touch has its floor, as any pair that
+ * is too near. The check has pairs of triangles instead, which wait while they intersect or
  * touch. Results count the pairs that wait. A pair that is left out anew, by a later change, waits no more.
  *
  * What the function `ignore` leaves out is asked for each list: if its answers change, nothing waits. An example, the

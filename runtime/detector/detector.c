@@ -276,6 +276,7 @@ interval_search detector_search_floors(cscd_detector *d, const double *x0, const
 }
 
 void detector_begin_call(cscd_detector *d) {
+    d->exclusions.marked_wait = false;
     progress_begin(&d->context->progress);
     rollback_save(&d->before, &d->starts, &d->rebuild);
 }

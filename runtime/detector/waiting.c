@@ -1,8 +1,12 @@
 /* Pairs that wait on a live detector: what a change of seams, ignored pairs or rules uncovers while it touches. */
 #include "runtime/detector/waiting.h"
 
+#include "runtime/ccd/separation_floor.h"
 #include "runtime/loose/loose_search.h"
+#include "src/mesh/mesh.h"
 #include "src/mesh/triangle_intersection.h"
+
+#include <string.h>
 
 /* The positions that pairs are looked at, and what is left out there without those that wait. */
 typedef struct settling {
@@ -11,10 +15,11 @@ typedef struct settling {
     interval_search search; /* at rest */
     exclusions others;      /* without the caller's function, which is asked about lists only */
     named_pair_set *set;
+    bool touching; /* distances do not count */
 } settling;
 
 static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set) {
-    return (settling){d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set};
+    return (settling){d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set, false};
 }
 
 /* ---- pairs that wait already ---------------------------------------------------------------------------- */
@@ -31,12 +36,27 @@ static bool is_left_out(const settling *s, const named_pair *pair) {
     return exclusions_cover_features(&s->others, kind, pair->a, pair->b);
 }
 
+/* Points have no exact test against wires and each other: those whose floor is 0 count as touching. */
+static bool points_touch(const settling *s, const named_pair *pair) {
+    const floor_ladder ladder = {1.0, 0.5, 0.0};
+    double points[4][3];
+    cscd_stencil stencil =
+        mesh_stencil(s->detector->mesh, (cscd_contact_kind)pair->kind, pair->a, pair->b, 0.5, 0.5);
+    uint32_t ends[4] = {stencil.vertices[0], stencil.vertices[1], stencil.vertices[2], stencil.vertices[3]};
+    if (pair->kind == CSCD_CONTACT_VV) ends[1] = ends[0];
+    for (int i = 0; i < 4; i++) memcpy(points[i], s->x + (size_t)ends[i] * 3, sizeof points[i]);
+    return separation_floor_at((const double(*)[3])points, CSCD_CONTACT_EE, &ladder) == 0.0;
+}
+
 static void test_at_rest(const settling *s, named_pair *pair, contact_lane *lane) {
     const swept_interval *interval = &s->search.interval;
     const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
     pair->marked = 0;
     if (is_left_out(s, pair)) return;
-    if (pair->kind != CSCD_CONTACT_TT)
+    bool of_points = pair->kind == CSCD_CONTACT_VV || pair->kind == CSCD_CONTACT_EV;
+    if (of_points && s->touching)
+        pair->marked = points_touch(s, pair);
+    else if (pair->kind != CSCD_CONTACT_TT)
         loose_search_test_pair(interval, (cscd_contact_kind)pair->kind, pair->a, pair->b, lane);
     else
         pair->marked = triangles_intersect(triangles[pair->a], triangles[pair->b], s->x);
@@ -67,6 +87,18 @@ static cscd_status let_go(cscd_detector *d, const double *x, named_pair_set *set
     cscd_status status = search_space_status(&d->space);
     if (status == CSCD_OK) status = context_progress_status(d->context);
     if (status == CSCD_OK) named_pair_set_keep_marked(set);
+    return status;
+}
+
+cscd_status waiting_only_touching(cscd_detector *d, const double *x) {
+    if (d->waiting.pairs.count == 0 || (d->limit.distance == 0.0 && !detector_thick(d))) return CSCD_OK;
+    settling s = settle_at(d, x, &d->waiting.pairs);
+    s.search = interval_search_begin(&d->space, x, x, (separation){0.0, 0.0});
+    s.touching = true;
+    parallel_run(d->context->threads, d->space.traversal.lane_count, mark_share, &s);
+    cscd_status status = search_space_status(&d->space);
+    if (status == CSCD_OK) status = context_progress_status(d->context);
+    d->exclusions.marked_wait = status == CSCD_OK;
     return status;
 }
 

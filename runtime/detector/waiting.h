@@ -8,5 +8,9 @@
  * The trees follow to x where there was such a change. */
 cscd_status waiting_settle(cscd_detector *d, const double *x);
 
+/* To be called after either, in a call whose motion starts at x and keeps floors: until the call ends, only those that
+ * touch at x are left out. A pair that waits and does not touch has a floor, and passes through nothing. */
+cscd_status waiting_only_touching(cscd_detector *d, const double *x);
+
 /* The same for positions where no motion need start: no pair is let go. */
 cscd_status waiting_look(cscd_detector *d, const double *x);

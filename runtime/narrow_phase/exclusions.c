@@ -168,7 +168,9 @@ static bool host_ignores(const exclusions *e, cscd_contact_kind kind, uint32_t a
 }
 
 static bool is_waiting(const exclusions *e, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    return e->waiting != NULL && named_pair_set_has(e->waiting, kind, a, b);
+    if (e->waiting == NULL || e->waiting->count == 0) return false;
+    const named_pair *pair = named_pair_set_find(e->waiting, kind, a, b);
+    return pair != NULL && (!e->marked_wait || pair->marked != 0);
 }
 
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {

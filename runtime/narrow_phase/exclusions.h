@@ -13,6 +13,7 @@ typedef struct exclusions {
     uint32_t *names;               /* per vertex: the smallest one of its seam; NULL: there are no seams */
     seam_list seams;               /* to be checked at the first positions */
     const named_pair_set *waiting; /* left out until they have once been apart; NULL: none */
+    bool marked_wait;              /* only the marked ones of these are left out */
 } exclusions;
 
 /* Copies what the options say. INVALID_ARGUMENT names what does not fit. */

@@ -375,6 +375,7 @@ static cscd_status max_step_on_line(cscd_line_search *line, double longest, cons
     line->done = 0.0;
     cscd_free_step step;
     status = waiting_look(d, line->x0);
+    if (status == CSCD_OK) status = waiting_only_touching(d, line->x0);
     if (status == CSCD_OK)
         status = free_step_find(d, &m, longest, test_candidates_on_motion, line, line->reached, &step);
     if (status == CSCD_IN_CONTACT) struct_give(out, size, &step, sizeof step);

@@ -94,6 +94,7 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     status = waiting_settle(d, m->x0);
+    if (status == CSCD_OK) status = waiting_only_touching(d, m->x0);
     if (status == CSCD_OK) status = reserve_reached(d);
     if (status == CSCD_OK) status = free_step_find(d, m, 1.0, try_motion, &t, d->reached, out);
     if (status == CSCD_OK) status = context_progress_status(d->context);

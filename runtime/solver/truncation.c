@@ -265,6 +265,7 @@ static cscd_status truncate_between(cscd_detector *d, const wanted_motion *motio
     if (d->reached == NULL)
         d->reached = context_allocate(d->context, d->mesh->vertex_count, sizeof(double[3]));
     status = d->reached != NULL ? waiting_settle(d, motion->x0) : CSCD_OUT_OF_MEMORY;
+    if (status == CSCD_OK) status = waiting_only_touching(d, motion->x0);
     if (status == CSCD_OK) status = truncation_find(d, motion, search_radius, d->reached, out);
     return status == CSCD_OK ? CSCD_OK : detector_fail_call(d, status);
 }

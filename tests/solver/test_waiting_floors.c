@@ -1,0 +1,99 @@
+/* Pairs that wait because they are nearer than their distance, but do not touch, keep floors: no certified motion takes
+ * them through each other. */
+#include "tests/support/packed.h"
+#include "tests/support/panels.h"
+#include "tests/support/test.h"
+
+#include <string.h>
+
+enum { SIDE = 6, HALF = SIDE * SIDE };
+
+static const double distance = 0.1;
+
+/* Two flat panels at a distance below the one that they have to keep, hidden from each other, and then not. */
+static panel_scene uncover_panels(double gap) {
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    cscd_free_step step;
+    rules[0].mask = 0;
+    options.min_separation = distance;
+    options.rules = rules;
+    options.rule_count = 2;
+    panel_scene p = panels_create(SIDE, NULL, &options);
+    for (uint32_t v = 0; v < 2 * HALF; v++) p.x0[3 * v + 2] = v < HALF ? 0.0 : gap;
+    memcpy(p.x1, p.x0, 2 * HALF * sizeof(double[3]));
+    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, NULL, &step), CSCD_OK);
+    assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
+    for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] -= 0.04;
+    return p;
+}
+
+static void expect_apart(const panel_scene *p, double gap) {
+    for (uint32_t v = HALF; v < 2 * HALF; v++) assert_true(p->x0[3 * v + 2] > 0.8 * gap);
+}
+
+static void steps_pass_through_nothing(void **state) {
+    (void)state;
+    const double gap = 0.9 * distance;
+    panel_scene p = uncover_panels(gap);
+    for (int i = 0; i < 10; i++) {
+        cscd_free_step step;
+        assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step), CSCD_OK);
+        assert_true(step.waiting > 0 && step.limited);
+        for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
+        expect_apart(&p, gap);
+    }
+    panels_destroy(&p);
+}
+
+static void line_searches_pass_through_nothing(void **state) {
+    (void)state;
+    const double gap = 0.9 * distance;
+    panel_scene p = uncover_panels(gap);
+    cscd_line_search *line;
+    assert_int_equal(cscd_line_search_create(p.detector, &line), CSCD_OK);
+    for (int i = 0; i < 5; i++) {
+        cscd_free_step step;
+        assert_int_equal(line_begin_packed(line, p.x0, p.x1, 0.0), CSCD_OK);
+        assert_int_equal(line_max_step_packed(line, 1.0, p.x0, &step), CSCD_OK);
+        assert_true(step.waiting > 0 && step.limited);
+        for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
+        expect_apart(&p, gap);
+    }
+    cscd_line_search_destroy(line);
+    panels_destroy(&p);
+}
+
+static void truncation_passes_through_nothing(void **state) {
+    (void)state;
+    const double gap = 0.9 * distance;
+    panel_scene p = uncover_panels(gap);
+    for (int i = 0; i < 5; i++) {
+        cscd_truncation found;
+        assert_int_equal(truncate_packed(p.detector, p.x0, p.x1, 1.0, p.x0, &found), CSCD_OK);
+        assert_true(found.waiting > 0);
+        for (uint32_t v = HALF; v < 2 * HALF; v++) p.x1[3 * v + 2] = p.x0[3 * v + 2] - 0.04;
+        expect_apart(&p, gap);
+    }
+    panels_destroy(&p);
+}
+
+/* Panels that touch have no side, and part as they want. */
+static void touching_pairs_are_left_out(void **state) {
+    (void)state;
+    panel_scene p = uncover_panels(0.0);
+    cscd_free_step step;
+    assert_int_equal(max_step_packed(p.detector, p.x0, p.x1, p.x0, &step), CSCD_OK);
+    assert_true(step.fraction == 1.0 && step.waiting > 0);
+    panels_destroy(&p);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_pass_through_nothing),
+        cmocka_unit_test(line_searches_pass_through_nothing),
+        cmocka_unit_test(truncation_passes_through_nothing),
+        cmocka_unit_test(touching_pairs_are_left_out),
+    };
+    return cmocka_run_group_tests_name("waiting_floors", tests, NULL, NULL);
+}
