@@ -136,7 +136,7 @@ CSCD_API void cscd_proximity_stencils(const cscd_proximity *items, size_t count,
 
 /* How far a motion may go without contact. */
 typedef struct cscd_free_step {
-    double fraction; /* in (0,1]; with 1 the end is x1, bit for bit */
+    double fraction; /* in (0,1]; with 1 the end is x1, in the scalar of `reached` */
     bool limited; /* the fraction is below the longest that was asked for, because of the contact `limit` */
     bool moved;   /* false: no coordinate is another than in x0, and `reached` is x0 in every bit */
     cscd_contact limit; /* a first contact of the whole motion; fraction <= step_factor * limit.toi, unless
@@ -152,7 +152,9 @@ typedef struct cscd_free_step {
  * With min_separation d every pair keeps a floor: the greatest of d, s d, s^2 d, ... (s: floor_ratio) that its
  * distance at x0 surely exceeds, or touching, where that is below 2^-40 of its extent. So a pair above d stays
  * above d over any number of steps, and one below it may part, and sinks no farther than its floor.
- * IN_CONTACT: two features touch at x0; the sentence names them, *out has them as its limit, and nothing else
+ * A solver that presses into contact leaves no room: what rests on its distance lets no motion pass that would come
+ * nearer by a rounding error. Keep a little distance, or move what touches together by one translation.
+ * IN_CONTACT: two features touch at x0, or would where x0 in doubles is rounded to floats; the sentence names them, *out has them as its limit, and nothing else
  * is written. INVALID_ARGUMENT also for the methods PUBLISHED and ICCD_PUBLISHED, which certify nothing, and
  * for coordinates that are infinite as floats. CANCELLED: see cscd_progress.
  * Culls as cscd_detector_step does in mode EARLIEST. Timings and counters are those of the whole call,
@@ -254,8 +256,8 @@ typedef struct cscd_truncation {
  * most search_radius, or that beyond min_separation, has a plane across its nearest points, and its
  * vertices keep to their sides of it; what lies between them is shared by what both want, and obstacles
  * come first. No vertex goes farther than half of search_radius. So pairs without a common vertex stay
- * apart that are apart at x0: farther than min_separation, if they are that at x0, and otherwise they come
- * no nearer. All of this holds for the positions as they are stored: `reached`, which may be x1 itself, or
+ * apart that are apart at x0: farther than min_separation, if they are that at x0, and otherwise they keep
+ * all of their distance but what planes cannot prove, 0.985 of it at least. All of this holds for the positions as they are stored: `reached`, which may be x1 itself, or
  * NULL, is rounded before it is compared with the planes. It is of floats only where x0 is. The vertices of
  * a seam go the same share.
  *
@@ -300,11 +302,10 @@ typedef struct cscd_line_search cscd_line_search;
  *     cscd_status status = cscd_line_search_create(detector, &search);
  *     if (status == CSCD_OK)
  *         status = cscd_line_search_begin(search, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), 0.3);
- *     if (status == CSCD_OK) status = cscd_line_search_max_step(search, 1.0, NULL, &step);
- *     for (double f = step.fraction; status == CSCD_OK && f > 1e-6; f *= 0.5) { // no shorter step touches
- *         status = cscd_line_search_find_near(search, f, 0.3, CSCD_NEAR_UNIQUE, &near);
- *         if (status == CSCD_OK)
- *             status = cscd_line_search_positions(search, f, CSCD_MUTABLE_DOUBLES(reached, n));
+ *     for (double f = 1.0; status == CSCD_OK && f > 1e-6; f = 0.5 * step.fraction) {
+ *         status = cscd_line_search_max_step(search, f, CSCD_MUTABLE_DOUBLES(reached, n), &step);
+ *         if (status == CSCD_OK) // `reached` is certified as it is stored: rounding may take a shorter step elsewhere
+ *             status = cscd_line_search_find_near(search, step.fraction, 0.3, CSCD_NEAR_UNIQUE, &near);
  *         if (status == CSCD_OK && energy_at(reached, &near) < energy_before) break;
  *     }
  *     cscd_line_search_destroy(search);

@@ -69,6 +69,8 @@ static cscd_status check_rules(const cscd_mesh *mesh, const given_rules *given) 
     if (given->count > 0 && given->objects == NULL)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "rules is NULL, but there are to be %u",
                             given->count);
+    if (given->count == 0 && given->objects != NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "rules are given, but rule_count is 0");
     cscd_status status = check_matrix(context, given);
     for (uint32_t i = 0; status == CSCD_OK && i < given->count; i++) status = check_rule(context, given, i);
     return status;

@@ -11,7 +11,7 @@
 enum { THREAD_COUNT_MAX = 256 };
 
 static cscd_context_options default_options(void) {
-    return (cscd_context_options){.thread_count = 1, .allocator = memory_system_allocator()};
+    return (cscd_context_options){.thread_count = 1};
 }
 
 void cscd_context_defaults_sized(cscd_context_options *out, size_t size) {

@@ -51,6 +51,9 @@ static cscd_status check_triangle(cscd_context *context, const cscd_object_desc 
 }
 
 static cscd_status check_desc(cscd_context *context, const cscd_object_desc *desc, const char *object) {
+    static const uint8_t zeros[sizeof desc->reserved];
+    if (memcmp(desc->reserved, zeros, sizeof zeros) != 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "%sreserved is not 0", object);
     cscd_status status = loose_desc_check(context, desc, object);
     if (status != CSCD_OK || desc->kind != CSCD_OBJECT_TRIANGLES) return status;
     if (desc->vertex_count == 0 || desc->triangle_count == 0)

@@ -33,7 +33,7 @@ static void contexts_that_cannot_be(void **state) {
     options.thread_count = 1000;
     expect_no_context(&options, CSCD_INVALID_ARGUMENT, "thread_count is 1000, expected at most 256");
     options = cscd_context_defaults();
-    options.allocator.release = NULL;
+    options.allocator.allocate = refuse_memory; /* and not the system's release beside it */
     expect_no_context(&options, CSCD_INVALID_ARGUMENT, "allocator has only one of allocate and release");
     options = cscd_context_defaults();
     options.simd = (cscd_simd)77;
@@ -190,6 +190,11 @@ static void objects_that_are_null(void **state) {
     cscd_free_step step;
     cscd_displacement_bounds bounds;
     cscd_truncation truncation;
+    EXPECT_NO_DETECTOR(method, (cscd_method)99, "unknown method 99");
+    cscd_object_desc marked = cscd_object_of_triangles(VERTICES, 8, triangles);
+    marked.reserved[3] = 1;
+    assert_int_equal(cscd_mesh_create(context, &marked, 1, &no_mesh), CSCD_INVALID_ARGUMENT);
+    assert_string_equal(cscd_context_detail(context), "reserved is not 0");
     EXPECT_NO_DETECTOR(method, (cscd_method)99, "unknown method 99");
     expect_null_object(cscd_mesh_create(NULL, OBJECT(VERTICES, 8, triangles), 1, &no_mesh));
     expect_null_object(cscd_plan_create(NULL, mesh, AT_START, NULL, &no_plan));

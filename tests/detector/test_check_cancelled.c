@@ -13,13 +13,13 @@ enum { TRIALS = 60 };
 static scene shape; /* large; one test at a time */
 static double crossing[SCENE_VERTICES_MAX * 3], end[SCENE_VERTICES_MAX * 3];
 
-typedef struct cancelling_host {
+typedef struct ignoring_host {
     cscd_context *context;
     bool cancels;
-} cancelling_host;
+} ignoring_host;
 
 static bool cancel_in_ignore(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    cancelling_host *h = user;
+    ignoring_host *h = user;
     (void)kind, (void)a, (void)b;
     if (h->cancels) cscd_context_cancel(h->context);
     return false;
@@ -46,7 +46,7 @@ static void make_positions(random_stream *random) {
     }
 }
 
-static cscd_detector *create_detector(cancelling_host *h, const cscd_mesh *mesh, cscd_method method) {
+static cscd_detector *create_detector(ignoring_host *h, const cscd_mesh *mesh, cscd_method method) {
     cscd_detector *detector = NULL;
     cscd_detector_options options = cscd_detector_defaults();
     options.method = method;
@@ -57,7 +57,7 @@ static cscd_detector *create_detector(cancelling_host *h, const cscd_mesh *mesh,
 }
 
 /* Returns whether the check was cancelled. */
-static bool step_after_check(cancelling_host *h, const cscd_mesh *mesh) {
+static bool step_after_check(ignoring_host *h, const cscd_mesh *mesh) {
     cscd_detector *culling = create_detector(h, mesh, CSCD_METHOD_SINGLE);
     cscd_detector *brute = create_detector(h, mesh, CSCD_METHOD_BRUTE);
     cscd_contacts found, expected;
@@ -79,7 +79,7 @@ static bool step_after_check(cancelling_host *h, const cscd_mesh *mesh) {
 static void later_steps_lose_nothing(void **state) {
     (void)state;
     random_stream random = stream_start(17);
-    cancelling_host h = {NULL, false};
+    ignoring_host h = {NULL, false};
     cscd_context_options options = cscd_context_defaults();
     uint32_t cancelled = 0;
     options.progress.report = report_nothing;

@@ -108,6 +108,7 @@ static void mistakes_have_a_sentence(void **state) {
     refuse_rules(s.detector, set.objects, 3, NULL, 0,
                  "there are 3 rules, expected none or one for each of the 4 objects");
     refuse_rules(s.detector, NULL, SCENE_OBJECTS, NULL, 0, "rules is NULL");
+    refuse_rules(s.detector, set.objects, 0, NULL, 0, "rules are given, but rule_count is 0");
     refuse_rules(s.detector, NULL, 0, matrix, 257, "1 to 256 classes");
     refuse_rules(s.detector, NULL, 0, NULL, 2, "thickness_matrix is NULL");
     matrix[1] = 0.5;
