@@ -12,6 +12,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#ifdef __SANITIZE_ADDRESS__
+enum { SCENES = 6 };
+#else
+enum { SCENES = 12 };
+#endif
+
 static scene s; /* large; one test at a time */
 
 /* Two detectors of one mesh in contexts of their own: one that has caps, and one that has none. */
@@ -225,7 +231,7 @@ static void lists_are_counted_without_being_kept(void **state) {
     const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE,
                                    CSCD_METHOD_KMEANS, method_or_none(CSCD_METHOD_ICCD)};
     size_t sum[2] = {0};
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < 5 * SCENES; i++) {
         cscd_detector_options options = cscd_detector_defaults();
         options.method = methods[i % 5];
         options.mode = i % 4 == 3 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;
@@ -242,7 +248,7 @@ static void lanes_are_suspended_in_mid_pass(void **state) {
     const cscd_method methods[] = {CSCD_METHOD_SINGLE, CSCD_METHOD_NONE, CSCD_METHOD_KMEANS,
                                    CSCD_METHOD_BRUTE};
     size_t sum[2] = {0};
-    for (int i = 0; i < 24; i++) {
+    for (int i = 0; i < 2 * SCENES; i++) {
         cscd_detector_options options = cscd_detector_defaults();
         options.method = methods[i % 4];
         options.mode = i % 5 == 4 ? CSCD_MODE_EARLIEST : CSCD_MODE_ALL;

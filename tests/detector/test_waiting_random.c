@@ -11,6 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __SANITIZE_ADDRESS__
+enum { SEQUENCES = 2 };
+#else
+enum { SEQUENCES = 3 };
+#endif
+
 enum { STEPS = 6, CHANGES_MAX = 3 * STEPS + 2 };
 
 typedef enum distance_kind { TOUCHING, SEPARATED, THICK, DISTANCE_KINDS } distance_kind;
@@ -308,18 +314,18 @@ static waiting_tally run_method(cscd_method method, cscd_mode mode, int sequence
 
 static void without_culling(void **state) {
     (void)state;
-    waiting_tally none = run_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, 6, 0);
-    run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, 3, 100);
-    run_method(method_or_none(CSCD_METHOD_ICCD), CSCD_MODE_ALL, 3, 200);
+    waiting_tally none = run_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, 2 * SEQUENCES, 0);
+    run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, SEQUENCES, 100);
+    run_method(method_or_none(CSCD_METHOD_ICCD), CSCD_MODE_ALL, SEQUENCES, 200);
     assert_true(none.let_go > 100 && none.free > 0 && none.touched > 0 && none.lines > 0 && none.near > 0 &&
                 none.crossing > 0);
 }
 
 static void with_culling(void **state) {
     (void)state;
-    waiting_tally single = run_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 9, 300);
-    waiting_tally kmeans = run_method(CSCD_METHOD_KMEANS, CSCD_MODE_ALL, 3, 400);
-    run_method(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST, 6, 500);
+    waiting_tally single = run_method(CSCD_METHOD_SINGLE, CSCD_MODE_ALL, 3 * SEQUENCES, 300);
+    waiting_tally kmeans = run_method(CSCD_METHOD_KMEANS, CSCD_MODE_ALL, SEQUENCES, 400);
+    run_method(CSCD_METHOD_SINGLE, CSCD_MODE_EARLIEST, 2 * SEQUENCES, 500);
     assert_true(single.let_go > 100 && single.steps.culled > 0 && kmeans.steps.culled > 0);
 }
 
