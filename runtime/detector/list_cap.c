@@ -75,7 +75,7 @@ static void spill_lanes(void *data) {
 void list_cap_begin(cscd_detector *d, interval_search *search, cap_taint taint) {
     if (d->options.longest_list == 0) return;
     d->space.longest = d->options.longest_list;
-    d->cap.taint = taint;
+    d->cap.taint = (int)taint;
     d->cap.any_tainted = false;
     memset(d->cap.tainted, false, d->mesh->triangle_count * sizeof *d->cap.tainted);
     search->spill = spill_lanes;
