@@ -150,6 +150,7 @@ def camera_turns_zooms_and_comes_back(context):
     _, page = at_most_contacts(context)
     page.press("0")
     page.leave_controls()
+    page.settle()
     start = context.pictures.view()
     canvas = page.element("image", "3D view")
     ActionChains(page.driver, duration=50).click_and_hold(canvas).move_by_offset(120, 30).release().perform()
