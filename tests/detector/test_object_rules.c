@@ -11,7 +11,7 @@
 #include <string.h>
 
 #ifdef __SANITIZE_ADDRESS__
-enum { SCENES = 5 };
+enum { SCENES = 7 };
 #else
 enum { SCENES = 10 };
 #endif
@@ -135,7 +135,7 @@ static rules_tally run_method(cscd_method method, cscd_mode mode, int sequences,
 static void without_culling_as_brute_force(void **state) {
     (void)state;
     run_method(CSCD_METHOD_NONE, CSCD_MODE_ALL, SCENES, 0);
-    run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, SCENES / 4, 100);
+    run_method(CSCD_METHOD_BRUTE, CSCD_MODE_ALL, 2, 100);
     run_method(method_or_none(CSCD_METHOD_ICCD), CSCD_MODE_ALL, SCENES / 2, 200);
 }
 
