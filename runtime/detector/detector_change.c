@@ -220,7 +220,6 @@ static void end_move(const detector_move *m) {
     exchange_parts(d, m->to);
     d->space.rules = d->pair_rules.sets != NULL ? &d->pair_rules : NULL;
     d->exclusions.waiting = &d->waiting.pairs;
-    d->rules_revision++;
     d->mesh_revision++;
     mesh_hold(d->mesh);
     mesh_release(m->to->mesh);

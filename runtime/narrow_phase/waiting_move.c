@@ -126,54 +126,73 @@ static bool list_seams(const cscd_mesh_change *change, const uint32_t *names, cs
     return made;
 }
 
-/* Calls of this come for both orders of the two vertices. */
-static bool part_features(const cscd_mesh *mesh, uint32_t v, uint32_t t, uint32_t w, uint32_t u,
-                          named_pair_set *out) {
-    if (!add_pair(mesh, out, CSCD_CONTACT_VF, v, u) || !add_pair(mesh, out, CSCD_CONTACT_TT, t, u))
-        return false;
-    for (int i = 0; i < 3; i++) {
-        uint32_t a = mesh->triangle_edges[t][i];
-        if (!share_vertex(&v, 1, mesh->edges[a], 2)) continue;
-        for (int j = 0; j < 3; j++) {
-            uint32_t b = mesh->triangle_edges[u][j];
-            if (share_vertex(&w, 1, mesh->edges[b], 2) && !add_pair(mesh, out, CSCD_CONTACT_EE, a, b))
+static uint32_t star_size(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+}
+
+/* Edges at a vertex have the numbers 0 to this one; some are listed twice. */
+static uint32_t sides_at(const cscd_mesh *mesh, uint32_t vertex) {
+    return 3 * star_size(mesh, vertex) + wires_at_vertex(mesh, vertex);
+}
+
+/* Sides of its triangles, and wires; UINT32_MAX: a side that the vertex is not on. */
+static uint32_t side_at(const cscd_mesh *mesh, uint32_t vertex, uint32_t i) {
+    uint32_t sides = 3 * star_size(mesh, vertex);
+    if (i >= sides) return mesh->loose.wire_stars[mesh->loose.wire_star_offsets[vertex] + i - sides];
+    uint32_t triangle = mesh->vertex_stars[mesh->vertex_star_offsets[vertex] + i / 3];
+    uint32_t edge = mesh->triangle_edges[triangle][i % 3];
+    return share_vertex(&vertex, 1, mesh->edges[edge], 2) ? edge : UINT32_MAX;
+}
+
+static bool part_edges(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    for (uint32_t i = 0; i < sides_at(mesh, v); i++) {
+        uint32_t a = side_at(mesh, v, i);
+        for (uint32_t j = 0; a != UINT32_MAX && j < sides_at(mesh, w); j++) {
+            uint32_t b = side_at(mesh, w, j);
+            if (b != UINT32_MAX && !add_pair(mesh, out, CSCD_CONTACT_EE, a, b)) return false;
+        }
+    }
+    return true;
+}
+
+static bool part_triangles(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
+        for (uint32_t j = mesh->vertex_star_offsets[w]; j < mesh->vertex_star_offsets[w + 1]; j++) {
+            if (!add_pair(mesh, out, CSCD_CONTACT_TT, mesh->vertex_stars[i], mesh->vertex_stars[j]))
                 return false;
         }
     }
     return true;
 }
 
-/* Wires that had a vertex in common, and points that were one. */
-static bool part_loose_features(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
-    const uint32_t *offsets = mesh->loose.wire_star_offsets, *wires = mesh->loose.wire_stars;
-    for (uint32_t i = 0; i < wires_at_vertex(mesh, v); i++) {
-        for (uint32_t j = 0; j < wires_at_vertex(mesh, w); j++) {
-            if (!add_pair(mesh, out, CSCD_CONTACT_EE, wires[offsets[v] + i], wires[offsets[w] + j]))
-                return false;
-        }
+/* The vertex itself, from the features at another one. A vertex of nothing takes no part. */
+static bool part_vertex(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
+    uint32_t of_w = cscd_mesh_vertex_object(mesh, w);
+    bool is_point = mesh->objects[cscd_mesh_vertex_object(mesh, v)].kind == CSCD_OBJECT_POINTS;
+    if (!is_point && sides_at(mesh, v) == 0) return true;
+    for (uint32_t i = mesh->vertex_star_offsets[w]; i < mesh->vertex_star_offsets[w + 1]; i++) {
+        if (!add_pair(mesh, out, CSCD_CONTACT_VF, v, mesh->vertex_stars[i])) return false;
     }
-    bool points = mesh->loose.point_count > 0 &&
-                  mesh->objects[cscd_mesh_vertex_object(mesh, v)].kind == CSCD_OBJECT_POINTS;
-    return !points || add_pair(mesh, out, CSCD_CONTACT_VV, v, w);
+    for (uint32_t i = 0; is_point && i < wires_at_vertex(mesh, w); i++) {
+        if (!add_pair(mesh, out, CSCD_CONTACT_EV, side_at(mesh, w, i), v)) return false;
+    }
+    cscd_object_kind kind = mesh->objects[of_w].kind;
+    if (is_point && kind == CSCD_OBJECT_POINTS) return add_pair(mesh, out, CSCD_CONTACT_VV, v, w);
+    return kind != CSCD_OBJECT_HALF_SPACE || add_pair(mesh, out, CSCD_CONTACT_VH, v, of_w);
 }
 
 static bool part_vertices(const cscd_mesh *mesh, uint32_t v, uint32_t w, named_pair_set *out) {
-    if (mesh_has_loose_objects(mesh) && !part_loose_features(mesh, v, w, out)) return false;
-    for (uint32_t i = mesh->vertex_star_offsets[v]; i < mesh->vertex_star_offsets[v + 1]; i++) {
-        for (uint32_t j = mesh->vertex_star_offsets[w]; j < mesh->vertex_star_offsets[w + 1]; j++) {
-            if (!part_features(mesh, v, mesh->vertex_stars[i], w, mesh->vertex_stars[j], out)) return false;
-        }
-    }
-    return true;
+    return part_vertex(mesh, v, w, out) && part_vertex(mesh, w, v, out) && part_edges(mesh, v, w, out) &&
+           part_triangles(mesh, v, w, out);
 }
 
 static bool part_groups(const cscd_mesh *mesh, const parted_vertices *p, named_pair_set *out) {
     for (size_t begin = 0, end; begin < p->count; begin = end) {
         for (end = begin + 1; end < p->count && p->items[end] >> 32 == p->items[begin] >> 32;) end++;
         for (size_t i = begin; i < end; i++) {
-            for (size_t j = begin; j < end; j++) {
+            for (size_t j = begin; j < i; j++) {
                 uint32_t v = (uint32_t)p->items[i], w = (uint32_t)p->items[j];
-                if (v != w && !part_vertices(mesh, v, w, out)) return false;
+                if (!part_vertices(mesh, v, w, out)) return false;
             }
         }
     }

@@ -67,7 +67,7 @@ static const char *validate_listed(const reference_count *object) {
     const cscd_line_search *line = (const cscd_line_search *)object;
     const cscd_mesh *mesh = line->detector->mesh;
     if (line->detector->references.alive != REFERENCE_ALIVE) return "the detector of a line search was freed";
-    if (!line->begun || line->rules_revision != line->detector->rules_revision) return NULL;
+    if (!line->begun || line->mesh_revision != line->detector->mesh_revision) return NULL;
     const candidate_list *lists = line->candidates.lists;
     uint32_t edges = mesh->edge_count + mesh->loose.point_count;
     const char *fault = check_candidates(&lists[CSCD_CONTACT_VF], mesh->vertex_count, mesh->triangle_count);

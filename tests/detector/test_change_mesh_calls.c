@@ -163,6 +163,37 @@ static void forgets_what_was_said(void **state) {
 
 /* ---- what is refused ------------------------------------------------------------------------------------- */
 
+/* Positions of new vertices have not been seen: they are checked, whatever bits they have. */
+static void positions_that_are_no_numbers(void **state) {
+    (void)state;
+    const uint32_t triangles[6] = {0, 1, 2, 2, 1, 3}, torn[6] = {0, 1, 2, 4, 1, 3};
+    const uint32_t origins[5] = {0, 1, 2, 3, 2};
+    const cscd_object_desc whole = cscd_object_of_triangles(4, 2, triangles);
+    const cscd_object_desc parted = cscd_object_of_triangles(5, 2, torn);
+    const cscd_object_change tear = {.object = 0, .desc = &parted, .vertex_origins = origins};
+    const double x1[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0};
+    double x0[15];
+    cscd_context *context = NULL;
+    cscd_mesh *mesh = NULL;
+    cscd_mesh_change *change = NULL;
+    cscd_detector *detector = NULL;
+    cscd_intersections crossing;
+    cscd_contacts found;
+    assert_int_equal(cscd_context_create(NULL, &context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(context, &whole, 1, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, NULL, &detector), CSCD_OK);
+    assert_int_equal(check_packed(detector, x1, &crossing), CSCD_OK);
+    assert_int_equal(cscd_mesh_change_create(context, mesh, &tear, 1, &change), CSCD_OK);
+    assert_int_equal(cscd_detector_change_mesh(detector, change), CSCD_OK);
+    memset(x0, 0xff, sizeof x0);
+    assert_int_equal(step_packed(detector, x0, x1, &found), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(step_packed(detector, x1, x1, &found), CSCD_OK);
+    cscd_detector_destroy(detector);
+    cscd_mesh_change_destroy(change);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(context);
+}
+
 static void refused_changes(void **state) {
     (void)state;
     cscd_context *context = NULL;
@@ -293,8 +324,9 @@ static void failing_allocations(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_what_is_untouched),   cmocka_unit_test(keeps_rest_lengths),
-        cmocka_unit_test(forgets_what_was_said),     cmocka_unit_test(refused_changes),
-        cmocka_unit_test(line_searches_begin_again), cmocka_unit_test(failing_allocations)};
+        cmocka_unit_test(keeps_what_is_untouched), cmocka_unit_test(keeps_rest_lengths),
+        cmocka_unit_test(forgets_what_was_said),   cmocka_unit_test(positions_that_are_no_numbers),
+        cmocka_unit_test(refused_changes),         cmocka_unit_test(line_searches_begin_again),
+        cmocka_unit_test(failing_allocations)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -160,8 +160,69 @@ static void cut_rope(void **state) {
     cscd_context_destroy(scene.context);
 }
 
+/* A rope, a particle and a half-space are sewn to a vertex of a cloth; cloth and rope tear there. What the second
+ * vertices were sewn to waits, each kind of pair, until it has been apart. */
+static void tear_where_all_is_sewn(void **state) {
+    static const uint32_t whole[6] = {0, 1, 2, 2, 1, 3}, torn[6] = {0, 1, 2, 4, 1, 3},
+                          origins[5] = {0, 1, 2, 3, 2};
+    static const uint32_t rope[4] = {0, 1, 0, 2}, cut[4] = {0, 1, 3, 2}, rope_origins[4] = {0, 1, 2, 0};
+    static const uint32_t seams[6] = {2, 4, 2, 7, 2, 8}, seams_now[6] = {2, 5, 2, 9, 2, 10};
+    static const double up[3] = {0, 0, 1};
+    const double x[] = {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1, 1, 0, 1, 0, -1, 2, 1, -1, 0, 2, 0, 1, 0, 0, 1, 0};
+    double now[33], parted[33];
+    (void)state;
+    cscd_object_desc descs[4] = {cscd_object_of_triangles(4, 2, whole), cscd_object_of_wires(3, 2, rope),
+                                 cscd_object_of_points(1), cscd_object_half_space(up)};
+    cscd_object_desc after[2] = {cscd_object_of_triangles(5, 2, torn), cscd_object_of_wires(4, 2, cut)};
+    const cscd_object_change tears[2] = {{.object = 0, .desc = &after[0], .vertex_origins = origins},
+                                         {.object = 1, .desc = &after[1], .vertex_origins = rope_origins}};
+    cscd_mesh *mesh = NULL;
+    cscd_mesh_change *change = NULL;
+    cscd_detector *detector = NULL, *fresh = NULL;
+    cscd_contacts found, expected;
+    memcpy(now, x, 12 * sizeof *x);
+    memcpy(now + 12, x + 6, 3 * sizeof *x);
+    memcpy(now + 15, x + 12, 9 * sizeof *x);
+    memcpy(now + 24, x + 12, 3 * sizeof *x);
+    memcpy(now + 27, x + 21, 6 * sizeof *x);
+    memcpy(parted, now, sizeof now);
+    for (int k = 0; k < 3; k++) parted[12 + k] += 0.4;
+    for (int k = 0; k < 3; k++) parted[24 + k] += 0.8;
+    assert_int_equal(cscd_context_create(NULL, &scene.context), CSCD_OK);
+    expect_ok(cscd_mesh_create(scene.context, descs, 4, &mesh));
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = 0.1;
+    options.seams = seams;
+    options.seam_count = 3;
+    expect_ok(detector_create_here(mesh, NULL, &options, &detector));
+    expect_ok(step_packed(detector, x, x, &found));
+    assert_int_equal(found.count, 0);
+    expect_ok(cscd_mesh_change_create(scene.context, mesh, tears, 2, &change));
+    expect_ok(cscd_detector_change_mesh(detector, change));
+    options.seams = seams_now;
+    expect_ok(detector_create_here(cscd_mesh_change_mesh(change), NULL, &options, &fresh));
+    expect_ok(step_packed(fresh, now, now, &expected));
+    expect_ok(step_packed(detector, now, now, &found));
+    assert_int_equal(found.count, 0);
+    assert_int_equal(found.waiting, expected.count);
+    uint32_t kinds = 0;
+    for (size_t i = 0; i < expected.count; i++) kinds |= 1u << expected.items[i].kind;
+    assert_int_equal(kinds, 1u << CSCD_CONTACT_VF | 1u << CSCD_CONTACT_EE | 1u << CSCD_CONTACT_EV |
+                                1u << CSCD_CONTACT_VH);
+    expect_ok(step_packed(detector, parted, now, &found));
+    expect_ok(step_packed(fresh, parted, now, &expected));
+    assert_int_equal(found.waiting, 0);
+    expect_same(&found, &expected);
+    cscd_detector_destroy(fresh);
+    cscd_detector_destroy(detector);
+    cscd_mesh_change_destroy(change);
+    cscd_mesh_destroy(mesh);
+    cscd_context_destroy(scene.context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(clones_find_the_same),
-                                       cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope)};
+                                       cmocka_unit_test(changed_meshes), cmocka_unit_test(cut_rope),
+                                       cmocka_unit_test(tear_where_all_is_sewn)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

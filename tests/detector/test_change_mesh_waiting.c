@@ -1,0 +1,265 @@
+/* What waits in a detector that moves over to another mesh: neighbours in seams that tear, and what was uncovered before
+ * the change but not seen. */
+#include "tests/support/counting_allocator.h"
+#include "tests/support/packed.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A triangle far away, and two panels at equal positions. In the changed mesh the triangle is gone, one vertex of the
+ * first panel is two, this panel has one triangle more, and a point comes last. */
+enum { SIDE = 4, PANEL = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1), VERTICES = 3 + 2 * PANEL };
+enum { TORN = SIDE + 1, TORN_PANEL = PANEL + 4, NEW_VERTICES = TORN_PANEL + PANEL + 1 };
+enum { FIRST = 1, SECOND = 1 + TRIANGLES }; /* triangles of the panels, in the old mesh */
+
+typedef struct torn_panels {
+    counting_allocator counter;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_mesh_change *change;
+    cscd_detector *detector;
+    uint32_t triangles[2][(TRIANGLES + 1) * 3]; /* of a panel, whole and torn */
+    uint32_t seams[PANEL][2], ignored[TRIANGLES * TRIANGLES][2];
+    double x0[VERTICES * 3], now[NEW_VERTICES * 3], moved[NEW_VERTICES * 3];
+} torn_panels;
+
+static torn_panels p;
+
+static void list_triangles(void) {
+    uint32_t count = 0;
+    for (uint32_t v = 0; v + SIDE < PANEL; v++) {
+        const uint32_t corners[6] = {v, v + SIDE, v + 1, v + 1, v + SIDE, v + SIDE + 1};
+        if (v % SIDE + 1 == SIDE) continue;
+        memcpy(p.triangles[0] + count, corners, sizeof corners);
+        count += 6;
+    }
+    memcpy(p.triangles[1], p.triangles[0], sizeof p.triangles[0]);
+    for (uint32_t k = 0; k < count / 2; k++)
+        if (p.triangles[1][k] == TORN) p.triangles[1][k] = PANEL;
+    for (uint32_t k = 0; k < 3; k++) p.triangles[1][count + k] = PANEL + 1 + k;
+}
+
+static void place_vertex(uint32_t v, double *out) {
+    const double at[3] = {v / SIDE, v % SIDE, 0.1 * sin(v * 1.3)};
+    memcpy(out, at, sizeof at);
+}
+
+static void place_vertices(void) {
+    static const double far[4][3] = {{50, 0, 0}, {51, 0, 0}, {50, 1, 0}, {70, 0, 0}};
+    memcpy(p.x0, far, sizeof(double[9]));
+    for (uint32_t v = 0; v < 2 * PANEL; v++) place_vertex(v % PANEL, p.x0 + 3 * (3 + v));
+    for (uint32_t v = 0; v < PANEL; v++) place_vertex(v, p.now + 3 * v);
+    for (uint32_t v = 0; v < PANEL; v++) place_vertex(v, p.now + 3 * (TORN_PANEL + v));
+    place_vertex(TORN, p.now + 3 * PANEL);
+    memcpy(p.now + 3 * (PANEL + 1), far, sizeof(double[9]));
+    memcpy(p.now + 3 * (NEW_VERTICES - 1), far[3], sizeof far[3]);
+}
+
+static void begin_panels(const cscd_detector_options *options) {
+    const uint32_t apart[3] = {0, 1, 2};
+    list_triangles();
+    place_vertices();
+    for (uint32_t v = 0; v < PANEL; v++) {
+        p.seams[v][0] = 3 + v;
+        p.seams[v][1] = 3 + PANEL + v;
+    }
+    for (uint32_t i = 0; i < TRIANGLES * TRIANGLES; i++) {
+        p.ignored[i][0] = FIRST + i / TRIANGLES;
+        p.ignored[i][1] = SECOND + i % TRIANGLES;
+    }
+    cscd_object_desc descs[3] = {cscd_object_of_triangles(3, 1, apart),
+                                 cscd_object_of_triangles(PANEL, TRIANGLES, p.triangles[0]),
+                                 cscd_object_of_triangles(PANEL, TRIANGLES, p.triangles[0])};
+    p.counter = counting_allocator_start();
+    cscd_context_options context_options = cscd_context_defaults();
+    context_options.allocator = counting_allocator_interface(&p.counter);
+    assert_int_equal(cscd_context_create(&context_options, &p.context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(p.context, descs, 3, &p.mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(p.mesh, NULL, options, &p.detector), CSCD_OK);
+}
+
+static void change_panels(void) {
+    uint32_t origins[TORN_PANEL];
+    for (uint32_t v = 0; v < TORN_PANEL; v++) origins[v] = v < PANEL ? v : UINT32_MAX;
+    origins[PANEL] = TORN;
+    const cscd_object_desc torn = cscd_object_of_triangles(TORN_PANEL, TRIANGLES + 1, p.triangles[1]);
+    const cscd_object_desc point = cscd_object_of_points(1);
+    const cscd_object_change list[3] = {{.object = 0},
+                                        {.object = 1, .desc = &torn, .vertex_origins = origins},
+                                        {.object = UINT32_MAX, .desc = &point}};
+    assert_int_equal(cscd_mesh_change_create(p.context, p.mesh, list, 3, &p.change), CSCD_OK);
+    assert_int_equal(cscd_detector_change_mesh(p.detector, p.change), CSCD_OK);
+}
+
+static void end_panels(void) {
+    cscd_detector_destroy(p.detector);
+    cscd_mesh_change_destroy(p.change);
+    cscd_mesh_destroy(p.mesh);
+    cscd_context_destroy(p.context);
+    assert_int_equal(p.counter.live, 0);
+}
+
+/* ---- what a detector says that leaves out as much, and for which nothing waits ----------------------------- */
+
+typedef struct touching_pairs {
+    size_t features, triangles;
+} touching_pairs;
+
+static cscd_detector *new_detector(const cscd_detector_options *options) {
+    cscd_detector *made = NULL;
+    assert_int_equal(detector_create_here(cscd_mesh_change_mesh(p.change), NULL, options, &made), CSCD_OK);
+    return made;
+}
+
+static touching_pairs pairs_at_rest(cscd_detector *d) {
+    cscd_contacts contacts;
+    cscd_intersections crossing;
+    assert_int_equal(step_packed(d, p.now, p.now, &contacts), CSCD_OK);
+    assert_int_equal(check_packed(d, p.now, &crossing), CSCD_OK);
+    return (touching_pairs){contacts.count, crossing.count};
+}
+
+/* All that touches waits, none is listed; after the panels have been apart it is as for the other detector. */
+static void expect_waiting(cscd_detector *other) {
+    touching_pairs touching = pairs_at_rest(other);
+    cscd_contacts contacts, expected;
+    cscd_intersections crossing;
+    assert_true(touching.features > 0 && touching.triangles > 0);
+    assert_int_equal(step_packed(p.detector, p.now, p.now, &contacts), CSCD_OK);
+    assert_int_equal(contacts.count, 0);
+    assert_int_equal(contacts.waiting, touching.features);
+    assert_int_equal(check_packed(p.detector, p.now, &crossing), CSCD_OK);
+    assert_int_equal(crossing.count, 0);
+    assert_int_equal(crossing.waiting, touching.triangles);
+    memcpy(p.moved, p.now, sizeof p.moved);
+    for (uint32_t v = 0; v <= PANEL; v++) p.moved[3 * v + 2] += v == PANEL ? 2.0 : 1.0;
+    assert_int_equal(step_packed(p.detector, p.moved, p.now, &contacts), CSCD_OK);
+    assert_int_equal(step_packed(other, p.moved, p.now, &expected), CSCD_OK);
+    assert_int_equal(contacts.waiting, 0);
+    assert_int_equal(contacts.count, expected.count);
+    assert_memory_equal(contacts.items, expected.items, expected.count * sizeof *expected.items);
+    cscd_detector_destroy(other);
+    end_panels();
+}
+
+/* ---- seams ------------------------------------------------------------------------------------------------- */
+
+static void see_positions(void) {
+    cscd_contacts contacts;
+    assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+    assert_int_equal(contacts.count, 0);
+}
+
+/* The second vertex is sewn to nothing, and touches what the first one is sewn to, and its neighbours there. */
+static void a_sewn_vertex_tears(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = p.seams[0];
+    options.seam_count = PANEL;
+    begin_panels(&options);
+    see_positions();
+    change_panels();
+    uint32_t seams[PANEL][2];
+    for (uint32_t v = 0; v < PANEL; v++) {
+        seams[v][0] = v;
+        seams[v][1] = TORN_PANEL + v;
+    }
+    options.seams = seams[0];
+    expect_waiting(new_detector(&options));
+}
+
+/* ---- uncovered before the change, and not seen since ------------------------------------------------------- */
+
+static void opened_seams_are_remembered(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = p.seams[0];
+    options.seam_count = PANEL;
+    begin_panels(&options);
+    see_positions();
+    assert_int_equal(cscd_detector_set_seams(p.detector, NULL, 0), CSCD_OK);
+    change_panels();
+    expect_waiting(new_detector(NULL));
+}
+
+static void ignored_pairs_are_remembered(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignored = p.ignored[0];
+    options.ignored_count = TRIANGLES * TRIANGLES;
+    begin_panels(&options);
+    see_positions();
+    assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
+    change_panels();
+    expect_waiting(new_detector(NULL));
+}
+
+static void rules_are_remembered(void **state) {
+    (void)state;
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_object_rule rules[3];
+    for (int i = 0; i < 3; i++) rules[i] = cscd_object_rule_default();
+    rules[1].category = 2;
+    rules[2].mask = ~(uint64_t)2;
+    options.rules = rules;
+    options.rule_count = 3;
+    begin_panels(&options);
+    see_positions();
+    assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
+    change_panels();
+    expect_waiting(new_detector(NULL));
+}
+
+/* ---- ignored pairs whose triangles change their order ------------------------------------------------------ */
+
+static void reversed_triangles_stay_ignored(void **state) {
+    (void)state;
+    enum { BOTH = 2 * TRIANGLES };
+    uint32_t triangles[2][BOTH][3], origins[BOTH];
+    cscd_detector_options options = cscd_detector_defaults();
+    cscd_mesh_change *change = NULL;
+    cscd_contacts contacts;
+    cscd_intersections crossing;
+    begin_panels(NULL);
+    for (uint32_t t = 0; t < BOTH; t++) {
+        origins[t] = BOTH - 1 - t;
+        for (uint32_t k = 0; k < 3; k++)
+            triangles[0][t][k] = triangles[1][BOTH - 1 - t][k] =
+                p.triangles[0][t % TRIANGLES * 3 + k] + (t < TRIANGLES ? 0 : PANEL);
+    }
+    for (uint32_t i = 0; i < TRIANGLES * TRIANGLES; i++) {
+        p.ignored[i][0] = i / TRIANGLES;
+        p.ignored[i][1] = TRIANGLES + i % TRIANGLES;
+    }
+    const cscd_object_desc before = cscd_object_of_triangles(2 * PANEL, BOTH, triangles[0][0]);
+    const cscd_object_desc after = cscd_object_of_triangles(2 * PANEL, BOTH, triangles[1][0]);
+    const cscd_object_change reversed = {.object = 0, .desc = &after, .triangle_origins = origins};
+    cscd_mesh *mesh = NULL;
+    cscd_detector *detector = NULL;
+    options.ignored = p.ignored[0];
+    options.ignored_count = TRIANGLES * TRIANGLES;
+    assert_int_equal(cscd_mesh_create(p.context, &before, 1, &mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(mesh, NULL, &options, &detector), CSCD_OK);
+    assert_int_equal(cscd_mesh_change_create(p.context, mesh, &reversed, 1, &change), CSCD_OK);
+    assert_int_equal(cscd_detector_change_mesh(detector, change), CSCD_OK);
+    assert_int_equal(step_packed(detector, p.x0 + 9, p.x0 + 9, &contacts), CSCD_OK);
+    assert_true(contacts.count == 0 && contacts.waiting == 0);
+    assert_int_equal(check_packed(detector, p.x0 + 9, &crossing), CSCD_OK);
+    assert_true(crossing.count == 0 && crossing.waiting == 0);
+    cscd_detector_destroy(detector);
+    cscd_mesh_change_destroy(change);
+    cscd_mesh_destroy(mesh);
+    end_panels();
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sewn_vertex_tears),
+        cmocka_unit_test(opened_seams_are_remembered),
+        cmocka_unit_test(ignored_pairs_are_remembered),
+        cmocka_unit_test(rules_are_remembered),
+        cmocka_unit_test(reversed_triangles_stay_ignored),
+    };
+    return cmocka_run_group_tests_name("change_mesh_waiting", tests, NULL, NULL);
+}
