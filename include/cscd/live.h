@@ -83,7 +83,8 @@ CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd
  *   pairs         a seam joins what has become of its vertices: of vertices that came apart, the first. A pair of
  *                 ignored triangles becomes all pairs of triangles that came from the two. Pairs that wait go on to
  *                 wait, and so do neighbours that the change parts: features of vertices that were one vertex, or one
- *                 seam, unless they are apart at the first positions that the detector is given then
+ *                 seam, unless they are apart at the first positions that the detector is given then. Pairs of
+ *                 obstacles of which one becomes free count as uncovered, as by a change of rules
  *   rules         each object keeps its rule; a new one gets cscd_object_rule_default
  *   rest          edges keep the lengths of their origins; for all others the mollifier's threshold is 0 until
  *                 cscd_detector_set_rest

@@ -20,6 +20,12 @@ typedef struct object_set {
     uint32_t first, last;        /* the least and the greatest object */
 } object_set;
 
+/* Do sets of one object say the same of it? */
+static inline bool object_sets_are_alike(const object_set *a, const object_set *b) {
+    return a->categories == b->categories && a->masks == b->masks && a->kinds == b->kinds &&
+           a->kinds_sought == b->kinds_sought && a->self == b->self;
+}
+
 static inline object_set object_sets_join(const object_set *a, const object_set *b) {
     return (object_set){.categories = a->categories | b->categories,
                         .masks = a->masks | b->masks,

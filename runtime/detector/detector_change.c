@@ -122,9 +122,10 @@ static cscd_status move_rules(const detector_move *m) {
 static cscd_status move_parts(const detector_move *m) {
     const cscd_detector *from = m->from;
     cscd_detector *d = m->to;
+    const left_out_before before = {from->mesh, &from->exclusions, &from->pair_rules};
     cscd_status status = exclusions_move(&from->exclusions, d->mesh, m->change, &d->exclusions);
     if (status == CSCD_OK)
-        status = waiting_pairs_move(&from->waiting, &from->exclusions, d->mesh, m->change, &d->waiting);
+        status = waiting_pairs_move(&from->waiting, &before, d->mesh, m->change, &d->waiting);
     if (status == CSCD_OK) status = move_space(m);
     if (status == CSCD_OK) status = move_culling(m);
     if (status == CSCD_OK) status = start_states_move(&from->starts, d->mesh, m->change, &d->starts);

@@ -65,15 +65,22 @@ static bool rules_uncover(const cscd_mesh *mesh, const pair_rules *before, const
     if (before->sets != NULL && now->sets != NULL) {
         differ = false;
         for (uint32_t i = 0; i < mesh->object_count; i++) {
-            const object_set *a = &before->sets[i], *b = &now->sets[i];
-            differ |= a->categories != b->categories || a->masks != b->masks ||
-                      a->kinds_sought != b->kinds_sought || a->self != b->self;
+            differ |= !object_sets_are_alike(&before->sets[i], &now->sets[i]);
         }
     } else if (now->sets != NULL) {
         for (uint32_t i = 0; i < mesh->object_count; i++)
             differ |= now->sets[i].kinds == OBJECT_ASKING_OBSTACLE;
     }
     return differ;
+}
+
+/* Makes room for what the rules of now leave out; NULL: no memory. */
+static object_set *reserve_former(cscd_detector *d) {
+    object_set *sets = pair_rules_copy_sets(d->mesh, &d->pair_rules);
+    if (sets != NULL && waiting_pairs_reserve(d->mesh, &d->waiting) == CSCD_OK) return sets;
+    context_free(d->context, sets);
+    context_out_of_memory(d->context);
+    return NULL;
 }
 
 /* Replaces the rules. What new rules of a live detector uncover may have to wait. */
@@ -83,15 +90,17 @@ static cscd_status replace_rules(cscd_detector *d, const given_rules *given, boo
     if (status != CSCD_OK) return status;
     if (all_neutral(given)) pair_rules_free(d->mesh, &rules);
     bool uncovers = live && rules_uncover(d->mesh, &d->pair_rules, &rules);
-    if (uncovers) status = waiting_pairs_reserve(d->mesh, &d->waiting);
+    object_set *former = uncovers ? reserve_former(d) : NULL;
+    if (uncovers && former == NULL) status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = detector_check_distances(d, d->options.min_separation, rules.greatest);
     if (status == CSCD_OK && d->space.bvh.mesh != NULL && !bvh_set_objects(&d->space.bvh, rules.sets))
         status = context_out_of_memory(d->context);
     if (status != CSCD_OK) {
+        context_free(d->context, former);
         pair_rules_free(d->mesh, &rules);
         return status;
     }
-    if (uncovers) waiting_pairs_uncover_objects(&d->waiting, &d->pair_rules);
+    if (uncovers) waiting_pairs_uncover_objects(d->mesh, &d->waiting, former);
     detector_take_rules(d, &rules);
     return CSCD_OK;
 }
@@ -128,7 +137,7 @@ static cscd_status replace_exclusions(cscd_detector *d, exclusions *next) {
         exclusions_free(d->context, next);
         return status;
     }
-    if (uncovers) waiting_pairs_uncover(&d->waiting, &before);
+    if (uncovers) waiting_pairs_uncover(d->mesh, &d->waiting, &before);
     exclusions_free(d->context, &before);
     d->exclusions = *next;
     return CSCD_OK;

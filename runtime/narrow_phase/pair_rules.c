@@ -152,6 +152,14 @@ cscd_status pair_rules_copy(const pair_rules *r, const cscd_mesh *mesh, pair_rul
     return CSCD_OK;
 }
 
+object_set *pair_rules_copy_sets(const cscd_mesh *mesh, const pair_rules *rules) {
+    const cscd_object_rule usual = cscd_object_rule_default();
+    object_set *sets = context_allocate(mesh->context, mesh->object_count, sizeof *sets);
+    for (uint32_t i = 0; sets != NULL && i < mesh->object_count; i++)
+        sets[i] = rules->sets != NULL ? rules->sets[i] : set_of(mesh, &usual, i);
+    return sets;
+}
+
 void pair_rules_free(const cscd_mesh *mesh, pair_rules *r) {
     context_free_all(mesh->context, list_arrays(mesh, r));
     *r = (pair_rules){.object_count = 0};

@@ -39,6 +39,9 @@ cscd_status pair_rules_create(const cscd_mesh *mesh, const given_rules *given, p
 cscd_status pair_rules_copy(const pair_rules *r, const cscd_mesh *mesh, pair_rules *out);
 void pair_rules_free(const cscd_mesh *mesh, pair_rules *rules);
 
+/* A copy of the sets alone; of default rules, if there are none. NULL: no memory. */
+object_set *pair_rules_copy_sets(const cscd_mesh *mesh, const pair_rules *rules);
+
 /* Is object a looked at with object b? They may be one object. */
 static inline bool pair_rules_look_at(const pair_rules *rules, uint32_t a, uint32_t b) {
     return object_sets_may_meet(&rules->sets[a], &rules->sets[b]);

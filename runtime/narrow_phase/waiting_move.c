@@ -231,30 +231,26 @@ typedef struct former_maker {
     const cscd_mesh_change *change; /* NULL: it is copied */
 } former_maker;
 
-static cscd_status move_rules(const pair_rules *r, const cscd_mesh *mesh, const cscd_mesh_change *change,
-                              pair_rules *out) {
-    *out = (pair_rules){.object_count = 0};
-    if (r->sets == NULL) return CSCD_OK;
-    uint32_t count = mesh->object_count;
-    cscd_object_rule *rules = context_allocate(mesh->context, count, sizeof *rules);
-    if (rules == NULL) return CSCD_OUT_OF_MEMORY;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t origin = change->objects.to_old[i];
-        rules[i] = origin != UINT32_MAX ? r->given[origin] : cscd_object_rule_default();
+/* Objects as they were; what comes was not there. */
+static object_set *move_sets_of_objects(const object_set *sets, const former_maker *m) {
+    uint32_t count = m->mesh->object_count;
+    object_set *moved = context_allocate(m->mesh->context, count, sizeof *moved);
+    for (uint32_t i = 0; moved != NULL && i < count; i++) {
+        uint32_t origin = m->change != NULL ? m->change->objects.to_old[i] : i;
+        if (origin == UINT32_MAX) continue;
+        moved[i] = sets[origin];
+        moved[i].first = moved[i].last = i;
     }
-    const given_rules given = {rules, count, r->matrix, r->class_count};
-    cscd_status status = pair_rules_create(mesh, &given, out);
-    context_free(mesh->context, rules);
-    return status;
+    return moved;
 }
 
 static cscd_status make_former(const former_maker *m, const former_exclusions *from, former_exclusions *to) {
-    to->by_rules = from->by_rules;
-    if (m->change == NULL)
-        return from->by_rules ? pair_rules_copy(&from->rules, m->mesh, &to->rules)
-                              : exclusions_copy(&from->exclusions, m->mesh, &to->exclusions);
-    return from->by_rules ? move_rules(&from->rules, m->mesh, m->change, &to->rules)
-                          : exclusions_move_former(&from->exclusions, m->mesh, m->change, &to->exclusions);
+    if (from->sets != NULL) {
+        to->sets = move_sets_of_objects(from->sets, m);
+        return to->sets != NULL ? CSCD_OK : CSCD_OUT_OF_MEMORY;
+    }
+    if (m->change == NULL) return exclusions_copy(&from->exclusions, m->mesh, &to->exclusions);
+    return exclusions_move_former(&from->exclusions, m->mesh, m->change, &to->exclusions);
 }
 
 static cscd_status make_formers(const former_maker *m, const former_exclusions *from, waiting_pairs *out) {
@@ -282,13 +278,41 @@ static cscd_status give_pairs(cscd_status status, const cscd_mesh *mesh, waiting
     return status;
 }
 
-cscd_status waiting_pairs_move(const waiting_pairs *w, const exclusions *e, const cscd_mesh *mesh,
+/* Is an object an obstacle no more? */
+static bool frees_obstacles(const cscd_mesh_change *change) {
+    for (uint32_t i = 0; i < change->objects.new_count; i++) {
+        uint32_t origin = change->objects.to_old[i];
+        if (origin != UINT32_MAX && change->old_mesh->objects[origin].obstacle &&
+            !change->mesh->objects[i].obstacle)
+            return true;
+    }
+    return false;
+}
+
+/* Then what the objects left out in the old mesh is remembered as if their rules had changed. */
+static cscd_status free_obstacles(const former_maker *m, const cscd_mesh *old, const pair_rules *rules,
+                                  waiting_pairs *out) {
+    if (!frees_obstacles(m->change)) return CSCD_OK;
+    cscd_status status = waiting_pairs_reserve(m->mesh, out);
+    object_set *before = pair_rules_copy_sets(old, rules);
+    object_set *sets = before != NULL ? move_sets_of_objects(before, m) : NULL;
+    context_free(old->context, before);
+    if (sets == NULL || status != CSCD_OK) {
+        context_free(m->mesh->context, sets);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    waiting_pairs_uncover_objects(m->mesh, out, sets);
+    return CSCD_OK;
+}
+
+cscd_status waiting_pairs_move(const waiting_pairs *w, const left_out_before *before, const cscd_mesh *mesh,
                                const cscd_mesh_change *change, waiting_pairs *out) {
     waiting_pairs moved = {.former = NULL};
     const former_maker maker = {mesh, change};
     cscd_status status = move_sets(w, mesh, change, &moved);
-    if (status == CSCD_OK) status = part_neighbours(e, mesh, change, &moved.torn);
+    if (status == CSCD_OK) status = part_neighbours(before->exclusions, mesh, change, &moved.torn);
     if (status == CSCD_OK) status = make_formers(&maker, w->former, &moved);
+    if (status == CSCD_OK) status = free_obstacles(&maker, before->mesh, before->rules, &moved);
     return give_pairs(status, mesh, &moved, out);
 }
 

@@ -5,14 +5,16 @@
 
 #include <assert.h>
 
+static void forget_former(const cscd_mesh *mesh, former_exclusions **link) {
+    former_exclusions *former = *link;
+    *link = former->next;
+    exclusions_free(mesh->context, &former->exclusions);
+    context_free(mesh->context, former->sets);
+    context_free(mesh->context, former);
+}
+
 void waiting_pairs_settled(const cscd_mesh *mesh, waiting_pairs *w) {
-    while (w->former != NULL) {
-        former_exclusions *first = w->former;
-        w->former = first->next;
-        exclusions_free(mesh->context, &first->exclusions);
-        pair_rules_free(mesh, &first->rules);
-        context_free(mesh->context, first);
-    }
+    while (w->former != NULL) forget_former(mesh, &w->former);
 }
 
 void waiting_pairs_free(const cscd_mesh *mesh, waiting_pairs *w) {
@@ -27,29 +29,59 @@ cscd_status waiting_pairs_reserve(const cscd_mesh *mesh, waiting_pairs *w) {
     return w->spare != NULL ? CSCD_OK : context_out_of_memory(mesh->context);
 }
 
-static void remember_former(waiting_pairs *w, former_exclusions former) {
+/* Does the first one leave out all that the second one does? */
+static bool covers_former(const cscd_mesh *mesh, const former_exclusions *a, const former_exclusions *b) {
+    if ((a->sets == NULL) != (b->sets == NULL)) return false;
+    if (a->sets == NULL) return !exclusions_uncover(&b->exclusions, &a->exclusions);
+    for (uint32_t i = 0; i < mesh->object_count; i++) {
+        if (!object_sets_are_alike(&a->sets[i], &b->sets[i])) return false;
+    }
+    return true;
+}
+
+static void remember_former(const cscd_mesh *mesh, waiting_pairs *w, former_exclusions former) {
     assert(w->spare != NULL);
-    former.next = w->former;
     *w->spare = former;
+    for (former_exclusions **link = &w->former; *link != NULL;) {
+        if (covers_former(mesh, w->spare, *link))
+            forget_former(mesh, link);
+        else
+            link = &(*link)->next;
+    }
+    w->spare->next = w->former;
     w->former = w->spare;
     w->spare = NULL;
 }
 
-void waiting_pairs_uncover(waiting_pairs *w, exclusions *before) {
-    remember_former(w, (former_exclusions){.exclusions = exclusions_listed(before)});
+static bool is_remembered(const cscd_mesh *mesh, const waiting_pairs *w, const former_exclusions *former) {
+    for (const former_exclusions *f = w->former; f != NULL; f = f->next) {
+        if (covers_former(mesh, f, former)) return true;
+    }
+    return false;
+}
+
+void waiting_pairs_uncover(const cscd_mesh *mesh, waiting_pairs *w, exclusions *before) {
+    const former_exclusions former = {.exclusions = exclusions_listed(before)};
+    if (is_remembered(mesh, w, &former))
+        exclusions_free(mesh->context, before);
+    else
+        remember_former(mesh, w, former);
     *before = (exclusions){.mesh = NULL};
 }
 
-void waiting_pairs_uncover_objects(waiting_pairs *w, pair_rules *before) {
-    remember_former(w, (former_exclusions){.rules = *before, .by_rules = true});
-    *before = (pair_rules){.object_count = 0};
+void waiting_pairs_uncover_objects(const cscd_mesh *mesh, waiting_pairs *w, object_set *before) {
+    const former_exclusions former = {.sets = before};
+    if (is_remembered(mesh, w, &former))
+        context_free(mesh->context, before);
+    else
+        remember_former(mesh, w, former);
 }
 
 /* ---- what was left out --------------------------------------------------------------------------------- */
 
-static bool objects_left_out(const cscd_mesh *mesh, const pair_rules *rules, const uint32_t of[2]) {
-    if (rules->sets == NULL) return mesh->objects[of[0]].obstacle && mesh->objects[of[1]].obstacle;
-    return !pair_rules_look_at(rules, of[0], of[1]);
+static bool objects_left_out(const object_set *sets, const uint32_t of[2]) {
+    const object_set *a = &sets[of[0]], *b = &sets[of[1]];
+    return a->kinds != 0 && b->kinds != 0 && !object_sets_may_meet(a, b);
 }
 
 bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd_contact_kind kind,
@@ -57,8 +89,8 @@ bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd
     uint32_t objects[2];
     mesh_objects_of_pair(mesh, kind, a, b, objects);
     for (const former_exclusions *f = w->former; f != NULL; f = f->next) {
-        if (f->by_rules) {
-            if (objects_left_out(mesh, &f->rules, objects)) return true;
+        if (f->sets != NULL) {
+            if (objects_left_out(f->sets, objects)) return true;
         } else if (kind == CSCD_CONTACT_TT ? exclusions_cover_triangles(&f->exclusions, a, b, positions)
                                            : exclusions_cover_features(&f->exclusions, kind, a, b)) {
             return true;

@@ -4,12 +4,12 @@
 #include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/pair_rules.h"
 
-/* What was left out before a change: by seams and ignored pairs, or by the rules for objects. */
+/* What was left out before a change: by seams and ignored pairs, or among objects. */
 typedef struct former_exclusions {
     struct former_exclusions *next;
     exclusions exclusions;
-    pair_rules rules; /* without sets: all objects were looked at, but obstacles with each other */
-    bool by_rules;
+    object_set
+        *sets; /* one for each object, as it was; without kinds: it was not there. NULL: by the others */
 } former_exclusions;
 
 typedef struct waiting_pairs {
@@ -32,9 +32,10 @@ static inline size_t waiting_features(const waiting_pairs *w) {
 cscd_status waiting_pairs_reserve(const cscd_mesh *mesh, waiting_pairs *w);
 
 /* Remembers what has been left out until now, and owns it from then on: the seams and ignored pairs of *before, or
- * the rules. Names are in the numbering of the present mesh: vertices of one name counted as one. Room has been made. */
-void waiting_pairs_uncover(waiting_pairs *w, exclusions *before);
-void waiting_pairs_uncover_objects(waiting_pairs *w, pair_rules *before);
+ * the sets of objects. Names are in the numbering of the present mesh: vertices of one name counted as one. Room has
+ * been made. What an earlier change leaves out as well is not remembered twice, so changes to and fro take no memory. */
+void waiting_pairs_uncover(const cscd_mesh *mesh, waiting_pairs *w, exclusions *before);
+void waiting_pairs_uncover_objects(const cscd_mesh *mesh, waiting_pairs *w, object_set *before);
 
 /* Did any of the changes uncover this pair of features, or of triangles that intersect at the positions? */
 bool waiting_pairs_uncovered(const cscd_mesh *mesh, const waiting_pairs *w, cscd_contact_kind kind,

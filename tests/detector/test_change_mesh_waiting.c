@@ -56,7 +56,8 @@ static void place_vertices(void) {
     memcpy(p.now + 3 * (NEW_VERTICES - 1), far[3], sizeof far[3]);
 }
 
-static void begin_panels(const cscd_detector_options *options) {
+/* obstacles: the panels are. */
+static void begin_panels(const cscd_detector_options *options, bool obstacles) {
     const uint32_t apart[3] = {0, 1, 2};
     list_triangles();
     place_vertices();
@@ -71,6 +72,7 @@ static void begin_panels(const cscd_detector_options *options) {
     cscd_object_desc descs[3] = {cscd_object_of_triangles(3, 1, apart),
                                  cscd_object_of_triangles(PANEL, TRIANGLES, p.triangles[0]),
                                  cscd_object_of_triangles(PANEL, TRIANGLES, p.triangles[0])};
+    descs[1].obstacle = descs[2].obstacle = obstacles;
     p.counter = counting_allocator_start();
     cscd_context_options context_options = cscd_context_defaults();
     context_options.allocator = counting_allocator_interface(&p.counter);
@@ -157,7 +159,7 @@ static void a_sewn_vertex_tears(void **state) {
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
-    begin_panels(&options);
+    begin_panels(&options, false);
     see_positions();
     change_panels();
     uint32_t seams[PANEL][2];
@@ -176,7 +178,7 @@ static void opened_seams_are_remembered(void **state) {
     cscd_detector_options options = cscd_detector_defaults();
     options.seams = p.seams[0];
     options.seam_count = PANEL;
-    begin_panels(&options);
+    begin_panels(&options, false);
     see_positions();
     assert_int_equal(cscd_detector_set_seams(p.detector, NULL, 0), CSCD_OK);
     change_panels();
@@ -188,7 +190,7 @@ static void ignored_pairs_are_remembered(void **state) {
     cscd_detector_options options = cscd_detector_defaults();
     options.ignored = p.ignored[0];
     options.ignored_count = TRIANGLES * TRIANGLES;
-    begin_panels(&options);
+    begin_panels(&options, false);
     see_positions();
     assert_int_equal(cscd_detector_set_ignored(p.detector, NULL, 0), CSCD_OK);
     change_panels();
@@ -204,11 +206,28 @@ static void rules_are_remembered(void **state) {
     rules[2].mask = ~(uint64_t)2;
     options.rules = rules;
     options.rule_count = 3;
-    begin_panels(&options);
+    begin_panels(&options, false);
     see_positions();
     assert_int_equal(cscd_detector_set_rules(p.detector, NULL, 0, NULL, 0), CSCD_OK);
     change_panels();
     expect_waiting(new_detector(NULL));
+}
+
+/* The first panel is an obstacle no more. */
+static void freed_obstacles_wait(void **state) {
+    (void)state;
+    cscd_object_rule rules[3];
+    cscd_detector_options options = cscd_detector_defaults();
+    for (int i = 0; i < 3; i++) rules[i] = cscd_object_rule_default();
+    rules[0].category = 2;
+    options.rules = rules;
+    options.rule_count = 3;
+    for (int with_rules = 0; with_rules < 2; with_rules++) {
+        begin_panels(with_rules == 1 ? &options : NULL, true);
+        see_positions();
+        change_panels();
+        expect_waiting(new_detector(NULL));
+    }
 }
 
 /* ---- ignored pairs whose triangles change their order ------------------------------------------------------ */
@@ -221,7 +240,7 @@ static void reversed_triangles_stay_ignored(void **state) {
     cscd_mesh_change *change = NULL;
     cscd_contacts contacts;
     cscd_intersections crossing;
-    begin_panels(NULL);
+    begin_panels(NULL, false);
     for (uint32_t t = 0; t < BOTH; t++) {
         origins[t] = BOTH - 1 - t;
         for (uint32_t k = 0; k < 3; k++)
@@ -255,11 +274,9 @@ static void reversed_triangles_stay_ignored(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sewn_vertex_tears),
-        cmocka_unit_test(opened_seams_are_remembered),
-        cmocka_unit_test(ignored_pairs_are_remembered),
-        cmocka_unit_test(rules_are_remembered),
-        cmocka_unit_test(reversed_triangles_stay_ignored),
+        cmocka_unit_test(a_sewn_vertex_tears),          cmocka_unit_test(opened_seams_are_remembered),
+        cmocka_unit_test(ignored_pairs_are_remembered), cmocka_unit_test(rules_are_remembered),
+        cmocka_unit_test(freed_obstacles_wait),         cmocka_unit_test(reversed_triangles_stay_ignored),
     };
     return cmocka_run_group_tests_name("change_mesh_waiting", tests, NULL, NULL);
 }

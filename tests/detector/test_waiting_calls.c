@@ -118,12 +118,60 @@ static void steps_with_waiting_pairs_allocate_nothing(void **state) {
     panels_end(&p);
 }
 
+/* The vertices of some rows are sewn. */
+static void sew_rows(const equal_panels *p, uint32_t begin, uint32_t end) {
+    assert_int_equal(
+        cscd_detector_set_seams(p->detector, &p->seams[begin * SIDE][0], (size_t)(end - begin) * SIDE),
+        CSCD_OK);
+}
+
+static void set_all_rules(const equal_panels *p, bool apart) {
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    if (apart) rules[0].mask = 0;
+    assert_int_equal(cscd_detector_set_rules(p->detector, apart ? rules : NULL, apart ? 2 : 0, NULL, 0),
+                     CSCD_OK);
+}
+
+/* The seam opens row by row, closes so with gaps between, opens in turns; and panels are hidden in turns. */
+static void change_to_and_fro(const equal_panels *p, int way, uint32_t i) {
+    if (way == 0) sew_rows(p, 0, SIDE - 1 - i % SIDE);
+    if (way == 1) sew_rows(p, 0, i % SIDE + 1);
+    if (way == 2) sew_rows(p, 0, 3);
+    if (way == 2) sew_rows(p, 2, SIDE);
+    if (way == 3) set_all_rules(p, true);
+    if (way > 0) panels_open(p);
+    if (way == 3) set_all_rules(p, false);
+}
+
+/* What is uncovered again and again, while no positions are seen, is remembered once. */
+static void changes_to_and_fro_take_no_memory(void **state) {
+    (void)state;
+    static equal_panels p;
+    cscd_contacts contacts;
+    for (int way = 0; way < 4; way++) {
+        size_t live = 0;
+        panels_begin(&p, 0.0, 1, NULL);
+        panels_part(&p, 0.3, p.x1);
+        if (way > 0) panels_open(&p);
+        assert_int_equal(step_packed(p.detector, p.x1, p.x1, &contacts), CSCD_OK);
+        for (uint32_t i = 0; i < 3 * SIDE; i++) {
+            change_to_and_fro(&p, way, i);
+            if (i == 1) live = p.counter.live;
+            assert_true(i < 1 || p.counter.live <= live + 1); /* room for one more */
+        }
+        assert_int_equal(step_packed(p.detector, p.x0, p.x0, &contacts), CSCD_OK);
+        assert_true(contacts.count == 0 && contacts.waiting == p.touching);
+        panels_end(&p);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mistakes_change_nothing),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(a_cancelled_call_can_be_repeated),
         cmocka_unit_test(steps_with_waiting_pairs_allocate_nothing),
+        cmocka_unit_test(changes_to_and_fro_take_no_memory),
     };
     return cmocka_run_group_tests_name("waiting_calls", tests, NULL, NULL);
 }

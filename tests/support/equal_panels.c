@@ -67,7 +67,7 @@ void panels_end(equal_panels *p) {
     assert_int_equal(p->counter.live, 0);
 }
 
-void panels_open(equal_panels *p) {
+void panels_open(const equal_panels *p) {
     assert_int_equal(cscd_detector_set_seams(p->detector, NULL, 0), CSCD_OK);
 }
 

@@ -23,7 +23,7 @@ void panels_begin(equal_panels *p, double min_separation, uint32_t threads, int 
 void panels_end(equal_panels *p);
 
 /* Takes all seams away. */
-void panels_open(equal_panels *p);
+void panels_open(const equal_panels *p);
 
 /* Writes positions in which the first panel lies higher than the second one. */
 void panels_part(const equal_panels *p, double gap, double *x);

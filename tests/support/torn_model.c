@@ -1,6 +1,7 @@
 /* Which pairs wait after a mesh has torn, told by brute force over all pairs of features. */
 #include "tests/support/torn_model.h"
 
+#include "src/mesh/mesh_change.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test.h"
 
@@ -21,8 +22,15 @@ typedef struct model_list {
 /* Pairs that wait, and those that a change has parted since positions were last seen. */
 static model_list waiting, parted, scratch;
 
+/* Objects that were obstacles before a change since positions were last seen. */
+enum { OBJECTS_MAX = 16, FORMER_MAX = 16 };
+
+static bool former[FORMER_MAX][OBJECTS_MAX];
+static size_t former_count;
+static const cscd_mesh *mesh_now;
+
 void torn_model_begin(void) {
-    waiting.count = parted.count = 0;
+    waiting.count = parted.count = former_count = 0;
 }
 
 static void add_pair(model_list *list, cscd_contact_kind kind, uint32_t a, uint32_t b) {
@@ -129,9 +137,25 @@ static void part_kind(const cscd_mesh *mesh, cscd_contact_kind kind, const int64
     }
 }
 
+static void follow_obstacles(const cscd_mesh_change *made) {
+    const uint32_t *origins = cscd_mesh_change_object_origins(made, NULL);
+    assert_true(former_count < FORMER_MAX && mesh_now->object_count <= OBJECTS_MAX);
+    for (uint32_t i = 0; i < made->old_mesh->object_count; i++)
+        former[former_count][i] = made->old_mesh->objects[i].obstacle;
+    former_count++;
+    for (size_t k = 0; k < former_count; k++) {
+        bool before[OBJECTS_MAX];
+        memcpy(before, former[k], sizeof before);
+        for (uint32_t i = 0; i < mesh_now->object_count; i++)
+            former[k][i] = origins[i] != UINT32_MAX && before[origins[i]];
+    }
+}
+
 void torn_model_change(const cscd_mesh_change *made, const uint32_t *labels) {
     static int64_t names[SCENE_VERTICES_MAX];
 
+    mesh_now = cscd_mesh_change_mesh(made);
+    follow_obstacles(made);
     follow_pairs(made, &waiting);
     follow_pairs(made, &parted);
     name_vertices(made, labels, names);
@@ -140,8 +164,19 @@ void torn_model_change(const cscd_mesh_change *made, const uint32_t *labels) {
     part_kind(cscd_mesh_change_mesh(made), CSCD_CONTACT_TT, names);
 }
 
+/* A pair of obstacles that are looked at now. */
+static bool was_of_obstacles(cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    uint32_t of[2];
+    if (former_count > 0) mesh_objects_of_pair(mesh_now, kind, a, b, of);
+    for (size_t k = 0; k < former_count; k++) {
+        if (former[k][of[0]] && former[k][of[1]]) return true;
+    }
+    return false;
+}
+
 static void keep_pair(cscd_contact_kind kind, uint32_t a, uint32_t b) {
-    if (has_pair(&waiting, kind, a, b) || has_pair(&parted, kind, a, b)) add_pair(&scratch, kind, a, b);
+    if (has_pair(&waiting, kind, a, b) || has_pair(&parted, kind, a, b) || was_of_obstacles(kind, a, b))
+        add_pair(&scratch, kind, a, b);
 }
 
 void torn_model_settle(const cscd_contacts *at_rest, const cscd_intersections *crossing) {
@@ -153,7 +188,7 @@ void torn_model_settle(const cscd_contacts *at_rest, const cscd_intersections *c
         keep_pair(CSCD_CONTACT_TT, crossing->items[i].a, crossing->items[i].b);
     memcpy(waiting.items, scratch.items, scratch.count * sizeof *scratch.items);
     waiting.count = scratch.count;
-    parted.count = 0;
+    parted.count = former_count = 0;
 }
 
 bool torn_model_waits(cscd_contact_kind kind, uint32_t a, uint32_t b) {
