@@ -13,6 +13,10 @@ typedef struct orphan_search {
     growing_list vf, ee;
     size_t most;
     bool out_of_memory;
+
+    /* In a mesh that was made from another one: pairs of features that are what they were are known. */
+    const cscd_mesh_change *change; /* NULL: nothing is known */
+    uint8_t *marks;                 /* per vertex, of objects that have changed */
 } orphan_search;
 
 /* Does every triangle at vertex v share a vertex with triangle f? */
@@ -60,6 +64,27 @@ static void add_pair(orphan_search *f, growing_list *list, uint32_t a, uint32_t 
     list->items[list->count++][1] = b;
 }
 
+/* Vertices whose triangles are not what they were, and those that have a triangle in common with one. */
+enum { VERTEX_CHANGED = 1, VERTEX_NEAR = 2 };
+
+static bool vertex_is_same(const orphan_search *f, uint32_t vertex) {
+    return (f->marks[vertex] & VERTEX_CHANGED) == 0;
+}
+
+/* Its triangles are at both of its ends. */
+static bool edge_is_same(const orphan_search *f, uint32_t edge) {
+    const uint32_t *ends = f->mesh->edges[edge];
+    return vertex_is_same(f, ends[0]) || vertex_is_same(f, ends[1]);
+}
+
+static bool vf_is_known(const orphan_search *f, uint32_t v, uint32_t t) {
+    return f->change != NULL && vertex_is_same(f, v) && mesh_change_keeps(f->change, t);
+}
+
+static bool ee_is_known(const orphan_search *f, uint32_t a, uint32_t b) {
+    return f->change != NULL && edge_is_same(f, a) && edge_is_same(f, b);
+}
+
 /* Pairs a feature whose star begins with t with a feature of triangle u; for edges u is the first of the
  * other star, too. So each pair is looked at once. */
 static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
@@ -67,7 +92,8 @@ static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
     for (int i = 0; i < 3; i++) {
         uint32_t v = mesh->triangles[t][i];
         bool first = mesh->vertex_stars[mesh->vertex_star_offsets[v]] == t;
-        if (first && !triangle_contains(mesh->triangles[u], v) && is_orphan_vertex(mesh, v, u))
+        if (first && !vf_is_known(f, v, u) && !triangle_contains(mesh->triangles[u], v) &&
+            is_orphan_vertex(mesh, v, u))
             add_pair(f, &f->vf, v, u);
     }
     for (int i = 0; t < u && i < 3; i++) {
@@ -75,7 +101,7 @@ static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
         if (mesh->edge_stars[mesh->edge_star_offsets[a]] != t) continue;
         for (int j = 0; j < 3; j++) {
             uint32_t b = mesh->triangle_edges[u][j];
-            if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u) continue;
+            if (mesh->edge_stars[mesh->edge_star_offsets[b]] != u || ee_is_known(f, a, b)) continue;
             if (!edges_share_vertex(mesh->edges[a], mesh->edges[b]) && are_orphan_edges(mesh, a, b))
                 add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
         }
@@ -110,35 +136,82 @@ cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *
 
 /* ---- a mesh that was made from another one --------------------------------------------------------------- */
 
-/* Both features are of one component. */
-static void move_pairs(orphan_search *f, const orphan_pairs *pairs, const cscd_mesh_change *change) {
-    const cscd_mesh *old = change->old_mesh;
-    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++) {
-        uint32_t v = pairs->vf[i][0], t = pairs->vf[i][1];
-        if (change->components.to_new[old->triangle_components[t]] != UINT32_MAX)
-            add_pair(f, &f->vf, change->vertices.to_new[v], change->triangles.to_new[t]);
+static uint32_t star_size(const cscd_mesh *mesh, uint32_t vertex) {
+    return mesh->vertex_star_offsets[vertex + 1] - mesh->vertex_star_offsets[vertex];
+}
+
+/* An obstacle has no pairs, so nothing is known of an object that was one. */
+static bool was_obstacle(const cscd_mesh_change *change, const object_range *range) {
+    uint32_t origin = change->objects.to_old[cscd_mesh_vertex_object(change->mesh, range->vertex)];
+    return origin != UINT32_MAX && change->old_mesh->objects[origin].obstacle;
+}
+
+/* A vertex is what it was if all its triangles are, and if it has as many. */
+static void mark_changed(orphan_search *f, const object_range *range) {
+    const cscd_mesh_change *change = f->change;
+    bool all = was_obstacle(change, range);
+    for (uint32_t v = range->vertex; v < range->vertex + range->vertex_count; v++) {
+        uint32_t origin = change->vertices.to_old[v];
+        bool same = !all && origin != UINT32_MAX && change->vertices.to_new[origin] == v &&
+                    star_size(change->old_mesh, origin) == star_size(f->mesh, v);
+        if (!same) f->marks[v] |= VERTEX_CHANGED;
     }
-    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++) {
-        uint32_t a = pairs->ee[i][0], b = pairs->ee[i][1];
-        uint32_t t = old->edge_stars[old->edge_star_offsets[a]];
-        if (change->components.to_new[old->triangle_components[t]] == UINT32_MAX) continue;
-        a = change->edges.to_new[a];
-        b = change->edges.to_new[b];
+    for (uint32_t t = range->triangle; t < range->triangle + range->triangle_count; t++) {
+        if (mesh_change_keeps(change, t)) continue;
+        for (int i = 0; i < 3; i++) f->marks[f->mesh->triangles[t][i]] |= VERTEX_CHANGED;
+    }
+}
+
+static uint8_t marks_of(const orphan_search *f, uint32_t t) {
+    const uint32_t *v = f->mesh->triangles[t];
+    return f->marks[v[0]] | f->marks[v[1]] | f->marks[v[2]];
+}
+
+/* A pair that is not known has a feature at changed vertices only, or a triangle whose vertices have changed. So one
+ * of its two adjacent triangles has a changed vertex, and both have a vertex that is near. */
+static void find_in_object(orphan_search *f, const object_range *range) {
+    uint32_t end = range->triangle + range->triangle_count;
+    mark_changed(f, range);
+    for (uint32_t t = range->triangle; t < end; t++) {
+        for (int i = 0; (marks_of(f, t) & VERTEX_CHANGED) != 0 && i < 3; i++)
+            f->marks[f->mesh->triangles[t][i]] |= VERTEX_NEAR;
+    }
+    for (uint32_t t = range->triangle; t < end && !has_enough(f); t++) {
+        if ((marks_of(f, t) & VERTEX_NEAR) != 0 && !triangle_of_obstacle(f->mesh, t)) find_around(f, t);
+    }
+}
+
+static void keep_vf(orphan_search *f, uint32_t v, uint32_t t) {
+    if (v != UINT32_MAX && t != UINT32_MAX && vf_is_known(f, v, t) && !triangle_of_obstacle(f->mesh, t))
+        add_pair(f, &f->vf, v, t);
+}
+
+static void keep_ee(orphan_search *f, uint32_t a, uint32_t b) {
+    if (a == UINT32_MAX || b == UINT32_MAX || !ee_is_known(f, a, b)) return;
+    if (!triangle_of_obstacle(f->mesh, f->mesh->edge_stars[f->mesh->edge_star_offsets[a]]))
         add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
-    }
+}
+
+static void keep_known(orphan_search *f, const orphan_pairs *pairs) {
+    const number_map *edges = &f->change->edges;
+    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++)
+        keep_vf(f, f->change->vertices.to_new[pairs->vf[i][0]], f->change->triangles.to_new[pairs->vf[i][1]]);
+    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++)
+        keep_ee(f, edges->to_new[pairs->ee[i][0]], edges->to_new[pairs->ee[i][1]]);
 }
 
 cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
                               const cscd_mesh_change *change, orphan_pairs *out, bool *too_many) {
-    orphan_search f = {.mesh = mesh, .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE};
-    move_pairs(&f, pairs, change);
+    orphan_search f = {.mesh = mesh,
+                       .most = (size_t)mesh->triangle_count * PAIRS_PER_TRIANGLE,
+                       .change = change,
+                       .marks = context_allocate(mesh->context, mesh->vertex_count, sizeof *f.marks)};
+    if (f.marks == NULL) return CSCD_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < change->described_count; i++) {
-        const object_range *range = &change->described[i];
-        for (uint32_t t = range->triangle; t < range->triangle + range->triangle_count; t++) {
-            bool touched = change->components.to_old[mesh->triangle_components[t]] == UINT32_MAX;
-            if (touched && !has_enough(&f) && !triangle_of_obstacle(mesh, t)) find_around(&f, t);
-        }
+        if (change->described[i].triangle_count > 0) find_in_object(&f, &change->described[i]);
     }
+    keep_known(&f, pairs);
+    context_free(mesh->context, f.marks);
     return end_search(&f, out, too_many);
 }
 

@@ -18,7 +18,8 @@ static inline bool triangles_share_vertex(const uint32_t a[3], const uint32_t b[
 /* *too_many is set when there are more than eight per triangle, as in a fan; *out is empty then. */
 cscd_status orphan_pairs_create(const cscd_mesh *mesh, orphan_pairs *out, bool *too_many);
 
-/* Those of a mesh that was made from another one, of untouched components from `pairs`; mesh: the new one. */
+/* Those of a mesh that was made from another one, whose pairs are given: only what has changed is looked at. mesh: the new
+ * one. On failure *out holds nothing. */
 cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,
                               const cscd_mesh_change *change, orphan_pairs *out, bool *too_many);
 

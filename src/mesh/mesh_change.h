@@ -32,6 +32,19 @@ struct cscd_mesh_change {
     uint32_t described_count;
 };
 
+/* Is the triangle of the new mesh, and are its corners, all that has become of one old triangle and of its corners? */
+static inline bool mesh_change_keeps(const cscd_mesh_change *change, uint32_t triangle) {
+    uint32_t origin = change->triangles.to_old[triangle];
+    if (origin == UINT32_MAX || change->triangles.to_new[origin] != triangle) return false;
+    for (int i = 0; i < 3; i++) {
+        uint32_t corner = change->mesh->triangles[triangle][i];
+        uint32_t before = change->old_mesh->triangles[origin][i];
+        if (change->vertices.to_old[corner] != before || change->vertices.to_new[before] != corner)
+            return false;
+    }
+    return true;
+}
+
 /* An object of a mesh that becomes the next object of another one. */
 typedef struct object_source {
     const cscd_mesh *mesh;

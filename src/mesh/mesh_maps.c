@@ -132,18 +132,6 @@ static void map_edges(cscd_mesh_change *change, const object_range *old, const o
 
 /* ---- components of such objects ----------------------------------------------------------------------- */
 
-/* Is the triangle, and are its corners, all that has become of one old triangle and of its corners? */
-static bool is_same_triangle(const cscd_mesh_change *change, uint32_t triangle, uint32_t origin) {
-    if (origin == UINT32_MAX || change->triangles.to_new[origin] != triangle) return false;
-    for (int i = 0; i < 3; i++) {
-        uint32_t corner = change->mesh->triangles[triangle][i],
-                 before = change->old_mesh->triangles[origin][i];
-        if (change->vertices.to_old[corner] != before || change->vertices.to_new[before] != corner)
-            return false;
-    }
-    return true;
-}
-
 /* Each old component is a candidate for the new one of its first triangle. */
 static void propose_components(cscd_mesh_change *change, const object_range *now) {
     for (uint32_t t = now->triangle; t < now->triangle + now->triangle_count; t++) {
@@ -159,7 +147,7 @@ static void refuse_components(cscd_mesh_change *change, const object_range *now)
     for (uint32_t t = now->triangle; t < now->triangle + now->triangle_count; t++) {
         uint32_t component = change->mesh->triangle_components[t], origin = change->triangles.to_old[t];
         if (proposed[component] == UINT32_MAX) continue;
-        bool same = is_same_triangle(change, t, origin) &&
+        bool same = mesh_change_keeps(change, t) &&
                     change->old_mesh->triangle_components[origin] == proposed[component];
         if (!same) proposed[component] = UINT32_MAX;
     }
