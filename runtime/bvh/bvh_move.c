@@ -86,35 +86,61 @@ static bool allocate_places(bvh *out) {
 
 /* ---- copies ------------------------------------------------------------------------------------------- */
 
-static void move_leaf(const bvh *f, const bvh_move *move, uint32_t from, uint32_t to, uint32_t records,
-                      bvh *out) {
-    const bvh_leaf *old = &f->leaves[from];
-    bvh_leaf *leaf = &out->leaves[to];
-    uint32_t used = f->leaf_flags[from].used;
-    for (int i = 0; i < 3; i++) {
-        for (int lane = 0; lane < LANES; lane++) leaf->corners[i][lane] = old->corners[i][lane] + records;
-    }
-    for (uint32_t lane = 0; lane < LANES; lane++) {
-        bool filled = (used >> lane & 1) != 0;
-        uint32_t triangle = filled ? move->triangles[old->triangles[lane]] : UINT32_MAX;
-        leaf->triangles[lane] = triangle;
-        if (filled) out->slots[triangle] = to * LANES + lane;
-    }
-    out->leaf_flags[to] = (lane_flags){.used = (uint8_t)used};
+/* Lanes that are not used stay so. */
+static void shift_triangles(const uint32_t *from, uint32_t by, uint32_t *to) {
+    for (int lane = 0; lane < LANES; lane++)
+        to[lane] = from[lane] != UINT32_MAX ? from[lane] + by : UINT32_MAX;
 }
 
+static void map_triangles(const uint32_t *from, const uint32_t *map, uint32_t *to) {
+    for (int lane = 0; lane < LANES; lane++)
+        to[lane] = from[lane] != UINT32_MAX ? map[from[lane]] : UINT32_MAX;
+}
+
+/* run: that of its triangles; NULL: their object has changed. */
+static void move_leaf(const bvh_leaf *from, const bvh_move *move, const object_run *run, uint32_t records,
+                      bvh_leaf *to) {
+    for (int i = 0; i < 3; i++) {
+        for (int lane = 0; lane < LANES; lane++) to->corners[i][lane] = from->corners[i][lane] + records;
+    }
+    if (run != NULL)
+        shift_triangles(from->triangles, run->to.triangle - run->from.triangle, to->triangles);
+    else
+        map_triangles(from->triangles, move->change->triangles.to_new, to->triangles);
+}
+
+static void move_leaves(const bvh *f, const bvh_move *move, const bvh_tree *from, const object_run *run,
+                        const bvh_tree *to, bvh *out) {
+    uint32_t records = to->first_record - from->first_record;
+    for (uint32_t i = 0; i < to->leaf_count; i++) {
+        bvh_leaf *leaf = &out->leaves[to->first_leaf + i];
+        uint8_t used = f->leaf_flags[from->first_leaf + i].used;
+        move_leaf(&f->leaves[from->first_leaf + i], move, run, records, leaf);
+        for (uint32_t lane = 0; lane < LANES && (used >> lane & 1) != 0; lane++)
+            out->slots[leaf->triangles[lane]] = (to->first_leaf + i) * LANES + lane;
+        out->leaf_flags[to->first_leaf + i] = (lane_flags){.used = used};
+    }
+}
+
+static void move_records(const bvh *f, const bvh_move *move, const bvh_tree *from, const object_run *run,
+                         const bvh_tree *to, bvh *out) {
+    const uint32_t *vertices = f->record_vertices + from->first_record;
+    uint32_t *moved = out->record_vertices + to->first_record;
+    if (run != NULL) copy_shifted(vertices, to->record_count, run->to.vertex - run->from.vertex, moved);
+    for (uint32_t i = 0; run == NULL && i < to->record_count; i++)
+        moved[i] = move->change->vertices.to_new[vertices[i]];
+    memcpy(out->record_weights + to->first_record, f->record_weights + from->first_record,
+           to->record_count * sizeof *out->record_weights);
+}
+
+/* All triangles of a tree that is kept are of one component. */
 static void move_tree(const bvh *f, const bvh_move *move, const bvh_tree *from, uint32_t index, bvh *out) {
     const bvh_tree *to = &out->trees[index];
     for (uint32_t i = 0; i < to->leaf_count; i++) out->leaf_trees[to->first_leaf + i] = index;
     if (from == NULL || from->missing > 0) return;
-    uint32_t records = to->first_record - from->first_record;
-    for (uint32_t i = 0; i < to->leaf_count; i++)
-        move_leaf(f, move, from->first_leaf + i, to->first_leaf + i, records, out);
-    for (uint32_t i = 0; i < to->record_count; i++)
-        out->record_vertices[to->first_record + i] =
-            move->vertices[f->record_vertices[from->first_record + i]];
-    memcpy(out->record_weights + to->first_record, f->record_weights + from->first_record,
-           to->record_count * sizeof *out->record_weights);
+    const object_run *run = mesh_change_run(move->change, f->leaves[from->first_leaf].triangles[0]);
+    move_leaves(f, move, from, run, to, out);
+    move_records(f, move, from, run, to, out);
 }
 
 static bool move_all(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {

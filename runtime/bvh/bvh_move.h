@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/bvh/bvh.h"
+#include "src/mesh/mesh_change.h"
 
 /* A region that has no tree yet, which is a component of its own. */
 typedef struct fresh_region {
@@ -11,9 +12,9 @@ typedef struct fresh_region {
 
 /* What has become of the numbers of trees that are kept. */
 typedef struct bvh_move {
-    const cscd_mesh *mesh;                /* the new one */
-    const uint32_t *vertices, *triangles; /* per old one the new one */
-    const uint32_t *regions;              /* the same; UINT32_MAX: its tree is not kept */
+    const cscd_mesh *mesh; /* the new one */
+    const cscd_mesh_change *change;
+    const uint32_t *regions; /* per old one the new one; UINT32_MAX: its tree is not kept */
     uint32_t old_region_count, region_count;
     const fresh_region *fresh; /* all regions that no old one becomes */
     uint32_t fresh_count;

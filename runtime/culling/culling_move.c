@@ -18,12 +18,20 @@ static uint32_t count_touched(const cscd_mesh_change *change) {
     return count;
 }
 
-/* A region lies in one component, so each of its triangles says the same. */
+/* A region lies in one component, so each of its triangles says the same. Objects that have not changed keep all of
+ * their regions. */
 static void keep_regions(const culling *c, const cscd_mesh_change *change, region_move *m) {
-    const uint32_t *components = change->old_mesh->triangle_components;
     memset(m->to_new, 0xff, m->old_count * sizeof *m->to_new);
-    for (uint32_t t = 0; t < change->old_mesh->triangle_count; t++) {
-        if (change->components.to_new[components[t]] != UINT32_MAX) m->to_new[c->triangle_regions[t]] = 0;
+    for (uint32_t i = 0; i < change->run_count; i++) {
+        const uint32_t *regions = c->triangle_regions + change->runs[i].from.triangle;
+        for (uint32_t t = 0; t < change->runs[i].from.triangle_count; t++) m->to_new[regions[t]] = 0;
+    }
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        for (uint32_t t = range->triangle; t < range->triangle + range->triangle_count; t++) {
+            if (change->components.to_old[change->mesh->triangle_components[t]] != UINT32_MAX)
+                m->to_new[c->triangle_regions[change->triangles.to_old[t]]] = 0;
+        }
     }
     for (uint32_t r = 0; r < m->old_count; r++) {
         if (m->to_new[r] != UINT32_MAX) m->to_new[r] = m->kept_count++;

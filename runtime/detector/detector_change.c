@@ -22,8 +22,7 @@ static cscd_status move_trees(const detector_move *m, const region_move *regions
     const bvh *trees = trees_of(m->from);
     if (trees->mesh == NULL || regions->kept_count == 0) return CSCD_OK;
     const bvh_move move = {.mesh = m->to->mesh,
-                           .vertices = m->change->vertices.to_new,
-                           .triangles = m->change->triangles.to_new,
+                           .change = m->change,
                            .regions = regions->to_new,
                            .old_region_count = regions->old_count,
                            .region_count = regions->kept_count + regions->fresh_count,

@@ -108,6 +108,16 @@ static void find_between(orphan_search *f, uint32_t t, uint32_t u) {
     }
 }
 
+static uint8_t marks_of(const orphan_search *f, uint32_t t) {
+    const uint32_t *v = f->mesh->triangles[t];
+    return f->marks[v[0]] | f->marks[v[1]] | f->marks[v[2]];
+}
+
+/* Has neither triangle a vertex that has changed? */
+static bool pairs_are_known(const orphan_search *f, uint32_t t, uint32_t u) {
+    return f->change != NULL && ((marks_of(f, t) | marks_of(f, u)) & VERTEX_CHANGED) == 0;
+}
+
 /* Looks at the pairs of one triangle with those adjacent to it. */
 static void find_around(orphan_search *f, uint32_t t) {
     const cscd_mesh *mesh = f->mesh;
@@ -120,7 +130,7 @@ static void find_around(orphan_search *f, uint32_t t) {
             const uint32_t *other = mesh->triangles[u];
             bool seen = (i > 0 && triangle_contains(other, corners[0])) ||
                         (i > 1 && triangle_contains(other, corners[1]));
-            if (u != t && !seen) find_between(f, t, u);
+            if (u != t && !seen && !pairs_are_known(f, t, u)) find_between(f, t, u);
         }
         if (has_enough(f)) return;
     }
@@ -160,11 +170,6 @@ static void mark_changed(orphan_search *f, const object_range *range) {
         if (mesh_change_keeps(change, t)) continue;
         for (int i = 0; i < 3; i++) f->marks[f->mesh->triangles[t][i]] |= VERTEX_CHANGED;
     }
-}
-
-static uint8_t marks_of(const orphan_search *f, uint32_t t) {
-    const uint32_t *v = f->mesh->triangles[t];
-    return f->marks[v[0]] | f->marks[v[1]] | f->marks[v[2]];
 }
 
 /* A pair that is not known has a feature at changed vertices only, or a triangle whose vertices have changed. So one

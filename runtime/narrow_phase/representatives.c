@@ -41,12 +41,9 @@ cscd_status representatives_create(const cscd_mesh *mesh, representatives *out) 
 static void copy_run(const representatives *r, const object_run *run, representatives *out) {
     uint32_t by = run->to.vertex - run->from.vertex;
     memcpy(out->owned + run->to.triangle, r->owned + run->from.triangle, run->from.triangle_count);
-    for (uint32_t i = 0; i < run->from.vertex_count; i++) {
-        for (int k = 0; k < 2; k++)
-            out->others[run->to.vertex + i][k] = r->others[run->from.vertex + i][k] + by;
-    }
-    for (uint32_t i = 0; i < run->from.edge_count; i++)
-        out->opposite[run->to.edge + i] = r->opposite[run->from.edge + i] + by;
+    copy_shifted(r->others[run->from.vertex], (size_t)run->from.vertex_count * 2, by,
+                 out->others[run->to.vertex]);
+    copy_shifted(r->opposite + run->from.edge, run->from.edge_count, by, out->opposite + run->to.edge);
 }
 
 cscd_status representatives_move(const representatives *r, const cscd_mesh *mesh,

@@ -45,6 +45,15 @@ static inline bool mesh_change_keeps(const cscd_mesh_change *change, uint32_t tr
     return true;
 }
 
+/* Numbers of an object that has moved as a whole. */
+static inline void copy_shifted(const uint32_t *restrict from, size_t count, uint32_t by,
+                                uint32_t *restrict to) {
+    for (size_t i = 0; i < count; i++) to[i] = from[i] + by;
+}
+
+/* The run that a triangle of the old mesh is in; NULL: its object has changed. */
+const object_run *mesh_change_run(const cscd_mesh_change *change, uint32_t old_triangle);
+
 /* An object of a mesh that becomes the next object of another one. */
 typedef struct object_source {
     const cscd_mesh *mesh;

@@ -205,3 +205,19 @@ void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, c
     }
     for (uint32_t i = 0; i < change->run_count; i++) map_run(change, &change->runs[i]);
 }
+
+/* Runs are in the order of both meshes. */
+const object_run *mesh_change_run(const cscd_mesh_change *change, uint32_t old_triangle) {
+    uint32_t low = 0, high = change->run_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        const object_range *from = &change->runs[middle].from;
+        if (old_triangle < from->triangle)
+            high = middle;
+        else if (old_triangle - from->triangle >= from->triangle_count)
+            low = middle + 1;
+        else
+            return &change->runs[middle];
+    }
+    return NULL;
+}

@@ -75,10 +75,6 @@ static bool allocate_arrays(cscd_mesh *mesh, bool obstacles, size_t points) {
 
 /* ---- copies ------------------------------------------------------------------------------------------- */
 
-static void copy_shifted(const uint32_t *restrict from, size_t count, uint32_t by, uint32_t *restrict to) {
-    for (size_t i = 0; i < count; i++) to[i] = from[i] + by;
-}
-
 static void copy_stars(const cscd_mesh *from, const object_move *m, cscd_mesh *to) {
     uint32_t by = m->to.triangle - m->from.triangle;
     size_t begin = (size_t)m->from.triangle * 3, end = (size_t)m->to.triangle * 3;
