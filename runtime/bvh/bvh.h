@@ -53,6 +53,10 @@ typedef struct bvh_level {
     /* With rules for objects: per block the objects that each of its eight children holds. Pairs of children that can
      * hold none that are looked at are not compared; obstacle_lanes is not read then. NULL: there are no rules. */
     object_set *child_sets;
+
+    /* The children of each block without any active triangle, which are not compared with each other; NULL: all
+     * triangles are active. */
+    uint8_t *inactive_lanes;
 } bvh_level;
 
 /* The tree of one region. Its frame subtracts origin[0] from positions at the start, origin[1] from those at the end,
@@ -89,6 +93,7 @@ typedef struct bvh {
     lane_flags *leaf_flags;             /* of triangles */
     lane_flags *flags_before;           /* the leaf_flags before the last bvh_mark_newly_kept */
     uint64_t *leaf_self_pairs;          /* like self_pairs of a level, but of triangles; NULL: all */
+    uint8_t *leaf_inactive;             /* like inactive_lanes of a level, but of triangles */
     uint32_t *block_trees, *leaf_trees; /* the tree of each block of level 0, and of each leaf */
     uint32_t *record_vertices;          /* the mesh's vertex of a record */
     float *record_weights;              /* per record, its weight in the detector point */
@@ -117,8 +122,10 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
 void bvh_free(bvh *f);
 
 /* Builds what bvh_move_over (bvh_move.h) has left out, as a step of its own; positions shape the trees that are missing.
- * sets: as for bvh_set_objects. On failure everything that was there stays, so that it can be called again. */
-cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const double *positions);
+ * sets, active: as for bvh_set_objects and bvh_set_active. On failure everything that was there stays, so that it can be
+ * called again. */
+cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
+                       const double *positions);
 
 /* Adds all blocks above the leaves, as a step of bvh_build; counts: scratch, one number per tree. False: no memory. */
 bool bvh_build_levels(bvh *f, uint32_t *counts);
@@ -134,6 +141,13 @@ void bvh_free_objects(bvh *f);
 
 /* Fills in child_sets; sets: one for each object, NULL: there are no rules. False: no memory, and nothing has changed. */
 bool bvh_set_objects(bvh *f, const object_set *sets);
+
+/* Makes the traversal leave out pairs of inactive triangles. active: per triangle, NULL: all are. False: no memory, and
+ * nothing has changed; that is only where all were active. */
+bool bvh_set_active(bvh *f, const bool *active);
+
+/* Returns the first disagreement with what bvh_set_active would do as a sentence, or NULL. */
+const char *bvh_check_active(const bvh *f, const bool *active);
 
 static inline uint32_t bvh_triangle(const bvh *f, uint32_t slot) {
     return f->leaves[slot / LANES].triangles[slot % LANES];

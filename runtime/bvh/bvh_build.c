@@ -304,14 +304,16 @@ static void fill_all_missing(builder *b, bvh *f, const double *positions, uint32
     }
 }
 
-cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const double *positions) {
+cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
+                       const double *positions) {
     builder b = {.context = f->mesh->context, .mesh = f->mesh, .given = regions};
     uint32_t missing = count_missing(f), *names = NULL;
     bool made = allocate_missing(&b, f, missing, &names);
     if (made) {
         fill_all_missing(&b, f, positions, names, missing);
         cut_chunks(f);
-        made = bvh_build_levels(f, b.regions.items) && bvh_mark_objects(f) && bvh_set_objects(f, sets);
+        made = bvh_build_levels(f, b.regions.items) && bvh_mark_objects(f) && bvh_set_objects(f, sets) &&
+               bvh_set_active(f, active);
         if (!made) drop_levels(f);
     }
     free_builder(&b);
@@ -325,7 +327,8 @@ void bvh_free(bvh *f) {
     cscd_context *context = f->mesh->context;
     void *blocks[] = {f->trees,           f->leaves,      f->leaf_flags,      f->flags_before,
                       f->leaf_self_pairs, f->block_trees, f->record_vertices, f->record_weights,
-                      f->records,         f->slots,       f->chunks,          f->leaf_trees};
+                      f->records,         f->slots,       f->chunks,          f->leaf_trees,
+                      f->leaf_inactive};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) context_free(context, blocks[i]);
     bvh_free_objects(f);
     bvh_free_levels(f);

@@ -79,6 +79,7 @@ void bvh_free_levels(bvh *f) {
         context_free(context, f->levels[i].bounds);
         context_free(context, f->levels[i].flags);
         context_free(context, f->levels[i].self_pairs);
+        context_free(context, f->levels[i].inactive_lanes);
         f->levels[i] = (bvh_level){0};
     }
 }

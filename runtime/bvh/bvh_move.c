@@ -179,21 +179,21 @@ void bvh_take_records(bvh *f, bvh *from) {
 
 static array_list bvh_arrays(bvh *f) {
     size_t leaves = f->leaf_count, records = f->record_capacity, blocks = f->levels[0].block_count;
-    return (array_list){{ARRAY(f->trees, f->tree_count), ARRAY(f->leaves, leaves),
-                         ARRAY(f->leaf_flags, leaves), ARRAY(f->flags_before, leaves),
-                         ARRAY(f->leaf_self_pairs, leaves), ARRAY(f->block_trees, blocks),
-                         ARRAY(f->leaf_trees, leaves), ARRAY(f->record_vertices, f->record_count),
-                         ARRAY(f->record_weights, f->record_count),
-                         ARRAY(f->chunks, f->record_count / BVH_CHUNK_RECORDS + f->tree_count),
-                         ARRAY(f->records, records), ARRAY(f->slots, f->mesh->triangle_count)}};
+    return (array_list){
+        {ARRAY(f->trees, f->tree_count), ARRAY(f->leaves, leaves), ARRAY(f->leaf_flags, leaves),
+         ARRAY(f->flags_before, leaves), ARRAY(f->leaf_self_pairs, leaves), ARRAY(f->leaf_inactive, leaves),
+         ARRAY(f->block_trees, blocks), ARRAY(f->leaf_trees, leaves),
+         ARRAY(f->record_vertices, f->record_count), ARRAY(f->record_weights, f->record_count),
+         ARRAY(f->chunks, f->record_count / BVH_CHUNK_RECORDS + f->tree_count), ARRAY(f->records, records),
+         ARRAY(f->slots, f->mesh->triangle_count)}};
 }
 
 static array_list level_arrays(bvh_level *level, int axis_count) {
     size_t blocks = level->block_count;
-    return (array_list){{ARRAY(level->first_children, blocks),
-                         ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
-                         ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks),
-                         ARRAY(level->obstacle_lanes, blocks), ARRAY(level->child_sets, blocks * LANES)}};
+    return (array_list){
+        {ARRAY(level->first_children, blocks), ARRAY(level->bounds, blocks * (size_t)axis_count * 2 * LANES),
+         ARRAY(level->flags, blocks), ARRAY(level->self_pairs, blocks), ARRAY(level->obstacle_lanes, blocks),
+         ARRAY(level->child_sets, blocks * LANES), ARRAY(level->inactive_lanes, blocks)}};
 }
 
 /* A level that is not whole belongs to the other BVH. */

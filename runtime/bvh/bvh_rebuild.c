@@ -13,7 +13,7 @@ static cscd_status build_trees(const bvh_rebuild *r, const double *positions, bv
     bvh built;
     cscd_status status = bvh_build(r->mesh, r->regions, positions, r->axis_count, &built);
     if (status != CSCD_OK) return status;
-    if (!bvh_set_objects(&built, r->objects)) {
+    if (!bvh_set_objects(&built, r->objects) || !bvh_set_active(&built, r->active)) {
         bvh_free(&built);
         return CSCD_OUT_OF_MEMORY;
     }
@@ -64,7 +64,7 @@ static bool same_growth(const volume_growth *a, const volume_growth *b) {
 }
 
 static cscd_status finish_kept(bvh_rebuild *r, const double *positions, bvh *out) {
-    cscd_status status = bvh_finish(&r->kept, r->regions, r->objects, positions);
+    cscd_status status = bvh_finish(&r->kept, r->regions, r->objects, r->active, positions);
     if (status != CSCD_OK) return status;
     *out = r->kept;
     r->kept = (bvh){0};

@@ -15,6 +15,7 @@ typedef struct bvh_rebuild {
     bvh_regions regions;
     int axis_count;
     const object_set *objects; /* the rules for objects, one for each; NULL: there are none */
+    const bool *active;        /* per triangle; NULL: all are */
 
     bvh kept; /* trees that have moved over from another mesh and are finished when trees are needed; mesh NULL: none */
     bvh_spread spread_when_built;

@@ -75,6 +75,7 @@ static bool spread_shares(traversal *t) {
 void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
     t->bvh = f;
     t->pass = pass;
+    t->skips_inactive = f->leaf_inactive != NULL && pass != TRAVERSAL_UNPROVEN && !t->whole;
     t->share_count = 0;
     atomic_store(&t->next_share, 0);
     for (uint32_t i = 0; i < t->lane_count; i++) {

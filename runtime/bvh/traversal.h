@@ -19,9 +19,9 @@ typedef struct block_pair {
 
 /* Selects the pairs that a pass looks for, among the triangle pairs whose volumes overlap. */
 typedef enum traversal_pass {
-    TRAVERSAL_KEPT,       /* all that the flags keep and that are not hidden */
-    TRAVERSAL_NEWLY_KEPT, /* those that the flags keep now and did not keep before */
-    TRAVERSAL_UNPROVEN    /* those of two unproven triangles */
+    TRAVERSAL_KEPT, /* all that the flags keep and that are not hidden, but those of inactive triangles */
+    TRAVERSAL_NEWLY_KEPT, /* those of them that the flags did not keep before */
+    TRAVERSAL_UNPROVEN    /* those of two unproven triangles, active or not */
 } traversal_pass;
 
 /* Keeps the volumes of the triangles of leaves that were visited lately. A leaf that has been replaced by another
@@ -54,6 +54,8 @@ typedef struct traversal {
     cscd_context *context;
     const bvh *bvh;
     traversal_pass pass;
+    bool whole;            /* set by the caller: pairs of inactive triangles are found as well */
+    bool skips_inactive;   /* pairs of inactive triangles are not found by this pass */
     traversal_lane *lanes; /* one per thread of the context */
     uint32_t lane_count;
     uint32_t

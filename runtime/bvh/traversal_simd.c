@@ -1,7 +1,7 @@
 /* The visit of a pair of blocks: eight children are compared with eight.
  *
  *     block a        block b          visit_blocks(a, b), for each used lane i of a:
- *     +-+-+-+-+      +-+-+-+-+          lanes = lanes_to_compare(i)     by flags: orientation, obstacles, hidden pairs
+ *     +-+-+-+-+      +-+-+-+-+          lanes = lanes_to_compare(i)     by flags: orientation, obstacles, activity, hidden pairs
  *     |0|1|2|.|      |0|1|2|.|          lanes &= ~lanes_apart(a[i], b)  eight volumes of b in one comparison
  *     +-+-+-+-+      +-+-+-+-+          visit_children(a[i], lanes of b)
  *        |  .         .  |                on a higher level: the pair (a[i], b[j]) goes on the stack for later
@@ -88,7 +88,8 @@ typedef struct lane_comparison {
     lane_flags a, b;
     lane_flags before_a, before_b; /* flags of leaves before, in the pass NEWLY_KEPT */
     uint64_t self_pairs;
-    uint32_t obstacles_a, obstacles_b; /* lanes that hold obstacles only */
+    /* Of blocks: lanes that hold obstacles only, lanes without active triangles, if the pass skips their pairs, and both. */
+    uint32_t obstacles_a, obstacles_b, inactive_a, inactive_b, resting_a;
     bool itself, one_tree, leaves;
     traversal_pass pass;
 } lane_comparison;
@@ -107,10 +108,16 @@ static inline uint32_t lanes_looked_at(const object_set *a, const object_set *b,
     return kept;
 }
 
+/* Returns the lanes of b that hold obstacles, or nothing active, as lane i of a. */
+static inline uint32_t lanes_at_rest(const lane_comparison *c, int i) {
+    uint32_t obstacles = (c->obstacles_a >> i & 1) != 0 ? c->obstacles_b : 0;
+    return (c->inactive_a >> i & 1) != 0 ? obstacles | c->inactive_b : obstacles;
+}
+
 /* Returns the lanes of b that are to be compared with lane i of a. */
 static inline uint32_t lanes_to_compare(const lane_comparison *c, int i) {
     uint32_t lanes = c->b.used;
-    if ((c->obstacles_a >> i & 1) != 0) lanes &= ~c->obstacles_b;
+    if ((c->resting_a >> i & 1) != 0) lanes &= ~lanes_at_rest(c, i);
     if (c->itself) lanes &= (uint32_t)(c->self_pairs >> (8 * i)) & ((uint32_t)ALL_LANES << (i + 1));
     if (c->pass == TRAVERSAL_UNPROVEN) return (c->a.newly_kept >> i & 1) != 0 ? lanes & c->b.newly_kept : 0;
     if (c->pass == TRAVERSAL_NEWLY_KEPT) {
@@ -213,6 +220,24 @@ static inline void compare_leaves(const traversal *t, traversal_lane *lane, cons
     }
 }
 
+/* First the active triangles of a with all of b, then the others with the active ones of b. Not inline, so that nothing of
+ * it is in the way of passes that skip nothing. */
+static __attribute__((noinline)) void compare_active(const traversal *t, traversal_lane *lane,
+                                                     const leaf_pair *pair, bool skip_adjacent,
+                                                     const displacement *d) {
+    uint32_t inactive_a = t->bvh->leaf_inactive[pair->a], inactive_b = t->bvh->leaf_inactive[pair->b];
+    for (int i = 0; i < 2; i++) {
+        leaf_pair part = *pair;
+        part.rows &= i == 0 ? ~inactive_a : inactive_a;
+        if (i == 1) part.columns &= ~inactive_b;
+        if (part.rows == 0 || part.columns == 0) continue;
+        if (d == NULL)
+            compare_leaves(t, lane, &part, skip_adjacent, true, NULL);
+        else
+            compare_leaves(t, lane, &part, skip_adjacent, false, d);
+    }
+}
+
 /* ---- blocks -------------------------------------------------------------------------------------------- */
 
 /* Compares child i of block a with children of block b. */
@@ -246,7 +271,9 @@ static inline void visit_children(const traversal *t, traversal_lane *lane, cons
             if (pair.columns == 0) continue;
             if (d == NULL) pair.rows = near_lane(pair.volumes_a, level->bounds + at->b * stride, j, NULL);
         }
-        if (d == NULL) /* compiled separately, because it is most of the work */
+        if (t->skips_inactive)
+            compare_active(t, lane, &pair, skip_adjacent, d);
+        else if (d == NULL) /* compiled separately, because it is most of the work */
             compare_leaves(t, lane, &pair, skip_adjacent, true, NULL);
         else
             compare_leaves(t, lane, &pair, skip_adjacent, false, d);
@@ -264,11 +291,16 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
     const float *bounds_a = level->bounds + at.a * stride, *bounds_b = level->bounds + at.b * stride;
     const object_set *sets = level->child_sets;
     bool obstacles = level->obstacle_lanes != NULL && sets == NULL;
+    uint32_t obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0;
+    uint32_t inactive_a = t->skips_inactive ? level->inactive_lanes[at.a] : 0;
     const lane_comparison c = {.a = level->flags[at.a],
                                .b = level->flags[at.b],
                                .self_pairs = level->self_pairs != NULL ? level->self_pairs[at.a] : UINT64_MAX,
-                               .obstacles_a = obstacles ? level->obstacle_lanes[at.a] : 0,
+                               .obstacles_a = obstacles_a,
                                .obstacles_b = obstacles ? level->obstacle_lanes[at.b] : 0,
+                               .inactive_a = inactive_a,
+                               .inactive_b = t->skips_inactive ? level->inactive_lanes[at.b] : 0,
+                               .resting_a = obstacles_a | inactive_a,
                                .itself = at.a == at.b,
                                .one_tree = below && !crosses,
                                .pass = t->pass};
@@ -285,7 +317,7 @@ static inline void visit_blocks(const traversal *t, traversal_lane *lane, block_
             bool own = (c.self_pairs >> (9 * i) & 1) != 0 && ((c.a.plus | c.a.minus) >> i & 1) == 0;
             if (t->pass != TRAVERSAL_KEPT) own = (c.a.newly_kept >> i & 1) != 0;
             if (set != NULL) own = own && object_sets_may_meet(set, set);
-            if (own && (c.obstacles_a >> i & 1) == 0) lanes |= 1u << i;
+            if (own && (c.resting_a >> i & 1) == 0) lanes |= 1u << i;
         }
         if (lanes != 0) visit_children(t, lane, &at, i, lanes, d);
     }

@@ -199,20 +199,25 @@ static void many_rounds(void **state) {
  */
 
 static uint8_t before[TRIANGLES_MAX], now[TRIANGLES_MAX];
-static bool unproven[TRIANGLES_MAX];
+static bool unproven[TRIANGLES_MAX], active[TRIANGLES_MAX], some_active; /* some_active: else all are */
 
 static bool is_hidden(const bvh_rig *r, const uint8_t *orientations, uint32_t a, uint32_t b) {
     return r->regions[a] == r->regions[b] && !orientations_may_touch(orientations[a], orientations[b]);
 }
 
+static bool is_active(uint32_t a, uint32_t b) {
+    return !some_active || active[a] || active[b];
+}
+
 static bool is_kept(const bvh_rig *r, uint32_t a, uint32_t b) {
-    return !is_hidden(r, now, a, b);
+    return is_active(a, b) && !is_hidden(r, now, a, b);
 }
 
 static bool has_come(const bvh_rig *r, uint32_t a, uint32_t b) {
-    return is_hidden(r, before, a, b) && !is_hidden(r, now, a, b);
+    return is_active(a, b) && is_hidden(r, before, a, b) && !is_hidden(r, now, a, b);
 }
 
+/* Proofs look at all triangles. */
 static bool both_suspect(const bvh_rig *r, uint32_t a, uint32_t b) {
     (void)r;
     return unproven[a] && unproven[b];
@@ -249,6 +254,8 @@ static void choose_flags(random_stream *random, uint32_t run) {
         before[t] = flag;
         now[t] = stream_below(random, 2 * run) == 0 ? ORIENTATION_ZERO : flag;
         unproven[t] = stream_below(random, 1 + run / 4) == 0;
+        bool changes = t == 0 || stream_below(random, run) == 0;
+        active[t] = changes ? stream_below(random, 3) == 0 : active[t - 1];
     }
 }
 
@@ -257,8 +264,10 @@ static void check_passes(random_stream *random, uint32_t region_count) {
     assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 2, BOX_AXES, region_count}, &r));
     bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
     traverse_all(&r, TRAVERSAL_KEPT, &all);
-    for (uint32_t run = 1; run < 1000; run *= 6) {
+    for (uint32_t i = 0, run = 1; run < 1000; i++, run = i % 2 == 0 ? run * 6 : run) {
         choose_flags(random, run);
+        some_active = i % 2 == 1;
+        assert_true(bvh_set_active(&r.bvh, some_active ? active : NULL));
         bvh_mark_newly_kept(&r.bvh, before, now);
         check_pass(&r, TRAVERSAL_KEPT, is_kept);
         check_pass(&r, TRAVERSAL_NEWLY_KEPT, has_come);
@@ -278,6 +287,27 @@ static void passes_are_what_flags_say(void **state) {
     }
 }
 
+static void nothing_active_is_over_at_once(void **state) {
+    (void)state;
+    scene_make(SCENE_NOISY_SPHERE, 31, &shape);
+    memset(active, false, sizeof active);
+    for (uint32_t region_count = 0; region_count < 3; region_count++) {
+        bvh_rig r;
+        traversal t;
+        assert_true(bvh_rig_create(&shape, (bvh_setup){CSCD_SIMD_AUTO, 1, BOX_AXES, region_count * 10}, &r));
+        bvh_refit(&r.bvh, shape.x0, shape.x1, uniform_growth(0.0));
+        assert_int_equal(traversal_create(r.context, &t), CSCD_OK);
+        assert_true(bvh_set_active(&r.bvh, active));
+        traversal_begin(&t, &r.bvh, TRAVERSAL_KEPT);
+        assert_int_equal(t.lanes[0].stack_count, 1);
+        r.bvh.kernels->search(&t, &t.lanes[0], 1);
+        assert_int_equal(t.lanes[0].stack_count + t.lanes[0].pair_count, 0);
+        assert_int_equal(traversal_boxes_tested(&t), 0);
+        traversal_destroy(&t);
+        bvh_rig_destroy(&r);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_what_may_touch),
@@ -287,6 +317,7 @@ int main(void) {
         cmocka_unit_test(same_pairs_on_all_levels_and_threads),
         cmocka_unit_test(many_rounds),
         cmocka_unit_test(passes_are_what_flags_say),
+        cmocka_unit_test(nothing_active_is_over_at_once),
     };
     return cmocka_run_group_tests_name("traversal", tests, NULL, NULL);
 }
