@@ -130,6 +130,14 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
             return cscd_detector_set_ignored(get(), detail::indices_of(triangles), triangles.size());
         });
     }
+    /* Only these may move, and features near them are looked at; without an argument, all. */
+    void set_active(span<const std::uint32_t> vertices) {
+        const std::uint32_t none = 0, *first = vertices.empty() ? &none : vertices.data();
+        call([&] { return cscd_detector_set_active(get(), first, vertices.size()); });
+    }
+    void set_active() {
+        call([&] { return cscd_detector_set_active(get(), nullptr, 0); });
+    }
     /* Goes over to the new mesh of a change of its own mesh. */
     void change_mesh(const mesh_change &change) {
         call([&] { return cscd_detector_change_mesh(get(), change.get()); });

@@ -72,6 +72,38 @@ CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd
                                              uint32_t rule_count, const double *thickness_matrix,
                                              uint32_t thickness_class_count);
 
+/* ---- active vertices -------------------------------------------------------------------------------------
+ *
+ * Makes only these count vertices active, from the next call on; NULL and 0: all are, as at first. Other arrays may be
+ * empty, may be given again as often as they change, and may name a vertex twice. For solvers that let most of a scene
+ * rest, or move one part of it at a time: the search costs as much as the active part and what is near it.
+ *
+ * A feature is active if one of its vertices is, and a half-space if its point is. All other vertices must stay where they
+ * are: a call with two positions fails with INVALID_ARGUMENT and names the first that does not, as does max_step, where
+ * rounding to floats would move it. Pairs of two features that are not active are not looked for: they are in no list,
+ * whether they touch or not, and hold up no motion. All other pairs, and all bits of what is said of them, are those of a
+ * detector without active vertices. In cscd_detector_check the features are triangles.
+ *
+ *   guarantees    "complete" speaks of the pairs that are looked for, and so does an empty list
+ *   starts        steps prove the whole start as ever, once; a check leaves open what it did not compare
+ *   bounds        of vertices that are not active are those of their pairs with active features
+ *   waiting       pairs begin to wait, and wait, whether they are active or not
+ *   line search   must begin again, after the set has changed
+ *   other meshes  what has come from an active vertex is active, and so are vertices without an origin
+ *
+ * An example, a vertex that is pulled through a sheet that rests, which prints "8 contacts":
+ *
+ *     const uint32_t pulled = 5;
+ *     memcpy(x1, x0, sizeof x0);
+ *     x1[3 * pulled + 2] += 1.0;
+ *     cscd_status status = cscd_detector_set_active(detector, &pulled, 1);
+ *     if (status == CSCD_OK) status = cscd_detector_step(detector, CSCD_DOUBLES(x0, n), CSCD_DOUBLES(x1, n), &contacts);
+ *     if (status == CSCD_OK) status = cscd_detector_set_active(detector, NULL, 0);
+ *     printf("%d contacts\n", (int)contacts.count);
+ */
+CSCD_API cscd_status cscd_detector_set_active(cscd_detector *detector, const uint32_t *vertices,
+                                              size_t count);
+
 /* ---- another mesh ---------------------------------------------------------------------------------------- */
 
 /* Moves the detector over to the new mesh of a change whose old mesh is the detector's, and which may be of another

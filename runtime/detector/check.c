@@ -60,8 +60,16 @@ static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_
 
 /* States and positions belong together, so both are written when all is found. If the call is cancelled even now, or the
  * host's loop leaves out a task, the states may be those of other positions, and nothing is known. */
+/* Inactive triangles have been compared with active ones only, so nothing is known of those that do not cross them. */
+static void unmark_inactive(const cscd_detector *d, bool *triangles) {
+    const bool *active = d->space.active.triangles;
+    for (uint32_t t = 0; active != NULL && t < d->mesh->triangle_count; t++)
+        triangles[t] = active[t] || d->check.crossing[t];
+}
+
 static cscd_status keep_states(cscd_detector *d, const double *positions) {
     if (!start_states_hold(&d->starts, positions)) start_states_begin(&d->starts, positions);
+    unmark_inactive(d, d->check.unproven);
     detector_unmark_masked(d, d->check.unproven);
     start_states_checked(&d->starts, d->check.unproven, d->check.crossing);
     cscd_status status = context_progress_status(d->context);

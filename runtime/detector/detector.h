@@ -35,6 +35,7 @@ struct cscd_detector {
     bool *never_culled; /* per component: its triangles are not looked at with each other, or have to stay
                               * farther apart than 0 */
     bool all_never_culled;
+    uint32_t active_revision; /* so many times the active vertices have been set */
 
     search_space space;
     bvh_rebuild rebuild; /* of space.bvh */
@@ -141,6 +142,9 @@ cscd_status detector_check_distances(cscd_detector *d, double min_separation, do
 
 /* Sets the marks of components whose triangles are not looked at with each other to false. */
 void detector_unmark_masked(const cscd_detector *d, bool *triangles);
+
+/* INVALID_ARGUMENT names a vertex that moves, and is not active. */
+cscd_status detector_check_still(const cscd_detector *d, const double *x0, const double *x1);
 
 /* Begins a search for what comes nearer than it may, from x0 to x1. */
 interval_search detector_search_begin(cscd_detector *d, const double *x0, const double *x1);

@@ -56,6 +56,7 @@ static cscd_status move_culling(const detector_move *m) {
     bvh kept = d->rebuild.kept;
     detector_choose_regions(d);
     d->rebuild.kept = kept;
+    d->rebuild.active = d->space.active.triangles;
     d->rebuild.spread_when_built = m->from->rebuild.spread_when_built;
     d->rebuild.intervals_unmeasured = m->from->rebuild.intervals_unmeasured;
     d->rebuild.useless_rebuilds = m->from->rebuild.useless_rebuilds;
@@ -85,6 +86,7 @@ static cscd_status move_space(const detector_move *m) {
     cscd_status status =
         representatives_move(&m->from->space.representatives, to->mesh, m->change, &to->representatives);
     if (status == CSCD_OK) status = loose_elements_create(to->mesh, &to->loose);
+    if (status == CSCD_OK) status = active_set_move(&m->from->space.active, to->mesh, m->change, &to->active);
     return status == CSCD_OK ? move_orphans(m) : status;
 }
 
@@ -172,6 +174,7 @@ static void exchange_space(search_space *a, search_space *b) {
     EXCHANGE(representatives);
     EXCHANGE(orphans);
     EXCHANGE(loose);
+    EXCHANGE(active);
     EXCHANGE(orphans_known);
     EXCHANGE(orphans_usable);
     EXCHANGE(skipped);

@@ -37,6 +37,7 @@ static cscd_status clone_space(const search_space *from, const cscd_mesh *mesh, 
     if (to->lanes == NULL || to->skipped == NULL) return CSCD_OUT_OF_MEMORY;
     status = representatives_copy(&from->representatives, mesh, &to->representatives);
     if (status == CSCD_OK) status = loose_elements_create(mesh, &to->loose);
+    if (status == CSCD_OK) status = active_set_copy(&from->active, mesh, &to->active);
     if (status == CSCD_OK) status = orphan_pairs_copy(&from->orphans, context, &to->orphans);
     if (status == CSCD_OK) to->orphans_known = from->orphans_known;
     if (status == CSCD_OK) to->orphans_usable = from->orphans_usable;
@@ -46,6 +47,7 @@ static cscd_status clone_space(const search_space *from, const cscd_mesh *mesh, 
 
 static cscd_status clone_trees(const bvh_rebuild *from, cscd_detector *d) {
     detector_choose_regions(d);
+    d->rebuild.active = d->space.active.triangles;
     d->rebuild.spread_when_built = from->spread_when_built;
     d->rebuild.intervals_unmeasured = from->intervals_unmeasured;
     d->rebuild.useless_rebuilds = from->useless_rebuilds;

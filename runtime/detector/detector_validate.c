@@ -78,6 +78,14 @@ static const char *check_rules(const cscd_detector *d) {
     return NULL;
 }
 
+static const char *check_active(const cscd_detector *d) {
+    const search_space *s = &d->space;
+    const char *fault = active_set_validate(&s->active, d->mesh);
+    if (fault == NULL && d->rebuild.active != s->active.triangles)
+        fault = "the trees and their detector have different active sets";
+    return fault != NULL || s->bvh.mesh == NULL ? fault : bvh_check_active(&s->bvh, s->active.triangles);
+}
+
 /* ---- all of it ------------------------------------------------------------------------------------------- */
 
 static const char *check_parts(const cscd_detector *d) {
@@ -100,5 +108,6 @@ const char *detector_validate(const cscd_detector *d) {
     if (fault == NULL) fault = check_exclusions(&d->exclusions);
     if (fault == NULL) fault = check_rules(d);
     if (fault == NULL && d->space.bvh.mesh != NULL) fault = bvh_validate(&d->space.bvh, false);
+    if (fault == NULL) fault = check_active(d);
     return fault;
 }

@@ -17,6 +17,7 @@ interval_search interval_search_begin(search_space *space, const double *x0, con
                                           .bvh = &space->bvh,
                                           .representatives = &space->representatives,
                                           .rules = space->rules,
+                                          .active = space->active.vertices != NULL ? &space->active : NULL,
                                           .limit = limit}};
 }
 

@@ -34,6 +34,7 @@ void search_space_destroy(search_space *s) {
     free_lanes(s);
     if (s->traversal.lanes != NULL) traversal_destroy(&s->traversal);
     bvh_free(&s->bvh);
+    active_set_free(s->context, &s->active);
     representatives_free(s->context, &s->representatives);
     orphan_pairs_free(s->context, &s->orphans);
     loose_elements_destroy(&s->loose);

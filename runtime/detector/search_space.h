@@ -4,6 +4,7 @@
 
 #include "runtime/bvh/traversal.h"
 #include "runtime/loose/loose_elements.h"
+#include "runtime/narrow_phase/active_set.h"
 #include "runtime/narrow_phase/contact_lane.h"
 #include "runtime/narrow_phase/orphan_pairs.h"
 #include "runtime/narrow_phase/pair_rules.h"
@@ -15,6 +16,7 @@ typedef struct search_space {
     bvh bvh; /* refitted to the current interval or moment before a search begins */
     traversal traversal;
     const pair_rules *rules; /* NULL: all objects are looked at */
+    active_set active;       /* the trees have marks of it */
     contact_lane *lanes;     /* one per lane of the traversal */
     size_t longest;          /* list of the present search; 0: there is no cap */
     size_t counted; /* contacts of the list that found no room in the lanes; then no list is given out */

@@ -323,6 +323,7 @@ cscd_status step_check_positions(cscd_detector *d, const double *start, const do
     bool seen = start_states_hold(&d->starts, start);
     cscd_status status = seen ? CSCD_OK : positions_check(d->context, start, vertices, "x0");
     if (status == CSCD_OK) status = positions_check(d->context, end, vertices, "x1");
+    if (status == CSCD_OK) status = detector_check_still(d, start, end);
     if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, start);
     if (status == CSCD_OK && !seen && (detector_culls(d) || d->starts.known))
         start_states_begin(&d->starts, start);

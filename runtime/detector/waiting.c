@@ -18,8 +18,11 @@ typedef struct settling {
     bool touching; /* distances do not count */
 } settling;
 
+/* Pairs wait whether their vertices are active or not. */
 static settling settle_at(cscd_detector *d, const double *x, named_pair_set *set) {
-    return (settling){d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set, false};
+    settling s = {d, x, detector_search_begin(d, x, x), exclusions_listed(&d->exclusions), set, false};
+    s.search.interval.active = NULL;
+    return s;
 }
 
 /* ---- pairs that wait already ---------------------------------------------------------------------------- */
@@ -179,9 +182,11 @@ static cscd_status search_at_rest(settling *s) {
 
 static cscd_status find_touching(settling *s) {
     cscd_detector *d = s->detector;
+    d->space.traversal.whole = true;
     cscd_status status = search_at_rest(s);
     if (status == CSCD_OK) status = add_features(s);
     if (status == CSCD_OK) status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, s->x);
+    d->space.traversal.whole = false;
     if (status == CSCD_OK) status = add_triangles(s);
     if (status == CSCD_OK && !named_pair_set_sort(d->context, s->set)) status = CSCD_OUT_OF_MEMORY;
     return status;

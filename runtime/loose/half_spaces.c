@@ -71,7 +71,8 @@ static void test_object(const swept_interval *interval, uint32_t object, uint32_
     if (mesh->objects[object].kind == CSCD_OBJECT_HALF_SPACE || !objects_look(interval, object, half_space))
         return;
     for (uint32_t v = begin; v < end && !lane->out_of_memory; v++) {
-        if (takes_part(mesh, &mesh->objects[object], v))
+        if (takes_part(mesh, &mesh->objects[object], v) &&
+            pair_is_active(interval, CSCD_CONTACT_VH, v, half_space))
             half_spaces_test_vertex(interval, v, half_space, lane);
     }
 }

@@ -4,6 +4,7 @@
 #include "runtime/narrow_phase/narrow_phase.h"
 
 static void test_vf(const swept_interval *interval, uint32_t vertex, uint32_t triangle, contact_lane *lane) {
+    if (!pair_is_active(interval, CSCD_CONTACT_VF, vertex, triangle)) return;
     swept_box a = swept_box_of(interval, &vertex, 1),
               b = swept_box_of(interval, interval->mesh->triangles[triangle], 3);
     lane->feature_pairs++;
@@ -12,7 +13,7 @@ static void test_vf(const swept_interval *interval, uint32_t vertex, uint32_t tr
 }
 
 static void test_ee(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
-    if (!loose_edges_meet(interval, a, b)) return;
+    if (!loose_edges_meet(interval, a, b) || !pair_is_active(interval, CSCD_CONTACT_EE, a, b)) return;
     swept_box box_a = swept_box_of(interval, interval->mesh->edges[a], 2),
               box_b = swept_box_of(interval, interval->mesh->edges[b], 2);
     lane->feature_pairs++;

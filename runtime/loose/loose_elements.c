@@ -30,7 +30,8 @@ static bool allocate_levels(loose_elements *e) {
         level->count = count;
         level->boxes = context_allocate(e->context, count, sizeof *level->boxes);
         level->sets = context_allocate(e->context, count, sizeof *level->sets);
-        if (level->boxes == NULL || level->sets == NULL) return false;
+        level->active = context_allocate(e->context, count, sizeof *level->active);
+        if (level->boxes == NULL || level->sets == NULL || level->active == NULL) return false;
         count = nodes_over(count);
     } while (e->levels[e->level_count - 1].count > 1);
     return true;
@@ -76,6 +77,7 @@ void loose_elements_destroy(loose_elements *e) {
     for (int i = 0; i < e->level_count; i++) {
         context_free(e->context, e->levels[i].boxes);
         context_free(e->context, e->levels[i].sets);
+        context_free(e->context, e->levels[i].active);
     }
     context_free_all(e->context, list_arrays(e));
     *e = (loose_elements){.context = NULL};
@@ -171,6 +173,8 @@ static void enclose_element(const element_motion *m, uint32_t place) {
         }
     }
     if (interval->rules != NULL) e->levels[0].sets[place] = interval->rules->sets[element->object];
+    if (interval->active != NULL)
+        e->levels[0].active[place] = edge_is_active(interval->active, interval->mesh, element->edge);
 }
 
 static void enclose_share(void *data, uint32_t index) {
@@ -180,7 +184,8 @@ static void enclose_share(void *data, uint32_t index) {
     for (uint32_t i = begin; i < end; i++) enclose_element(m, i);
 }
 
-static void enclose_node(const loose_level *below, uint32_t node, bool sets, loose_level *level) {
+static void enclose_node(const loose_level *below, uint32_t node, const swept_interval *interval,
+                         loose_level *level) {
     uint32_t begin = node * LOOSE_NODE_CHILDREN, rest = below->count - begin;
     uint32_t count = rest < LOOSE_NODE_CHILDREN ? rest : LOOSE_NODE_CHILDREN;
     swept_box box = below->boxes[begin];
@@ -191,7 +196,10 @@ static void enclose_node(const loose_level *below, uint32_t node, bool sets, loo
         }
     }
     level->boxes[node] = box;
-    if (!sets) return;
+    level->active[node] = false;
+    for (uint32_t i = 0; interval->active != NULL && i < count; i++)
+        level->active[node] |= below->active[begin + i];
+    if (interval->rules == NULL) return;
     level->sets[node] = below->sets[begin];
     for (uint32_t i = 1; i < count; i++)
         level->sets[node] = object_sets_join(&level->sets[node], &below->sets[begin + i]);
@@ -207,6 +215,6 @@ void loose_elements_move(loose_elements *e, const swept_interval *interval) {
                  &m);
     for (int i = 1; i < e->level_count; i++) {
         for (uint32_t node = 0; node < e->levels[i].count; node++)
-            enclose_node(&e->levels[i - 1], node, interval->rules != NULL, &e->levels[i]);
+            enclose_node(&e->levels[i - 1], node, interval, &e->levels[i]);
     }
 }

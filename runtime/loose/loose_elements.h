@@ -18,6 +18,7 @@ typedef struct loose_level {
     uint32_t count;
     swept_box *boxes;
     object_set *sets; /* with rules: the objects below */
+    bool *active;     /* with an active set: is a feature below active? */
 } loose_level;
 
 /* A number along a curve that keeps neighbours together, and an element. */

@@ -13,12 +13,14 @@ static bool parted_by_directions(const swept_interval *interval, cscd_contact_ki
 }
 
 static void test_end(const swept_interval *interval, uint32_t vertex, uint32_t triangle, contact_lane *lane) {
+    if (!pair_is_active(interval, CSCD_CONTACT_VF, vertex, triangle)) return;
     if (parted_by_directions(interval, CSCD_CONTACT_VF, vertex, triangle)) return;
     lane->feature_pairs++;
     narrow_phase_test_vf(interval, vertex, triangle, lane);
 }
 
 static void test_edges(const swept_interval *interval, uint32_t a, uint32_t b, contact_lane *lane) {
+    if (!pair_is_active(interval, CSCD_CONTACT_EE, a, b)) return;
     if (parted_by_directions(interval, CSCD_CONTACT_EE, a < b ? a : b, a < b ? b : a)) return;
     lane->feature_pairs++;
     narrow_phase_test_ee(interval, a, b, lane);

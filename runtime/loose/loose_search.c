@@ -61,8 +61,15 @@ typedef struct tree_walk {
     const loose_element *element;
     const bvh_tree *tree;
     framed_box box; /* in the frame of the tree */
+    bool inactive;  /* the element is, and inactive triangles do not count */
     contact_lane *lane;
 } tree_walk;
+
+static uint32_t children_that_count(const tree_walk *w, int level, uint32_t block, const framed_box *box) {
+    const bvh *f = w->interval->bvh;
+    uint32_t near = children_near(f, level, block, box);
+    return w->inactive ? near & ~(uint32_t)f->levels[level].inactive_lanes[block] : near;
+}
 
 /* The slack of a tree covers the rounding of its records and the triangles' half of the distance. */
 static bool triangle_parted(const tree_walk *w, const bvh_leaf *leaf, int lane) {
@@ -94,6 +101,7 @@ static void test_leaf(const tree_walk *w, uint32_t index) {
     const bvh_leaf *leaf = &f->leaves[index];
     for (uint32_t used = f->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
         uint32_t triangle = leaf->triangles[lane];
+        if (w->inactive && (f->leaf_inactive[index] >> lane & 1) != 0) continue;
         if (triangle_parted(w, leaf, (int)lane) || !triangle_looks(w, triangle)) continue;
         loose_pairs_with_triangle(w->interval, w->element, triangle, w->lane);
     }
@@ -116,7 +124,8 @@ static void walk_tree(tree_walk *w) {
     while (count > 0) {
         open_block at = stack[--count];
         uint32_t first = f->levels[at.level].first_children[at.block];
-        for (uint32_t near = children_near(f, at.level, at.block, &w->box); near != 0; near &= near - 1) {
+        for (uint32_t near = children_that_count(w, at.level, at.block, &w->box); near != 0;
+             near &= near - 1) {
             uint32_t child = first + (uint32_t)__builtin_ctz(near);
             if (at.level == 0)
                 test_leaf(w, child);
@@ -136,6 +145,7 @@ static void test_tree(tree_walk *w, uint32_t tree) {
 static void test_trees(const swept_interval *interval, const loose_element *element, contact_lane *lane) {
     const bvh *f = interval->bvh;
     tree_walk w = {.interval = interval, .element = element, .lane = lane};
+    w.inactive = interval->active != NULL && !edge_is_active(interval->active, interval->mesh, element->edge);
     if (f->tree_count <= 1) {
         if (f->tree_count == 1) test_tree(&w, 0);
         return;
@@ -147,7 +157,7 @@ static void test_trees(const swept_interval *interval, const loose_element *elem
     while (count > 0) {
         open_block at = stack[--count];
         uint32_t first = f->levels[at.level].first_children[at.block];
-        for (uint32_t near = children_near(f, at.level, at.block, &box); near != 0; near &= near - 1) {
+        for (uint32_t near = children_that_count(&w, at.level, at.block, &box); near != 0; near &= near - 1) {
             uint32_t child = first + (uint32_t)__builtin_ctz(near);
             if (at.level == f->tree_level)
                 test_tree(&w, child);
@@ -172,6 +182,7 @@ static const loose_element *element_at(const loose_elements *e, uint32_t place) 
 static bool node_counts(const loose_search *s, uint32_t place, int level, uint32_t node) {
     const loose_level *own = &s->elements->levels[0], *at = &s->elements->levels[level];
     if (!boxes_overlap(&own->boxes[place], &at->boxes[node])) return false;
+    if (s->interval->active != NULL && !own->active[place] && !at->active[node]) return false;
     return s->interval->rules == NULL || object_sets_may_meet(&own->sets[place], &at->sets[node]);
 }
 

@@ -23,6 +23,7 @@ static void test_face(const swept_interval *interval, uint32_t triangle, contact
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (triangle_contains(corners, v) || vertex_has_no_triangle(mesh, v)) continue;
         if (!all && !may_meet(interval, component, vertex_component(mesh, v))) continue;
+        if (!pair_is_active(interval, CSCD_CONTACT_VF, v, triangle)) continue;
         lane->feature_pairs++;
         swept_box vertex = swept_box_of(interval, &v, 1);
         if (swept_boxes_within(&face, &vertex, pair_reach(interval, CSCD_CONTACT_VF, v, triangle)))
@@ -41,6 +42,7 @@ static void test_edge(const swept_interval *interval, uint32_t a, contact_lane *
         const uint32_t *ends_b = mesh->edges[b];
         if (edges_share_vertex(ends_a, ends_b) || edge_is_loose(mesh, b)) continue;
         if (!all && !may_meet(interval, component, edge_component(mesh, b))) continue;
+        if (!pair_is_active(interval, CSCD_CONTACT_EE, a, b)) continue;
         lane->feature_pairs++;
         swept_box box_b = swept_box_of(interval, ends_b, 2);
         if (swept_boxes_within(&box_a, &box_b, pair_reach(interval, CSCD_CONTACT_EE, a, b)))

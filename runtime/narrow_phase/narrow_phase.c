@@ -59,6 +59,16 @@ static void queue_features(const swept_interval *interval, triangle_pair pair, u
     }
 }
 
+/* Of the pairs of features of two triangles, those with an active one. */
+static uint32_t active_features(const swept_interval *interval, triangle_pair pair) {
+    const uint32_t(*triangles)[3] = (const uint32_t(*)[3])interval->mesh->triangles;
+    uint32_t a = active_corners(interval->active, triangles[pair.a]);
+    uint32_t b = active_corners(interval->active, triangles[pair.b]);
+    uint32_t edges_a = a | a >> 1 | (a & 1) << 2, edges_b = b | b >> 1 | (b & 1) << 2, edges = 0;
+    for (int i = 0; i < 3; i++) edges |= ((edges_a >> i & 1) != 0 ? 7u : edges_b) << 3 * i;
+    return (b != 0 ? 7u : a) | (a != 0 ? 7u : b) << FEATURE_VERTEX_B | edges << FEATURE_EDGES;
+}
+
 /* Does the traversal leave this to us, because a tree holds several objects? */
 static bool triangles_look(const swept_interval *interval, triangle_pair pair) {
     const uint32_t *components = interval->mesh->triangle_components;
@@ -79,7 +89,9 @@ static void test_some(const swept_interval *interval, const triangle_pair *slots
         triangle_pair pair = {bvh_triangle(f, slots[i].a), bvh_triangle(f, slots[i].b)};
         if (trees_mix && !triangles_look(interval, pair)) continue;
         pairs[kept] = pair;
-        features[kept++] = features[i];
+        features[kept] = features[i];
+        if (interval->active != NULL) features[kept] &= (uint16_t)active_features(interval, pair);
+        kept++;
     }
     representatives_select(interval, pairs, kept, features);
     for (uint32_t i = 0; i < kept; i++) queue_features(interval, pairs[i], features[i], lane);
@@ -107,6 +119,7 @@ static bool left_to_others(const swept_interval *interval, uint32_t component) {
 }
 
 static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (!pair_is_active(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
     if (left_to_others(interval, interval->mesh->triangle_components[pair[1]])) return;
     if (parted_by_directions(interval, CSCD_CONTACT_VF, pair[0], pair[1])) return;
     lane->feature_pairs++;
@@ -114,6 +127,7 @@ static void test_orphan_vf(const swept_interval *interval, const uint32_t pair[2
 }
 
 static void test_orphan_ee(const swept_interval *interval, const uint32_t pair[2], contact_lane *lane) {
+    if (!pair_is_active(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
     if (left_to_others(interval, edge_component(interval->mesh, pair[0]))) return;
     if (parted_by_directions(interval, CSCD_CONTACT_EE, pair[0], pair[1])) return;
     lane->feature_pairs++;

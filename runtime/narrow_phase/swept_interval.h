@@ -6,6 +6,7 @@
 #include "runtime/ccd/elementary.h"
 #include "runtime/ccd/min_separation.h"
 #include "runtime/culling/culling.h"
+#include "runtime/narrow_phase/active_set.h"
 #include "runtime/narrow_phase/limits.h"
 #include "runtime/narrow_phase/pair_rules.h"
 #include "src/mesh/mesh.h"
@@ -24,12 +25,13 @@ typedef struct swept_interval {
                              * features, and orphan pairs are tested apart */
     bool closing_pass;       /* with culling: the pairs that are reached are those that were culled before */
     const pair_rules *rules; /* NULL: all objects are looked at */
-    separation limit;        /* of every pair; distance 0: a contact is touching */
-    bool thick;              /* a pair's distance is that of the rules, where this is the greater one */
-    double tolerance;        /* of these distances, as a share of them; 0: the default */
-    double beyond;           /* volumes are compared within so much more than the pairs' distances */
-    double floor_ratio;      /* above 0: pairs that start nearer than they should have a floor instead */
-    bool collecting;         /* pairs of features become the lanes' candidates instead of being tested */
+    const active_set *active; /* NULL: all vertices are */
+    separation limit;         /* of every pair; distance 0: a contact is touching */
+    bool thick;               /* a pair's distance is that of the rules, where this is the greater one */
+    double tolerance;         /* of these distances, as a share of them; 0: the default */
+    double beyond;            /* volumes are compared within so much more than the pairs' distances */
+    double floor_ratio;       /* above 0: pairs that start nearer than they should have a floor instead */
+    bool collecting;          /* pairs of features become the lanes' candidates instead of being tested */
 } swept_interval;
 
 /* What the kernels read of an interval. */
@@ -99,6 +101,17 @@ static inline separation pair_separation(const swept_interval *interval, cscd_co
 static inline double pair_reach(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
                                 uint32_t b) {
     return pair_separation(interval, kind, a, b).distance + interval->beyond;
+}
+
+/* Is one of two features active, as in cscd_contact? Points may be named as edges. */
+static inline bool pair_is_active(const swept_interval *interval, cscd_contact_kind kind, uint32_t a,
+                                  uint32_t b) {
+    const active_set *s = interval->active;
+    const cscd_mesh *mesh = interval->mesh;
+    if (s == NULL) return true;
+    if (kind == CSCD_CONTACT_EE) return edge_is_active(s, mesh, a) || edge_is_active(s, mesh, b);
+    if (s->vertices[a]) return true;
+    return kind == CSCD_CONTACT_VF ? s->triangles[b] : s->vertices[mesh->objects[b].first_vertex];
 }
 
 /* The points of vertex a and triangle b, or of the edges a and b. */

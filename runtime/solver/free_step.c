@@ -52,6 +52,22 @@ cscd_status motion_check(cscd_context *context, const straight_motion *m) {
     return CSCD_OK;
 }
 
+cscd_status motion_check_still(cscd_context *context, const straight_motion *m, const active_set *active) {
+    for (uint32_t o = 0; active->vertices != NULL && o < m->mesh->object_count; o++) {
+        coordinate_range r = range_of(m->mesh, o);
+        for (size_t i = r.begin; is_in_floats(m, o) && i < r.end; i++) {
+            if (active->vertices[i / 3] || stored_coordinate(m->x0[i], CSCD_SCALAR_FLOAT) == m->x0[i])
+                continue;
+            return context_fail(
+                context, CSCD_INVALID_ARGUMENT,
+                "vertex %zu is not active, but would move where x0 is rounded to floats: give x0 "
+                "in floats, or ask for doubles",
+                i / 3);
+        }
+    }
+    return CSCD_OK;
+}
+
 static void round_to_floats(const straight_motion *m, double *x) {
     for (uint32_t o = 0; o < m->mesh->object_count; o++) {
         coordinate_range r = range_of(m->mesh, o);

@@ -14,6 +14,9 @@ typedef struct straight_motion {
  * asked before a search begins. */
 cscd_status motion_check(cscd_context *context, const straight_motion *m);
 
+/* The same, if rounding x0 would move a vertex that is not active. */
+cscd_status motion_check_still(cscd_context *context, const straight_motion *m, const active_set *active);
+
 /* Writes x0 + fraction (x1 - x0), rounded, and where that is asked for rounded to floats; at 0 and 1 x0 and x1 themselves.
  * A coordinate that is nearer to 0 than positions may be becomes 0. */
 void motion_at(const straight_motion *m, double fraction, double *out);

@@ -91,6 +91,7 @@ cscd_status max_step_find(cscd_detector *d, const straight_motion *m, cscd_free_
     double since = timer_now_ms();
     tries t = {.detector = d, .timings = {.check_ms = d->timings.check_ms}};
     cscd_status status = motion_check(d->context, m);
+    if (status == CSCD_OK) status = motion_check_still(d->context, m, &d->space.active);
     if (status != CSCD_OK) return status;
     detector_begin_call(d);
     status = waiting_settle(d, m->x0);

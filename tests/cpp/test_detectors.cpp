@@ -172,6 +172,25 @@ void long_lists(void **) {
     assert_int_equal(t.ours.step(t.x0, t.x1).size(), all);
 }
 
+/* Only one vertex may move, then none, then all. */
+void active_vertices(void **) {
+    twins t;
+    const std::size_t all = t.compare_steps();
+    std::uint32_t one = 0;
+    while (t.x1[3 * one + 2] == t.x0[3 * one + 2]) one++;
+    const std::vector<std::uint32_t> alone{one};
+    t.ours.set_active(alone);
+    assert_int_equal(error_of([&] { t.ours.step(t.x0, t.x1); }).status(), CSCD_INVALID_ARGUMENT);
+    std::vector<float> end = t.x0;
+    end[3 * one + 2] = t.x1[3 * one + 2];
+    t.ours.step(t.x0, end);
+    t.ours.set_active(std::vector<std::uint32_t>{});
+    assert_int_equal(error_of([&] { t.ours.step(t.x0, end); }).status(), CSCD_INVALID_ARGUMENT);
+    assert_int_equal(t.ours.step(t.x0, t.x0).size(), 0);
+    t.ours.set_active();
+    assert_int_equal(t.ours.step(t.x0, t.x1).size(), all);
+}
+
 void separation(void **) {
     twins t;
     t.compare_steps();
@@ -266,12 +285,12 @@ void line_searches(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(steps),        cmocka_unit_test(culling),
-                                cmocka_unit_test(proximity),    cmocka_unit_test(contact_stencils),
-                                cmocka_unit_test(options),      cmocka_unit_test(live_changes),
-                                cmocka_unit_test(rules),        cmocka_unit_test(long_lists),
-                                cmocka_unit_test(separation),   cmocka_unit_test(motions),
-                                cmocka_unit_test(bounds),       cmocka_unit_test(touching_starts),
-                                cmocka_unit_test(line_searches)};
+    const CMUnitTest tests[] = {cmocka_unit_test(steps),           cmocka_unit_test(culling),
+                                cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
+                                cmocka_unit_test(options),         cmocka_unit_test(live_changes),
+                                cmocka_unit_test(rules),           cmocka_unit_test(long_lists),
+                                cmocka_unit_test(active_vertices), cmocka_unit_test(separation),
+                                cmocka_unit_test(motions),         cmocka_unit_test(bounds),
+                                cmocka_unit_test(touching_starts), cmocka_unit_test(line_searches)};
     return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
 }

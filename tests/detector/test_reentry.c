@@ -78,7 +78,7 @@ static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
 
 /* ---- calls from callbacks ------------------------------------------------------------------------------ */
 
-enum { CALLS = 13 };
+enum { CALLS = 14 };
 
 static cscd_status call_again(const panel_scene *p, int what) {
     static union {
@@ -115,6 +115,8 @@ static cscd_status call_again(const panel_scene *p, int what) {
         return truncate_packed(p->detector, p->x0, p->x1, 0.1, NULL, &found.truncation);
     case 11:
         return cscd_detector_set_rules(p->detector, NULL, 0, NULL, 0);
+    case 12:
+        return cscd_detector_set_active(p->detector, NULL, 0);
     default:
         return cscd_partition_create(p->context, p->mesh, NULL, CSCD_DOUBLES(p->x0, p->vertex_count), NULL,
                                      (cscd_partition **)&made);

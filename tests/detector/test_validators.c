@@ -175,11 +175,38 @@ static void faults_of_detectors(void **state) {
     whole_set_destroy(&w);
 }
 
+static void faults_of_active_sets(void **state) {
+    (void)state;
+    whole_set w = whole_set_create();
+    cscd_detector *d = w.detector;
+    const uint32_t vertices[2] = {3, 40};
+    assert_int_equal(cscd_detector_set_active(d, vertices, 2), CSCD_OK);
+    assert_null(detector_validate(d));
+    bvh *f = &d->space.bvh;
+    active_set *set = &d->space.active;
+    PLANT(detector_validate, d, set->vertices[50], true, "a triangle is not as active as its vertices");
+    PLANT(detector_validate, d, set->triangles[0], !set->triangles[0],
+          "a triangle is not as active as its vertices");
+    PLANT(detector_validate, d, d->rebuild.active, NULL,
+          "the trees and their detector have different active sets");
+    PLANT(detector_validate, d, f->leaf_inactive, NULL,
+          "the trees and their detector have different active sets");
+    PLANT(detector_validate, d, f->leaf_inactive[1], (uint8_t)~f->leaf_inactive[1],
+          "a leaf has the wrong active triangles");
+    PLANT(detector_validate, d, f->levels[0].inactive_lanes, NULL, "a level does not know its active blocks");
+    PLANT(detector_validate, d, f->levels[1].inactive_lanes[0], 0xff,
+          "a block has the wrong active children");
+    assert_int_equal(cscd_detector_set_active(d, NULL, 0), CSCD_OK);
+    assert_null(detector_validate(d));
+    whole_set_destroy(&w);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_of_meshes),
         cmocka_unit_test(faults_of_plans_and_partitions),
         cmocka_unit_test(faults_of_detectors),
+        cmocka_unit_test(faults_of_active_sets),
     };
     return cmocka_run_group_tests_name("validators", tests, NULL, NULL);
 }

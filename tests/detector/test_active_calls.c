@@ -1,0 +1,609 @@
+/* Active vertices: how the work falls, what is refused, what stays known, and what becomes of the set. */
+#include "cscd/cscd.h"
+#include "cscd/research.h"
+#include "tests/support/active_twins.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/equal_panels.h"
+#include "tests/support/moving_scene.h"
+#include "tests/support/oracle.h"
+#include "tests/support/packed.h"
+#include "tests/support/rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static active_twins twins; /* large, as the others; one test at a time */
+static scene s;
+
+static void set_vertices(cscd_detector *d, const uint32_t *vertices, size_t count) {
+    assert_int_equal(cscd_detector_set_active(d, vertices, count), CSCD_OK);
+}
+
+static double away_from(uint32_t centre, uint32_t v) {
+    const double *a = s.x0 + centre * 3, *b = s.x0 + v * 3;
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* Those within the radius of a vertex; all others stay where they start. Returns how many there are. */
+static uint32_t choose_ball(uint32_t centre, double radius, uint32_t *vertices) {
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        if (away_from(centre, v) <= radius)
+            vertices[count++] = v;
+        else
+            memcpy(s.x1 + v * 3, s.x0 + v * 3, sizeof(double[3]));
+    }
+    return count;
+}
+
+/* The first of two spheres flies into the other one. Returns how many vertices it has. */
+static uint32_t make_flying_sphere(uint32_t *vertices) {
+    scene_clear(&s);
+    for (int i = 0; i < 2; i++) scene_add_sphere(&s, (double[3]){2.5 * i, 0, 0}, 1.0, 8, 10);
+    uint32_t count = s.vertex_count / 2;
+    for (uint32_t v = 0; v < count; v++) {
+        vertices[v] = v;
+        s.x1[v * 3] += 1.0;
+    }
+    return count;
+}
+
+/* ---- work ---------------------------------------------------------------------------------------------- */
+
+static cscd_counters count_step(const rig *r, size_t *contacts) {
+    *contacts = rig_step(r, &s).count;
+    return cscd_detector_counters(r->detector);
+}
+
+/* A patch of 1 % of two spheres that almost touch everywhere. */
+static void work_falls_with_the_active_part(void **state) {
+    (void)state;
+    static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    scene_clear(&s);
+    scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 20, 24);
+    scene_add_sphere(&s, (double[3]){0, 0, 0}, 0.99, 20, 24);
+    for (uint32_t k = 0; k < s.vertex_count * 3 / 2; k++) s.x1[k] *= 0.97;
+    uint32_t count = choose_ball(100, 0.2, vertices);
+    assert_in_range(count, 2, s.vertex_count / 20);
+    for (int m = 0; m < 3; m++) {
+        cscd_detector_options options = cscd_detector_defaults();
+        options.method = methods[m];
+        rig r = rig_create(&s, 1, &options);
+        size_t all_found, found;
+        cscd_counters all = count_step(&r, &all_found), again;
+        set_vertices(r.detector, vertices, count);
+        cscd_counters part = count_step(&r, &found);
+        assert_int_equal(found, all_found); /* the rest rests, and nothing touches at the start */
+        assert_true(found > 0);
+        if (methods[m] != CSCD_METHOD_BRUTE) {
+            assert_true(part.boxes_tested * 5 < all.boxes_tested);
+            assert_true((part.pcp - part.adjacent) * 5 < all.pcp - all.adjacent);
+        }
+        assert_true(part.feature_pairs * 5 < all.feature_pairs);
+        assert_int_equal(part.by_signs + part.by_roots + part.by_exact, part.tests);
+        set_vertices(r.detector, NULL, 0);
+        again = count_step(&r, &found);
+        assert_memory_equal(&again, &all, sizeof all);
+        rig_destroy(&r);
+    }
+}
+
+/* ---- what is refused ----------------------------------------------------------------------------------- */
+
+static void expect_refused(const rig *r, cscd_status status, const char *sentence) {
+    assert_int_equal(status, CSCD_INVALID_ARGUMENT);
+    if (strstr(cscd_context_detail(r->context), sentence) == NULL)
+        fail_msg("\"%s\" does not say \"%s\"", cscd_context_detail(r->context), sentence);
+}
+
+static void moved_vertices_are_refused(void **state) {
+    (void)state;
+    static double end[SCENE_VERTICES_MAX * 3];
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    cscd_contacts contacts;
+    cscd_free_step step;
+    cscd_truncation cut;
+    cscd_line_search *line = NULL;
+    scene_make(SCENE_NOISY_SPHERE, 5, &s);
+    uint32_t count = choose_ball(0, 0.5, vertices), last = s.vertex_count - 1;
+    rig r = rig_create(&s, 2, NULL);
+    assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+    set_vertices(r.detector, vertices, count);
+    s.x0[last * 3] = 0.0;
+    s.x1[last * 3] = -0.0; /* the same place */
+    assert_int_equal(step_packed(r.detector, s.x0, s.x1, &contacts), CSCD_OK);
+    s.x0[last * 3] = s.x1[last * 3] = 0.5;
+    char name[32];
+    snprintf(name, sizeof name, "vertex %u is not active", last);
+    for (int k = 0; k < 3; k++) {
+        double before = s.x1[last * 3 + (uint32_t)k];
+        s.x1[last * 3 + (uint32_t)k] = nextafter(s.x0[last * 3 + (uint32_t)k], 9.0);
+        expect_refused(&r, step_packed(r.detector, s.x0, s.x1, &contacts), name);
+        expect_refused(&r, max_step_packed(r.detector, s.x0, s.x1, end, &step), name);
+        expect_refused(&r, truncate_packed(r.detector, s.x0, s.x1, 0.1, end, &cut), name);
+        expect_refused(&r, line_begin_packed(line, s.x0, s.x1, 0.1), name);
+        s.x1[last * 3 + (uint32_t)k] = before;
+    }
+    assert_int_equal(step_packed(r.detector, s.x0, s.x1, &contacts), CSCD_OK);
+    assert_int_equal(max_step_packed(r.detector, s.x0, s.x1, end, &step), CSCD_OK);
+    assert_int_equal(truncate_packed(r.detector, s.x0, s.x1, 0.1, end, &cut), CSCD_OK);
+    assert_int_equal(line_begin_packed(line, s.x0, s.x1, 0.1), CSCD_OK);
+    s.x1[last * 3] = 0.1; /* it may move once all may */
+    set_vertices(r.detector, NULL, 0);
+    assert_int_equal(step_packed(r.detector, s.x0, s.x1, &contacts), CSCD_OK);
+    cscd_line_search_destroy(line);
+    rig_destroy(&r);
+}
+
+/* A third has no float. */
+static void rounding_moves_vertices(void **state) {
+    (void)state;
+    static float floats[SCENE_VERTICES_MAX * 3];
+    cscd_free_step step;
+    const uint32_t vertex = 0;
+    scene_make(SCENE_NOISY_SPHERE, 5, &s);
+    for (uint32_t k = 0; k < s.vertex_count * 3; k++) s.x0[k] = s.x1[k] = (double)(float)s.x0[k];
+    s.x1[0] += 0.01;
+    rig r = rig_create(&s, 1, NULL);
+    set_vertices(r.detector, &vertex, 1);
+    const cscd_view *x0 = CSCD_DOUBLES(s.x0, s.vertex_count), *x1 = CSCD_DOUBLES(s.x1, s.vertex_count);
+    const cscd_mutable_view *reached = CSCD_MUTABLE_FLOATS(floats, s.vertex_count);
+    assert_int_equal(cscd_detector_max_step(r.detector, x0, x1, reached, &step), CSCD_OK);
+    s.x0[22] = s.x1[22] = 1.0 / 3.0;
+    expect_refused(&r, cscd_detector_max_step(r.detector, x0, x1, reached, &step),
+                   "vertex 7 is not active, but would move where x0 is rounded to floats");
+    assert_int_equal(cscd_detector_max_step(r.detector, x0, x1, NULL, &step), CSCD_OK);
+    s.x0[22] = s.x1[22] = 0.25;
+    s.x0[0] = s.x1[1] = 1.0 / 3.0; /* of an active one, that does no harm */
+    assert_int_equal(cscd_detector_max_step(r.detector, x0, x1, reached, &step), CSCD_OK);
+    rig_destroy(&r);
+}
+
+static void mistakes_are_refused(void **state) {
+    (void)state;
+    cscd_contacts found;
+    scene_make(SCENE_TWO_SPHERES, 3, &s);
+    rig r = rig_create(&s, 1, NULL);
+    const uint32_t wrong[3] = {0, 1, s.vertex_count}, none[1] = {0};
+    size_t all = rig_step(&r, &s).count;
+    assert_true(all > 0);
+    assert_int_equal(cscd_detector_set_active(NULL, wrong, 1), CSCD_NULL_OBJECT);
+    expect_refused(&r, cscd_detector_set_active(r.detector, NULL, 2),
+                   "vertices is NULL, but there are to be 2");
+    expect_refused(&r, cscd_detector_set_active(r.detector, wrong, 3), "vertices[2] is");
+    assert_int_equal(rig_step(&r, &s).count, all); /* all are still active */
+    set_vertices(r.detector, none, 0);             /* none is */
+    expect_refused(&r, cscd_detector_set_active(r.detector, wrong, 3), "vertices[2] is");
+    expect_refused(&r, step_packed(r.detector, s.x0, s.x1, &found), "vertex 0 is not active");
+    assert_int_equal(step_packed(r.detector, s.x1, s.x1, &found), CSCD_OK);
+    assert_int_equal(found.count, 0);
+    assert_int_equal(cscd_detector_counters(r.detector).boxes_tested, 0);
+    set_vertices(r.detector, NULL, 0);
+    assert_int_equal(rig_step(&r, &s).count, all);
+    rig_destroy(&r);
+}
+
+static void lines_begin_again(void **state) {
+    (void)state;
+    static double end[SCENE_VERTICES_MAX * 3];
+    cscd_line_search *line = NULL;
+    cscd_proximities near;
+    cscd_free_step step;
+    const uint32_t vertices[2] = {0, 1};
+    scene_make(SCENE_TWO_SPHERES, 3, &s);
+    rig r = rig_create(&s, 1, NULL);
+    assert_int_equal(cscd_line_search_create(r.detector, &line), CSCD_OK);
+    for (int i = 0; i < 3; i++) {
+        memcpy(s.x1 + 6, s.x0 + 6, sizeof s.x0 - 6 * sizeof *s.x0);
+        assert_int_equal(line_begin_packed(line, s.x0, s.x1, 0.1), CSCD_OK);
+        assert_int_equal(line_max_step_packed(line, 1.0, end, &step), CSCD_OK);
+        set_vertices(r.detector, i == 1 ? NULL : vertices, i == 1 ? 0 : 2);
+        expect_refused(&r, line_max_step_packed(line, 1.0, end, &step), "the active vertices have been set");
+        expect_refused(&r, cscd_line_search_find_near(line, 0.5, 0.1, CSCD_NEAR_PAIRS, &near),
+                       "the active vertices have been set");
+        assert_int_equal(line_positions_packed(line, 0.5, end), CSCD_OK);
+    }
+    cscd_line_search_destroy(line);
+    rig_destroy(&r);
+}
+
+/* ---- what is known ------------------------------------------------------------------------------------- */
+
+static bool triangle_is_active(const uint32_t *vertices, uint32_t count, uint32_t t) {
+    for (uint32_t i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++)
+            if (s.triangles[t * 3 + (uint32_t)k] == vertices[i]) return true;
+    }
+    return false;
+}
+
+static bool in_a_pair(const cscd_intersections *list, uint32_t t) {
+    for (size_t i = 0; i < list->count; i++)
+        if (list->items[i].a == t || list->items[i].b == t) return true;
+    return false;
+}
+
+/* Its top is pushed through its bottom. */
+static void make_crossing_sphere(void) {
+    scene_clear(&s);
+    scene_add_sphere(&s, (double[3]){0, 0, 0}, 1.0, 12, 14);
+    for (uint32_t v = 0; v < s.vertex_count; v++) {
+        if (s.x0[v * 3 + 2] > 0.8) s.x0[v * 3 + 2] -= 1.93;
+    }
+    memcpy(s.x1, s.x0, sizeof s.x0);
+}
+
+/* What was not compared is not known, however much it crosses. */
+static void checks_leave_open_what_they_do_not_compare(void **state) {
+    (void)state;
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    size_t open = 0, crossing = 0, known = 0, missed = 0;
+    for (int start = CSCD_START_PROVE; start <= CSCD_START_UNKNOWN; start++) {
+        make_crossing_sphere();
+        cscd_detector_options options = cscd_detector_defaults();
+        options.method = CSCD_METHOD_SINGLE;
+        options.start = (cscd_start)start;
+        rig r = rig_create(&s, 1, &options);
+        cscd_intersections all, found;
+        cscd_contacts contacts;
+        rig whole = rig_create(&s, 1, &options);
+        assert_int_equal(check_packed(whole.detector, s.x0, &all), CSCD_OK);
+        assert_true(all.count > 0);
+        uint32_t count = choose_ball(s.triangles[all.items[0].a * 3], 0.45, vertices);
+        if (start == CSCD_START_VOUCHED)
+            assert_int_equal(step_packed(r.detector, s.x0, s.x0, &contacts), CSCD_OK);
+        set_vertices(r.detector, vertices, count);
+        assert_int_equal(check_packed(r.detector, s.x0, &found), CSCD_OK);
+        for (uint32_t t = 0; t < s.triangle_count; t++) {
+            cscd_start_state is = cscd_detector_start_state(r.detector, t);
+            bool active = triangle_is_active(vertices, count, t), crosses = in_a_pair(&found, t);
+            if (crosses) assert_int_equal(is, CSCD_START_STATE_CROSSING);
+            if (!active && !crosses) assert_int_equal(is, CSCD_START_STATE_UNKNOWN);
+            if (active && !crosses) assert_true(is >= CSCD_START_STATE_FREE);
+            open += is == CSCD_START_STATE_UNKNOWN;
+            crossing += is == CSCD_START_STATE_CROSSING;
+            known += is >= CSCD_START_STATE_FREE;
+            missed += is == CSCD_START_STATE_UNKNOWN && in_a_pair(&all, t);
+        }
+        rig_destroy(&whole);
+        rig_destroy(&r);
+    }
+    print_message("%zu open, %zu crossing, %zu known, %zu that cross unseen\n", open, crossing, known,
+                  missed);
+    assert_true(open > 100 && crossing > 0 && known > 10 && missed > 0);
+}
+
+/* The steps of a detector without a set prove no more. */
+static void proofs_look_at_everything(void **state) {
+    (void)state;
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    cscd_detector_options options = cscd_detector_defaults();
+    options.method = CSCD_METHOD_SINGLE;
+    for (int i = 0; i < 2; i++) {
+        make_crossing_sphere();
+        rig whole = rig_create(&s, 1, &options), part = rig_create(&s, 1, &options);
+        const double *equator = s.x0 + (size_t)s.vertex_count / 2 * 3;
+        uint32_t count = choose_ball(s.vertex_count / 2, i == 0 ? 0.1 : 0.5, vertices);
+        set_vertices(part.detector, vertices, count);
+        s.x1[vertices[0] * 3] += 0.001 * equator[0];
+        assert_int_equal(rig_step(&part, &s).count, rig_step(&whole, &s).count);
+        cscd_guarantee a = cscd_detector_guarantee(part.detector, 0),
+                       b = cscd_detector_guarantee(whole.detector, 0);
+        assert_int_equal(a.reason, CSCD_REASON_CROSSING);
+        assert_true(a.reason == b.reason && a.complete == b.complete && a.start_embedded == b.start_embedded);
+        assert_int_equal(cscd_detector_counters(part.detector).clean,
+                         cscd_detector_counters(whole.detector).clean);
+        for (uint32_t t = 0; t < s.triangle_count; t++)
+            assert_int_equal(cscd_detector_start_state(part.detector, t),
+                             cscd_detector_start_state(whole.detector, t));
+        rig_destroy(&part);
+        rig_destroy(&whole);
+    }
+}
+
+/* What a seam uncovers waits, wherever the active vertices are. */
+static void pairs_wait_without_active_vertices(void **state) {
+    (void)state;
+    static const double separations[] = {0.0, 0.05};
+    for (int i = 0; i < 2; i++) {
+        equal_panels p;
+        const uint32_t vertices[2] = {0, 1};
+        panels_begin(&p, separations[i], 2, NULL);
+        cscd_detector_options options = cscd_detector_defaults();
+        options.min_separation = separations[i];
+        options.seams = p.seams[0];
+        options.seam_count = PANEL;
+        memset(&twins, 0, sizeof twins);
+        active_twins_begin(&twins, p.detector, &options, false);
+        twins.set = true;
+        for (int k = 0; k < 2; k++) twins.active[vertices[k]] = true;
+        active_twins_tell(&twins);
+        assert_int_equal(cscd_detector_set_seams(p.detector, NULL, 0), CSCD_OK);
+        assert_int_equal(cscd_detector_set_seams(twins.theirs, NULL, 0), CSCD_OK);
+        active_twins_step(&twins, p.x0, p.x0);
+        active_twins_check(&twins, p.x0);
+        active_twins_near(&twins, p.x0, 0.2);
+        size_t waiting = twins.waiting;
+        assert_true(waiting > PANEL);
+        twins.set = false;
+        active_twins_tell(&twins);
+        active_twins_step(&twins, p.x0, p.x0);
+        active_twins_check(&twins, p.x0);
+        assert_int_equal(twins.waiting, 2 * waiting);
+        assert_int_equal(twins.contacts + twins.intersections, 0);
+        active_twins_end(&twins);
+        panels_end(&p);
+    }
+}
+
+/* ---- what becomes of the set --------------------------------------------------------------------------- */
+
+enum { BALLS = 60 };
+
+/* Balls that jump about between steps, so that trees are built again. Every third one rests, but for some of its vertices. */
+static void rebuilt_trees_have_the_set(void **state) {
+    (void)state;
+    static double next[SCENE_VERTICES_MAX * 3];
+    double jump[3] = {0, 0, 0}, shift[3] = {0, 0, 0};
+    random_stream random = stream_start(4);
+    size_t rebuilds = 0;
+    scene_clear(&s);
+    for (int i = 0; i < BALLS; i++) scene_add_sphere(&s, (double[3]){0.3 * i, 0, 0}, 0.2, 3, 4);
+    const uint32_t each = s.vertex_count / BALLS;
+    cscd_detector_options options = cscd_detector_defaults();
+    options.min_separation = 0.02;
+    rig r = rig_create(&s, 2, &options);
+    memset(&twins, 0, sizeof twins);
+    active_twins_begin(&twins, r.detector, &options, false);
+    twins.set = true;
+    for (uint32_t v = 0; v < s.vertex_count; v++) twins.active[v] = v / each % 3 > 0 || v % 7 == 0;
+    active_twins_tell(&twins);
+    for (int step = 0; step < 36; step++) {
+        for (uint32_t v = 0; v < s.vertex_count; v++) {
+            for (uint32_t k = 0; k < 3; k++) {
+                if (v % each == 0)
+                    jump[k] = step < 2 ? 0.0 : stream_between(&random, -1.5, 1.5) - s.x0[v * 3 + k];
+                if (v % each == 0) shift[k] = stream_between(&random, -0.2, 0.2);
+                s.x0[v * 3 + k] += jump[k];
+                next[v * 3 + k] = s.x0[v * 3 + k] + shift[k];
+            }
+        }
+        active_twins_hold(&twins, s.x0, next);
+        active_twins_step(&twins, s.x0, next);
+        cscd_counters ours = cscd_detector_counters(r.detector), all = cscd_detector_counters(twins.theirs);
+        assert_int_equal(ours.rebuilds, all.rebuilds);
+        assert_true(ours.boxes_tested < all.boxes_tested);
+        rebuilds += ours.rebuilds;
+    }
+    print_message("%zu rebuilds, %zu contacts, %zu left out\n", rebuilds, twins.contacts, twins.left_out);
+    assert_true(rebuilds > 0 && twins.contacts > 1000 && twins.left_out > 100);
+    active_twins_end(&twins);
+    rig_destroy(&r);
+}
+
+/* The set after a change: what comes from an active vertex, and what is new. */
+static void map_set(void) {
+    static bool before[TWIN_VERTICES_MAX];
+    uint32_t count;
+    const uint32_t *origins = cscd_mesh_change_vertex_origins(moving.last, &count);
+    memcpy(before, twins.active, sizeof before);
+    for (uint32_t v = 0; v < count; v++) twins.active[v] = origins[v] == UINT32_MAX || before[origins[v]];
+}
+
+static void change_both(size_t *told) {
+    cscd_detector *theirs = twins.theirs;
+    moving_change_scene();
+    map_set();
+    assert_int_equal(cscd_detector_change_mesh(theirs, moving.last), CSCD_OK);
+    active_twins_join(&twins, moving.detector, theirs);
+    if (stream_below(&moving.random, 4) > 0) return;
+    active_twins_choose(&twins, moving_joined.x0, &moving.random);
+    ++*told;
+}
+
+static void run_changes(cscd_context *context, uint64_t seed, size_t *told) {
+    moving_begin_scene(context, seed, false);
+    moving.options.ignore = active_twins_ignore;
+    moving.options.ignore_user = &twins;
+    cscd_detector *theirs = moving_new_detector(moving_mesh_now(), NULL);
+    active_twins_join(&twins, moving.detector, theirs);
+    active_twins_choose(&twins, moving_joined.x0, &moving.random);
+    for (int i = 0; i < 8; i++) {
+        moving_move_scene(0.2);
+        active_twins_hold(&twins, moving.x0, moving.x1);
+        if (moving.earliest)
+            active_twins_check(&twins, moving.x0);
+        else
+            active_twins_step(&twins, moving.x0, moving.x1);
+        active_twins_near(&twins, moving.x1, 0.05);
+        moving_go_on();
+        uint32_t next = stream_below(&moving.random, 3);
+        if (next == 0) moving_replace_by_clone();
+        twins.ours = moving.detector;
+        if (next == 1) change_both(told);
+    }
+    active_twins_end(&twins);
+    moving_end_scene();
+}
+
+static void clones_and_changed_meshes_keep_the_set(void **state) {
+    (void)state;
+    cscd_context_options options = cscd_context_defaults();
+    cscd_context *context = NULL;
+    size_t told = 0;
+    memset(&twins, 0, sizeof twins);
+    assert_int_equal(cscd_context_create(&options, &context), CSCD_OK);
+    for (uint64_t seed = 0; seed < 24; seed++) run_changes(context, seed, &told);
+    cscd_context_destroy(context);
+    print_message("changes: %zu contacts, %zu near, %zu left out, %zu waiting, told %zu times\n",
+                  twins.contacts, twins.near, twins.left_out, twins.waiting, told);
+    assert_true(twins.contacts > 300 && twins.near > 300 && twins.left_out > 300 && told > 3);
+}
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+typedef struct counted_rig {
+    counting_allocator counter;
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+} counted_rig;
+
+static void counted_begin(counted_rig *r) {
+    cscd_context_options options = cscd_context_defaults();
+    const cscd_object_desc desc = cscd_object_of_triangles(s.vertex_count, s.triangle_count, s.triangles);
+    r->counter = counting_allocator_start();
+    options.allocator = counting_allocator_interface(&r->counter);
+    options.thread_count = 1;
+    assert_int_equal(cscd_context_create(&options, &r->context), CSCD_OK);
+    assert_int_equal(cscd_mesh_create(r->context, &desc, 1, &r->mesh), CSCD_OK);
+    assert_int_equal(detector_create_here(r->mesh, NULL, NULL, &r->detector), CSCD_OK);
+}
+
+static void counted_end(counted_rig *r) {
+    cscd_detector_destroy(r->detector);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+    assert_int_equal(r->counter.live, 0);
+}
+
+/* Steps on the detector, and on a clone, which may fail at any allocation and then succeed. */
+static size_t step_often(counted_rig *r, const double *x0, const double *x1, size_t fail_in) {
+    cscd_contacts found;
+    cscd_detector *clone = NULL;
+    r->counter.fail_at = r->counter.calls + fail_in;
+    cscd_status status = step_packed(r->detector, x0, x1, &found);
+    assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
+    status = cscd_detector_clone(r->context, r->detector, &clone);
+    assert_true(status == CSCD_OK || status == CSCD_OUT_OF_MEMORY);
+    r->counter.fail_at = SIZE_MAX;
+    if (clone == NULL) assert_int_equal(cscd_detector_clone(r->context, r->detector, &clone), CSCD_OK);
+    assert_int_equal(step_packed(clone, x0, x1, &found), CSCD_OK);
+    size_t of_clone = found.count;
+    cscd_counters boxes = cscd_detector_counters(clone);
+    assert_int_equal(step_packed(r->detector, x0, x1, &found), CSCD_OK);
+    assert_int_equal(found.count, of_clone);
+    assert_int_equal(cscd_detector_counters(r->detector).boxes_tested, boxes.boxes_tested);
+    cscd_detector_destroy(clone);
+    return found.count;
+}
+
+/* The set is given before there are trees, or after. */
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    size_t failures = 0;
+    uint32_t count = make_flying_sphere(vertices);
+    static scene whole;
+    memcpy(&whole, &s, sizeof whole);
+    for (uint32_t v = count; v < s.vertex_count; v++) whole.x1[v * 3] -= 0.1;
+    for (int trees = 0; trees < 2; trees++) {
+        bool failed = true;
+        for (size_t n = 0; failed; n++) {
+            counted_rig r;
+            cscd_contacts found;
+            counted_begin(&r);
+            if (trees == 1) assert_int_equal(step_packed(r.detector, whole.x0, whole.x1, &found), CSCD_OK);
+            r.counter.fail_at = r.counter.calls + n;
+            cscd_status status = cscd_detector_set_active(r.detector, vertices, count);
+            r.counter.fail_at = SIZE_MAX;
+            failed = status == CSCD_OUT_OF_MEMORY;
+            failures += failed;
+            if (failed) /* all are active as before */
+                assert_int_equal(step_packed(r.detector, whole.x0, whole.x1, &found), CSCD_OK);
+            set_vertices(r.detector, vertices, count);
+            assert_int_equal(step_packed(r.detector, whole.x0, whole.x1, &found), CSCD_INVALID_ARGUMENT);
+            assert_int_equal(step_packed(r.detector, s.x0, s.x1, &found), CSCD_OK);
+            size_t calls = r.counter.calls, contacts = found.count;
+            set_vertices(r.detector, vertices, count - 1); /* takes no memory any more */
+            set_vertices(r.detector, vertices, count);
+            assert_int_equal(step_packed(r.detector, s.x0, s.x1, &found), CSCD_OK);
+            assert_int_equal(r.counter.calls, calls);
+            assert_int_equal(found.count, contacts);
+            counted_end(&r);
+        }
+    }
+    assert_true(failures > 4);
+}
+
+static void trees_and_clones_may_fail(void **state) {
+    (void)state;
+    static uint32_t vertices[SCENE_VERTICES_MAX];
+    size_t contacts = 0;
+    uint32_t count = make_flying_sphere(vertices);
+    for (size_t n = 0; n < 120; n++) {
+        counted_rig r;
+        counted_begin(&r);
+        set_vertices(r.detector, vertices, count);
+        size_t found = step_often(&r, s.x0, s.x1, n);
+        assert_true(n == 0 || found == contacts);
+        contacts = found;
+        counted_end(&r);
+    }
+    assert_true(contacts > 0);
+}
+
+/* One of two objects goes; the change and the trees that follow it may fail anywhere. */
+static void changes_may_fail(void **state) {
+    (void)state;
+    size_t failures = 0;
+    bool failed = true;
+    cscd_contacts found;
+    scene_make(SCENE_TWO_SPHERES, 3, &s);
+    for (size_t n = 0; failed; n++) {
+        counted_rig r;
+        cscd_mesh_change *change = NULL;
+        const uint32_t vertex = 1;
+        const cscd_object_desc points = cscd_object_of_points(1);
+        const cscd_object_change added = {.object = UINT32_MAX, .desc = &points};
+        static double x0[SCENE_VERTICES_MAX * 3 + 3], x1[SCENE_VERTICES_MAX * 3 + 3];
+        counted_begin(&r);
+        assert_int_equal(step_packed(r.detector, s.x0, s.x0, &found), CSCD_OK);
+        set_vertices(r.detector, &vertex, 1);
+        assert_int_equal(cscd_mesh_change_create(r.context, r.mesh, &added, 1, &change), CSCD_OK);
+        r.counter.fail_at = r.counter.calls + n;
+        cscd_status status = cscd_detector_change_mesh(r.detector, change);
+        r.counter.fail_at = SIZE_MAX;
+        failed = status != CSCD_OK;
+        if (failed) assert_int_equal(status, CSCD_OUT_OF_MEMORY);
+        failures += failed;
+        memcpy(x0, s.x0, sizeof s.x0);
+        memcpy(x1, s.x0, sizeof s.x0);
+        memset(x0 + s.vertex_count * 3, 0, sizeof(double[3]));
+        memset(x1 + s.vertex_count * 3, 0, sizeof(double[3]));
+        x1[3] += 0.1;
+        if (!failed) x1[s.vertex_count * 3] = 0.5; /* new, so it may move */
+        r.counter.fail_at = r.counter.calls + n;
+        status = step_packed(r.detector, x0, x1, &found);
+        r.counter.fail_at = SIZE_MAX;
+        if (status != CSCD_OK) assert_int_equal(status, CSCD_OUT_OF_MEMORY);
+        assert_int_equal(step_packed(r.detector, x0, x1, &found), CSCD_OK);
+        x1[6] += 0.1;
+        assert_int_equal(step_packed(r.detector, x0, x1, &found), CSCD_INVALID_ARGUMENT);
+        cscd_mesh_change_destroy(change);
+        counted_end(&r);
+    }
+    assert_true(failures > 10);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(work_falls_with_the_active_part),
+        cmocka_unit_test(moved_vertices_are_refused),
+        cmocka_unit_test(rounding_moves_vertices),
+        cmocka_unit_test(mistakes_are_refused),
+        cmocka_unit_test(lines_begin_again),
+        cmocka_unit_test(checks_leave_open_what_they_do_not_compare),
+        cmocka_unit_test(proofs_look_at_everything),
+        cmocka_unit_test(pairs_wait_without_active_vertices),
+        cmocka_unit_test(rebuilt_trees_have_the_set),
+        cmocka_unit_test(clones_and_changed_meshes_keep_the_set),
+        cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(trees_and_clones_may_fail),
+        cmocka_unit_test(changes_may_fail),
+    };
+    return cmocka_run_group_tests_name("active_calls", tests, NULL, NULL);
+}
