@@ -88,6 +88,7 @@ typedef struct bvh {
     const bvh_kernels *kernels;
     int axis_count; /* of the volumes of blocks' children: BOX_AXES or KDOP_AXES */
     uint32_t tree_count, leaf_count, record_count, record_capacity;
+    uint32_t missing_begin, missing_end; /* the triangles of missing trees are some of these */
     bvh_tree *trees;
     bvh_leaf *leaves;
     lane_flags *leaf_flags;             /* of triangles */
@@ -126,6 +127,9 @@ void bvh_free(bvh *f);
  * called again. */
 cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
                        const double *positions);
+
+/* How many triangles are in missing trees. */
+uint32_t bvh_count_missing(const bvh *f);
 
 /* Adds all blocks above the leaves, as a step of bvh_build; counts: scratch, one number per tree. False: no memory. */
 bool bvh_build_levels(bvh *f, uint32_t *counts);

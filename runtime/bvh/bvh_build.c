@@ -104,7 +104,10 @@ static void cut_chunks(bvh *f) {
 
 static void fill_run(builder *b, bvh *f, bvh_tree *tree, uint32_t region, uint32_t begin, uint32_t end) {
     bvh_order_run(&b->triangles, begin, end);
-    *tree = (bvh_tree){.region = region, .first_leaf = f->leaf_count, .first_record = f->record_count};
+    *tree = (bvh_tree){.region = region,
+                       .object = OBJECT_UNKNOWN,
+                       .first_leaf = f->leaf_count,
+                       .first_record = f->record_count};
     for (uint32_t i = begin; i < end; i += LANES)
         fill_leaf(b, f, tree, b->triangles.items + i, end - i < LANES ? end - i : LANES);
     tree->leaf_count = f->leaf_count - tree->first_leaf;
@@ -228,6 +231,12 @@ cscd_status bvh_build(const cscd_mesh *mesh, bvh_regions regions, const double *
 
 /* ---- trees that are missing ---------------------------------------------------------------------------- */
 
+uint32_t bvh_count_missing(const bvh *f) {
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < f->tree_count; i++) sum += f->trees[i].missing;
+    return sum;
+}
+
 /* Lists the triangles of missing trees, tree by tree. */
 static void list_missing(builder *b, const bvh *f, uint32_t *names) {
     uint32_t sum = 0, *next = b->region_offsets + 1;
@@ -237,7 +246,7 @@ static void list_missing(builder *b, const bvh *f, uint32_t *names) {
         next[r] = size > 0 ? sum : UINT32_MAX;
         sum += size;
     }
-    for (uint32_t t = 0; t < b->mesh->triangle_count; t++) {
+    for (uint32_t t = f->missing_begin; t < f->missing_end; t++) {
         uint32_t *place = &next[b->given.of_triangle[t]];
         if (*place != UINT32_MAX) names[(*place)++] = t;
     }
@@ -287,12 +296,6 @@ static bool allocate_missing(builder *b, bvh *f, uint32_t missing, uint32_t **na
            b->region_offsets != NULL && b->record_of != NULL && b->names != NULL && f->records != NULL;
 }
 
-static uint32_t count_missing(const bvh *f) {
-    uint32_t sum = 0;
-    for (uint32_t i = 0; i < f->tree_count; i++) sum += f->trees[i].missing;
-    return sum;
-}
-
 static void fill_all_missing(builder *b, bvh *f, const double *positions, uint32_t *names, uint32_t missing) {
     memset(b->record_of, 0xff, b->mesh->vertex_count * sizeof(uint32_t));
     list_missing(b, f, names);
@@ -307,7 +310,7 @@ static void fill_all_missing(builder *b, bvh *f, const double *positions, uint32
 cscd_status bvh_finish(bvh *f, bvh_regions regions, const object_set *sets, const bool *active,
                        const double *positions) {
     builder b = {.context = f->mesh->context, .mesh = f->mesh, .given = regions};
-    uint32_t missing = count_missing(f), *names = NULL;
+    uint32_t missing = bvh_count_missing(f), *names = NULL;
     bool made = allocate_missing(&b, f, missing, &names);
     if (made) {
         fill_all_missing(&b, f, positions, names, missing);

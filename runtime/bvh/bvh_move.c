@@ -49,12 +49,15 @@ static bvh_tree place_of(const bvh *f, const bvh_move *move, uint32_t item) {
     if (item >= f->tree_count) {
         const fresh_region *fresh = &move->fresh[item - f->tree_count];
         return (bvh_tree){.region = fresh->region,
+                          .object = OBJECT_UNKNOWN,
                           .missing = fresh->triangle_count,
                           .leaf_count = rounded_up(fresh->triangle_count) / LANES,
                           .record_count = rounded_up(fresh->vertex_count)};
     }
     const bvh_tree *old = &f->trees[item];
+    bool unknown = old->object == OBJECT_UNKNOWN;
     return (bvh_tree){.region = move->regions[old->region],
+                      .object = unknown ? OBJECT_UNKNOWN : move->change->objects.to_new[old->object],
                       .missing = old->missing,
                       .leaf_count = old->leaf_count,
                       .record_count = old->record_count};
@@ -68,6 +71,18 @@ static void place_trees(const bvh *f, const bvh_move *move, const tree_order *o,
         out->leaf_count += tree.leaf_count;
         out->record_count += tree.record_count;
         out->trees[out->tree_count++] = tree;
+    }
+}
+
+/* Missing trees are of objects that have changed, or were missing already. */
+static void find_missing(const bvh *f, const cscd_mesh_change *change, bvh *out) {
+    out->missing_begin = bvh_count_missing(f) > 0 ? 0 : UINT32_MAX;
+    out->missing_end = bvh_count_missing(f) > 0 ? out->mesh->triangle_count : 0;
+    for (uint32_t i = 0; i < change->described_count; i++) {
+        const object_range *range = &change->described[i];
+        uint32_t begin = range->triangle, end = begin + range->triangle_count;
+        if (begin < out->missing_begin) out->missing_begin = begin;
+        if (end > out->missing_end) out->missing_end = end;
     }
 }
 
@@ -98,18 +113,18 @@ static void map_triangles(const uint32_t *from, const uint32_t *map, uint32_t *t
 }
 
 /* run: that of its triangles; NULL: their object has changed. */
-static void move_leaf(const bvh_leaf *from, const bvh_move *move, const object_run *run, uint32_t records,
+static void move_leaf(const bvh_leaf *from, const bvh_move *move, const number_run *run, uint32_t records,
                       bvh_leaf *to) {
     for (int i = 0; i < 3; i++) {
         for (int lane = 0; lane < LANES; lane++) to->corners[i][lane] = from->corners[i][lane] + records;
     }
     if (run != NULL)
-        shift_triangles(from->triangles, run->to.triangle - run->from.triangle, to->triangles);
+        shift_triangles(from->triangles, run->to - run->from, to->triangles);
     else
         map_triangles(from->triangles, move->change->triangles.to_new, to->triangles);
 }
 
-static void move_leaves(const bvh *f, const bvh_move *move, const bvh_tree *from, const object_run *run,
+static void move_leaves(const bvh *f, const bvh_move *move, const bvh_tree *from, const number_run *run,
                         const bvh_tree *to, bvh *out) {
     uint32_t records = to->first_record - from->first_record;
     for (uint32_t i = 0; i < to->leaf_count; i++) {
@@ -122,11 +137,12 @@ static void move_leaves(const bvh *f, const bvh_move *move, const bvh_tree *from
     }
 }
 
-static void move_records(const bvh *f, const bvh_move *move, const bvh_tree *from, const object_run *run,
-                         const bvh_tree *to, bvh *out) {
+static void move_records(const bvh *f, const bvh_move *move, const bvh_tree *from, const bvh_tree *to,
+                         bvh *out) {
     const uint32_t *vertices = f->record_vertices + from->first_record;
+    const number_run *run = number_map_run(&move->change->vertices, vertices[0]);
     uint32_t *moved = out->record_vertices + to->first_record;
-    if (run != NULL) copy_shifted(vertices, to->record_count, run->to.vertex - run->from.vertex, moved);
+    if (run != NULL) copy_shifted(vertices, to->record_count, run->to - run->from, moved);
     for (uint32_t i = 0; run == NULL && i < to->record_count; i++)
         moved[i] = move->change->vertices.to_new[vertices[i]];
     memcpy(out->record_weights + to->first_record, f->record_weights + from->first_record,
@@ -138,15 +154,17 @@ static void move_tree(const bvh *f, const bvh_move *move, const bvh_tree *from, 
     const bvh_tree *to = &out->trees[index];
     for (uint32_t i = 0; i < to->leaf_count; i++) out->leaf_trees[to->first_leaf + i] = index;
     if (from == NULL || from->missing > 0) return;
-    const object_run *run = mesh_change_run(move->change, f->leaves[from->first_leaf].triangles[0]);
+    const number_run *run =
+        number_map_run(&move->change->triangles, f->leaves[from->first_leaf].triangles[0]);
     move_leaves(f, move, from, run, to, out);
-    move_records(f, move, from, run, to, out);
+    move_records(f, move, from, to, out);
 }
 
 static bool move_all(const bvh *f, const bvh_move *move, const tree_order *o, bvh *out) {
     out->trees = context_allocate(out->mesh->context, move->region_count, sizeof *out->trees);
     if (out->trees == NULL) return false;
     place_trees(f, move, o, out);
+    find_missing(f, move->change, out);
     if (!allocate_places(out)) return false;
     for (uint32_t i = 0; i < o->count; i++)
         move_tree(f, move, o->trees[i] < f->tree_count ? &f->trees[o->trees[i]] : NULL, i, out);

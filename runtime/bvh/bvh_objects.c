@@ -15,13 +15,17 @@ static bool holds_only(const bvh *f, const bvh_tree *tree, const cscd_object *ob
     return true;
 }
 
-static void name_objects(bvh *f) {
+static uint32_t object_of_tree(const bvh *f, const bvh_tree *tree) {
     const cscd_mesh *mesh = f->mesh;
+    uint32_t triangle = f->leaves[tree->first_leaf].triangles[0];
+    uint32_t object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
+    return holds_only(f, tree, &mesh->objects[object]) ? object : OBJECT_SEVERAL;
+}
+
+static void name_objects(bvh *f) {
     for (uint32_t i = 0; i < f->tree_count; i++) {
         bvh_tree *tree = &f->trees[i];
-        uint32_t triangle = f->leaves[tree->first_leaf].triangles[0];
-        uint32_t object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
-        tree->object = holds_only(f, tree, &mesh->objects[object]) ? object : OBJECT_SEVERAL;
+        if (tree->object == OBJECT_UNKNOWN) tree->object = object_of_tree(f, tree);
         f->trees_mix_objects |= tree->object == OBJECT_SEVERAL;
     }
 }

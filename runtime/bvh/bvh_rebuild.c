@@ -71,6 +71,14 @@ static cscd_status finish_kept(bvh_rebuild *r, const double *positions, bvh *out
     return CSCD_OK;
 }
 
+/* Where nearly all trees have moved over, their spread is what it was. */
+enum { MEASURED_SHARE = 8 };
+
+static bool spread_is_known(const bvh_rebuild *r) {
+    uint64_t missing = bvh_count_missing(&r->kept);
+    return r->spread_when_built.leaves > 0.0 && missing * MEASURED_SHARE < r->mesh->triangle_count;
+}
+
 /* Trees that were loose when they moved over are as loose now: what they were at first goes on to count, unless it was
  * looser than what they are. */
 static bvh_spread least_spread(bvh_spread now, bvh_spread before) {
@@ -84,13 +92,15 @@ static cscd_status refit_or_build(bvh_rebuild *r, bvh *f, const double *x0, cons
                                   volume_growth growth, volume_growth step_growth) {
     if (r->mesh->triangle_count == 0) return CSCD_OK;
     if (f->mesh == NULL) {
-        bool moved = r->kept.mesh != NULL;
+        bool moved = r->kept.mesh != NULL, known = moved && spread_is_known(r);
         cscd_status status = moved ? finish_kept(r, x0, f) : build_trees(r, x0, f);
         if (status != CSCD_OK) return status;
-        bvh_refit(f, x0, x1, step_growth);
-        bvh_spread spread = spread_of(f);
-        r->spread_when_built = moved ? least_spread(spread, r->spread_when_built) : spread;
-        if (same_growth(&growth, &step_growth)) return CSCD_OK;
+        if (!known) {
+            bvh_refit(f, x0, x1, step_growth);
+            bvh_spread spread = spread_of(f);
+            r->spread_when_built = moved ? least_spread(spread, r->spread_when_built) : spread;
+            if (same_growth(&growth, &step_growth)) return CSCD_OK;
+        }
     }
     bvh_refit(f, x0, x1, growth);
     return CSCD_OK;

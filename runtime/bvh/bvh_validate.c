@@ -23,6 +23,9 @@ static const char *check_leaf(const bvh *f, const bvh_tree *tree, uint32_t index
         if (filled && f->slots[t] != index * LANES + lane) return "slots and leaves are not inverse";
         if (filled && triangle_of_obstacle(f->mesh, t) != of_obstacles)
             return "a tree holds obstacles and other triangles";
+        if (filled && tree->object != OBJECT_SEVERAL &&
+            cscd_mesh_vertex_object(f->mesh, f->mesh->triangles[t][0]) != tree->object)
+            return "a tree holds triangles of another object";
         for (int i = 0; i < 3; i++) {
             uint32_t record = leaf->corners[i][lane];
             if (record < tree->first_record || record >= end) return "a corner is a record of another tree";

@@ -7,6 +7,9 @@
 /* In place of an object: triangles of more than one. */
 #define OBJECT_SEVERAL UINT32_MAX
 
+/* In place of an object: it has not been looked for. */
+#define OBJECT_UNKNOWN (UINT32_MAX - 1)
+
 /* Categories of the library's own, beside those of the caller. Obstacles are looked at with free objects only, unless
  * both of them ask for each other. */
 enum { OBJECT_FREE = 1, OBJECT_OBSTACLE = 2, OBJECT_ASKING_OBSTACLE = 4 };

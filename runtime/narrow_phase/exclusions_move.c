@@ -13,6 +13,7 @@
 static void unite_seams(const exclusions *e, const cscd_mesh_change *change, bool all, uint32_t *first,
                         uint32_t *names) {
     memset(first, 0xff, change->vertices.old_count * sizeof *first);
+    mesh_change_make_whole(change, &change->vertices);
     for (uint32_t v = 0; v < change->vertices.new_count; v++) {
         uint32_t origin = change->vertices.to_old[v];
         if (origin == UINT32_MAX || (!all && change->vertices.to_new[origin] != v)) continue;
@@ -52,8 +53,8 @@ static cscd_status move_list(const seam_list *s, const cscd_mesh_change *change,
     out->vertices = context_allocate(context, s->count, sizeof(uint32_t[2]));
     if (out->vertices == NULL) return CSCD_OUT_OF_MEMORY;
     for (size_t i = 0; i < s->count; i++) {
-        uint32_t a = change->vertices.to_new[s->vertices[2 * i]];
-        uint32_t b = change->vertices.to_new[s->vertices[2 * i + 1]];
+        uint32_t a = number_map_to_new(&change->vertices, s->vertices[2 * i]);
+        uint32_t b = number_map_to_new(&change->vertices, s->vertices[2 * i + 1]);
         if (a == UINT32_MAX || b == UINT32_MAX) continue;
         out->vertices[2 * out->count] = a;
         out->vertices[2 * out->count++ + 1] = b;
@@ -66,15 +67,16 @@ static cscd_status move_list(const seam_list *s, const cscd_mesh_change *change,
 static size_t count_pairs(const exclusions *e, const mesh_heirs *h) {
     size_t count = 0;
     for (size_t i = 0; i < e->ignored_count; i++)
-        count += (size_t)mesh_heirs_count(h, (uint32_t)(e->ignored[i] >> 32)) *
-                 mesh_heirs_count(h, (uint32_t)e->ignored[i]);
+        count += mesh_heirs_of(h, (uint32_t)(e->ignored[i] >> 32)).count *
+                 mesh_heirs_of(h, (uint32_t)e->ignored[i]).count;
     return count;
 }
 
 static void list_pairs_of(const mesh_heirs *h, uint32_t a, uint32_t b, exclusions *out) {
-    for (uint32_t i = h->offsets[a]; i < h->offsets[a + 1]; i++) {
-        for (uint32_t j = h->offsets[b]; j < h->offsets[b + 1]; j++) {
-            uint64_t s = h->items[i], t = h->items[j];
+    heir_list of_a = mesh_heirs_of(h, a), of_b = mesh_heirs_of(h, b);
+    for (size_t i = 0; i < of_a.count; i++) {
+        for (size_t j = 0; j < of_b.count; j++) {
+            uint64_t s = heir_at(&of_a, i), t = heir_at(&of_b, j);
             out->ignored[out->ignored_count++] = s < t ? s << 32 | t : t << 32 | s;
         }
     }
@@ -96,7 +98,7 @@ static cscd_status move_listed(const exclusions *e, const mesh_heirs *h, exclusi
 static cscd_status move_ignored(const exclusions *e, const cscd_mesh_change *change, exclusions *out) {
     mesh_heirs h;
     if (e->ignored_count == 0) return CSCD_OK;
-    cscd_status status = mesh_heirs_find(out->mesh->context, &change->triangles, &h);
+    cscd_status status = mesh_heirs_find(out->mesh->context, change, &change->triangles, &h);
     if (status == CSCD_OK) status = move_listed(e, &h, out);
     mesh_heirs_free(out->mesh->context, &h);
     return status;

@@ -197,12 +197,24 @@ static void keep_ee(orphan_search *f, uint32_t a, uint32_t b) {
         add_pair(f, &f->ee, a < b ? a : b, a < b ? b : a);
 }
 
+/* Objects that have not changed keep all of their pairs. */
 static void keep_known(orphan_search *f, const orphan_pairs *pairs) {
-    const number_map *edges = &f->change->edges;
-    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++)
-        keep_vf(f, f->change->vertices.to_new[pairs->vf[i][0]], f->change->triangles.to_new[pairs->vf[i][1]]);
-    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++)
-        keep_ee(f, edges->to_new[pairs->ee[i][0]], edges->to_new[pairs->ee[i][1]]);
+    const number_map *vertices = &f->change->vertices, *edges = &f->change->edges,
+                     *triangles = &f->change->triangles;
+    for (size_t i = 0; i < pairs->vf_count && !has_enough(f); i++) {
+        uint32_t v = pairs->vf[i][0], t = pairs->vf[i][1];
+        if (number_map_run(triangles, t) != NULL)
+            add_pair(f, &f->vf, number_map_to_new(vertices, v), number_map_to_new(triangles, t));
+        else
+            keep_vf(f, vertices->to_new[v], triangles->to_new[t]);
+    }
+    for (size_t i = 0; i < pairs->ee_count && !has_enough(f); i++) {
+        uint32_t a = pairs->ee[i][0], b = pairs->ee[i][1];
+        if (number_map_run(edges, a) != NULL)
+            add_pair(f, &f->ee, number_map_to_new(edges, a), number_map_to_new(edges, b));
+        else
+            keep_ee(f, edges->to_new[a], edges->to_new[b]);
+    }
 }
 
 cscd_status orphan_pairs_move(const orphan_pairs *pairs, const cscd_mesh *mesh,

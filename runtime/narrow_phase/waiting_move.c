@@ -42,9 +42,10 @@ static bool move_pair(const named_pair *pair, const heirs_of_kinds *h, const csc
                                : kind == CSCD_CONTACT_EV || kind == CSCD_CONTACT_VV ? &h->vertices
                                : kind == CSCD_CONTACT_VH                            ? &h->objects
                                                                                     : &h->triangles;
-    for (uint32_t i = first->offsets[pair->a]; i < first->offsets[pair->a + 1]; i++) {
-        for (uint32_t j = second->offsets[pair->b]; j < second->offsets[pair->b + 1]; j++) {
-            if (!add_pair(mesh, out, kind, first->items[i], second->items[j])) return false;
+    heir_list of_a = mesh_heirs_of(first, pair->a), of_b = mesh_heirs_of(second, pair->b);
+    for (size_t i = 0; i < of_a.count; i++) {
+        for (size_t j = 0; j < of_b.count; j++) {
+            if (!add_pair(mesh, out, kind, heir_at(&of_a, i), heir_at(&of_b, j))) return false;
         }
     }
     return true;
@@ -61,11 +62,12 @@ static bool move_set(const named_pair_set *set, const heirs_of_kinds *h, const c
 static cscd_status move_sets(const waiting_pairs *w, const cscd_mesh *mesh, const cscd_mesh_change *change,
                              waiting_pairs *out) {
     if (w->pairs.count == 0 && w->torn.count == 0) return CSCD_OK;
-    heirs_of_kinds h = {{NULL, NULL}, {NULL, NULL}, {NULL, NULL}, {NULL, NULL}};
-    cscd_status status = mesh_heirs_find(mesh->context, &change->vertices, &h.vertices);
-    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->edges, &h.edges);
-    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->triangles, &h.triangles);
-    if (status == CSCD_OK) status = mesh_heirs_find(mesh->context, &change->objects, &h.objects);
+    heirs_of_kinds h = {.vertices = {.map = NULL}};
+    cscd_context *context = mesh->context;
+    cscd_status status = mesh_heirs_find(context, change, &change->vertices, &h.vertices);
+    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->edges, &h.edges);
+    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->triangles, &h.triangles);
+    if (status == CSCD_OK) status = mesh_heirs_find(context, change, &change->objects, &h.objects);
     bool moved = status == CSCD_OK && move_set(&w->pairs, &h, mesh, &out->pairs) &&
                  move_set(&w->torn, &h, mesh, &out->torn) && named_pair_set_sort(mesh->context, &out->pairs);
     mesh_heirs_free(mesh->context, &h.vertices);
@@ -116,6 +118,7 @@ static bool list_seams(const cscd_mesh_change *change, const uint32_t *names, cs
                        parted_vertices *p) {
     bool *parted = context_allocate(context, change->vertices.old_count, sizeof *parted);
     bool made = parted != NULL;
+    mesh_change_make_whole(change, &change->vertices);
     for (size_t i = 0; made && i < p->count; i++) parted[names[p->items[i] >> 32]] = true;
     p->count = 0;
     for (uint32_t v = 0; made && v < change->vertices.new_count; v++) {

@@ -183,7 +183,8 @@ static array_list map_arrays(cscd_mesh_change *c) {
          ARRAY(c->triangles.to_old, c->triangles.new_count), ARRAY(c->objects.to_new, c->objects.old_count),
          ARRAY(c->objects.to_old, c->objects.new_count), ARRAY(c->components.to_new, c->components.old_count),
          ARRAY(c->components.to_old, c->components.new_count), ARRAY(c->runs, c->objects.new_count),
-         ARRAY(c->described, c->objects.new_count)}};
+         ARRAY(c->described, c->objects.new_count), ARRAY(c->vertices.runs, c->objects.new_count),
+         ARRAY(c->edges.runs, c->objects.new_count), ARRAY(c->triangles.runs, c->objects.new_count)}};
 }
 
 static void count_features(cscd_mesh_change *c) {
@@ -199,6 +200,7 @@ static void free_change(reference_count *references) {
     cscd_mesh_change *change = (cscd_mesh_change *)references;
     cscd_context *context = change->context;
     const cscd_mesh *old = change->old_mesh, *mesh = change->mesh;
+    pthread_mutex_destroy(&change->lock);
     if (!context_broken(context)) {
         context_free_all(context, map_arrays(change));
         context_free(context, change);
@@ -206,6 +208,14 @@ static void free_change(reference_count *references) {
     mesh_release(mesh);
     mesh_release(old);
     context_release(context);
+}
+
+/* Maps and the lock. */
+static bool reserve_maps(cscd_mesh_change *change) {
+    if (!context_reserve_all(change->context, map_arrays(change))) return false;
+    if (pthread_mutex_init(&change->lock, NULL) == 0) return true;
+    context_free_all(change->context, map_arrays(change));
+    return false;
 }
 
 /* The change holds the mesh in place of the caller. */
@@ -216,7 +226,7 @@ static cscd_status begin_change(change_plan *p, cscd_mesh *mesh, cscd_mesh_chang
     change->old_mesh = p->old;
     change->mesh = mesh;
     count_features(change);
-    if (!context_reserve_all(p->context, map_arrays(change))) {
+    if (!reserve_maps(change)) {
         context_free(p->context, change);
         return CSCD_OUT_OF_MEMORY;
     }
@@ -287,52 +297,54 @@ const cscd_mesh *cscd_mesh_change_mesh(const cscd_mesh_change *change) {
     return change->mesh;
 }
 
-static const uint32_t *give_new(const number_map *map, uint32_t *old_count) {
+static const uint32_t *give_new(const cscd_mesh_change *change, const number_map *map, uint32_t *old_count) {
+    mesh_change_make_whole(change, map);
     if (old_count != NULL) *old_count = map->old_count;
     return map->to_new;
 }
 
-static const uint32_t *give_old(const number_map *map, uint32_t *new_count) {
+static const uint32_t *give_old(const cscd_mesh_change *change, const number_map *map, uint32_t *new_count) {
+    mesh_change_make_whole(change, map);
     if (new_count != NULL) *new_count = map->new_count;
     return map->to_old;
 }
 
 const uint32_t *cscd_mesh_change_vertices(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(&change->vertices, old_count);
+    return give_new(change, &change->vertices, old_count);
 }
 
 const uint32_t *cscd_mesh_change_edges(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(&change->edges, old_count);
+    return give_new(change, &change->edges, old_count);
 }
 
 const uint32_t *cscd_mesh_change_triangles(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(&change->triangles, old_count);
+    return give_new(change, &change->triangles, old_count);
 }
 
 const uint32_t *cscd_mesh_change_objects(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(&change->objects, old_count);
+    return give_new(change, &change->objects, old_count);
 }
 
 const uint32_t *cscd_mesh_change_components(const cscd_mesh_change *change, uint32_t *old_count) {
-    return give_new(&change->components, old_count);
+    return give_new(change, &change->components, old_count);
 }
 
 const uint32_t *cscd_mesh_change_vertex_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(&change->vertices, new_count);
+    return give_old(change, &change->vertices, new_count);
 }
 
 const uint32_t *cscd_mesh_change_edge_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(&change->edges, new_count);
+    return give_old(change, &change->edges, new_count);
 }
 
 const uint32_t *cscd_mesh_change_triangle_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(&change->triangles, new_count);
+    return give_old(change, &change->triangles, new_count);
 }
 
 const uint32_t *cscd_mesh_change_object_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(&change->objects, new_count);
+    return give_old(change, &change->objects, new_count);
 }
 
 const uint32_t *cscd_mesh_change_component_origins(const cscd_mesh_change *change, uint32_t *new_count) {
-    return give_old(&change->components, new_count);
+    return give_old(change, &change->components, new_count);
 }

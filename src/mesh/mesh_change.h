@@ -3,11 +3,44 @@
 
 #include "src/mesh/mesh.h"
 
-/* UINT32_MAX in place of a number: there is none. */
+#include <pthread.h>
+
+/* Numbers of objects that have not changed: `from` and those that follow it are `to` and those that follow that. */
+typedef struct number_run {
+    uint32_t from, to, count;
+} number_run;
+
+/* The arrays say what has become of the numbers of objects that have changed, UINT32_MAX: there is none. Of all others
+ * the runs say it, in the order of both meshes, and the arrays as soon as somebody has asked for the whole map. */
 typedef struct number_map {
     uint32_t *to_new, *to_old;
     uint32_t old_count, new_count;
+    number_run *runs;
+    uint32_t run_count;
+    bool whole;
 } number_map;
+
+/* The run that an old number is in; NULL: its object has changed. */
+static inline const number_run *number_map_run(const number_map *map, uint32_t old) {
+    uint32_t low = 0, high = map->run_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        const number_run *run = &map->runs[middle];
+        if (old < run->from)
+            high = middle;
+        else if (old - run->from >= run->count)
+            low = middle + 1;
+        else
+            return run;
+    }
+    return NULL;
+}
+
+/* What has become of an old number. */
+static inline uint32_t number_map_to_new(const number_map *map, uint32_t old) {
+    const number_run *run = number_map_run(map, old);
+    return run != NULL ? run->to + (old - run->from) : map->to_new[old];
+}
 
 /* Where what belongs to one object stands in the arrays of a mesh; or to several that follow each other. */
 typedef struct object_range {
@@ -22,6 +55,7 @@ typedef struct object_run {
 struct cscd_mesh_change {
     reference_count references; /* the caller alone */
     cscd_context *context;
+    pthread_mutex_t lock;             /* of maps that become whole */
     const cscd_mesh *old_mesh, *mesh; /* as their creators see them; held */
     number_map vertices, edges, triangles, objects;
     number_map components; /* the untouched ones; in these, features have one origin and are its only ones */
@@ -32,7 +66,10 @@ struct cscd_mesh_change {
     uint32_t described_count;
 };
 
-/* Is the triangle of the new mesh, and are its corners, all that has become of one old triangle and of its corners? */
+/* Fills in what the runs say, once; from any thread. */
+void mesh_change_make_whole(const cscd_mesh_change *change, const number_map *map);
+
+/* Of an object that has changed: is the triangle of the new mesh, and are its corners, all that has become of one old triangle and of its corners? */
 static inline bool mesh_change_keeps(const cscd_mesh_change *change, uint32_t triangle) {
     uint32_t origin = change->triangles.to_old[triangle];
     if (origin == UINT32_MAX || change->triangles.to_new[origin] != triangle) return false;
@@ -50,9 +87,6 @@ static inline void copy_shifted(const uint32_t *restrict from, size_t count, uin
                                 uint32_t *restrict to) {
     for (size_t i = 0; i < count; i++) to[i] = from[i] + by;
 }
-
-/* The run that a triangle of the old mesh is in; NULL: its object has changed. */
-const object_run *mesh_change_run(const cscd_mesh_change *change, uint32_t old_triangle);
 
 /* An object of a mesh that becomes the next object of another one. */
 typedef struct object_source {

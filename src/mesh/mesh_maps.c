@@ -35,11 +35,26 @@ static void add_to_runs(cscd_mesh_change *change, const object_move *m) {
     }
 }
 
+static void add_run(number_map *map, uint32_t from, uint32_t to, uint32_t count) {
+    if (count > 0) map->runs[map->run_count++] = (number_run){from, to, count};
+}
+
 static void map_run(cscd_mesh_change *change, const object_run *m) {
-    map_range(&change->vertices, m->from.vertex, m->to.vertex, m->from.vertex_count);
-    map_range(&change->edges, m->from.edge, m->to.edge, m->from.edge_count);
-    map_range(&change->triangles, m->from.triangle, m->to.triangle, m->from.triangle_count);
+    add_run(&change->vertices, m->from.vertex, m->to.vertex, m->from.vertex_count);
+    add_run(&change->edges, m->from.edge, m->to.edge, m->from.edge_count);
+    add_run(&change->triangles, m->from.triangle, m->to.triangle, m->from.triangle_count);
     map_range(&change->components, m->from.component, m->to.component, m->from.component_count);
+}
+
+/* The caller has it as one that does not change, since nobody sees that it does. */
+void mesh_change_make_whole(const cscd_mesh_change *change, const number_map *map) {
+    cscd_mesh_change *own = (cscd_mesh_change *)change;
+    number_map *filled = (number_map *)map;
+    pthread_mutex_lock(&own->lock);
+    for (uint32_t i = 0; !filled->whole && i < map->run_count; i++)
+        map_range(filled, map->runs[i].from, map->runs[i].to, map->runs[i].count);
+    filled->whole = true;
+    pthread_mutex_unlock(&own->lock);
 }
 
 /* ---- objects that have ---------------------------------------------------------------------------------- */
@@ -204,20 +219,5 @@ void mesh_change_map(cscd_mesh_change *change, const object_range *old_ranges, c
             map_changed_object(change, &old_ranges[origins[i].old_object], &moves[i].to, &origins[i]);
     }
     for (uint32_t i = 0; i < change->run_count; i++) map_run(change, &change->runs[i]);
-}
-
-/* Runs are in the order of both meshes. */
-const object_run *mesh_change_run(const cscd_mesh_change *change, uint32_t old_triangle) {
-    uint32_t low = 0, high = change->run_count;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        const object_range *from = &change->runs[middle].from;
-        if (old_triangle < from->triangle)
-            high = middle;
-        else if (old_triangle - from->triangle >= from->triangle_count)
-            low = middle + 1;
-        else
-            return &change->runs[middle];
-    }
-    return NULL;
+    change->objects.whole = change->components.whole = true;
 }
