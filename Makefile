@@ -138,6 +138,10 @@ SLOW_tool          := tool_preprocess tool_render tool_stop
 TEST_ROOMS := $(sort $(notdir $(patsubst %/,%,$(dir $(wildcard tests/*/test_*.c*)))))
 SLOW_TESTS := $(foreach room,$(TEST_ROOMS),$(addprefix $(room)/test_,$(SLOW_$(room))))
 $(foreach test,$(SLOW_TESTS),$(if $(wildcard tests/$(test).c*),,$(warning tests/$(test).c is called slow, but there is none)))
+# They start first, and of these the longest, so that no processor waits for one of them at the end.
+LONGEST_TESTS := report/test_report_browser install/test_embedding detector/test_waiting_random detector/test_object_rules
+IN_ORDER := $(filter $(addprefix $(BUILD)/tests/,$(LONGEST_TESTS)),$(TESTS))
+IN_ORDER += $(filter-out $(IN_ORDER),$(TESTS))
 FAST_TESTS := $(filter-out $(addprefix $(BUILD)/tests/,$(SLOW_TESTS)),$(TESTS))
 C_MODELS   := $(patsubst models/%.c,$(BUILD)/models/%,$(MODEL_SOURCES))
 CPP_MODELS := $(patsubst models/%.cpp,$(BUILD)/models/%,$(CPP_MODEL_SOURCES))
@@ -228,7 +232,7 @@ check-run: tool library $(FAST_TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BU
 	@BUILD=$(BUILD) tests/run.sh $(FAST_TESTS)
 
 test-run: tool library $(TESTS) $(MODELS) $(BUILD)/benchmarks/queries $(BUILD)/benchmarks/methods
-	@BUILD=$(BUILD) tests/run.sh $(TESTS)
+	@BUILD=$(BUILD) tests/run.sh $(IN_ORDER)
 
 # What is left without runtime/baselines builds, and passes its tests: about a minute.
 test-without-baselines: packages
@@ -423,6 +427,11 @@ $$(OBJECTS)/%.$(1).o: %.c
 	$$(Q)$$(CC) $$(CFLAGS_ALL) $$(LEVEL_$(1)) -c -o $$@ $$<
 endef
 $(foreach level,$(LEVELS),$(eval $(call compile_level,$(level))))
+
+# Under sanitizers -O1 compiles quickly; what tests run longest, the library and the programs of models/, pays for -O2.
+ifneq ($(filter sanitize tsan,$(CONFIG)),)
+$(addprefix $(OBJECTS)/,src/core/% src/mesh/% preprocess/% runtime/% models/%): CFLAGS_ALL += -O2
+endif
 
 $(OBJECTS)/%.o: %.c
 	@mkdir -p $(@D)

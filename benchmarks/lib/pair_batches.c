@@ -7,19 +7,29 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* False when the processor lacks the level, or memory runs out. */
+static bool open_level(pair_batches *b, int i, cscd_simd simd) {
+    cscd_context_options options = cscd_context_defaults();
+    options.simd = simd;
+    options.thread_count = 1;
+    if (cscd_context_create(&options, &b->contexts[i]) != CSCD_OK) {
+        b->contexts[i] = NULL;
+        return false;
+    }
+    b->lanes[i] = context_allocate(b->contexts[i], 1, sizeof *b->lanes[i]);
+    return b->lanes[i] != NULL;
+}
+
+bool pair_batches_open_best(pair_batches *b) {
+    *b = (pair_batches){.random = 1};
+    if (open_level(b, 0, CSCD_SIMD_AUTO)) return true;
+    pair_batches_close(b);
+    return false;
+}
+
 bool pair_batches_open(pair_batches *b) {
     *b = (pair_batches){.random = 1};
-    for (int i = 0; i < PAIR_BATCH_LEVELS; i++) {
-        cscd_context_options options = cscd_context_defaults();
-        options.simd = (cscd_simd)(CSCD_SIMD_SCALAR + i);
-        options.thread_count = 1;
-        if (cscd_context_create(&options, &b->contexts[i]) != CSCD_OK) {
-            b->contexts[i] = NULL;
-            continue;
-        }
-        b->lanes[i] = context_allocate(b->contexts[i], 1, sizeof *b->lanes[i]);
-        if (b->lanes[i] == NULL) break;
-    }
+    for (int i = 0; i < PAIR_BATCH_LEVELS; i++) open_level(b, i, (cscd_simd)(CSCD_SIMD_SCALAR + i));
     if (b->lanes[0] != NULL && b->lanes[pair_batches_best_level(b)] != NULL) return true;
     pair_batches_close(b);
     return false;

@@ -26,6 +26,8 @@ typedef struct pair_batches {
 
 /* False when memory runs out; what is open is then closed. */
 bool pair_batches_open(pair_batches *b);
+/* The same with one level alone, the highest: pairs are decided once, and nothing is compared. */
+bool pair_batches_open_best(pair_batches *b);
 void pair_batches_close(pair_batches *b);
 
 /* The highest level that this processor has. */

@@ -8,7 +8,11 @@
 #include <math.h>
 #include <stdio.h>
 
+#ifdef __SANITIZE_ADDRESS__
+enum { ROUND_COUNT = 5000 };
+#else
 enum { ROUND_COUNT = 20000 };
+#endif
 
 static int seed_random(void **state) {
     (void)state;

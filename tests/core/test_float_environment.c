@@ -10,6 +10,12 @@
 #include <pthread.h>
 #include <stdlib.h>
 
+#ifdef __SANITIZE_ADDRESS__
+enum { SCENES = 10 };
+#else
+enum { SCENES = 24 };
+#endif
+
 /* ---- environments -------------------------------------------------------------------------------------- */
 
 #if defined(__SSE2__)
@@ -206,7 +212,7 @@ static void random_scenes(void **state) {
     static const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE};
     (void)state;
     ignored_pairs = reports = cancelled = 0;
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    for (uint64_t seed = 0; seed < SCENES; seed++) {
         sequence_make(seed % 2 ? SEQUENCE_GRID : SEQUENCE_SCENE, seed, 9, &q);
         workload w = {.sequence = &q, .options = cscd_detector_defaults()};
         w.options.method = methods[seed / 2 % 2];
@@ -230,13 +236,13 @@ static void plans_of_each_kind(void **state) {
 
 static void many_threads(void **state) {
     (void)state;
+    static workload_result expected, found;
+    watching_host h;
     workload_tube(&q, 40, 20, 6);
+    workload w = {.sequence = &q, .options = cscd_detector_defaults()};
+    expected = run_in(environment_of(0), w, 1, false, &h);
     for (int number = 0; number < ENVIRONMENTS; number++) {
         for (int pool = 0; pool < 2; pool++) {
-            static workload_result expected, found;
-            watching_host h;
-            workload w = {.sequence = &q, .options = cscd_detector_defaults()};
-            expected = run_in(environment_of(0), w, 1, false, &h);
             found = run_in(environment_of(number), w, 3, pool, &h);
             assert_false(found.failed);
             assert_memory_equal(found.digests, expected.digests, found.call_count * sizeof *found.digests);

@@ -7,7 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RESOLUTION = 13, FRAMES = 90 };
+#ifdef __SANITIZE_ADDRESS__
+enum { FRAMES = 60 };
+#else
+enum { FRAMES = 90 };
+#endif
+
+enum { RESOLUTION = 13 };
 
 typedef struct driver_trial {
     cscd_context *context;
