@@ -39,6 +39,7 @@ cscd_status active_set_move(const active_set *s, const cscd_mesh *mesh, const cs
     if (s->vertices != NULL) {
         cscd_status status = active_set_reserve(mesh, &moved);
         if (status != CSCD_OK) return status;
+        mesh_change_make_whole(change, &change->vertices);
         for (uint32_t v = 0; v < mesh->vertex_count; v++) {
             uint32_t origin = change->vertices.to_old[v];
             moved.vertices[v] = origin == UINT32_MAX || s->vertices[origin];
