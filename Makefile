@@ -241,7 +241,8 @@ test-without-baselines: packages
 # The tests that use threads, under the thread sanitizer.
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
                   core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry \
-                  detector/test_lifetimes detector/test_shared_mesh cpp/test_callbacks)
+                  detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
+                  cpp/test_callbacks)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 
