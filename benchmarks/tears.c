@@ -14,11 +14,13 @@ static const uint32_t shares[SHARE_COUNT] = {16, 4, 1};
 static const char help[] =
     "usage: tears [options]\n"
     "\n"
-    "What a solver pays when a cloth is torn beside a body that is not: cscd_mesh_change_create,\n"
-    "cscd_detector_change_mesh, and what the next step takes longer than a steady one. Beside it what the cloth\n"
-    "costs alone: a mesh, a detector, and what its first step takes longer. The cloth has a 16th of the body's\n"
-    "triangles, a quarter, and as many. Milliseconds, each the least of some repetitions. ns: what a change takes\n"
-    "beyond 1, and beyond 1.3 times the cost of the cloth alone, per triangle of the body. Method single.\n"
+    "What a solver pays when a cloth is torn beside a body that is not: cscd_mesh_change_create with the origins\n"
+    "of vertices, cscd_detector_change_mesh, and what the next step takes longer than a steady one. Beside it what\n"
+    "the cloth costs alone: a mesh, a detector, and what its first step takes longer. The cloth has a 16th of the\n"
+    "body's triangles, a quarter, and as many. Milliseconds, each the least of some repetitions. ns: what a change\n"
+    "takes beyond 1, and beyond 1.3 times the cost of the cloth alone, per triangle of the body. Then a second\n"
+    "detector on the mesh of both: created, and what its first step takes longer, and the same of a clone. Method\n"
+    "single.\n"
     "--intervals: the repetitions (default 15, with --quick 5).\n"
     "\n";
 
@@ -31,6 +33,11 @@ typedef struct cloth {
         *origins[2]; /* whole and torn, and where the vertices of each come from in the other */
     double *x[2][2]; /* whole and torn, at the start and at the end, the body's behind it */
 } cloth;
+
+/* Of one share, the least of all repetitions. */
+typedef struct measured {
+    double alone[PART_COUNT], change[PART_COUNT], created[PART_COUNT], cloned[PART_COUNT];
+} measured;
 
 typedef struct tear_rig {
     const deforming_body *body;
@@ -172,6 +179,7 @@ static cscd_status measure_change(const tear_rig *r, cscd_detector *d, int torn,
     cscd_mesh_change *change = NULL;
     double ms[PART_COUNT], now = timer_now_ms();
     cscd_status status = cscd_mesh_change_create(r->context, cscd_detector_mesh(d), changes, 1, &change);
+    if (status == CSCD_OK) cscd_mesh_change_vertex_origins(change, NULL);
     ms[PART_MESH] = timer_now_ms() - now;
     now = timer_now_ms();
     if (status == CSCD_OK) status = cscd_detector_change_mesh(d, change);
@@ -185,15 +193,19 @@ static cscd_status measure_change(const tear_rig *r, cscd_detector *d, int torn,
     return status;
 }
 
-static cscd_status measure_changes(const tear_rig *r, double least[PART_COUNT]) {
+static cscd_status create_scene(const tear_rig *r, cscd_mesh **out) {
     const deforming_body *b = r->body;
     cscd_object_desc descs[2] = {describe_cloth(r, 0),
                                  cscd_object_of_triangles(b->vertex_count, b->triangle_count, b->triangles)};
+    return cscd_mesh_create(r->context, descs, 2, out);
+}
+
+static cscd_status measure_changes(const tear_rig *r, double least[PART_COUNT]) {
     cscd_mesh *mesh = NULL;
     cscd_detector *d = NULL;
     cscd_mesh_change *last = NULL;
     double unused;
-    cscd_status status = cscd_mesh_create(r->context, descs, 2, &mesh);
+    cscd_status status = create_scene(r, &mesh);
     if (status == CSCD_OK) status = create_detector(r, mesh, &d);
     if (status == CSCD_OK) status = step_to(r, d, 0, 0, &unused);
     if (status == CSCD_OK) status = step_to(r, d, 0, 1, &unused);
@@ -201,6 +213,36 @@ static cscd_status measure_changes(const tear_rig *r, double least[PART_COUNT]) 
         status = measure_change(r, d, i % 2 == 0, &last, least);
     cscd_detector_destroy(d);
     cscd_mesh_change_destroy(last);
+    cscd_mesh_destroy(mesh);
+    return status;
+}
+
+/* A detector on the mesh, created, or a clone of one that has made a step. */
+static cscd_status measure_second(const tear_rig *r, const cscd_mesh *mesh, const cscd_detector *first,
+                                  double least[PART_COUNT]) {
+    cscd_detector *d = NULL;
+    double ms[PART_COUNT] = {0.0}, now = timer_now_ms();
+    cscd_status status =
+        first == NULL ? create_detector(r, mesh, &d) : cscd_detector_clone(r->context, first, &d);
+    ms[PART_DETECTOR] = timer_now_ms() - now;
+    if (status == CSCD_OK) status = steps_after(r, d, 0, &ms[PART_NEXT]);
+    if (status == CSCD_OK) keep_least(least, ms);
+    cscd_detector_destroy(d);
+    return status;
+}
+
+static cscd_status measure_clones(const tear_rig *r, double created[PART_COUNT], double cloned[PART_COUNT]) {
+    cscd_mesh *mesh = NULL;
+    cscd_detector *first = NULL;
+    double unused;
+    cscd_status status = create_scene(r, &mesh);
+    if (status == CSCD_OK) status = create_detector(r, mesh, &first);
+    if (status == CSCD_OK) status = step_to(r, first, 0, 1, &unused);
+    for (uint32_t i = 0; status == CSCD_OK && i < r->repeats; i++) {
+        status = measure_second(r, mesh, NULL, created);
+        if (status == CSCD_OK) status = measure_second(r, mesh, first, cloned);
+    }
+    cscd_detector_destroy(first);
     cscd_mesh_destroy(mesh);
     return status;
 }
@@ -221,33 +263,46 @@ static void print_row(const tear_rig *r, const double alone[PART_COUNT], const d
     fflush(stdout);
 }
 
-static void write_row(json *out, const tear_rig *r, const double alone[PART_COUNT],
-                      const double change[PART_COUNT]) {
+static void print_clones(const tear_rig *r, const double created[PART_COUNT],
+                         const double cloned[PART_COUNT]) {
+    printf("  %9u %9u   a second detector: created %.3f, first step %.3f; cloned %.3f, first step %.3f\n",
+           r->body->triangle_count, r->sheet.triangle_count, created[PART_DETECTOR], created[PART_NEXT],
+           cloned[PART_DETECTOR], cloned[PART_NEXT]);
+    fflush(stdout);
+}
+
+static void write_parts(json *out, const char *name, const double ms[PART_COUNT], part begin) {
     static const char *const names[PART_COUNT] = {"mesh", "detector", "next step"};
+    json_begin_object(out, name);
+    for (int i = (int)begin; i < PART_COUNT; i++) json_number(out, names[i], ms[i]);
+    json_end_object(out);
+}
+
+static void write_row(json *out, const tear_rig *r, const measured *m) {
     if (out->file == NULL) return;
     json_break_line(out);
     json_begin_object(out, NULL);
     json_integer(out, "triangles", r->body->triangle_count);
     json_integer(out, "torn", r->sheet.triangle_count);
-    json_begin_object(out, "alone");
-    for (int i = 0; i < PART_COUNT; i++) json_number(out, names[i], alone[i]);
-    json_end_object(out);
-    json_begin_object(out, "change");
-    for (int i = 0; i < PART_COUNT; i++) json_number(out, names[i], change[i]);
-    json_end_object(out);
+    write_parts(out, "alone", m->alone, PART_MESH);
+    write_parts(out, "change", m->change, PART_MESH);
+    write_parts(out, "created", m->created, PART_DETECTOR);
+    write_parts(out, "cloned", m->cloned, PART_DETECTOR);
     json_end_object(out);
 }
 
 static bool run_share(tear_rig *r, uint32_t triangle_count, json *out, io_error *error) {
-    double alone[PART_COUNT], change[PART_COUNT];
-    for (int i = 0; i < PART_COUNT; i++) alone[i] = change[i] = HUGE_VAL;
+    measured m;
+    for (int i = 0; i < PART_COUNT; i++) m.alone[i] = m.change[i] = m.created[i] = m.cloned[i] = HUGE_VAL;
     make_cloth(r, triangle_count);
     cscd_status status = CSCD_OK;
-    for (uint32_t i = 0; status == CSCD_OK && i < r->repeats; i++) status = measure_alone(r, alone);
-    if (status == CSCD_OK) status = measure_changes(r, change);
+    for (uint32_t i = 0; status == CSCD_OK && i < r->repeats; i++) status = measure_alone(r, m.alone);
+    if (status == CSCD_OK) status = measure_changes(r, m.change);
+    if (status == CSCD_OK) status = measure_clones(r, m.created, m.cloned);
     bool good = status == CSCD_OK || io_fail(error, "%s", cscd_context_detail(r->context));
-    if (good) print_row(r, alone, change);
-    if (good) write_row(out, r, alone, change);
+    if (good) print_row(r, m.alone, m.change);
+    if (good) print_clones(r, m.created, m.cloned);
+    if (good) write_row(out, r, &m);
     free_cloth(&r->sheet);
     return good;
 }
