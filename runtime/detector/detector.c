@@ -149,7 +149,7 @@ void detector_list(cscd_detector *d) {
     context_list_object(d->context, &d->references, validate_listed);
 }
 
-cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh) {
+cscd_detector *detector_allocate(cscd_context *context, const cscd_mesh *mesh) {
     cscd_detector *d = context_allocate(context, 1, sizeof *d);
     cscd_mesh *seen = context_allocate(context, 1, sizeof *seen);
     if (d == NULL || seen == NULL) {
@@ -157,12 +157,26 @@ cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh) {
         context_free(context, seen);
         return NULL;
     }
-    mesh_hold(mesh);
     d->context = context;
     *seen = mesh_seen_from(context, mesh);
     d->mesh = d->seen = seen;
+    return d;
+}
+
+cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh) {
+    cscd_detector *d = detector_allocate(context, mesh);
+    if (d == NULL) return NULL;
+    mesh_hold(mesh);
     context_add_object(context, &d->references, free_detector);
     return d;
+}
+
+void detector_take_options(cscd_detector *d, const cscd_detector *from) {
+    d->options = from->options;
+    d->limit = from->limit;
+    d->traits = from->traits;
+    d->stages = from->stages;
+    d->rules = from->rules;
 }
 
 /* Creates a detector with checked options. */

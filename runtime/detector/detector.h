@@ -82,8 +82,14 @@ struct cscd_detector {
 void detector_hold(cscd_detector *d);
 void detector_release(cscd_detector *d);
 
-/* A detector without any parts, which holds the mesh and the context; NULL: no memory. */
+/* A detector without any parts, which nobody holds, and which holds nothing; NULL: no memory. */
+cscd_detector *detector_allocate(cscd_context *context, const cscd_mesh *mesh);
+
+/* The same, which holds the mesh and the context. */
 cscd_detector *detector_begin(cscd_context *context, const cscd_mesh *mesh);
+
+/* Gives a detector without any parts the options of another one, and what follows from them. */
+void detector_take_options(cscd_detector *d, const cscd_detector *from);
 
 /* The detector is whole: see context_list_object. */
 void detector_list(cscd_detector *d);

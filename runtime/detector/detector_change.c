@@ -140,27 +140,6 @@ static cscd_status move_parts(const detector_move *m) {
     return status == CSCD_OK ? move_rules(m) : status;
 }
 
-/* A detector with the same options, of the new mesh, and without any parts. */
-static cscd_detector *begin_move(const cscd_detector *from, const cscd_mesh *mesh) {
-    cscd_context *context = from->context;
-    cscd_detector *d = context_allocate(context, 1, sizeof *d);
-    cscd_mesh *seen = context_allocate(context, 1, sizeof *seen);
-    if (d == NULL || seen == NULL) {
-        context_free(context, d);
-        context_free(context, seen);
-        return NULL;
-    }
-    *seen = mesh_seen_from(context, mesh);
-    d->context = context;
-    d->mesh = d->seen = seen;
-    d->options = from->options;
-    d->limit = from->limit;
-    d->traits = from->traits;
-    d->stages = from->stages;
-    d->rules = from->rules;
-    return d;
-}
-
 #define EXCHANGE(member)                                                                                     \
     do {                                                                                                     \
         __typeof__(a->member) other = a->member;                                                             \
@@ -233,8 +212,9 @@ static cscd_status change_mesh(cscd_detector *d, const cscd_mesh_change *change)
         return context_fail(
             d->context, CSCD_INVALID_ARGUMENT,
             "cscd_detector_change_mesh: the change begins at another mesh than the detector's");
-    detector_move m = {d, begin_move(d, change->mesh), change};
+    detector_move m = {d, detector_allocate(d->context, change->mesh), change};
     if (m.to == NULL) return context_out_of_memory(d->context);
+    detector_take_options(m.to, d);
     cscd_status status = move_parts(&m);
     if (status == CSCD_OK) end_move(&m);
     detector_free(m.to);

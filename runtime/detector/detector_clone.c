@@ -97,11 +97,7 @@ static cscd_status clone_detector(cscd_context *context, const cscd_detector *fr
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_clone: out is NULL");
     cscd_detector *d = detector_begin(context, from->mesh);
     if (d == NULL) return context_out_of_memory(context);
-    d->options = from->options;
-    d->limit = from->limit;
-    d->traits = from->traits;
-    d->stages = from->stages;
-    d->rules = from->rules;
+    detector_take_options(d, from);
     d->timings = from->timings;
     d->counters = from->counters;
     if (clone_parts(from, d) != CSCD_OK) {
