@@ -35,9 +35,9 @@ typedef struct cloth {
 } cloth;
 
 /* Of one share, the least of all repetitions. */
-typedef struct measured {
+typedef struct tear_times {
     double alone[PART_COUNT], change[PART_COUNT], created[PART_COUNT], cloned[PART_COUNT];
-} measured;
+} tear_times;
 
 typedef struct tear_rig {
     const deforming_body *body;
@@ -278,7 +278,7 @@ static void write_parts(json *out, const char *name, const double ms[PART_COUNT]
     json_end_object(out);
 }
 
-static void write_row(json *out, const tear_rig *r, const measured *m) {
+static void write_row(json *out, const tear_rig *r, const tear_times *m) {
     if (out->file == NULL) return;
     json_break_line(out);
     json_begin_object(out, NULL);
@@ -292,7 +292,7 @@ static void write_row(json *out, const tear_rig *r, const measured *m) {
 }
 
 static bool run_share(tear_rig *r, uint32_t triangle_count, json *out, io_error *error) {
-    measured m;
+    tear_times m;
     for (int i = 0; i < PART_COUNT; i++) m.alone[i] = m.change[i] = m.created[i] = m.cloned[i] = HUGE_VAL;
     make_cloth(r, triangle_count);
     cscd_status status = CSCD_OK;

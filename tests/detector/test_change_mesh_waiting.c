@@ -97,6 +97,7 @@ static void change_panels(void) {
 static void end_panels(void) {
     cscd_detector_destroy(p.detector);
     cscd_mesh_change_destroy(p.change);
+    p.change = NULL;
     cscd_mesh_destroy(p.mesh);
     cscd_context_destroy(p.context);
     assert_int_equal(p.counter.live, 0);
