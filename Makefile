@@ -183,7 +183,7 @@ install-library: library
 uninstall:
 	@$(INSTALLER) uninstall
 
-# The functions of the library as HTML, from the comments of the headers; a warning of doxygen is an error.
+# The functions and classes of the library as HTML, from the comments of the headers; a warning of doxygen is an error.
 reference:
 	@GSL=$(GSL) CHARGE=$(CHARGE) .ci/packages reference
 	@mkdir -p build/reference

@@ -4,7 +4,7 @@
 #   a comment after code            about all that the code declares: it moves before it
 #   a comment on lines of its own   about what follows: in a structure all members up to a blank line, else one
 #                                   function and the _from_name after it
-#   /* ---- title ---- */           a group, up to the next one
+#   /* ---- title ---- */           a group, up to the next one; within a class, nothing
 
 # "   word  meaning" in a comment is an item of a list.
 function item(line) {
@@ -52,6 +52,9 @@ inside { said = said " " words($0); inside = !/\*\//; print item($0); next }
     grouped = 1
     next
 }
+
+# A title within a class, which is about no function.
+/^ +\/\* ---- .*\*\/$/ { print ""; said = ""; next }
 
 # The second one, after all declarations.
 /^#ifdef __cplusplus/ && ++openings == 2 && grouped { print "/** @} */"; print; next }

@@ -72,9 +72,9 @@ CSCD_API cscd_status cscd_detector_set_rules(cscd_detector *detector, const cscd
                                              uint32_t rule_count, const double *thickness_matrix,
                                              uint32_t thickness_class_count);
 
-/* ---- active vertices -------------------------------------------------------------------------------------
- *
- * Makes only these count vertices active, from the next call on; NULL and 0: all are, as at first. Other arrays may be
+/* ---- active vertices ---------------------------------------------------------------------------------- */
+
+/* Makes only these count vertices active, from the next call on; NULL and 0: all are, as at first. Other arrays may be
  * empty, may be given again as often as they change, and may name a vertex twice. For solvers that let most of a scene
  * rest, or move one part of it at a time: the search costs as much as the active part and what is near it.
  *
