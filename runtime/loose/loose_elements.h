@@ -12,7 +12,8 @@ typedef struct loose_element {
 
 /* Eight elements, or eight nodes of the level below, are a node. Boxes hold what moves in them during the interval, less
  * the mean motion of all elements, and are widened so that two of them overlap where pairs come within their distance. */
-enum { LOOSE_LEVEL_MAX = 11, LOOSE_NODE_CHILDREN = 8 };
+enum { LOOSE_LEVEL_MAX = 12, LOOSE_NODE_CHILDREN = 8 };
+_Static_assert(3 * (LOOSE_LEVEL_MAX - 1) >= 32, "one node holds as many elements as there are numbers for");
 
 typedef struct loose_level {
     uint32_t count;
