@@ -94,7 +94,6 @@ static void clones_work_at_the_same_time(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < SCENES; seed++) {
         random_stream random = stream_start(seed);
-        cscd_detector *detector = NULL;
         const loose_recipe recipe = {.triangles = true,
                                      .wires = true,
                                      .points = true,
@@ -105,7 +104,7 @@ static void clones_work_at_the_same_time(void **state) {
         loose_scene_make(&scene, &recipe, &random, 2, CSCD_SIMD_AUTO);
         cscd_detector_options options = loose_scene_options(&scene);
         options.method = seed % 2 == 0 ? CSCD_METHOD_SINGLE : CSCD_METHOD_NONE;
-        assert_int_equal(cscd_detector_create(scene.context, scene.mesh, NULL, &options, &detector), CSCD_OK);
+        cscd_detector *detector = loose_scene_detector(&scene, &options);
         found += use_at_once(detector);
         cscd_detector_destroy(detector);
         loose_scene_free(&scene);

@@ -15,13 +15,6 @@ static loose_scene scene;
 static const loose_recipe everything = {
     .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5};
 
-static cscd_detector *open_detector(const cscd_detector_options *options) {
-    cscd_detector *detector = NULL;
-    cscd_status status = detector_create_here(scene.mesh, NULL, options, &detector);
-    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
-    return detector;
-}
-
 /* ---- the same bits ------------------------------------------------------------------------------------------ */
 
 enum { LIST_MAX = 20000 };
@@ -41,7 +34,7 @@ static call_outcome run_all(const cscd_detector_options *options, cscd_contact *
     cscd_proximities close;
     cscd_free_step step;
     cscd_displacement_bounds limits;
-    cscd_detector *detector = open_detector(options);
+    cscd_detector *detector = loose_scene_detector(&scene, options);
     assert_int_equal(step_packed(detector, scene.x0, scene.x1, &found), CSCD_OK);
     assert_true(found.count <= LIST_MAX);
     out.contacts = found.count;
@@ -126,7 +119,7 @@ static void triangles_unchanged(void **state) {
         options.method = seed % 2 == 0 ? CSCD_METHOD_NONE : CSCD_METHOD_SINGLE;
         options.min_separation = seed % 3 == 2 ? 0.1 : 0.0;
         cscd_mesh *mesh = triangles_alone(vertex_of, x0, x1);
-        cscd_detector *with = open_detector(&options), *without = NULL;
+        cscd_detector *with = loose_scene_detector(&scene, &options), *without = NULL;
         cscd_contacts all, few;
         assert_int_equal(detector_create_here(mesh, NULL, &options, &without), CSCD_OK);
         assert_int_equal(step_packed(with, scene.x0, scene.x1, &all), CSCD_OK);
@@ -206,7 +199,7 @@ static void marching_in_floats(void **state) {
         recipe.thickness = true;
         loose_scene_make(&scene, &recipe, &random, 1, CSCD_SIMD_AUTO);
         cscd_detector_options options = loose_scene_options(&scene);
-        cscd_detector *detector = open_detector(&options);
+        cscd_detector *detector = loose_scene_detector(&scene, &options);
         particle now[LOOSE_VERTICES_MAX], next[LOOSE_VERTICES_MAX];
         cscd_view from[LOOSE_OBJECTS_MAX], to[LOOSE_OBJECTS_MAX];
         cscd_mutable_view reached[LOOSE_OBJECTS_MAX];

@@ -12,13 +12,6 @@ static loose_scene scene;
 static const loose_recipe everything = {
     .triangles = true, .wires = true, .points = true, .half_spaces = true, .motion = 0.5};
 
-static cscd_detector *open_detector(const cscd_detector_options *options) {
-    cscd_detector *detector = NULL;
-    cscd_status status = detector_create_here(scene.mesh, NULL, options, &detector);
-    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(scene.context));
-    return detector;
-}
-
 typedef struct asked {
     const cscd_contacts *expected;
     size_t calls, unknown;
@@ -45,12 +38,12 @@ static void ignored_by_callback(void **state) {
         recipe.min_separation = seed % 2 == 0 ? 0.1 : 0.0;
         loose_scene_make(&scene, &recipe, &random, 2, CSCD_SIMD_AUTO);
         cscd_detector_options options = loose_scene_options(&scene);
-        cscd_detector *whole = open_detector(&options), *partial = NULL;
+        cscd_detector *whole = loose_scene_detector(&scene, &options), *partial = NULL;
         cscd_contacts all, some;
         asked q = {&all, 0, 0};
         options.ignore = ignore_even;
         options.ignore_user = &q;
-        partial = open_detector(&options);
+        partial = loose_scene_detector(&scene, &options);
         assert_int_equal(step_packed(whole, scene.x0, scene.x1, &all), CSCD_OK);
         assert_int_equal(step_packed(partial, scene.x0, scene.x1, &some), CSCD_OK);
         assert_true(q.calls == all.count && q.unknown == 0);
@@ -96,11 +89,11 @@ static void seams_of_all_kinds(void **state) {
             seams[i][1] = scene.vertex_count - 1 - (i + 1) % 8 - stream_below(&random, 3) * 8;
         }
         cscd_detector_options options = loose_scene_options(&scene);
-        cscd_detector *whole = open_detector(&options);
+        cscd_detector *whole = loose_scene_detector(&scene, &options);
         options.seams = seams[0];
         options.seam_count = 8;
         options.seam_reach = INFINITY;
-        cscd_detector *sewn = open_detector(&options);
+        cscd_detector *sewn = loose_scene_detector(&scene, &options);
         cscd_contacts all, some;
         assert_int_equal(step_packed(whole, scene.x0, scene.x1, &all), CSCD_OK);
         assert_int_equal(step_packed(sewn, scene.x0, scene.x1, &some), CSCD_OK);
@@ -179,11 +172,11 @@ static void opened_seams(void **state) {
         }
         cscd_detector_options options = loose_scene_options(&scene);
         options.method = seed % 4 == 3 ? CSCD_METHOD_BRUTE : CSCD_METHOD_NONE;
-        cscd_detector *whole = open_detector(&options), *sewn = NULL;
+        cscd_detector *whole = loose_scene_detector(&scene, &options), *sewn = NULL;
         options.seams = seams[0];
         options.seam_count = 8;
         options.seam_reach = INFINITY;
-        sewn = open_detector(&options);
+        sewn = loose_scene_detector(&scene, &options);
         cscd_contacts all, some;
         for (uint32_t v = 0; v < scene.vertex_count; v++) spread_vertex(v, far + (size_t)v * 3);
         assert_int_equal(step_packed(sewn, scene.x0, scene.x0, &some), CSCD_OK);

@@ -154,6 +154,13 @@ cscd_detector_options loose_scene_options(const loose_scene *s) {
     return options;
 }
 
+cscd_detector *loose_scene_detector(const loose_scene *s, const cscd_detector_options *options) {
+    cscd_detector *detector = NULL;
+    cscd_status status = cscd_detector_create(s->context, s->mesh, NULL, options, &detector);
+    if (status != CSCD_OK) fail_msg("%s", cscd_context_detail(s->context));
+    return detector;
+}
+
 /* ---- pairs --------------------------------------------------------------------------------------------- */
 
 double loose_scene_distance(const loose_scene *s, uint32_t a, uint32_t b) {

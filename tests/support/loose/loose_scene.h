@@ -42,6 +42,9 @@ void loose_scene_move(loose_scene *s, random_stream *random);
 /* The options of a detector for the scene, whose arrays are those of the scene. */
 cscd_detector_options loose_scene_options(const loose_scene *s);
 
+/* A detector of the scene's mesh, in its context; a failure fails the test. */
+cscd_detector *loose_scene_detector(const loose_scene *s, const cscd_detector_options *options);
+
 /* How far two objects have to stay apart, as the header says. */
 double loose_scene_distance(const loose_scene *s, uint32_t a, uint32_t b);
 
