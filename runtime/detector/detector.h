@@ -31,11 +31,10 @@ struct cscd_detector {
     waiting_pairs waiting;
 
     pair_rules pair_rules;   /* for objects; without sets: there are none */
-    uint32_t rules_revision; /* so many times they have been set */
+    uint32_t rules_revision; /* so many times they, or the active vertices, have been set */
     bool *never_culled; /* per component: its triangles are not looked at with each other, or have to stay
                               * farther apart than 0 */
     bool all_never_culled;
-    uint32_t active_revision; /* so many times the active vertices have been set */
 
     search_space space;
     bvh_rebuild rebuild; /* of space.bvh */

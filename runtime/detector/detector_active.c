@@ -39,7 +39,7 @@ static cscd_status take_vertices(cscd_detector *d, const uint32_t *vertices, siz
         return context_out_of_memory(d->context);
     }
     d->rebuild.active = s->active.triangles;
-    d->active_revision++;
+    d->rules_revision++;
     return CSCD_OK;
 }
 
@@ -49,7 +49,7 @@ static void drop_vertices(cscd_detector *d) {
     if (s->bvh.mesh != NULL) bvh_set_active(&s->bvh, NULL);
     active_set_free(d->context, &s->active);
     d->rebuild.active = NULL;
-    d->active_revision++;
+    d->rules_revision++;
 }
 
 static cscd_status set_active(cscd_detector *d, const uint32_t *vertices, size_t count) {

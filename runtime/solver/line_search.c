@@ -17,10 +17,10 @@ struct cscd_line_search {
     double *x0, *x1, *reached; /* positions */
     cscd_scalar *scalars;      /* per object: of positions on the line */
 
-    uint32_t rules_revision, active_revision; /* of the detector, at the begin */
-    uint32_t mesh_revision;                   /* of the detector, when the arrays were allocated */
-    double reach, covered; /* covered: all pairs that come within this distance are candidates */
-    double beyond;         /* ... as are those that are so much farther apart */
+    uint32_t rules_revision; /* of the detector, at the begin */
+    uint32_t mesh_revision;  /* of the detector, when the arrays were allocated */
+    double reach, covered;   /* covered: all pairs that come within this distance are candidates */
+    double beyond;           /* ... as are those that are so much farther apart */
     bool begun;
     double done; /* estimated share of the current step: each try takes half of what is left */
     candidates candidates;
@@ -142,7 +142,6 @@ static cscd_status begin_between(cscd_line_search *line, const double *x0, const
     line->covered = max_of(d->limit.distance, reach);
     line->beyond = detector_floors_beyond(d, line->covered, line->x0, line->x1);
     line->rules_revision = d->rules_revision;
-    line->active_revision = d->active_revision;
     detector_begin_call(d);
     status = waiting_settle(d, line->x0);
     if (status == CSCD_OK)
@@ -214,15 +213,13 @@ size_t cscd_line_search_candidate_count(const cscd_line_search *line) {
     return line->begun && current ? lists[CSCD_CONTACT_VF].count + lists[CSCD_CONTACT_EE].count : 0;
 }
 
-/* Were the candidates collected under the rules of now, and for the vertices that are active now? */
+/* Were the candidates collected for what is looked at now? */
 static cscd_status check_rules(const cscd_line_search *line, const char *function) {
-    const cscd_detector *d = line->detector;
-    bool rules = line->rules_revision != d->rules_revision;
-    if (!rules && line->active_revision == d->active_revision) return CSCD_OK;
-    return context_fail(
-        d->context, CSCD_INVALID_ARGUMENT,
-        "%s: the %s have been set since the line was begun; call cscd_line_search_begin again", function,
-        rules ? "rules of objects" : "active vertices");
+    if (line->rules_revision == line->detector->rules_revision) return CSCD_OK;
+    return context_fail(line->detector->context, CSCD_INVALID_ARGUMENT,
+                        "%s: the rules of objects or the active vertices have been set since the line was "
+                        "begun; call cscd_line_search_begin again",
+                        function);
 }
 
 /* ---- moments ------------------------------------------------------------------------------------------- */
