@@ -68,6 +68,7 @@
 
 #include <cscd/context.h>
 #include <cscd/detector.h>
+#include <cscd/intersections.h>
 #include <cscd/live.h>
 #include <cscd/mesh.h>
 #include <cscd/mesh_change.h>

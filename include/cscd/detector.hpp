@@ -160,6 +160,15 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         const cscd_view *at = covering(x);
         return find<intersections>([&](intersections *out) { return cscd_detector_check(get(), at, out); });
     }
+    /* By kind; the options are those of C. */
+    intersection_pairs
+    find_intersections(const positions &x,
+                       const cscd_intersection_options &options = cscd_intersection_defaults()) {
+        const cscd_view *at = covering(x);
+        return find<intersection_pairs>([&](intersection_pairs *out) {
+            return cscd_detector_find_intersections(get(), at, &options, out);
+        });
+    }
     proximities find_near(const positions &x, double distance, cscd_near_form form = CSCD_NEAR_UNIQUE) {
         const cscd_view *at = covering(x);
         return find<proximities>(

@@ -3,6 +3,7 @@
 #define CSCD_LISTS_HPP
 
 #include <cscd/context.hpp>
+#include <cscd/intersections.h>
 #include <cscd/solver.h>
 #include <cscd/view.hpp>
 
@@ -23,8 +24,9 @@ template <class List> struct list : List {
     const value_type *begin() const noexcept {
         return this->items;
     }
+    /* Where only a number was asked for, there are no items. */
     const value_type *end() const noexcept {
-        return this->items + this->count;
+        return this->items != nullptr ? this->items + this->count : nullptr;
     }
     std::size_t size() const noexcept {
         return this->count;
@@ -39,6 +41,7 @@ template <class List> struct list : List {
 
 using contacts = list<cscd_contacts>;
 using intersections = list<cscd_intersections>;
+using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
 
 /* The lists beside bounds and truncations. */

@@ -18,11 +18,14 @@ static bool create_lane(cscd_context *context, traversal_lane *lane) {
 }
 
 static size_t share_room(uint32_t lane_count) {
-    return (size_t)lane_count * SHARES_PER_LANE + TRAVERSAL_PUSHES_PER_VISIT;
+    size_t wanted = (size_t)lane_count * SHARES_PER_LANE;
+    return (wanted > TRAVERSAL_TASKS_WANTED ? wanted : TRAVERSAL_TASKS_WANTED) + TRAVERSAL_PUSHES_PER_VISIT;
 }
 
 cscd_status traversal_create(cscd_context *context, traversal *out) {
-    traversal t = {.context = context, .lane_count = parallel_thread_count(context->threads)};
+    traversal t = {.context = context,
+                   .lane_count = parallel_thread_count(context->threads),
+                   .tasks_wanted = TRAVERSAL_TASKS_WANTED};
     t.lanes = context_allocate(context, t.lane_count, sizeof *t.lanes);
     t.shares = context_allocate(context, share_room(t.lane_count), sizeof *t.shares);
     bool allocated = t.lanes != NULL && t.shares != NULL;
@@ -57,9 +60,9 @@ static bool make_room(cscd_context *context, traversal_lane *lane, size_t pushes
 }
 
 /* Traverses breadth-first on the first lane until there are enough shares, or only leaves below them. */
-static bool spread_shares(traversal *t) {
+static bool spread_shares(traversal *t, size_t wanted) {
     traversal_lane *first = &t->lanes[0];
-    size_t wanted = (size_t)t->lane_count * SHARES_PER_LANE, next = 0;
+    size_t next = 0;
     while (next < first->stack_count && first->stack_count - next < wanted && first->stack[next].level > 0) {
         if (!make_room(t->context, first, TRAVERSAL_PUSHES_PER_VISIT + 1)) return false;
         first->stack[first->stack_count] = first->stack[next++];
@@ -72,7 +75,8 @@ static bool spread_shares(traversal *t) {
     return true;
 }
 
-void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
+/* Leaves the root on the first lane. */
+static void begin_pass(traversal *t, const bvh *f, traversal_pass pass) {
     t->bvh = f;
     t->pass = pass;
     t->skips_inactive = f->leaf_inactive != NULL && pass != TRAVERSAL_UNPROVEN && !t->whole;
@@ -87,10 +91,14 @@ void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
         memset(lane->cache.tags, 0, sizeof lane->cache.tags);
     }
     t->lanes[0].stack[t->lanes[0].stack_count++] = (block_pair){.level = f->level_count - 1};
+}
+
+void traversal_begin(traversal *t, const bvh *f, traversal_pass pass) {
+    begin_pass(t, f, pass);
     bool large = f->leaf_count >= SHARED_LEAVES_MIN;
     t->busy_lanes = large ? t->lane_count : 1;
     if (large && (t->lane_count > 1 || progress_wanted(&t->context->progress)))
-        t->lanes[0].out_of_memory = !spread_shares(t);
+        t->lanes[0].out_of_memory = !spread_shares(t, (size_t)t->lane_count * SHARES_PER_LANE);
 }
 
 double traversal_done(const traversal *t) {
@@ -156,4 +164,26 @@ uint64_t traversal_boxes_tested(const traversal *t) {
     uint64_t sum = 0;
     for (uint32_t i = 0; i < t->lane_count; i++) sum += t->lanes[i].boxes_tested;
     return sum;
+}
+
+/* ---- in tasks ------------------------------------------------------------------------------------------ */
+
+cscd_status traversal_begin_tasks(traversal *t, const bvh *f, traversal_pass pass) {
+    begin_pass(t, f, pass);
+    t->busy_lanes = t->lane_count;
+    if (!spread_shares(t, t->tasks_wanted)) return CSCD_OUT_OF_MEMORY;
+    atomic_store(&t->next_share, t->share_count); /* lanes take none by themselves */
+    return CSCD_OK;
+}
+
+void traversal_begin_task(traversal *t, uint32_t index, uint32_t task) {
+    traversal_lane *lane = &t->lanes[index];
+    lane->stack[0] = t->shares[task];
+    lane->stack_count = 1;
+}
+
+bool traversal_fill_from_task(traversal *t, uint32_t index) {
+    traversal_lane *lane = &t->lanes[index];
+    fill_batch(t, lane, TRAVERSAL_BATCH_ENOUGH);
+    return lane->pair_count > 0 && !lane->out_of_memory;
 }

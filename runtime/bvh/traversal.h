@@ -65,6 +65,7 @@ typedef struct traversal {
     block_pair *shares;
     uint32_t share_count;
     atomic_uint next_share;
+    uint32_t tasks_wanted; /* TRAVERSAL_TASKS_WANTED, or fewer for tests: then tasks are large */
 } traversal;
 
 /* On failure the traversal holds nothing. */
@@ -91,3 +92,21 @@ cscd_status traversal_round(traversal *t, bool *more);
 double traversal_done(const traversal *t);
 
 uint64_t traversal_boxes_tested(const traversal *t);
+
+/* ---- in tasks ------------------------------------------------------------------------------------------ */
+
+/* A pass may be cut into tasks instead, numbered by what the trees alone say: the same ones in the same order for any
+ * lane count. Each finds its pairs in an order of its own, whichever lane does it. There are at most so many. */
+enum {
+    TRAVERSAL_TASKS_WANTED = 1024,
+    TRAVERSAL_TASKS_MAX = TRAVERSAL_TASKS_WANTED + TRAVERSAL_PUSHES_PER_VISIT
+};
+
+/* Starts a pass at the root of f, of t->share_count tasks. OUT_OF_MEMORY: a stack could not grow. */
+cscd_status traversal_begin_tasks(traversal *t, const bvh *f, traversal_pass pass);
+
+/* Lets a lane begin a task, and forget the rest of the one before. */
+void traversal_begin_task(traversal *t, uint32_t lane, uint32_t task);
+
+/* Fills the lane's batch with the next pairs of its task. False: there are none left, or the status says why. */
+bool traversal_fill_from_task(traversal *t, uint32_t lane);

@@ -1,4 +1,6 @@
 /* The static check of the public API: which triangles intersect at one moment? */
+#include "runtime/detector/check.h"
+
 #include "runtime/detector/list_cap.h"
 #include "runtime/detector/waiting.h"
 #include "src/core/sort.h"
@@ -7,7 +9,7 @@
 #include "src/mesh/positions.h"
 #include "src/mesh/views.h"
 
-static bool is_excluded(const exclusions *e, cscd_intersection pair, const double *positions) {
+static bool is_excluded(const exclusions *e, found_pair pair, const double *positions) {
     return exclusions_any(e) && exclusions_cover_triangles(e, pair.a, pair.b, positions);
 }
 
@@ -25,7 +27,7 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     for (uint32_t i = 0; i < check->lane_count; i++) {
         const intersection_lane *lane = &check->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            cscd_intersection pair = lane->items[j];
+            found_pair pair = lane->items[j];
             if (j < lane->settled || !is_excluded(&d->exclusions, pair, positions))
                 pairs[kept++] = (uint64_t)pair.a << 32 | pair.b;
         }
@@ -47,14 +49,19 @@ static cscd_status collect_intersections(cscd_detector *d, const double *positio
     return CSCD_OK;
 }
 
-static cscd_status check_moment(cscd_detector *d, const double *positions, cscd_intersections *out) {
+/* The answer of the check is its list. */
+static cscd_status check_moment(cscd_detector *d, const double *positions, void *out) {
+    list_cap_begin_check(d, positions);
+    cscd_status status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
+    list_cap_end_check(d);
+    return status == CSCD_OK ? collect_intersections(d, positions, out) : status;
+}
+
+static cscd_status answer_question(cscd_detector *d, const double *positions,
+                                   const moment_question *question) {
     cscd_status status =
         bvh_rebuild_move_to(&d->rebuild, &d->space.bvh, positions, uniform_growth(0.0), detector_growth(d));
-    list_cap_begin_check(d, positions);
-    if (status == CSCD_OK)
-        status = static_check_all(&d->check, &d->space.traversal, &d->space.bvh, positions);
-    list_cap_end_check(d);
-    if (status == CSCD_OK) status = collect_intersections(d, positions, out);
+    if (status == CSCD_OK) status = question->answer(d, positions, question->data);
     return status == CSCD_OK ? context_progress_status(d->context) : status;
 }
 
@@ -77,7 +84,7 @@ static cscd_status keep_states(cscd_detector *d, const double *positions) {
     return status;
 }
 
-static cscd_status check_at(cscd_detector *d, const double *positions, cscd_intersections *out) {
+cscd_status detector_ask_moment(cscd_detector *d, const double *positions, const moment_question *question) {
     double since = timer_now_ms(), spent = 0.0;
     cscd_status status = positions_check(d->context, positions, d->mesh->vertex_count, "positions");
     if (status == CSCD_OK) status = seam_list_check(d->mesh, &d->exclusions.seams, positions);
@@ -86,9 +93,9 @@ static cscd_status check_at(cscd_detector *d, const double *positions, cscd_inte
     detector_begin_call(d);
     progress_stage(&d->context->progress, "static check", 0.0, 1.0);
     status = waiting_settle(d, positions);
-    if (status == CSCD_OK) status = check_moment(d, positions, out);
+    if (status == CSCD_OK) status = answer_question(d, positions, question);
     if (status != CSCD_OK) return detector_fail_call(d, status);
-    status = keep_states(d, positions);
+    if (question->complete) status = keep_states(d, positions);
     if (status != CSCD_OK) return status;
     timer_lap(&since, &spent);
     d->timings.check_ms = spent;
@@ -101,9 +108,10 @@ static cscd_status check_views(cscd_detector *detector, const cscd_view *positio
     if (out == NULL) return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_check: out is NULL");
     const double *x = NULL;
     cscd_intersections found;
+    const moment_question question = {check_moment, &found, true};
     cscd_status status =
         views_read(context, detector->mesh, positions, "positions", &detector->unpacked[0], &x);
-    if (status == CSCD_OK) status = check_at(detector, x, &found);
+    if (status == CSCD_OK) status = detector_ask_moment(detector, x, &question);
     if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
     return status;
 }

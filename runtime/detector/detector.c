@@ -118,6 +118,7 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->contacts);
     result_buffer_free(context, &d->proximities);
     result_buffer_free(context, &d->intersections);
+    result_buffer_free(context, &d->pairs);
     result_buffer_free(context, &d->names);
     edge_rest_free(context, &d->rest);
     context_free_all(context, detector_arrays(d));

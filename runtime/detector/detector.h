@@ -63,6 +63,7 @@ struct cscd_detector {
     cscd_guarantee *guarantees; /* per component, of the last step */
 
     result_buffer contacts, proximities, intersections;
+    result_buffer pairs; /* intersections by kind */
     result_buffer names; /* of proximities, while repetitions are found */
     edge_rest rest;      /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */

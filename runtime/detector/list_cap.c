@@ -101,7 +101,7 @@ static size_t settle_pairs(const cscd_detector *d, intersection_lane *lane) {
     const exclusions *e = &d->exclusions;
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
-        cscd_intersection pair = lane->items[i];
+        found_pair pair = lane->items[i];
         if (!exclusions_any(e) || !exclusions_cover_triangles(e, pair.a, pair.b, d->cap.positions))
             lane->items[kept++] = pair;
     }
@@ -125,6 +125,13 @@ void list_cap_begin_check(cscd_detector *d, const double *positions) {
     d->check.limit = lane_limit(d);
     d->check.spill = positions != NULL ? spill_pairs : NULL;
     d->check.spill_data = d;
+}
+
+void list_cap_begin_pairs(cscd_detector *d, bool counted_only, void (*spill)(void *data), void *data) {
+    if (d->options.longest_list == 0 && !counted_only) return;
+    d->check.limit = counted_only ? d->cap.beside : lane_limit(d);
+    d->check.spill = spill;
+    d->check.spill_data = data;
 }
 
 void list_cap_end_check(cscd_detector *d) {

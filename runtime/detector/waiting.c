@@ -161,7 +161,7 @@ static cscd_status add_triangles(settling *s) {
     for (uint32_t i = 0; i < d->check.lane_count; i++) {
         const intersection_lane *lane = &d->check.lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            cscd_intersection c = lane->items[j];
+            found_pair c = lane->items[j];
             if (should_wait(s, CSCD_CONTACT_TT, c.a, c.b) &&
                 !named_pair_set_add(d->context, s->set, CSCD_CONTACT_TT, c.a, c.b))
                 return CSCD_OUT_OF_MEMORY;

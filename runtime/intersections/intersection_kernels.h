@@ -7,9 +7,10 @@
 typedef struct intersection_kernels {
     /* Removes from a list of pairs of different triangles, in place and without keeping their order, those that
      * certainly do not intersect (see src/mesh/triangle_intersection.h) at positions that positions_check has
-     * accepted. Returns how many are left. */
+     * accepted. Pairs that share three vertices do not; they are kept only on demand. Returns how many are left, in
+     * an order that is the same on every level. */
     uint32_t (*reject_disjoint)(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
-                                uint32_t count);
+                                uint32_t count, bool keep_duplicates);
 
     /* Removes from a list of triangles, in place, those that certainly have an area. Returns how many are left. */
     uint32_t (*reject_with_area)(const uint32_t (*triangles)[3], const double *positions, uint32_t *list,

@@ -2,6 +2,7 @@
 #include "runtime/intersections/static_check.h"
 
 #include "runtime/intersections/intersection_kernels.h"
+#include "runtime/intersections/pair_kind.h"
 #include "src/mesh/predicates.h"
 #include "src/mesh/triangle_intersection.h"
 
@@ -30,24 +31,14 @@ void static_check_destroy(static_check *c) {
 
 /* ---- one check ------------------------------------------------------------------------------------------ */
 
-/* Data that the threads of a check share. */
-typedef struct check_work {
-    static_check *check;
-    traversal *traversal;
-    const bvh *bvh;
-    const double *positions;
-    bool own_component_only; /* pairs of triangles of two components do not count */
-} check_work;
-
 static const uint32_t (*triangles_of(const check_work *work))[3] {
     return (const uint32_t(*)[3])work->check->mesh->triangles;
 }
 
-static void add_intersection(cscd_context *context, intersection_lane *lane, uint32_t a, uint32_t b) {
+static void add_pair(cscd_context *context, intersection_lane *lane, found_pair pair) {
     if (lane->count == lane->capacity) {
         size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
-        cscd_intersection *grown =
-            context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
+        found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
         if (grown == NULL) {
             lane->out_of_memory = true;
             return;
@@ -55,7 +46,24 @@ static void add_intersection(cscd_context *context, intersection_lane *lane, uin
         lane->items = grown;
         lane->capacity = capacity;
     }
-    lane->items[lane->count++] = a < b ? (cscd_intersection){a, b} : (cscd_intersection){b, a};
+    lane->items[lane->count++] = pair;
+}
+
+static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
+    return triangle_contains(a, b[0]) && triangle_contains(a, b[1]) && triangle_contains(a, b[2]);
+}
+
+/* Do the triangles belong in the lane? Fills in what is asked for. */
+static bool test_pair(const check_work *work, found_pair *pair) {
+    const uint32_t(*triangles)[3] = triangles_of(work);
+    const uint32_t *a = triangles[pair->a], *b = triangles[pair->b];
+    if (!work->kinds) return triangles_intersect(a, b, work->positions);
+    pair_kind found;
+    if (!pair_kind_find(a, b, work->names, work->positions, &found)) return false;
+    pair->kind = (uint8_t)found.kind;
+    pair->shared = (uint8_t)found.shared;
+    pair->unlisted = found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b);
+    return true;
 }
 
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
@@ -78,19 +86,21 @@ static void name_triangles(const check_work *work, traversal_lane *batch) {
     batch->pair_count = kept;
 }
 
-static void test_batch(void *data, uint32_t index) {
-    const check_work *work = data;
+void static_check_test_batch(const check_work *work, uint32_t index) {
     cscd_context *context = work->check->mesh->context;
     traversal_lane *batch = &work->traversal->lanes[index];
-    const uint32_t(*triangles)[3] = triangles_of(work);
     name_triangles(work, batch);
-    uint32_t undecided = intersection_kernels_of(context)->reject_disjoint(triangles, work->positions,
-                                                                           batch->pairs, batch->pair_count);
+    uint32_t undecided = intersection_kernels_of(context)->reject_disjoint(
+        triangles_of(work), work->positions, batch->pairs, batch->pair_count, work->kinds);
     for (uint32_t i = 0; i < undecided; i++) {
-        triangle_pair pair = batch->pairs[i];
-        if (triangles_intersect(triangles[pair.a], triangles[pair.b], work->positions))
-            add_intersection(context, &work->check->lanes[index], pair.a, pair.b);
+        triangle_pair t = batch->pairs[i];
+        found_pair pair = {.a = t.a < t.b ? t.a : t.b, .b = t.a < t.b ? t.b : t.a};
+        if (test_pair(work, &pair)) add_pair(context, &work->check->lanes[index], pair);
     }
+}
+
+static void test_batch(void *data, uint32_t index) {
+    static_check_test_batch(data, index);
 }
 
 /* ---- triangles without area ----------------------------------------------------------------------------- */
@@ -143,8 +153,9 @@ static void mark_crossing(static_check *c) {
     for (uint32_t i = 0; i < c->lane_count; i++) {
         const intersection_lane *lane = &c->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
-            cscd_intersection pair = lane->items[j];
-            if (components[pair.a] == components[pair.b]) c->crossing[pair.a] = c->crossing[pair.b] = true;
+            found_pair pair = lane->items[j];
+            if (components[pair.a] != components[pair.b] || pair.unlisted) continue;
+            c->crossing[pair.a] = c->crossing[pair.b] = true;
         }
     }
 }
@@ -158,12 +169,16 @@ static void spill_pairs(static_check *c) {
     for (uint32_t i = 0; c->spill == NULL && i < c->lane_count; i++) c->lanes[i].count = 0;
 }
 
+void static_check_begin(check_work *work) {
+    parallel_run(work->check->mesh->context->threads, work->check->lane_count, count_zero_area, work);
+}
+
 static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pass) {
     static_check *check = work->check;
     cscd_context *context = check->mesh->context;
     traversal *t = work->traversal;
     assert(check->lane_count == t->lane_count);
-    parallel_run(context->threads, check->lane_count, count_zero_area, work);
+    static_check_begin(work);
     if (check->mesh->triangle_count == 0) return CSCD_OK;
     bvh_skip_adjacent(f, NULL);
     traversal_begin(t, f, pass);
@@ -181,17 +196,30 @@ static cscd_status compare_triangles(check_work *work, bvh *f, traversal_pass pa
 }
 
 cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const double *positions) {
-    check_work work = {c, t, f, positions, true};
+    check_work work = {
+        .check = c, .traversal = t, .bvh = f, .positions = positions, .own_component_only = true};
     bvh_mark_unproven(f, c->unproven);
     cscd_status status = compare_triangles(&work, f, TRAVERSAL_UNPROVEN);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
 }
 
-cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions) {
-    check_work work = {c, t, f, positions, false};
+static cscd_status compare_all(check_work *work, bvh *f) {
+    static_check *c = work->check;
     memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
-    cscd_status status = compare_triangles(&work, f, TRAVERSAL_KEPT);
+    cscd_status status = compare_triangles(work, f, TRAVERSAL_KEPT);
     if (status == CSCD_OK) mark_crossing(c);
     return status;
+}
+
+cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions) {
+    check_work work = {.check = c, .traversal = t, .bvh = f, .positions = positions};
+    return compare_all(&work, f);
+}
+
+cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
+                               const uint32_t *names) {
+    check_work work = {
+        .check = c, .traversal = t, .bvh = f, .positions = positions, .kinds = true, .names = names};
+    return compare_all(&work, f);
 }

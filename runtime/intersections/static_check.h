@@ -3,9 +3,18 @@
 
 #include "runtime/bvh/traversal.h"
 
+/* Two triangles a < b that intersect, or are duplicates of each other. */
+typedef struct found_pair {
+    uint32_t a, b;
+    uint8_t kind, shared; /* see pair_kind.h; 0 where kinds were not asked for */
+    bool unlisted; /* a duplicate that the check without kinds does not know, since features that share a
+                           * vertex do not intersect */
+    uint8_t unused;
+} found_pair;
+
 /* The findings of one thread. */
 typedef struct intersection_lane {
-    _Alignas(CACHE_LINE_SIZE) cscd_intersection *items;
+    _Alignas(CACHE_LINE_SIZE) found_pair *items;
     size_t count, capacity;
     size_t settled; /* so many of the first ones are there to stay: they do not count for the limit */
     uint32_t zero_area_triangles, first_zero_area; /* UINT32_MAX: none */
@@ -44,3 +53,26 @@ cscd_status static_check_unproven(static_check *c, traversal *t, bvh *f, const d
 
 /* Compares all triangles whose objects are looked at with one another, and marks all triangles as unproven. */
 cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double *positions);
+
+/* The same, with the kind of each pair, and with duplicates, which mark nothing. names: see pair_kind.h. */
+cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
+                               const uint32_t *names);
+
+/* ---- in pieces, for other searches --------------------------------------------------------------------- */
+
+/* Data that the threads of a check share. */
+typedef struct check_work {
+    static_check *check;
+    traversal *traversal;
+    const bvh *bvh;
+    const double *positions;
+    bool own_component_only; /* pairs of triangles of two components do not count */
+    bool kinds;              /* they are asked for, and duplicates as well */
+    const uint32_t *names;   /* where kinds are asked for; NULL: each vertex has its own */
+} check_work;
+
+/* Empties the lanes, and looks for triangles without area. */
+void static_check_begin(check_work *work);
+
+/* Adds the pairs of a batch that intersect to the lane of the same number. */
+void static_check_test_batch(const check_work *work, uint32_t lane);

@@ -101,9 +101,10 @@ enum {
 };
 
 static uint32_t reject_disjoint(const uint32_t (*triangles)[3], const double *positions, triangle_pair *pairs,
-                                uint32_t count) {
+                                uint32_t count, bool keep_duplicates) {
     pair_list lists[4];
     uint32_t kept = 0;
+    int most_shared = keep_duplicates ? 3 : 2;
     for (uint32_t begin = 0; begin < count; begin += PAIRS_AT_ONCE) {
         for (int i = 0; i < 4; i++) lists[i].count = 0;
         sort_by_shared(triangles, pairs + begin,
@@ -118,7 +119,7 @@ static uint32_t reject_disjoint(const uint32_t (*triangles)[3], const double *po
         keep_undecided(&lists[1], triangles, positions, SHARING_VERTEX_CORNERS,
                        sharing_vertex_undecided_by_projection);
         keep_undecided(&lists[2], triangles, positions, SHARING_EDGE_CORNERS, sharing_edge_undecided);
-        for (int i = 0; i < 3; i++) { /* triangles with three shared vertices do not intersect */
+        for (int i = 0; i <= most_shared; i++) {
             memcpy(pairs + kept, lists[i].pairs, lists[i].count * sizeof *pairs);
             kept += lists[i].count;
         }

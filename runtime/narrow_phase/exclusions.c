@@ -173,10 +173,18 @@ static bool is_waiting(const exclusions *e, cscd_contact_kind kind, uint32_t a, 
     return pair != NULL && (!e->marked_wait || pair->marked != 0);
 }
 
-bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
+bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b) {
     if (is_waiting(e, CSCD_CONTACT_TT, a, b)) return true;
     if (e->ignored_count > 0 && is_listed(e, key_of(a, b))) return true;
-    if (host_ignores(e, CSCD_CONTACT_TT, a, b)) return true;
+    return host_ignores(e, CSCD_CONTACT_TT, a, b);
+}
+
+bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b) {
+    return host_ignores(e, CSCD_CONTACT_TT, a, b);
+}
+
+bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions) {
+    if (exclusions_cover_duplicate(e, a, b)) return true;
     if (e->names == NULL) return false;
     const uint32_t *corners_a = e->mesh->triangles[a], *corners_b = e->mesh->triangles[b];
     return !triangles_intersect_by_names(corners_a, corners_b, e->names, positions);

@@ -44,3 +44,9 @@ bool exclusions_cover_features(const exclusions *e, cscd_contact_kind kind, uint
 /* Is this intersection of triangles a < b to be left out? Seams exclude it when every two of their features
  * that intersect have a vertex of one seam in common. */
 bool exclusions_cover_triangles(const exclusions *e, uint32_t a, uint32_t b, const double *positions);
+
+/* The same of a duplicate: triangles of three shared vertices, which seams do not exclude. */
+bool exclusions_cover_duplicate(const exclusions *e, uint32_t a, uint32_t b);
+
+/* Does the caller's function leave these triangles out? */
+bool exclusions_host_ignores(const exclusions *e, uint32_t a, uint32_t b);

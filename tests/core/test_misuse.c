@@ -205,6 +205,7 @@ static void objects_that_are_null(void **state) {
     expect_null_object(cscd_detector_create(context, NULL, NULL, NULL, &no_detector));
     expect_null_object(cscd_detector_step(NULL, AT_START, AT_END, &contacts));
     expect_null_object(cscd_detector_check(NULL, AT_START, &intersections));
+    expect_null_object(cscd_detector_find_intersections(NULL, AT_START, NULL, NULL));
     expect_null_object(cscd_detector_find_near(NULL, AT_START, 1.0, CSCD_NEAR_PAIRS, &near));
     expect_null_object(cscd_detector_max_step(NULL, AT_START, AT_END, NULL, &step));
     expect_null_object(cscd_detector_set_separation(NULL, 1.0, 0.0));

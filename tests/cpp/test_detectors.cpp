@@ -21,6 +21,34 @@ void steps(void **) {
     assert_true(!found.empty() && found[0].a == crossing.items[0].a && found.data() == found.begin());
 }
 
+void kinds(void **) {
+    twins t;
+    cscd_intersection_options options = cscd_intersection_defaults();
+    std::vector<double> lower(t.x0.begin(), t.x0.end());
+    for (std::size_t i = lower.size() / 2 + 2; i < lower.size(); i += 3)
+        lower[i] = lower[2] + 0.01 * double(i % 7);
+    const cscd_view x = cscd::view_of(std::as_const(lower));
+    for (std::size_t stop : {0u, 3u}) {
+        cscd_intersection_pairs expected;
+        options.stop_after = stop;
+        assert_int_equal(cscd_detector_find_intersections(t.c, &x, &options, &expected), CSCD_OK);
+        const cscd::intersection_pairs found = t.ours.find_intersections(lower, options);
+        assert_true(found.size() == expected.count && found.size() > 2 &&
+                    found.crossing == expected.crossing);
+        std::size_t i = 0;
+        for (const cscd_intersection_pair &pair : found)
+            assert_memory_equal(&pair, &expected.items[i++], sizeof pair);
+    }
+    const std::size_t all = t.ours.find_intersections(lower).size();
+    options = cscd_intersection_defaults();
+    options.answer = CSCD_ANSWER_COUNT;
+    const cscd::intersection_pairs counted = t.ours.find_intersections(lower, options);
+    assert_true(counted.size() == all && counted.begin() == counted.end());
+    options.kinds = 0;
+    assert_int_equal(error_of([&] { t.ours.find_intersections(lower, options); }).status(),
+                     CSCD_INVALID_ARGUMENT);
+}
+
 void culling(void **) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
@@ -285,12 +313,20 @@ void line_searches(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(steps),           cmocka_unit_test(culling),
-                                cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
-                                cmocka_unit_test(options),         cmocka_unit_test(live_changes),
-                                cmocka_unit_test(rules),           cmocka_unit_test(long_lists),
-                                cmocka_unit_test(active_vertices), cmocka_unit_test(separation),
-                                cmocka_unit_test(motions),         cmocka_unit_test(bounds),
-                                cmocka_unit_test(touching_starts), cmocka_unit_test(line_searches)};
+    const CMUnitTest tests[] = {cmocka_unit_test(steps),
+                                cmocka_unit_test(kinds),
+                                cmocka_unit_test(culling),
+                                cmocka_unit_test(proximity),
+                                cmocka_unit_test(contact_stencils),
+                                cmocka_unit_test(options),
+                                cmocka_unit_test(live_changes),
+                                cmocka_unit_test(rules),
+                                cmocka_unit_test(long_lists),
+                                cmocka_unit_test(active_vertices),
+                                cmocka_unit_test(separation),
+                                cmocka_unit_test(motions),
+                                cmocka_unit_test(bounds),
+                                cmocka_unit_test(touching_starts),
+                                cmocka_unit_test(line_searches)};
     return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
 }

@@ -78,13 +78,14 @@ static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
 
 /* ---- calls from callbacks ------------------------------------------------------------------------------ */
 
-enum { CALLS = 14 };
+enum { CALLS = 15 };
 
 static cscd_status call_again(const panel_scene *p, int what) {
     static union {
         cscd_contacts contacts;
         cscd_proximities proximities;
         cscd_intersections intersections;
+        cscd_intersection_pairs pairs;
         cscd_free_step step;
         cscd_displacement_bounds bounds;
         cscd_truncation truncation;
@@ -117,6 +118,8 @@ static cscd_status call_again(const panel_scene *p, int what) {
         return cscd_detector_set_rules(p->detector, NULL, 0, NULL, 0);
     case 12:
         return cscd_detector_set_active(p->detector, NULL, 0);
+    case 13:
+        return find_intersections_packed(p->detector, p->x0, NULL, &found.pairs);
     default:
         return cscd_partition_create(p->context, p->mesh, NULL, CSCD_DOUBLES(p->x0, p->vertex_count), NULL,
                                      (cscd_partition **)&made);

@@ -79,17 +79,17 @@ static bool do_intersect(uint32_t i) {
 }
 
 /* Runs the kernel of a level on all pairs; returns how many pairs it leaves. */
-static uint32_t reject_disjoint(int level, triangle_pair *pairs) {
+static uint32_t reject_disjoint(int level, bool keep_duplicates, triangle_pair *pairs) {
     for (uint32_t i = 0; i < work.count; i++) pairs[i] = (triangle_pair){2 * i, 2 * i + 1};
     return intersection_kernels_of(contexts[level])
-        ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count);
+        ->reject_disjoint(triangles_of_work(), work.positions, pairs, work.count, keep_duplicates);
 }
 
 /* Adds the number of disjoint pairs, and how many of these the kernel leaves undecided. */
 static void check_batch(uint64_t *apart, uint64_t *open) {
     triangle_pair first[BATCH_MAX], other[BATCH_MAX];
     bool kept[BATCH_MAX] = {false};
-    uint32_t count = reject_disjoint(0, first);
+    uint32_t count = reject_disjoint(0, false, first);
     for (uint32_t i = 0; i < count; i++) {
         assert_int_equal(first[i].a + 1, first[i].b);
         assert_false(kept[first[i].a / 2]);
@@ -103,7 +103,33 @@ static void check_batch(uint64_t *apart, uint64_t *open) {
     }
     for (int level = 1; level < LEVEL_COUNT; level++) {
         if (contexts[level] == NULL) continue;
-        assert_int_equal(reject_disjoint(level, other), count);
+        assert_int_equal(reject_disjoint(level, false, other), count);
+        assert_memory_equal(first, other, count * sizeof *first);
+    }
+}
+
+static bool share_all(uint32_t i) {
+    int shared = 0;
+    for (int k = 0; k < 9; k++) shared += work.triangles[2 * i][k / 3] == work.triangles[2 * i + 1][k % 3];
+    return shared == 3;
+}
+
+/* On demand pairs that share three vertices stay, beside the others; the order is the same on all levels. */
+static void check_duplicates(void) {
+    triangle_pair first[BATCH_MAX], other[BATCH_MAX];
+    bool kept[BATCH_MAX] = {false};
+    uint32_t without = reject_disjoint(0, false, other), count = reject_disjoint(0, true, first),
+             duplicates = 0;
+    for (uint32_t i = 0; i < count; i++) kept[first[i].a / 2] = true;
+    for (uint32_t i = 0; i < work.count; i++) {
+        duplicates += share_all(i);
+        assert_true(kept[i] || !share_all(i));
+    }
+    for (uint32_t i = 0; i < without; i++) assert_true(kept[other[i].a / 2]);
+    assert_int_equal(count, without + duplicates);
+    for (int level = 1; level < LEVEL_COUNT; level++) {
+        if (contexts[level] == NULL) continue;
+        assert_int_equal(reject_disjoint(level, true, other), count);
         assert_memory_equal(first, other, count * sizeof *first);
     }
 }
@@ -114,6 +140,7 @@ static void check_family(family f, int shared, double most) {
     for (int i = 0; i < BATCHES; i++) {
         make_batch(f, shared);
         check_batch(&apart, &open);
+        check_duplicates();
     }
     double share = 100.0 * (double)open / (double)apart;
     printf("%s, %d shared: %llu apart, %.3f %% of them left open\n", family_names[f], shared,
@@ -155,7 +182,7 @@ static void overflow_certifies_nothing(void **state) {
         assert_true(meeting > 10);
         for (size_t k = 0; k < BATCH_MAX * 18; k++) work.positions[k] *= scale;
         for (int level = 0; level < LEVEL_COUNT; level++) {
-            if (contexts[level] != NULL) assert_int_equal(reject_disjoint(level, pairs), meeting);
+            if (contexts[level] != NULL) assert_int_equal(reject_disjoint(level, false, pairs), meeting);
         }
     }
 }

@@ -56,6 +56,14 @@ cscd_status check_packed(cscd_detector *detector, const double *positions, cscd_
     return cscd_detector_check(detector, view_of(mesh_of(detector), positions, &x), out);
 }
 
+cscd_status find_intersections_packed(cscd_detector *detector, const double *positions,
+                                      const cscd_intersection_options *options,
+                                      cscd_intersection_pairs *out) {
+    cscd_view x;
+    return cscd_detector_find_intersections(detector, view_of(mesh_of(detector), positions, &x), options,
+                                            out);
+}
+
 cscd_status find_near_packed(cscd_detector *detector, const double *positions, double distance,
                              cscd_proximities *out) {
     cscd_view x;

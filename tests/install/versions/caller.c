@@ -169,6 +169,15 @@ static void ask_detector(caller_state *s) {
     GUARDED(cscd_intersections, intersections);
     expect_ok(s, cscd_detector_check(s->detector, x0, &intersections.value), "cscd_detector_check");
     EXPECT_FILLED(cscd_intersections, intersections);
+    OPTIONS(cscd_intersection_options, cscd_intersection_defaults_sized, kinds);
+    GUARDED(cscd_intersection_pairs, pairs);
+    REFUSE(cscd_intersection_options, kinds.value,
+           cscd_detector_find_intersections(s->detector, x0, &kinds.value, &pairs.value),
+           cscd_context_detail(s->context));
+    expect_ok(s, cscd_detector_find_intersections(s->detector, x0, &kinds.value, &pairs.value),
+              "cscd_detector_find_intersections");
+    EXPECT_FILLED(cscd_intersection_pairs, pairs);
+    expect_that(pairs.value.count == intersections.value.count, "cscd_intersection_pairs", "its values");
     GUARDED(cscd_contacts, contacts);
     expect_ok(s, cscd_detector_step(s->detector, x0, x1, &contacts.value), "cscd_detector_step");
     EXPECT_FILLED(cscd_contacts, contacts);

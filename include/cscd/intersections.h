@@ -1,0 +1,131 @@
+/* Intersections by kind: which pairs of triangles cross at one moment, which lie on each other in a plane, which only
+ * touch. Part of cscd/cscd.h, which says what holds for every function.
+ *
+ * Every answer is that of exact arithmetic on the given coordinates. A triangle without its three edges is *open*. Two
+ * triangles that both have an area
+ *   cross           if the open triangles meet, and not in one plane: then they have a segment in common;
+ *   share area      if the open triangles meet in one plane;
+ *   touch           if they meet otherwise.
+ * A triangle without area, whose corners lie on one line or at one place, can only touch. Edges and vertices that both
+ * triangles have do not count as meeting: neighbours are a pair only if they meet elsewhere, too. *Shared vertices* are
+ * those that both have by index, or as vertices that seams unite, wherever these are; 0 to 3. Vertices that are
+ * merely at one place are not shared. What that means for neighbours:
+ *   one shared vertex      they cross if, away from it, each passes through the open other one
+ *   two shared vertices    they never cross, since their planes meet in the edge that they share: they are folded onto
+ *                          each other, or no pair
+ *   three shared vertices  they are a duplicate if they have an area, and else no pair
+ * Seams may unite vertices that are apart. The kind then goes by where the corners are; three shared vertices make a
+ * duplicate only if each two of them are at one place.
+ *
+ * Degenerate meshes are not refused. Duplicates are listed each with each; triangles at one edge or vertex, however many,
+ * pair by pair; borders count as any edge. Copies of a triangle with vertices of their own, at the same positions,
+ * share none, and so are coplanar. docs/theory/static-check.md has the proofs, and a drawing of each kind. */
+#ifndef CSCD_INTERSECTIONS_API_H
+#define CSCD_INTERSECTIONS_API_H
+
+#include <cscd/detector.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How two triangles intersect. A pair has exactly one kind. Later versions may add values. */
+typedef enum cscd_intersection_kind {
+    CSCD_INTERSECTION_CROSSING,  /* they cross */
+    CSCD_INTERSECTION_COPLANAR,  /* they share area in one plane, and no vertex */
+    CSCD_INTERSECTION_FOLDED,    /* they share area in one plane, and one or two vertices */
+    CSCD_INTERSECTION_DUPLICATE, /* they share all three vertices, and have an area */
+    CSCD_INTERSECTION_TOUCHING,  /* they meet otherwise, or one has no area */
+    CSCD_INTERSECTION_KIND_MAX_ENUM = 0x7fffffff
+} cscd_intersection_kind;
+
+/* The names are "crossing", "coplanar", "folded", "duplicate" and "touching"; static storage, never NULL. */
+CSCD_API const char *cscd_intersection_kind_name(cscd_intersection_kind kind);
+
+/* A set that has one kind. Sets are joined by |. */
+static inline uint64_t cscd_intersection_set(cscd_intersection_kind kind) {
+    return (uint64_t)1 << kind;
+}
+
+/* What is asked. Later versions may add values. */
+typedef enum cscd_intersection_answer {
+    CSCD_ANSWER_LIST,  /* the pairs */
+    CSCD_ANSWER_COUNT, /* how many there are, of each kind; nothing is kept, so longest_list does not matter */
+    CSCD_ANSWER_ANY,   /* is there one? The search ends at the first that it meets */
+    CSCD_ANSWER_MAX_ENUM = 0x7fffffff
+} cscd_intersection_answer;
+
+/* Options of cscd_detector_find_intersections; start from cscd_intersection_defaults. */
+typedef struct cscd_intersection_options {
+    uint32_t struct_size;            /* set by cscd_intersection_defaults */
+    cscd_intersection_answer answer; /* LIST by default */
+
+    /* Ends the search at so many pairs of the kinds that count; 0, the default: never. The same calls find the same pairs
+     * for any number of threads: the first ones in an order that follows from the detector's trees, which depend on
+     * the positions that it has seen. The list is sorted as ever. */
+    size_t stop_after;
+
+    uint64_t kinds; /* the set of those that count; all, UINT64_MAX, by default */
+} cscd_intersection_options;
+
+/* The default options. */
+CSCD_API void cscd_intersection_defaults_sized(cscd_intersection_options *out, size_t size);
+static inline cscd_intersection_options cscd_intersection_defaults(void) {
+    cscd_intersection_options options;
+    cscd_intersection_defaults_sized(&options, sizeof options);
+    return options;
+}
+
+/* Two triangles a < b that intersect. */
+typedef struct cscd_intersection_pair {
+    uint32_t a, b;
+    cscd_intersection_kind kind;
+    uint32_t shared;                    /* vertices */
+    uint32_t components[2], objects[2]; /* those of a, then those of b */
+} cscd_intersection_pair;
+
+/* The pairs of the kinds that count. The list is sorted by (a, b); it belongs to the detector and lives until its next
+ * call. */
+typedef struct cscd_intersection_pairs {
+    const cscd_intersection_pair *items;                    /* NULL, unless the answer is LIST */
+    size_t count;                                           /* for ANY 1 or 0: yes or no */
+    size_t crossing, coplanar, folded, duplicate, touching; /* so many of these; for ANY all 0 */
+    size_t waiting; /* so many pairs of triangles wait, and are left out: see cscd_detector_set_seams */
+    uint32_t zero_area_triangles; /* how many triangles have all corners on one line */
+    uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
+    bool stopped;                 /* the search has ended early, so there may be more pairs */
+    uint8_t reserved[7];
+} cscd_intersection_pairs;
+
+/* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are
+ * those of cscd_detector_check and, beside them, duplicates; so nothing that rules, obstacles, `ignored`, `ignore`,
+ * seams and waiting pairs leave out is listed. Duplicates never come apart, so a duplicate whose triangles have the
+ * same three indices does not wait when a change uncovers it. If the search was not to stop early, the call does
+ * everything else that cscd_detector_check does: a step that starts here need not check the positions again. Of the
+ * timings only check_ms changes; the counters stay those of the last step. INVALID_ARGUMENT: no kind counts, or the
+ * answer is unknown. LIST_TOO_LONG: *out then counts all pairs, whatever stop_after is. CANCELLED: see cscd_progress. An
+ * example, the upper sheet laid into the plane of the lower one, which prints "0 crossing, 67 coplanar":
+ *
+ *     cscd_intersection_options options = cscd_intersection_defaults();
+ *     cscd_intersection_pairs found;
+ *     options.answer = CSCD_ANSWER_COUNT;
+ *     for (uint32_t v = SHEET; v < n; v++) x0[3 * v + 2] = 0.0;
+ *     cscd_status status = cscd_detector_find_intersections(detector, CSCD_DOUBLES(x0, n), &options, &found);
+ *     printf("%d crossing, %d coplanar\n", (int)found.crossing, (int)found.coplanar);
+ */
+CSCD_API cscd_status cscd_detector_find_intersections_sized(cscd_detector *detector,
+                                                            const cscd_view *positions,
+                                                            const cscd_intersection_options *options,
+                                                            cscd_intersection_pairs *out, size_t size);
+static inline cscd_status cscd_detector_find_intersections(cscd_detector *detector,
+                                                           const cscd_view *positions,
+                                                           const cscd_intersection_options *options,
+                                                           cscd_intersection_pairs *out) {
+    return cscd_detector_find_intersections_sized(detector, positions, options, out, sizeof *out);
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

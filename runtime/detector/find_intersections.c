@@ -1,0 +1,258 @@
+/* Intersections by kind, of the public API: all, the first ones, their number, or whether there is one. */
+#include "cscd/intersections.h"
+
+#include "runtime/detector/check.h"
+#include "runtime/detector/list_cap.h"
+#include "runtime/intersections/first_pairs.h"
+#include "src/core/sort.h"
+#include "src/core/struct_size.h"
+#include "src/mesh/views.h"
+
+/* ---- the API's names and defaults ---------------------------------------------------------------------- */
+
+enum { KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
+
+const char *cscd_intersection_kind_name(cscd_intersection_kind kind) {
+    static const char *const names[KIND_COUNT] = {"crossing", "coplanar", "folded", "duplicate", "touching"};
+    return (unsigned)kind < KIND_COUNT ? names[kind] : "unknown";
+}
+
+static const cscd_intersection_options default_options = {
+    .struct_size = sizeof default_options, .answer = CSCD_ANSWER_LIST, .kinds = UINT64_MAX};
+
+void cscd_intersection_defaults_sized(cscd_intersection_options *out, size_t size) {
+    struct_give_options(out, size, &default_options, sizeof default_options);
+}
+
+static cscd_status take_options(cscd_context *context, const cscd_intersection_options *options,
+                                cscd_intersection_options *out) {
+    *out = default_options;
+    if (options == NULL) return CSCD_OK;
+    cscd_status status = struct_take_options(context, out, sizeof *out, LEAST_SIZE(cscd_intersection_options),
+                                             options, "cscd_intersection_defaults");
+    if (status != CSCD_OK) return status;
+    if ((unsigned)out->answer > CSCD_ANSWER_ANY)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown answer %d", (int)out->answer);
+    if ((out->kinds & ((UINT64_C(1) << KIND_COUNT) - 1)) == 0)
+        return context_fail(context, CSCD_INVALID_ARGUMENT,
+                            "kinds is %#llx, which has no kind: join sets of cscd_intersection_set",
+                            (unsigned long long)out->kinds);
+    return CSCD_OK;
+}
+
+/* ---- which pairs count --------------------------------------------------------------------------------- */
+
+typedef struct kind_search {
+    cscd_detector *detector;
+    const double *positions;
+    cscd_intersection_options options;
+    exclusions without_host;    /* what is left out but by the caller's function, for any thread */
+    size_t of_kind[KIND_COUNT]; /* pairs that count */
+    bool keeps;                 /* these pairs stay in the lanes */
+} kind_search;
+
+static bool is_wanted(const kind_search *s, const found_pair *pair) {
+    return (s->options.kinds >> pair->kind & 1) != 0;
+}
+
+static bool is_left_out(const kind_search *s, const exclusions *e, const found_pair *pair) {
+    if (!exclusions_any(e)) return false;
+    if (pair->kind == CSCD_INTERSECTION_DUPLICATE) return exclusions_cover_duplicate(e, pair->a, pair->b);
+    return exclusions_cover_triangles(e, pair->a, pair->b, s->positions);
+}
+
+static size_t count_found(const kind_search *s) {
+    size_t count = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) count += s->of_kind[kind];
+    return count;
+}
+
+/* ---- all pairs ----------------------------------------------------------------------------------------- */
+
+/* Counts the pairs of a lane that are not settled yet, and drops what does not count. */
+static void settle_lane(kind_search *s, intersection_lane *lane) {
+    size_t kept = lane->settled;
+    for (size_t i = lane->settled; i < lane->count; i++) {
+        found_pair pair = lane->items[i];
+        if (!is_wanted(s, &pair) || is_left_out(s, &s->detector->exclusions, &pair)) continue;
+        s->of_kind[pair.kind]++;
+        if (s->keeps) lane->items[kept++] = pair;
+    }
+    lane->settled = lane->count = kept;
+}
+
+static bool list_too_long(const kind_search *s) {
+    size_t longest = s->detector->options.longest_list;
+    return s->options.answer == CSCD_ANSWER_LIST && longest > 0 && count_found(s) > longest;
+}
+
+/* Called between two rounds, on the calling thread. Once the list is too long, no pair is kept. */
+static void settle_lanes(void *data) {
+    kind_search *s = data;
+    static_check *check = &s->detector->check;
+    for (uint32_t i = 0; i < check->lane_count; i++) settle_lane(s, &check->lanes[i]);
+    if (!list_too_long(s)) return;
+    for (uint32_t i = 0; i < check->lane_count; i++) check->lanes[i].settled = check->lanes[i].count = 0;
+}
+
+static cscd_status find_all(kind_search *s) {
+    cscd_detector *d = s->detector;
+    list_cap_begin_pairs(d, !s->keeps, settle_lanes, s);
+    cscd_status status =
+        static_check_kinds(&d->check, &d->space.traversal, &d->space.bvh, s->positions, d->exclusions.names);
+    list_cap_end_check(d);
+    if (status == CSCD_OK) settle_lanes(s);
+    return status;
+}
+
+/* ---- the first pairs ----------------------------------------------------------------------------------- */
+
+static bool pair_counts(void *data, const found_pair *pair) {
+    const kind_search *s = data;
+    return is_wanted(s, pair) && !is_left_out(s, &s->without_host, pair);
+}
+
+static bool host_keeps(void *data, const found_pair *pair) {
+    const kind_search *s = data;
+    return !exclusions_host_ignores(&s->detector->exclusions, pair->a, pair->b);
+}
+
+static cscd_status find_first(kind_search *s) {
+    cscd_detector *d = s->detector;
+    bool any = s->options.answer == CSCD_ANSWER_ANY;
+    const pair_quest quest = {.enough = any ? 1 : s->options.stop_after,
+                              .any = any,
+                              .data = s,
+                              .counts = pair_counts,
+                              .stays = d->exclusions.ignore != NULL ? host_keeps : NULL};
+    s->without_host = d->exclusions;
+    s->without_host.ignore = NULL;
+    cscd_status status = first_pairs_find(&d->check, &d->space.traversal, &d->space.bvh, s->positions,
+                                          d->exclusions.names, &quest);
+    for (uint32_t i = 0; status == CSCD_OK && i < d->check.lane_count; i++) {
+        const intersection_lane *lane = &d->check.lanes[i];
+        for (size_t j = 0; j < lane->count; j++) s->of_kind[lane->items[j].kind]++;
+    }
+    return status;
+}
+
+/* Where more pairs are asked for than a list may have, the search cannot stop before that is known. */
+static bool stops_early(const cscd_detector *d, const cscd_intersection_options *options) {
+    size_t longest = options->answer == CSCD_ANSWER_LIST ? d->options.longest_list : 0;
+    if (options->answer == CSCD_ANSWER_ANY) return true;
+    return options->stop_after > 0 && (longest == 0 || options->stop_after <= longest);
+}
+
+/* ---- the result ---------------------------------------------------------------------------------------- */
+
+/* The order of pairs, and what was found of them. */
+typedef struct pair_key {
+    uint64_t pair; /* a in the upper half, b in the lower one */
+    uint32_t kind, shared;
+} pair_key;
+
+static cscd_intersection_pair describe_pair(const cscd_mesh *mesh, const pair_key *key) {
+    cscd_intersection_pair pair = {.a = (uint32_t)(key->pair >> 32),
+                                   .b = (uint32_t)key->pair,
+                                   .kind = (cscd_intersection_kind)key->kind,
+                                   .shared = key->shared};
+    pair.components[0] = mesh->triangle_components[pair.a];
+    pair.components[1] = mesh->triangle_components[pair.b];
+    mesh_objects_of_pair(mesh, CSCD_CONTACT_TT, pair.a, pair.b, pair.objects);
+    return pair;
+}
+
+/* Joins the lists of all lanes, and sorts them. */
+static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_pairs *out) {
+    cscd_status status =
+        result_buffer_reserve(d->context, &d->pairs, count, sizeof(cscd_intersection_pair), sizeof(pair_key));
+    if (status != CSCD_OK) return status;
+    pair_key *keys = d->pairs.keys;
+    size_t next = 0;
+    for (uint32_t i = 0; i < d->check.lane_count; i++) {
+        const intersection_lane *lane = &d->check.lanes[i];
+        for (size_t j = 0; j < lane->count; j++) {
+            found_pair p = lane->items[j];
+            keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, p.kind, p.shared};
+        }
+    }
+    sort_by_number(keys, d->pairs.spare_keys, count, sizeof *keys);
+    cscd_intersection_pair *items = d->pairs.items;
+    for (size_t i = 0; i < count; i++) items[i] = describe_pair(d->mesh, &keys[i]);
+    out->items = items;
+    return CSCD_OK;
+}
+
+static void count_zero_area(const static_check *check, cscd_intersection_pairs *out) {
+    out->first_zero_area = UINT32_MAX;
+    for (uint32_t i = 0; i < check->lane_count; i++) {
+        const intersection_lane *lane = &check->lanes[i];
+        out->zero_area_triangles += lane->zero_area_triangles;
+        if (lane->first_zero_area < out->first_zero_area) out->first_zero_area = lane->first_zero_area;
+    }
+}
+
+static cscd_status give_result(const kind_search *s, cscd_intersection_pairs *out) {
+    cscd_detector *d = s->detector;
+    const size_t *of_kind = s->of_kind;
+    cscd_intersection_pairs result = {.count = count_found(s), .waiting = d->waiting.pairs.triangle_pairs};
+    count_zero_area(&d->check, &result);
+    if (s->options.answer == CSCD_ANSWER_ANY) {
+        result.stopped = result.count > 0;
+    } else {
+        result.crossing = of_kind[CSCD_INTERSECTION_CROSSING];
+        result.coplanar = of_kind[CSCD_INTERSECTION_COPLANAR];
+        result.folded = of_kind[CSCD_INTERSECTION_FOLDED];
+        result.duplicate = of_kind[CSCD_INTERSECTION_DUPLICATE];
+        result.touching = of_kind[CSCD_INTERSECTION_TOUCHING];
+        result.stopped = s->options.stop_after > 0 && result.count == s->options.stop_after;
+    }
+    bool too_long = list_too_long(s);
+    cscd_status status = CSCD_OK;
+    if (s->options.answer == CSCD_ANSWER_LIST && !too_long) status = list_pairs(d, result.count, &result);
+    if (status == CSCD_OK) *out = result;
+    return too_long ? list_cap_fail(d, result.count) : status;
+}
+
+/* ---- the call ------------------------------------------------------------------------------------------ */
+
+typedef struct kind_question {
+    cscd_intersection_options options;
+    cscd_intersection_pairs *out;
+} kind_question;
+
+static cscd_status find_kinds(cscd_detector *d, const double *positions, void *data) {
+    const kind_question *q = data;
+    kind_search s = {.detector = d,
+                     .positions = positions,
+                     .options = q->options,
+                     .keeps = q->options.answer == CSCD_ANSWER_LIST};
+    cscd_status status = stops_early(d, &q->options) ? find_first(&s) : find_all(&s);
+    return status == CSCD_OK ? give_result(&s, q->out) : status;
+}
+
+static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,
+                                 const cscd_intersection_options *options, cscd_intersection_pairs *out,
+                                 size_t size) {
+    cscd_context *context = d->context;
+    if (out == NULL)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "cscd_detector_find_intersections: out is NULL");
+    const double *x = NULL;
+    cscd_intersection_pairs found;
+    kind_question question = {.out = &found};
+    cscd_status status = take_options(context, options, &question.options);
+    if (status == CSCD_OK) status = views_read(context, d->mesh, positions, "positions", &d->unpacked[0], &x);
+    const moment_question asked = {find_kinds, &question, !stops_early(d, &question.options)};
+    if (status == CSCD_OK) status = detector_ask_moment(d, x, &asked);
+    if (status == CSCD_OK || status == CSCD_LIST_TOO_LONG) struct_give(out, size, &found, sizeof found);
+    return status;
+}
+
+cscd_status cscd_detector_find_intersections_sized(cscd_detector *detector, const cscd_view *positions,
+                                                   const cscd_intersection_options *options,
+                                                   cscd_intersection_pairs *out, size_t size) {
+    if (detector == NULL) return CSCD_NULL_OBJECT;
+    context_entry entry;
+    if (!object_enter(detector, &entry)) return entry.status;
+    return context_leave(&entry, find_in_views(detector, positions, options, out, size));
+}

@@ -1,0 +1,187 @@
+/* Intersections by kind through the API: all pairs by the oracle, what options ask for, and what is left out. */
+#include "cscd/research.h"
+#include "tests/support/intersections/integer_scene.h"
+#include "tests/support/methods.h"
+#include "tests/support/packed.h"
+#include "tests/support/test.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { SCENES = 12 };
+#else
+enum { SCENES = 150 };
+#endif
+
+static integer_scene s; /* large; one test at a time */
+static cscd_intersection_pair expected[PAIRS_MAX], before[PAIRS_MAX];
+
+typedef struct rigged {
+    cscd_context *context;
+    cscd_mesh *mesh;
+    cscd_detector *detector;
+} rigged;
+
+static rigged rig_up(uint32_t threads, cscd_method method) {
+    rigged r;
+    cscd_context_options options = cscd_context_defaults();
+    options.thread_count = threads;
+    assert_int_equal(cscd_context_create(&options, &r.context), CSCD_OK);
+    r.mesh = integer_scene_mesh(&s, r.context);
+    r.detector = integer_scene_detector(&s, r.mesh, method);
+    return r;
+}
+
+static void take_down(rigged *r) {
+    cscd_detector_destroy(r->detector);
+    cscd_mesh_destroy(r->mesh);
+    cscd_context_destroy(r->context);
+}
+
+static cscd_intersection_pairs find_pairs(const rigged *r, cscd_intersection_answer answer, uint64_t kinds,
+                                          size_t stop_after) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    cscd_intersection_pairs found;
+    options.answer = answer;
+    options.kinds = kinds;
+    options.stop_after = stop_after;
+    assert_int_equal(find_intersections_packed(r->detector, s.positions, &options, &found), CSCD_OK);
+    return found;
+}
+
+/* ---- one answer ---------------------------------------------------------------------------------------- */
+
+static void expect_pair(const rigged *r, const cscd_intersection_pair *is,
+                        const cscd_intersection_pair *wanted) {
+    assert_int_equal(is->a, wanted->a);
+    assert_int_equal(is->b, wanted->b);
+    assert_int_equal(is->kind, wanted->kind);
+    assert_int_equal(is->shared, wanted->shared);
+    assert_memory_equal(is->objects, wanted->objects, sizeof is->objects);
+    assert_int_equal(is->components[0], cscd_mesh_triangle_component(r->mesh, is->a));
+    assert_int_equal(is->components[1], cscd_mesh_triangle_component(r->mesh, is->b));
+}
+
+static void expect_counts(const cscd_intersection_pairs *found, const cscd_intersection_pair *pairs,
+                          size_t count) {
+    size_t of_kind[CSCD_INTERSECTION_TOUCHING + 1] = {0};
+    for (size_t i = 0; i < count; i++) of_kind[pairs[i].kind]++;
+    assert_int_equal(found->count, count);
+    assert_int_equal(found->crossing, of_kind[CSCD_INTERSECTION_CROSSING]);
+    assert_int_equal(found->coplanar, of_kind[CSCD_INTERSECTION_COPLANAR]);
+    assert_int_equal(found->folded, of_kind[CSCD_INTERSECTION_FOLDED]);
+    assert_int_equal(found->duplicate, of_kind[CSCD_INTERSECTION_DUPLICATE]);
+    assert_int_equal(found->touching, of_kind[CSCD_INTERSECTION_TOUCHING]);
+}
+
+/* The list has exactly the expected pairs. */
+static void expect_list(const rigged *r, const cscd_intersection_pairs *found, size_t count) {
+    expect_counts(found, expected, count);
+    for (size_t i = 0; i < count; i++) expect_pair(r, &found->items[i], &expected[i]);
+    assert_false(found->stopped);
+    assert_int_equal(found->waiting, 0);
+}
+
+/* Sorted, and all of them expected. */
+static void expect_some_of(const rigged *r, const cscd_intersection_pairs *found, size_t count) {
+    size_t next = 0;
+    expect_counts(found, found->items, found->count);
+    for (size_t i = 0; i < found->count; i++) {
+        while (next < count &&
+               (expected[next].a != found->items[i].a || expected[next].b != found->items[i].b))
+            next++;
+        assert_true(next < count);
+        expect_pair(r, &found->items[i], &expected[next++]);
+    }
+}
+
+/* ---- all answers for a set of kinds ---------------------------------------------------------------------- */
+
+/* The plain check has the same pairs but for duplicates. */
+static void compare_with_check(const rigged *r, size_t count) {
+    cscd_intersections plain;
+    size_t next = 0;
+    assert_int_equal(check_packed(r->detector, s.positions, &plain), CSCD_OK);
+    for (size_t i = 0; i < count; i++) {
+        if (expected[i].kind == CSCD_INTERSECTION_DUPLICATE) continue;
+        assert_true(next < plain.count);
+        assert_int_equal(plain.items[next].a, expected[i].a);
+        assert_int_equal(plain.items[next++].b, expected[i].b);
+    }
+    assert_int_equal(next, plain.count);
+    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_COUNT, UINT64_MAX, 0);
+    assert_int_equal(found.zero_area_triangles, plain.zero_area_triangles);
+    assert_int_equal(found.first_zero_area, plain.first_zero_area);
+}
+
+/* The first call of a size is kept in `before`; those of other thread counts must be the same. */
+static void compare_first_pairs(const rigged *r, uint64_t kinds, size_t stop_after, size_t count,
+                                bool first) {
+    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, stop_after);
+    assert_int_equal(found.count, stop_after < count ? stop_after : count);
+    assert_int_equal(found.stopped, stop_after <= count);
+    expect_some_of(r, &found, count);
+    if (first) memcpy(before, found.items, found.count * sizeof *before);
+    assert_memory_equal(before, found.items, found.count * sizeof *before);
+    cscd_intersection_pairs counted = find_pairs(r, CSCD_ANSWER_COUNT, kinds, stop_after);
+    expect_counts(&counted, before, found.count);
+    assert_null(counted.items);
+}
+
+static void compare_answers(const rigged *r, uint64_t kinds, size_t count) {
+    cscd_intersection_pairs found = find_pairs(r, CSCD_ANSWER_LIST, kinds, 0);
+    expect_list(r, &found, count);
+    found = find_pairs(r, CSCD_ANSWER_COUNT, kinds, 0);
+    expect_counts(&found, expected, count);
+    assert_null(found.items);
+    found = find_pairs(r, CSCD_ANSWER_ANY, kinds, 0);
+    assert_int_equal(found.count, count > 0);
+    assert_int_equal(found.stopped, count > 0);
+    assert_null(found.items);
+    assert_int_equal(found.crossing + found.coplanar + found.folded + found.duplicate + found.touching, 0);
+}
+
+static void compare_scene(uint64_t seed, size_t of_kind[]) {
+    static const cscd_method methods[] = {CSCD_METHOD_AUTO,     CSCD_METHOD_NONE,  CSCD_METHOD_SINGLE,
+                                          CSCD_METHOD_KMEANS,   CSCD_METHOD_BRUTE, CSCD_METHOD_ICCD,
+                                          CSCD_METHOD_PUBLISHED};
+    integer_scene_make(seed, &s);
+    size_t all = integer_scene_pairs(&s, UINT64_MAX, expected);
+    for (size_t i = 0; i < all; i++) of_kind[expected[i].kind]++;
+    for (uint32_t i = 0; i < 7; i++) {
+        uint32_t threads = 1 + (i + (uint32_t)seed) % 4;
+        uint64_t some = 1 + (seed + i) % 31;
+        rigged r = rig_up(threads, method_or_none(methods[i]));
+        compare_answers(&r, UINT64_MAX, integer_scene_pairs(&s, UINT64_MAX, expected));
+        compare_with_check(&r, all);
+        compare_answers(&r, some, integer_scene_pairs(&s, some, expected));
+        take_down(&r);
+    }
+    size_t sizes[] = {1, 2, 5, all / 2 + 1, all, all + 1};
+    uint64_t kinds[] = {UINT64_MAX, 1 + seed % 31};
+    for (uint32_t i = 0; i < 12; i++) {
+        size_t count = integer_scene_pairs(&s, kinds[i % 2], expected);
+        for (uint32_t threads = 1; threads <= 4; threads++) {
+            rigged r = rig_up(threads, CSCD_METHOD_NONE);
+            if (sizes[i / 2] > 0) compare_first_pairs(&r, kinds[i % 2], sizes[i / 2], count, threads == 1);
+            take_down(&r);
+        }
+    }
+}
+
+static void equals_the_oracle(void **state) {
+    size_t of_kind[CSCD_INTERSECTION_TOUCHING + 1] = {0};
+    (void)state;
+    for (uint64_t seed = 0; seed < SCENES; seed++) compare_scene(seed, of_kind);
+    for (int kind = 0; kind <= CSCD_INTERSECTION_TOUCHING; kind++) {
+        printf("%s %zu  ", cscd_intersection_kind_name((cscd_intersection_kind)kind), of_kind[kind]);
+        assert_true(of_kind[kind] > SCENES);
+    }
+    puts("");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_the_oracle)};
+    return cmocka_run_group_tests_name("find_intersections", tests, NULL, NULL);
+}
