@@ -271,7 +271,7 @@ bench: packages
 	@$(BUILD)/benchmarks/published_rules
 
 # The cost of a step by size, scene and machine, on one thread except for the rows on threads; some minutes.
-PERFORMANCE_PROGRAMS := machine scaling threads motion cloth topology callers
+PERFORMANCE_PROGRAMS := machine scaling threads motion cloth topology callers loose
 performance: packages
 	@$(MAKE) --no-print-directory $(addprefix $(BUILD)/benchmarks/,$(PERFORMANCE_PROGRAMS))
 	@for program in $(PERFORMANCE_PROGRAMS); do \
