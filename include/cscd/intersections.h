@@ -99,12 +99,13 @@ typedef struct cscd_intersection_pairs {
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are
  * those of cscd_detector_check and, beside them, duplicates; so nothing that rules, obstacles, `ignored`, `ignore`,
- * seams and waiting pairs leave out is listed. Duplicates never come apart, so a duplicate whose triangles have the
- * same three indices does not wait when a change uncovers it. If the search was not to stop early, the call does
- * everything else that cscd_detector_check does: a step that starts here need not check the positions again. Of the
- * timings only check_ms changes; the counters stay those of the last step. INVALID_ARGUMENT: no kind counts, or the
- * answer is unknown. LIST_TOO_LONG: *out then counts all pairs, whatever stop_after is. CANCELLED: see cscd_progress. An
- * example, the upper sheet laid into the plane of the lower one, which prints "0 crossing, 67 coplanar":
+ * seams and waiting pairs leave out is listed, nor pairs of triangles that are not active. Duplicates never come apart,
+ * so a duplicate whose triangles have the same three indices does not wait when a change uncovers it. If the search was
+ * not to stop early, the call does everything else that cscd_detector_check does: a step that starts here need not check
+ * the positions again. Of the timings only check_ms changes; the counters stay those of the last step. INVALID_ARGUMENT:
+ * no kind counts, or the answer is unknown. LIST_TOO_LONG: *out then counts all pairs, whatever stop_after is.
+ * CANCELLED: see cscd_progress. An example, the upper sheet laid into the plane of the lower one, which prints "0
+ * crossing, 67 coplanar":
  *
  *     cscd_intersection_options options = cscd_intersection_defaults();
  *     cscd_intersection_pairs found;

@@ -51,14 +51,14 @@ typedef struct kind_search {
     bool keeps;                 /* these pairs stay in the lanes */
 } kind_search;
 
-static bool is_wanted(const kind_search *s, const found_pair *pair) {
-    return (s->options.kinds >> pair->kind & 1) != 0;
+static bool is_wanted(const kind_search *s, pair_note note) {
+    return (s->options.kinds >> note.kind & 1) != 0;
 }
 
-static bool is_left_out(const kind_search *s, const exclusions *e, const found_pair *pair) {
+static bool is_left_out(const kind_search *s, const exclusions *e, found_pair pair, pair_note note) {
     if (!exclusions_any(e)) return false;
-    if (pair->kind == CSCD_INTERSECTION_DUPLICATE) return exclusions_cover_duplicate(e, pair->a, pair->b);
-    return exclusions_cover_triangles(e, pair->a, pair->b, s->positions);
+    if (note.kind == CSCD_INTERSECTION_DUPLICATE) return exclusions_cover_duplicate(e, pair.a, pair.b);
+    return exclusions_cover_triangles(e, pair.a, pair.b, s->positions);
 }
 
 static size_t count_found(const kind_search *s) {
@@ -73,10 +73,10 @@ static size_t count_found(const kind_search *s) {
 static void settle_lane(kind_search *s, intersection_lane *lane) {
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
-        found_pair pair = lane->items[i];
-        if (!is_wanted(s, &pair) || is_left_out(s, &s->detector->exclusions, &pair)) continue;
-        s->of_kind[pair.kind]++;
-        if (s->keeps) lane->items[kept++] = pair;
+        pair_note note = lane->notes[i];
+        if (!is_wanted(s, note) || is_left_out(s, &s->detector->exclusions, lane->items[i], note)) continue;
+        s->of_kind[note.kind]++;
+        if (s->keeps) intersection_lane_move(lane, i, kept++);
     }
     lane->settled = lane->count = kept;
 }
@@ -107,14 +107,14 @@ static cscd_status find_all(kind_search *s) {
 
 /* ---- the first pairs ----------------------------------------------------------------------------------- */
 
-static bool pair_counts(void *data, const found_pair *pair) {
+static bool pair_counts(void *data, found_pair pair, pair_note note) {
     const kind_search *s = data;
-    return is_wanted(s, pair) && !is_left_out(s, &s->without_host, pair);
+    return is_wanted(s, note) && !is_left_out(s, &s->without_host, pair, note);
 }
 
-static bool host_keeps(void *data, const found_pair *pair) {
+static bool host_keeps(void *data, found_pair pair) {
     const kind_search *s = data;
-    return !exclusions_host_ignores(&s->detector->exclusions, pair->a, pair->b);
+    return !exclusions_host_ignores(&s->detector->exclusions, pair.a, pair.b);
 }
 
 static cscd_status find_first(kind_search *s) {
@@ -131,7 +131,7 @@ static cscd_status find_first(kind_search *s) {
                                           d->exclusions.names, &quest);
     for (uint32_t i = 0; status == CSCD_OK && i < d->check.lane_count; i++) {
         const intersection_lane *lane = &d->check.lanes[i];
-        for (size_t j = 0; j < lane->count; j++) s->of_kind[lane->items[j].kind]++;
+        for (size_t j = 0; j < lane->count; j++) s->of_kind[lane->notes[j].kind]++;
     }
     return status;
 }
@@ -173,7 +173,7 @@ static cscd_status list_pairs(cscd_detector *d, size_t count, cscd_intersection_
         const intersection_lane *lane = &d->check.lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             found_pair p = lane->items[j];
-            keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, p.kind, p.shared};
+            keys[next++] = (pair_key){(uint64_t)p.a << 32 | p.b, lane->notes[j].kind, lane->notes[j].shared};
         }
     }
     sort_by_number(keys, d->pairs.spare_keys, count, sizeof *keys);

@@ -26,8 +26,8 @@ typedef struct pair_hunt {
 static void keep_counting(const pair_hunt *hunt, intersection_lane *lane, size_t first) {
     size_t kept = first;
     for (size_t i = first; i < lane->count; i++) {
-        lane->items[kept] = lane->items[i];
-        kept += hunt->quest->counts(hunt->quest->data, &lane->items[i]);
+        intersection_lane_move(lane, i, kept);
+        kept += hunt->quest->counts(hunt->quest->data, lane->items[i], lane->notes[i]);
     }
     lane->count = kept;
 }
@@ -90,13 +90,12 @@ static cscd_status run_round(pair_hunt *hunt, uint32_t begin, uint32_t end) {
 
 /* Removes the pairs of a task that do not stay, and those beyond the number that is still wanted. */
 static void settle_task(pair_hunt *hunt, task_pairs *task, size_t wanted) {
-    found_pair *items = hunt->work.check->lanes[task->lane].items + task->begin;
+    intersection_lane *lane = &hunt->work.check->lanes[task->lane];
     const pair_quest *quest = hunt->quest;
     size_t kept = 0;
     for (size_t i = 0; i < task->count && kept < wanted; i++) {
-        found_pair pair = items[i];
-        if (quest->stays != NULL && !quest->stays(quest->data, &pair)) continue;
-        items[kept++] = pair;
+        if (quest->stays != NULL && !quest->stays(quest->data, lane->items[task->begin + i])) continue;
+        intersection_lane_move(lane, task->begin + i, task->begin + kept++);
     }
     task->count = kept;
 }
@@ -108,7 +107,7 @@ static void close_gaps(pair_hunt *hunt, uint32_t task_count) {
     for (uint32_t i = 0; i < task_count; i++) {
         const task_pairs *task = &hunt->tasks[i];
         intersection_lane *lane = &c->lanes[task->lane];
-        for (size_t j = 0; j < task->count; j++) lane->items[lane->count++] = lane->items[task->begin + j];
+        for (size_t j = 0; j < task->count; j++) intersection_lane_move(lane, task->begin + j, lane->count++);
     }
     for (uint32_t i = 0; i < c->lane_count; i++) c->lanes[i].settled = c->lanes[i].count;
 }
@@ -136,13 +135,15 @@ static cscd_status run_rounds(pair_hunt *hunt) {
 cscd_status first_pairs_find(static_check *c, traversal *t, bvh *f, const double *positions,
                              const uint32_t *names, const pair_quest *quest) {
     pair_hunt hunt = {.quest = quest};
-    hunt.work = (check_work){
-        .check = c, .traversal = t, .bvh = f, .positions = positions, .kinds = true, .names = names};
+    hunt.work = (check_work){.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
     atomic_store(&hunt.last, UINT32_MAX);
     memset(c->unproven, true, c->mesh->triangle_count * sizeof *c->unproven);
     static_check_begin(&hunt.work);
     if (c->mesh->triangle_count == 0) return CSCD_OK;
     bvh_skip_adjacent(f, NULL);
     cscd_status status = traversal_begin_tasks(t, f, TRAVERSAL_KEPT);
-    return status == CSCD_OK ? run_rounds(&hunt) : status;
+    c->kinds = true;
+    if (status == CSCD_OK) status = run_rounds(&hunt);
+    c->kinds = false;
+    return status;
 }

@@ -8,9 +8,8 @@ typedef struct pair_quest {
     size_t enough; /* 1 or more */
     bool any;      /* it does not matter which ones are found */
     void *data;
-    bool (*counts)(void *data, const found_pair *pair); /* asked on any thread */
-    bool (*stays)(void *data,
-                  const found_pair *pair); /* asked afterwards, on the calling thread; NULL: all do */
+    bool (*counts)(void *data, found_pair pair, pair_note note); /* asked on any thread */
+    bool (*stays)(void *data, found_pair pair); /* asked afterwards, on the calling thread; NULL: all do */
 } pair_quest;
 
 /* As static_check_kinds, but ends once enough pairs have been found that count and stay. Then the lanes have these alone,

@@ -24,7 +24,10 @@ cscd_status static_check_create(const cscd_mesh *mesh, uint32_t lane_count, stat
 void static_check_destroy(static_check *c) {
     if (c->mesh == NULL) return;
     cscd_context *context = c->mesh->context;
-    for (uint32_t i = 0; i < c->lane_count; i++) context_free(context, c->lanes[i].items);
+    for (uint32_t i = 0; i < c->lane_count; i++) {
+        context_free(context, c->lanes[i].items);
+        context_free(context, c->lanes[i].notes);
+    }
     context_free_all(context, list_arrays(c));
     *c = (static_check){0};
 }
@@ -35,35 +38,52 @@ static const uint32_t (*triangles_of(const check_work *work))[3] {
     return (const uint32_t(*)[3])work->check->mesh->triangles;
 }
 
-static void add_pair(cscd_context *context, intersection_lane *lane, found_pair pair) {
-    if (lane->count == lane->capacity) {
-        size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
-        found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
-        if (grown == NULL) {
-            lane->out_of_memory = true;
-            return;
-        }
-        lane->items = grown;
-        lane->capacity = capacity;
-    }
-    lane->items[lane->count++] = pair;
+static bool make_room(cscd_context *context, intersection_lane *lane) {
+    size_t capacity = lane->capacity == 0 ? 256 : lane->capacity * 2;
+    found_pair *grown = context_grow(context, lane->items, lane->count, capacity, sizeof *lane->items);
+    if (grown == NULL) return false;
+    lane->items = grown;
+    lane->capacity = capacity;
+    return true;
+}
+
+static bool make_room_for_notes(cscd_context *context, intersection_lane *lane) {
+    pair_note *grown = context_grow(context, lane->notes, lane->count, lane->capacity, sizeof *lane->notes);
+    if (grown == NULL) return false;
+    lane->notes = grown;
+    lane->note_capacity = lane->capacity;
+    return true;
+}
+
+static void add_pair(cscd_context *context, intersection_lane *lane, triangle_pair t) {
+    if (lane->count == lane->capacity && !make_room(context, lane))
+        lane->out_of_memory = true;
+    else
+        lane->items[lane->count++] = (found_pair){t.a < t.b ? t.a : t.b, t.a < t.b ? t.b : t.a};
+}
+
+static void add_noted_pair(cscd_context *context, intersection_lane *lane, triangle_pair t, pair_note note) {
+    bool room = lane->count < lane->capacity || make_room(context, lane);
+    if (room && lane->note_capacity < lane->capacity) room = make_room_for_notes(context, lane);
+    if (room) lane->notes[lane->count] = note;
+    if (room)
+        add_pair(context, lane, t);
+    else
+        lane->out_of_memory = true;
 }
 
 static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
     return triangle_contains(a, b[0]) && triangle_contains(a, b[1]) && triangle_contains(a, b[2]);
 }
 
-/* Do the triangles belong in the lane? Fills in what is asked for. */
-static bool test_pair(const check_work *work, found_pair *pair) {
+static void test_kind(const check_work *work, intersection_lane *lane, triangle_pair t) {
     const uint32_t(*triangles)[3] = triangles_of(work);
-    const uint32_t *a = triangles[pair->a], *b = triangles[pair->b];
-    if (!work->kinds) return triangles_intersect(a, b, work->positions);
+    const uint32_t *a = triangles[t.a], *b = triangles[t.b];
     pair_kind found;
-    if (!pair_kind_find(a, b, work->names, work->positions, &found)) return false;
-    pair->kind = (uint8_t)found.kind;
-    pair->shared = (uint8_t)found.shared;
-    pair->unlisted = found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b);
-    return true;
+    if (!pair_kind_find(a, b, work->names, work->positions, &found)) return;
+    const pair_note note = {(uint8_t)found.kind, (uint8_t)found.shared,
+                            found.kind == CSCD_INTERSECTION_DUPLICATE && same_triangle(a, b)};
+    add_noted_pair(work->check->mesh->context, lane, t, note);
 }
 
 static bool pair_counts(const check_work *work, uint32_t a, uint32_t b) {
@@ -89,13 +109,18 @@ static void name_triangles(const check_work *work, traversal_lane *batch) {
 void static_check_test_batch(const check_work *work, uint32_t index) {
     cscd_context *context = work->check->mesh->context;
     traversal_lane *batch = &work->traversal->lanes[index];
+    intersection_lane *lane = &work->check->lanes[index];
+    const uint32_t(*triangles)[3] = triangles_of(work);
+    bool kinds = work->check->kinds;
     name_triangles(work, batch);
     uint32_t undecided = intersection_kernels_of(context)->reject_disjoint(
-        triangles_of(work), work->positions, batch->pairs, batch->pair_count, work->kinds);
+        triangles, work->positions, batch->pairs, batch->pair_count, kinds);
     for (uint32_t i = 0; i < undecided; i++) {
         triangle_pair t = batch->pairs[i];
-        found_pair pair = {.a = t.a < t.b ? t.a : t.b, .b = t.a < t.b ? t.b : t.a};
-        if (test_pair(work, &pair)) add_pair(context, &work->check->lanes[index], pair);
+        if (kinds)
+            test_kind(work, lane, t);
+        else if (triangles_intersect(triangles[t.a], triangles[t.b], work->positions))
+            add_pair(context, lane, t);
     }
 }
 
@@ -140,8 +165,11 @@ static void count_zero_area(void *data, uint32_t index) {
     intersection_lane *lane = &check->lanes[index];
     uint64_t count = check->mesh->triangle_count, lanes = check->lane_count;
     uint32_t begin = (uint32_t)(count * index / lanes), end = (uint32_t)(count * (index + 1) / lanes);
-    *lane =
-        (intersection_lane){.items = lane->items, .capacity = lane->capacity, .first_zero_area = UINT32_MAX};
+    *lane = (intersection_lane){.items = lane->items,
+                                .notes = lane->notes,
+                                .capacity = lane->capacity,
+                                .note_capacity = lane->note_capacity,
+                                .first_zero_area = UINT32_MAX};
     for (uint32_t t = begin; t < end; t += AREA_BATCH)
         mark_zero_area(work, lane, t, end - t < AREA_BATCH ? end : t + AREA_BATCH);
 }
@@ -154,7 +182,7 @@ static void mark_crossing(static_check *c) {
         const intersection_lane *lane = &c->lanes[i];
         for (size_t j = 0; j < lane->count; j++) {
             found_pair pair = lane->items[j];
-            if (components[pair.a] != components[pair.b] || pair.unlisted) continue;
+            if (components[pair.a] != components[pair.b] || (c->kinds && lane->notes[j].unlisted)) continue;
             c->crossing[pair.a] = c->crossing[pair.b] = true;
         }
     }
@@ -219,7 +247,9 @@ cscd_status static_check_all(static_check *c, traversal *t, bvh *f, const double
 
 cscd_status static_check_kinds(static_check *c, traversal *t, bvh *f, const double *positions,
                                const uint32_t *names) {
-    check_work work = {
-        .check = c, .traversal = t, .bvh = f, .positions = positions, .kinds = true, .names = names};
-    return compare_all(&work, f);
+    check_work work = {.check = c, .traversal = t, .bvh = f, .positions = positions, .names = names};
+    c->kinds = true;
+    cscd_status status = compare_all(&work, f);
+    c->kinds = false;
+    return status;
 }

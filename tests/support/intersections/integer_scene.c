@@ -111,6 +111,10 @@ void integer_scene_make(uint64_t seed, integer_scene *out) {
         out->ignored[i][1] = stream_below(&random, ALL_TRIANGLES);
     }
     out->ignores = stream_below(&random, 4) == 0;
+    if (stream_below(&random, 4) > 0) return;
+    for (uint32_t v = 0; v < ALL_VERTICES; v++) {
+        if (stream_below(&random, 5) == 0) out->active[out->active_count++] = v;
+    }
 }
 
 static bool ignore_some(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
@@ -149,6 +153,8 @@ cscd_detector *integer_scene_detector(const integer_scene *s, const cscd_mesh *m
     }
     assert_int_equal(detector_create_here(mesh, plan, &options, &detector), CSCD_OK);
     cscd_plan_destroy(plan);
+    if (s->active_count > 0)
+        assert_int_equal(cscd_detector_set_active(detector, s->active, s->active_count), CSCD_OK);
     return detector;
 }
 
@@ -163,7 +169,17 @@ static bool objects_look(const integer_scene *s, uint32_t i, uint32_t j) {
     return i == j ? p->self : (p->category & q->mask) != 0 && (q->category & p->mask) != 0;
 }
 
+static bool is_active(const integer_scene *s, uint32_t triangle) {
+    for (size_t i = 0; i < s->active_count; i++) {
+        for (int k = 0; k < 3; k++) {
+            if (s->triangles[triangle][k] == s->active[i]) return true;
+        }
+    }
+    return s->active_count == 0;
+}
+
 static bool is_left_out(const integer_scene *s, uint32_t a, uint32_t b) {
+    if (!is_active(s, a) && !is_active(s, b)) return true;
     if (!objects_look(s, a / PART_TRIANGLES, b / PART_TRIANGLES)) return true;
     if (s->ignores && ignore_some(NULL, CSCD_CONTACT_TT, a, b)) return true;
     for (size_t i = 0; i < s->ignored_count; i++) {

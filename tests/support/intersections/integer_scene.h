@@ -27,7 +27,9 @@ typedef struct integer_scene {
     size_t seam_count;
     uint32_t ignored[PAIRS_LEFT_OUT][2];
     size_t ignored_count;
-    bool ignores; /* a function leaves pairs out as well */
+    uint32_t active[ALL_VERTICES];
+    size_t active_count; /* 0: all vertices are active */
+    bool ignores;        /* a function leaves pairs out as well */
 } integer_scene;
 
 void integer_scene_make(uint64_t seed, integer_scene *out);
