@@ -1,0 +1,70 @@
+/* Polynomials in an infinitely small epsilon with integer coefficients: the moved coordinates of docs/theory/curves.md,
+ * written out. */
+#include "tests/support/intersections/epsilon_polynomial.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+static void add_term(epsilon_polynomial *p, uint64_t power, int64_t coefficient) {
+    int i = 0;
+    while (i < p->count && p->terms[i].power < power) i++;
+    if (i < p->count && p->terms[i].power == power) {
+        p->terms[i].coefficient += coefficient;
+        if (p->terms[i].coefficient != 0) return;
+        for (p->count--; i < p->count; i++) p->terms[i] = p->terms[i + 1];
+        return;
+    }
+    if (coefficient == 0) return;
+    assert(p->count < EPSILON_TERMS);
+    for (int j = p->count++; j > i; j--) p->terms[j] = p->terms[j - 1];
+    p->terms[i].power = power;
+    p->terms[i].coefficient = coefficient;
+}
+
+static void add_scaled(epsilon_polynomial *sum, const epsilon_polynomial *p, int factor) {
+    for (int i = 0; i < p->count; i++) add_term(sum, p->terms[i].power, factor * p->terms[i].coefficient);
+}
+
+static void multiply(const epsilon_polynomial *a, const epsilon_polynomial *b, epsilon_polynomial *out) {
+    out->count = 0;
+    for (int i = 0; i < a->count; i++) {
+        for (int j = 0; j < b->count; j++)
+            add_term(out, a->terms[i].power + b->terms[j].power,
+                     a->terms[i].coefficient * b->terms[j].coefficient);
+    }
+}
+
+/* to - from in one coordinate. */
+static epsilon_polynomial difference(const grid_point *from, const grid_point *to, int k) {
+    epsilon_polynomial d;
+    d.count = 0;
+    assert(from->name < EPSILON_NAMES && to->name < EPSILON_NAMES);
+    add_term(&d, 0, to->x[k] - from->x[k]);
+    add_term(&d, UINT64_C(1) << (3 * to->name + (uint32_t)k), 1);
+    add_term(&d, UINT64_C(1) << (3 * from->name + (uint32_t)k), -1);
+    return d;
+}
+
+void epsilon_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out) {
+    int x = (axis + 1) % 3, y = (axis + 2) % 3;
+    epsilon_polynomial ux = difference(&p[0], &p[1], x), uy = difference(&p[0], &p[1], y);
+    epsilon_polynomial vx = difference(&p[0], &p[2], x), vy = difference(&p[0], &p[2], y), other;
+    multiply(&ux, &vy, out);
+    multiply(&uy, &vx, &other);
+    add_scaled(out, &other, -1);
+}
+
+void epsilon_orient3d(const grid_point p[4], epsilon_polynomial *out) {
+    out->count = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        epsilon_polynomial turn, along = difference(&p[0], &p[3], axis), part;
+        epsilon_orient_along(p, axis, &turn);
+        multiply(&turn, &along, &part);
+        add_scaled(out, &part, 1);
+    }
+}
+
+int epsilon_sign(const epsilon_polynomial *p) {
+    if (p->count == 0) return 0;
+    return p->terms[0].coefficient > 0 ? 1 : -1;
+}
