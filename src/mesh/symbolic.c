@@ -90,6 +90,14 @@ symbolic_term symbolic_orient3d_term(const symbolic_point p[4]) {
     return term;
 }
 
+symbolic_minor symbolic_minor_of(const symbolic_term *term) {
+    minor_of_set m = leave_out_entries(term->moved, 4, 7);
+    symbolic_minor left = {.point_count = m.row_count};
+    for (int i = 0; i < m.row_count; i++) left.points[i] = term->order[m.rows[i]];
+    for (int i = 0; i < m.column_count; i++) left.columns[i] = m.columns[i];
+    return left;
+}
+
 /* Do the entries of the set lie in different columns, all of them among those given? */
 static bool is_set_of(uint32_t set, uint32_t columns) {
     uint32_t first = set & 7, second = set >> 3 & 7;

@@ -23,6 +23,15 @@ typedef struct symbolic_term {
 
 symbolic_term symbolic_orient3d_term(const symbolic_point p[4]);
 
+/* What is left of the matrix of four points: rows, that is, points, and one column less than rows, beside that of
+ * ones. The minor's magnitude is the coefficient of the term. */
+typedef struct symbolic_minor {
+    uint8_t points[4], columns[3];
+    int point_count;
+} symbolic_minor;
+
+symbolic_minor symbolic_minor_of(const symbolic_term *term);
+
 /* orient3d of the moved points: -1 or 1. */
 static inline int symbolic_orient3d(symbolic_point a, symbolic_point b, symbolic_point c, symbolic_point d) {
     return symbolic_orient3d_term((symbolic_point[4]){a, b, c, d}).sign;

@@ -182,3 +182,43 @@ double integer_to_double(integer a, int *exponent) {
     *exponent = own + 64 * (count - 1);
     return a.size < 0 ? -value : value;
 }
+
+/* a 2^exponent - x b, over a power of 2. */
+static integer rest_of_quotient(integer_pool *pool, integer a, integer b, int exponent, double x) {
+    int unit = exponent;
+    if (x != 0.0 && integer_lowest_bit(x) < unit) unit = integer_lowest_bit(x);
+    integer left = integer_multiply(pool, a, place_magnitude(pool, 1, exponent - unit, false));
+    return integer_subtract(pool, left, integer_multiply(pool, b, integer_from_double(pool, x, unit)));
+}
+
+/* The sign of a 2^exponent / b minus the middle between x and y. */
+static int side_of_middle(integer_pool *pool, integer a, integer b, int exponent, double x, double y) {
+    int unit = exponent;
+    if (x != 0.0 && integer_lowest_bit(x) < unit) unit = integer_lowest_bit(x);
+    if (y != 0.0 && integer_lowest_bit(y) < unit) unit = integer_lowest_bit(y);
+    integer sum = integer_add(pool, integer_from_double(pool, x, unit), integer_from_double(pool, y, unit));
+    integer twice = integer_multiply(pool, a, place_magnitude(pool, 1, exponent - unit + 1, false));
+    return integer_sign(integer_subtract(pool, twice, integer_multiply(pool, b, sum)));
+}
+
+static bool is_even(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits % 2 == 0;
+}
+
+double integer_nearest_quotient(integer_pool *pool, integer a, integer b, int exponent) {
+    uint32_t mark = pool->used;
+    int of_a, of_b;
+    double top = integer_to_double(a, &of_a), bottom = integer_to_double(b, &of_b);
+    double x = a.size == 0 ? 0.0 : ldexp(top / bottom, of_a - of_b + exponent);
+    for (bool done = a.size == 0; !done;) { /* x is off by a few units in the last place at most */
+        int side = integer_sign(rest_of_quotient(pool, a, b, exponent, x));
+        double next = nextafter(x, side * (double)INFINITY);
+        int beyond = side == 0 ? -1 : side * side_of_middle(pool, a, b, exponent, x, next);
+        done = beyond < 0 || (beyond == 0 && is_even(x));
+        if (!done) x = next;
+        pool->used = mark;
+    }
+    return x;
+}

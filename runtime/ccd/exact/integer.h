@@ -51,3 +51,7 @@ static inline int integer_sign(integer a) {
 /* Returns a number in (-1, 1). Times 2^*exponent it is a, to a relative error of 2^-52. Nothing over- or
  * underflows. */
 double integer_to_double(integer a, int *exponent);
+
+/* Returns the double nearest to a / b * 2^exponent, ties to even; b > 0. The quotient lies within the range of
+ * doubles. */
+double integer_nearest_quotient(integer_pool *pool, integer a, integer b, int exponent);

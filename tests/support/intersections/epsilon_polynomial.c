@@ -35,30 +35,33 @@ static void multiply(const epsilon_polynomial *a, const epsilon_polynomial *b, e
 }
 
 /* to - from in one coordinate. */
-static epsilon_polynomial difference(const grid_point *from, const grid_point *to, int k) {
-    epsilon_polynomial d;
-    d.count = 0;
+static void subtract_coordinates(const grid_point *from, const grid_point *to, int k,
+                                 epsilon_polynomial *out) {
+    out->count = 0;
     assert(from->name < EPSILON_NAMES && to->name < EPSILON_NAMES);
-    add_term(&d, 0, to->x[k] - from->x[k]);
-    add_term(&d, UINT64_C(1) << (3 * to->name + (uint32_t)k), 1);
-    add_term(&d, UINT64_C(1) << (3 * from->name + (uint32_t)k), -1);
-    return d;
+    add_term(out, 0, to->x[k] - from->x[k]);
+    add_term(out, UINT64_C(1) << (3 * to->name + (uint32_t)k), 1);
+    add_term(out, UINT64_C(1) << (3 * from->name + (uint32_t)k), -1);
 }
 
 void epsilon_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out) {
     int x = (axis + 1) % 3, y = (axis + 2) % 3;
-    epsilon_polynomial ux = difference(&p[0], &p[1], x), uy = difference(&p[0], &p[1], y);
-    epsilon_polynomial vx = difference(&p[0], &p[2], x), vy = difference(&p[0], &p[2], y), other;
-    multiply(&ux, &vy, out);
-    multiply(&uy, &vx, &other);
-    add_scaled(out, &other, -1);
+    epsilon_polynomial u, v, product;
+    subtract_coordinates(&p[0], &p[1], x, &u);
+    subtract_coordinates(&p[0], &p[2], y, &v);
+    multiply(&u, &v, out);
+    subtract_coordinates(&p[0], &p[1], y, &u);
+    subtract_coordinates(&p[0], &p[2], x, &v);
+    multiply(&u, &v, &product);
+    add_scaled(out, &product, -1);
 }
 
 void epsilon_orient3d(const grid_point p[4], epsilon_polynomial *out) {
+    epsilon_polynomial turn, along, part;
     out->count = 0;
     for (int axis = 0; axis < 3; axis++) {
-        epsilon_polynomial turn, along = difference(&p[0], &p[3], axis), part;
         epsilon_orient_along(p, axis, &turn);
+        subtract_coordinates(&p[0], &p[3], axis, &along);
         multiply(&turn, &along, &part);
         add_scaled(out, &part, 1);
     }

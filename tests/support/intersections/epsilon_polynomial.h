@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { EPSILON_TERMS = 512, EPSILON_NAMES = 20 };
+enum { EPSILON_TERMS = 128, EPSILON_NAMES = 20 };
 
 /* The sum of coefficient * epsilon^power, powers ascending, no coefficient 0. */
 typedef struct epsilon_polynomial {

@@ -1,0 +1,39 @@
+/* The piece of an intersection curve that lies in two triangles, under a symbolic perturbation of the vertices. */
+#pragma once
+
+#include "src/mesh/mesh.h"
+#include "src/mesh/symbolic.h"
+
+/* Where the surface is at one moment, and which vertices count as one. */
+typedef struct named_surface {
+    const cscd_mesh *mesh;
+    const double *positions; /* packed */
+    const uint32_t *names;   /* per vertex: the smallest one that it is one with; NULL: its own number */
+} named_surface;
+
+static inline uint32_t surface_name(const named_surface *s, uint32_t vertex) {
+    return s->names != NULL ? s->names[vertex] : vertex;
+}
+
+static inline symbolic_point surface_point(const named_surface *s, uint32_t vertex) {
+    return (symbolic_point){s->positions + (size_t)vertex * 3, surface_name(s, vertex)};
+}
+
+enum { NO_EDGE = UINT32_MAX };
+
+/* An edge passes through a triangle that has none of its vertices. Or, with NO_EDGE, the surface passes through itself
+ * at a vertex, whose number then stands in place of the triangle. */
+typedef struct surface_event {
+    uint32_t edge, triangle;
+} surface_event;
+
+/* It leads from ends[0] to ends[1], in the direction of the normal of a times (cross product) the normal of b: the
+ * inside of b is to the left of it on a, seen from outside, and the inside of a to the right of it on b. At most one end is
+ * at a vertex, which then is that of a. */
+typedef struct curve_piece {
+    uint32_t a, b;
+    surface_event ends[2];
+} curve_piece;
+
+/* Finds the piece of two different triangles, if there is one: docs/theory/curves.md. */
+bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_piece *out);

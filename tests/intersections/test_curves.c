@@ -1,0 +1,196 @@
+/* Intersection curves on grids where everything degenerates: the events are those of polynomials that are written out, each
+ * has the right number of pieces, and curves close where they must. */
+#include "runtime/intersections/curves.h"
+#include "tests/support/intersections/event_oracle.h"
+#include "tests/support/test.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { COMPARED = 30, TRACED = 300 };
+#else
+enum { COMPARED = 100, TRACED = 4000 };
+#endif
+
+enum { PAIRS_MAX = 32 * 32 };
+
+typedef struct traced_scene {
+    grid_scene scene;
+    curve_joiner joiner;
+    cscd_intersection pairs[PAIRS_MAX];
+    cscd_curves curves;
+} traced_scene;
+
+static traced_scene traced; /* large; one test at a time */
+
+static void trace_scene(grid_family family, uint64_t seed) {
+    grid_scene_make(family, seed, &traced.scene);
+    traced.joiner = (curve_joiner){.context = traced.scene.context};
+    size_t count = grid_scene_pairs(&traced.scene, traced.pairs);
+    assert_int_equal(
+        curve_joiner_run(&traced.joiner, &traced.scene.surface, traced.pairs, count, &traced.curves),
+        CSCD_OK);
+}
+
+static void free_traced(void) {
+    curve_joiner_free(&traced.joiner);
+    grid_scene_free(&traced.scene);
+}
+
+/* Are these edges one, because they are sewn? */
+static bool edges_are_one(uint32_t a, uint32_t b) {
+    const grid_scene *scene = &traced.scene;
+    const uint32_t *p = scene->mesh->edges[a], *q = scene->mesh->edges[b], *names = scene->names;
+    return (names[p[0]] == names[q[0]] && names[p[1]] == names[q[1]]) ||
+           (names[p[0]] == names[q[1]] && names[p[1]] == names[q[0]]);
+}
+
+/* How many points of curves are at an event. */
+static size_t count_points(surface_event event) {
+    size_t count = 0;
+    for (size_t i = 0; i < traced.curves.point_count; i++) {
+        const cscd_curve_point *point = &traced.curves.points[i];
+        count += point->edge != UINT32_MAX && edges_are_one(point->edge, event.edge) &&
+                 point->triangle == event.triangle;
+    }
+    return count;
+}
+
+static void compare_point(const cscd_curve_point *found) {
+    exact_event_point truth =
+        event_oracle_point(&traced.scene, (surface_event){found->edge, found->triangle});
+    assert_true(found->s == (double)truth.s / (double)truth.s_sum);
+    assert_true(found->u == (double)truth.u / (double)truth.uv_sum);
+    assert_true(found->v == (double)truth.v / (double)truth.uv_sum);
+    for (int k = 0; k < 3; k++) assert_true(found->x[k] == (double)truth.x[k] / (double)truth.s_sum);
+}
+
+/* Every event is a point of a curve, and the reverse. */
+static size_t compare_events(bool closed) {
+    const cscd_mesh *mesh = traced.scene.mesh;
+    size_t events = 0, points = 0;
+    for (uint32_t e = 0; e < mesh->edge_count; e++) {
+        for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+            bool happens = event_oracle_happens(&traced.scene, (surface_event){e, t});
+            size_t count = count_points((surface_event){e, t});
+            assert_int_equal(happens, count > 0);
+            if (closed) assert_true(count <= 1);
+            events += happens;
+        }
+    }
+    for (size_t i = 0; i < traced.curves.point_count; i++) {
+        if (traced.curves.points[i].edge == UINT32_MAX) continue;
+        compare_point(&traced.curves.points[i]);
+        points++;
+    }
+    if (closed) assert_true(points == events);
+    return events;
+}
+
+static void events_are_those_of_polynomials(void **state) {
+    (void)state;
+    for (int family = 0; family < GRID_FAMILIES; family++) {
+        size_t events = 0;
+        for (uint64_t seed = 0; seed < COMPARED; seed++) {
+            trace_scene((grid_family)family, seed);
+            events += compare_events(grid_family_is_closed((grid_family)family));
+            free_traced();
+        }
+        print_message("  family %d: %zu events\n", family, events);
+        assert_true(events > 50);
+    }
+}
+
+/* ---- what holds of every curve ------------------------------------------------------------------------- */
+
+static bool triangle_has_edge(uint32_t triangle, uint32_t edge) {
+    const uint32_t *edges = traced.scene.mesh->triangle_edges[triangle];
+    return edges_are_one(edges[0], edge) || edges_are_one(edges[1], edge) || edges_are_one(edges[2], edge);
+}
+
+/* Is the point on both triangles of the piece, on an edge of the one and within the other? */
+static void check_incidence(cscd_curve_piece piece, const cscd_curve_point *point) {
+    if (point->edge == UINT32_MAX) {
+        assert_true(triangle_contains(traced.scene.mesh->triangles[piece.a], point->triangle) ||
+                    triangle_contains(traced.scene.mesh->triangles[piece.b], point->triangle));
+        return;
+    }
+    assert_true((piece.b == point->triangle && triangle_has_edge(piece.a, point->edge)) ||
+                (piece.a == point->triangle && triangle_has_edge(piece.b, point->edge)));
+}
+
+static void check_curve(const cscd_curve *curve, grid_family family) {
+    const cscd_curve_point *points = traced.curves.points + curve->first_point;
+    const cscd_curve_piece *pieces = traced.curves.pieces + curve->first_piece;
+    assert_int_equal(curve->point_count, curve->piece_count + !curve->closed);
+    for (size_t i = 0; i < curve->piece_count; i++) {
+        check_incidence(pieces[i], &points[i]);
+        check_incidence(pieces[i], &points[(i + 1) % curve->point_count]);
+        if (i > 0) assert_true((pieces[i].a == pieces[i - 1].a) != (pieces[i].b == pieces[i - 1].b));
+    }
+    assert_int_equal(curve->closed, curve->start == CSCD_CURVE_END_NONE);
+    assert_int_equal(curve->closed, curve->end == CSCD_CURVE_END_NONE);
+    if (curve->components[0] != curve->components[1] && grid_family_is_closed(family))
+        assert_true(curve->closed);
+    if (!curve->closed && grid_family_is_closed(family))
+        assert_true(curve->start == CSCD_CURVE_END_VERTEX && curve->end == CSCD_CURVE_END_VERTEX);
+    if (grid_family_is_closed(family)) assert_false(curve->swapped);
+}
+
+typedef struct curve_tally {
+    size_t crossings, curves, open, ends[5], swapped;
+} curve_tally;
+
+static void add_curve(const cscd_curve *curve, curve_tally *sum) {
+    sum->curves++;
+    sum->crossings += curve->point_count;
+    sum->open += !curve->closed;
+    sum->swapped += curve->swapped;
+    sum->ends[curve->start]++;
+    sum->ends[curve->end]++;
+}
+
+static curve_tally trace_family(grid_family family) {
+    curve_tally sum = {0};
+    for (uint64_t seed = 0; seed < TRACED; seed++) {
+        size_t pieces = 0;
+        trace_scene(family, seed);
+        for (size_t i = 0; i < traced.curves.count; i++) {
+            check_curve(&traced.curves.items[i], family);
+            add_curve(&traced.curves.items[i], &sum);
+            pieces += traced.curves.items[i].piece_count;
+        }
+        assert_int_equal(pieces, traced.curves.piece_count);
+        free_traced();
+    }
+    print_message(
+        "  family %d: %zu curves with %zu points, %zu open, %zu swapped; ends: %zu %zu %zu %zu %zu\n", family,
+        sum.curves, sum.crossings, sum.open, sum.swapped, sum.ends[0], sum.ends[1], sum.ends[2], sum.ends[3],
+        sum.ends[4]);
+    return sum;
+}
+
+static void curves_close_where_they_must(void **state) {
+    (void)state;
+    size_t crossings = 0;
+    for (int family = 0; family < GRID_FAMILIES; family++) {
+        curve_tally sum = trace_family((grid_family)family);
+        crossings += sum.crossings;
+        assert_int_equal(sum.ends[CSCD_CURVE_END_LEFT_OUT], 0);
+        assert_int_equal(sum.ends[CSCD_CURVE_END_BORDER] + sum.ends[CSCD_CURVE_END_JUNCTION] > 0,
+                         !grid_family_is_closed((grid_family)family) && family != GRID_KLEIN_BOTTLE);
+        if (family == GRID_TORUS) assert_true(sum.ends[CSCD_CURVE_END_VERTEX] > 100);
+        if (family == GRID_SOUP) assert_true(sum.ends[CSCD_CURVE_END_JUNCTION] > 100);
+        assert_int_equal(sum.swapped > 0, family == GRID_KLEIN_BOTTLE);
+    }
+    assert_true(crossings > 150 * TRACED);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(events_are_those_of_polynomials),
+        cmocka_unit_test(curves_close_where_they_must),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
