@@ -43,7 +43,7 @@ static void orientations_in_space(void **state) {
     for (int round = 0; round < ROUNDS; round++) {
         epsilon_polynomial truth;
         make_points(&random, &r);
-        epsilon_orient3d(r.grid, &truth);
+        grid_orient3d(r.grid, &truth);
         symbolic_term term = symbolic_orient3d_term(r.points);
         assert_int_equal(term.sign, epsilon_sign(&truth));
         assert_true(term.sign != 0);
@@ -60,7 +60,7 @@ static void orientations_in_projections(void **state) {
         epsilon_polynomial truth;
         int axis = (int)stream_below(&random, 3);
         make_points(&random, &r);
-        epsilon_orient_along(r.grid, axis, &truth);
+        grid_orient_along(r.grid, axis, &truth);
         assert_int_equal(symbolic_orient_along(r.points[0], r.points[1], r.points[2], axis),
                          epsilon_sign(&truth));
     }
@@ -77,8 +77,8 @@ static void powers_of_terms(void **state) {
         make_points(&random, &r);
         const grid_point other[4] = {r.grid[0], r.grid[1], r.grid[2], r.grid[4]};
         const symbolic_point moved[4] = {r.points[0], r.points[1], r.points[2], r.points[4]};
-        epsilon_orient3d(r.grid, &first);
-        epsilon_orient3d(other, &second);
+        grid_orient3d(r.grid, &first);
+        grid_orient3d(other, &second);
         symbolic_term a = symbolic_orient3d_term(r.points), b = symbolic_orient3d_term(moved);
         uint64_t p = first.terms[0].power, q = second.terms[0].power;
         assert_int_equal(symbolic_compare_terms(&a, r.points, &b, moved), (p > q) - (p < q));

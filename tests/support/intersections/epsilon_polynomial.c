@@ -21,8 +21,9 @@ static void add_term(epsilon_polynomial *p, uint64_t power, int64_t coefficient)
     p->terms[i].coefficient = coefficient;
 }
 
-static void add_scaled(epsilon_polynomial *sum, const epsilon_polynomial *p, int factor) {
-    for (int i = 0; i < p->count; i++) add_term(sum, p->terms[i].power, factor * p->terms[i].coefficient);
+void epsilon_add(epsilon_polynomial *sum, const epsilon_polynomial *p, int factor, uint64_t power) {
+    for (int i = 0; i < p->count; i++)
+        add_term(sum, p->terms[i].power + power, factor * p->terms[i].coefficient);
 }
 
 static void multiply(const epsilon_polynomial *a, const epsilon_polynomial *b, epsilon_polynomial *out) {
@@ -34,37 +35,56 @@ static void multiply(const epsilon_polynomial *a, const epsilon_polynomial *b, e
     }
 }
 
+void epsilon_move(grid_point p, epsilon_point *out) {
+    assert(p.name < EPSILON_NAMES);
+    for (uint32_t k = 0; k < 3; k++) {
+        out->x[k].count = 0;
+        add_term(&out->x[k], 0, p.x[k]);
+        add_term(&out->x[k], UINT64_C(1) << (3 * p.name + k), 1);
+    }
+}
+
 /* to - from in one coordinate. */
-static void subtract_coordinates(const grid_point *from, const grid_point *to, int k,
+static void subtract_coordinates(const epsilon_point *from, const epsilon_point *to, int k,
                                  epsilon_polynomial *out) {
     out->count = 0;
-    assert(from->name < EPSILON_NAMES && to->name < EPSILON_NAMES);
-    add_term(out, 0, to->x[k] - from->x[k]);
-    add_term(out, UINT64_C(1) << (3 * to->name + (uint32_t)k), 1);
-    add_term(out, UINT64_C(1) << (3 * from->name + (uint32_t)k), -1);
+    epsilon_add(out, &to->x[k], 1, 0);
+    epsilon_add(out, &from->x[k], -1, 0);
 }
 
-void epsilon_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out) {
+void epsilon_orient_along(const epsilon_point *const p[3], int axis, epsilon_polynomial *out) {
     int x = (axis + 1) % 3, y = (axis + 2) % 3;
     epsilon_polynomial u, v, product;
-    subtract_coordinates(&p[0], &p[1], x, &u);
-    subtract_coordinates(&p[0], &p[2], y, &v);
+    subtract_coordinates(p[0], p[1], x, &u);
+    subtract_coordinates(p[0], p[2], y, &v);
     multiply(&u, &v, out);
-    subtract_coordinates(&p[0], &p[1], y, &u);
-    subtract_coordinates(&p[0], &p[2], x, &v);
+    subtract_coordinates(p[0], p[1], y, &u);
+    subtract_coordinates(p[0], p[2], x, &v);
     multiply(&u, &v, &product);
-    add_scaled(out, &product, -1);
+    epsilon_add(out, &product, -1, 0);
 }
 
-void epsilon_orient3d(const grid_point p[4], epsilon_polynomial *out) {
+void epsilon_orient3d(const epsilon_point *const p[4], epsilon_polynomial *out) {
     epsilon_polynomial turn, along, part;
     out->count = 0;
     for (int axis = 0; axis < 3; axis++) {
         epsilon_orient_along(p, axis, &turn);
-        subtract_coordinates(&p[0], &p[3], axis, &along);
+        subtract_coordinates(p[0], p[3], axis, &along);
         multiply(&turn, &along, &part);
-        add_scaled(out, &part, 1);
+        epsilon_add(out, &part, 1, 0);
     }
+}
+
+void grid_orient3d(const grid_point p[4], epsilon_polynomial *out) {
+    epsilon_point points[4];
+    for (int i = 0; i < 4; i++) epsilon_move(p[i], &points[i]);
+    epsilon_orient3d((const epsilon_point *const[4]){&points[0], &points[1], &points[2], &points[3]}, out);
+}
+
+void grid_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out) {
+    epsilon_point points[3];
+    for (int i = 0; i < 3; i++) epsilon_move(p[i], &points[i]);
+    epsilon_orient_along((const epsilon_point *const[3]){&points[0], &points[1], &points[2]}, axis, out);
 }
 
 int epsilon_sign(const epsilon_polynomial *p) {

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { EPSILON_TERMS = 128, EPSILON_NAMES = 20 };
+enum { EPSILON_TERMS = 1024, EPSILON_NAMES = 20 };
 
 /* The sum of coefficient * epsilon^power, powers ascending, no coefficient 0. */
 typedef struct epsilon_polynomial {
@@ -21,11 +21,26 @@ typedef struct grid_point {
     uint32_t name;
 } grid_point;
 
-/* (b - a) x (c - a) . (d - a) of the moved points. */
-void epsilon_orient3d(const grid_point p[4], epsilon_polynomial *out);
+/* A point whose coordinates are polynomials. */
+typedef struct epsilon_point {
+    epsilon_polynomial x[3];
+} epsilon_point;
+
+/* The moved point. */
+void epsilon_move(grid_point p, epsilon_point *out);
+
+/* Adds epsilon^power * factor * p to sum; the two are different. */
+void epsilon_add(epsilon_polynomial *sum, const epsilon_polynomial *p, int factor, uint64_t power);
+
+/* (b - a) x (c - a) . (d - a). */
+void epsilon_orient3d(const epsilon_point *const p[4], epsilon_polynomial *out);
 
 /* (b - a) x (c - a) in the projection along an axis. */
-void epsilon_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out);
+void epsilon_orient_along(const epsilon_point *const p[3], int axis, epsilon_polynomial *out);
+
+/* The same of grid points, moved. */
+void grid_orient3d(const grid_point p[4], epsilon_polynomial *out);
+void grid_orient_along(const grid_point p[3], int axis, epsilon_polynomial *out);
 
 /* The sign for all small enough epsilon > 0. */
 int epsilon_sign(const epsilon_polynomial *p);

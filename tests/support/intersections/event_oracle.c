@@ -11,7 +11,7 @@ static void load_points(const grid_scene *s, surface_event event, grid_point out
 
 static void orient_points(const grid_point p[5], int a, int b, int c, int d, epsilon_polynomial *out) {
     const grid_point corners[4] = {p[a], p[b], p[c], p[d]};
-    epsilon_orient3d(corners, out);
+    grid_orient3d(corners, out);
 }
 
 static int side_of(const grid_point p[5], int a, int b, int c, int d) {

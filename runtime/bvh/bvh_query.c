@@ -1,0 +1,92 @@
+/* Triangles near a box at one moment, by the trees. */
+#include "runtime/bvh/bvh_query.h"
+
+#include <math.h>
+
+/* A box in the frame of a tree, rounded outward. */
+typedef struct framed_query {
+    float low[3], high[3];
+} framed_query;
+
+/* In doubles a coordinate in a frame is off by 2^-51 of the larger of its two terms; bounds have a slack for that, and the
+ * float's 2^-23 covers the rest. */
+static framed_query frame_box(const bvh *f, const bvh_tree *tree, const query_box *box) {
+    framed_query q;
+    for (int k = 0; k < 3; k++) {
+        double low = (box->low[k] - tree->origin[0][k]) * f->scale;
+        double high = (box->high[k] - tree->origin[0][k]) * f->scale;
+        double rounding = (fabs(tree->origin[0][k]) * f->scale) * 0x1p-50;
+        q.low[k] = (float)(low - fabs(low) * 0x1p-22 - rounding - 0x1p-120);
+        q.high[k] = (float)(high + fabs(high) * 0x1p-22 + rounding + 0x1p-120);
+    }
+    return q;
+}
+
+static uint32_t children_in_box(const bvh *f, int level, uint32_t block, const framed_query *q) {
+    const float *bounds = f->levels[level].bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
+    uint32_t lanes = 0;
+    for (uint32_t lane = 0; lane < LANES; lane++) {
+        bool apart = false;
+        for (int k = 0; k < BOX_AXES; k++) {
+            const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
+            apart |= lows[lane] > q->high[k] || highs[lane] < q->low[k];
+        }
+        lanes |= (uint32_t)!apart << lane;
+    }
+    return lanes & f->levels[level].flags[block].used;
+}
+
+/* Is the triangle's box apart from the query? The slack of its tree covers the rounding of its records. */
+static bool triangle_is_apart(const bvh *f, const bvh_tree *tree, const bvh_leaf *leaf, uint32_t lane,
+                              const framed_query *q) {
+    for (int k = 0; k < 3; k++) {
+        float a = f->records[leaf->corners[0][lane]][k], b = f->records[leaf->corners[1][lane]][k];
+        float c = f->records[leaf->corners[2][lane]][k];
+        if (fminf(fminf(a, b), c) - tree->slack[0] > q->high[k] ||
+            fmaxf(fmaxf(a, b), c) + tree->slack[0] < q->low[k])
+            return true;
+    }
+    return false;
+}
+
+static void visit_leaf(const bvh *f, const bvh_tree *tree, uint32_t index, const framed_query *q,
+                       void (*visit)(void *data, uint32_t triangle), void *data) {
+    const bvh_leaf *leaf = &f->leaves[index];
+    for (uint32_t used = f->leaf_flags[index].used, lane = 0; (used >> lane & 1) != 0; lane++) {
+        if (!triangle_is_apart(f, tree, leaf, lane, q)) visit(data, leaf->triangles[lane]);
+    }
+}
+
+typedef struct query_place {
+    int level;
+    uint32_t block;
+} query_place;
+
+/* Each block takes one place and leaves eight, and there are no more levels than this. */
+enum { QUERY_STACK = BVH_LEVEL_MAX * LANES };
+
+void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data, uint32_t triangle),
+                   void *data) {
+    if (f->tree_count == 0) return; /* and of one tree, nothing above it has bounds */
+    query_place stack[QUERY_STACK];
+    int count = 0;
+    framed_query above = frame_box(f, &f->trees[0], box), q = above;
+    const bvh_tree *tree = &f->trees[0];
+    stack[count++] = (query_place){f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
+    while (count > 0) {
+        query_place at = stack[--count];
+        if (at.level == f->tree_level - 1) { /* a tree begins, with a frame of its own */
+            tree = &f->trees[at.block];
+            q = frame_box(f, tree, box);
+        }
+        uint32_t first = f->levels[at.level].first_children[at.block];
+        const framed_query *here = at.level >= f->tree_level ? &above : &q;
+        for (uint32_t near = children_in_box(f, at.level, at.block, here); near != 0; near &= near - 1) {
+            uint32_t child = first + (uint32_t)__builtin_ctz(near);
+            if (at.level == 0)
+                visit_leaf(f, tree, child, &q, visit, data);
+            else
+                stack[count++] = (query_place){at.level - 1, child};
+        }
+    }
+}

@@ -1,0 +1,14 @@
+/* Triangles near a point or a box at one moment, by the trees. The bounds are those of the last bvh_refit, which was to
+ * that moment. */
+#pragma once
+
+#include "runtime/bvh/bvh.h"
+
+/* A box; a high of infinity is allowed. */
+typedef struct query_box {
+    double low[3], high[3];
+} query_box;
+
+/* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. */
+void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data, uint32_t triangle),
+                   void *data);

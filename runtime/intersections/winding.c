@@ -1,0 +1,110 @@
+/* How often the surfaces of objects wind around a point of the mesh: the triangles that a ray along z passes through,
+ * counted with signs. docs/theory/curves.md, lemma 5. */
+#include "runtime/intersections/winding.h"
+
+#include <math.h>
+
+enum { RAY_AXIS = 2 };
+
+/* The ray begins at the origin, from which the point is off towards first, then towards second. */
+typedef struct ray_work {
+    const named_surface *surface;
+    winding_tally *tally;
+    symbolic_point origin, first, second;
+    uint32_t next_name; /* of the corner after the origin in the triangle that the point belongs to */
+} ray_work;
+
+void winding_tally_clear(winding_tally *tally) {
+    for (uint32_t i = 0; i < tally->count; i++) {
+        tally->numbers[tally->touched[i]] = 0;
+        tally->is_touched[tally->touched[i]] = false;
+    }
+    tally->count = 0;
+}
+
+static void add_number(winding_tally *tally, uint32_t object, int number) {
+    if (!tally->is_touched[object]) {
+        tally->is_touched[object] = true;
+        tally->touched[tally->count++] = object;
+    }
+    tally->numbers[object] += number;
+}
+
+/* Vertices of one name are one point only where they are at one place. */
+static symbolic_point point_at_place(const named_surface *s, uint32_t vertex) {
+    symbolic_point p = surface_point(s, vertex);
+    const double *x = s->positions + (size_t)p.name * 3;
+    if (x[0] != p.x[0] || x[1] != p.x[1] || x[2] != p.x[2]) p.name = s->mesh->vertex_count + vertex;
+    return p;
+}
+
+static int turn_of(symbolic_point a, symbolic_point b, symbolic_point c) {
+    return symbolic_orient_along(a, b, c, RAY_AXIS);
+}
+
+/* The ray passes out of a body through a triangle that faces upwards, and into it through one that faces downwards, if it
+ * begins below the triangle's plane. side: the side of the normal on which it begins. */
+static int pass_number(int facing, int side) {
+    return facing != side ? facing : 0;
+}
+
+static int pass_of_stranger(const ray_work *work, const symbolic_point p[3]) {
+    int facing = turn_of(p[0], p[1], p[2]);
+    for (int i = 0; i < 3; i++) {
+        if (turn_of(p[i], p[(i + 1) % 3], work->origin) != facing) return 0;
+    }
+    return pass_number(facing, symbolic_orient3d(p[0], p[1], p[2], work->origin));
+}
+
+/* On which side of a triangle (origin, b, c) is the point? If the triangle has all three vertices of the one that the point
+ * belongs to, it is off that one's plane, to the side of its normal. */
+static int side_of_neighbour(const ray_work *work, symbolic_point b, symbolic_point c) {
+    const symbolic_point *towards[2] = {&work->first, &work->second};
+    for (int i = 0; i < 2; i++) {
+        if (towards[i]->name != b.name && towards[i]->name != c.name)
+            return symbolic_orient3d(work->origin, b, c, *towards[i]);
+    }
+    return b.name == work->next_name ? 1 : -1;
+}
+
+/* The projection of a triangle (origin, b, c) has the point if it turns from b to the point, and from the point to c, as
+ * from b to c. */
+static int pass_of_neighbour(const ray_work *work, symbolic_point b, symbolic_point c) {
+    int facing = turn_of(work->origin, b, c);
+    symbolic_point from_b = work->first.name != b.name ? work->first : work->second;
+    symbolic_point to_c = work->first.name != c.name ? work->first : work->second;
+    if (turn_of(work->origin, b, from_b) != facing || turn_of(work->origin, to_c, c) != facing) return 0;
+    return pass_number(facing, side_of_neighbour(work, b, c));
+}
+
+static void pass_triangle(void *data, uint32_t triangle) {
+    const ray_work *work = data;
+    const cscd_mesh *mesh = work->surface->mesh;
+    if (!mesh->components[mesh->triangle_components[triangle]].closed_manifold) return;
+    symbolic_point p[3];
+    for (int i = 0; i < 3; i++) p[i] = point_at_place(work->surface, mesh->triangles[triangle][i]);
+    if (p[0].name == p[1].name || p[1].name == p[2].name || p[2].name == p[0].name) return;
+    int number = 0, corner = 0;
+    while (corner < 3 && p[corner].name != work->origin.name) corner++;
+    if (corner == 3)
+        number = pass_of_stranger(work, p);
+    else
+        number = pass_of_neighbour(work, p[(corner + 1) % 3], p[(corner + 2) % 3]);
+    if (number != 0)
+        add_number(work->tally, cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]), number);
+}
+
+void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
+    const uint32_t *triangle = s->mesh->triangles[at.triangle];
+    symbolic_point next = point_at_place(s, triangle[(at.corner + 1) % 3]);
+    symbolic_point before = point_at_place(s, triangle[(at.corner + 2) % 3]);
+    ray_work work = {s,
+                     tally,
+                     point_at_place(s, triangle[at.corner]),
+                     at.next ? next : before,
+                     at.next ? before : next,
+                     next.name};
+    const double *x = work.origin.x;
+    query_box ray = {{x[0], x[1], x[2]}, {x[0], x[1], (double)INFINITY}};
+    bvh_visit_box(f, &ray, pass_triangle, &work);
+}

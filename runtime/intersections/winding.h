@@ -1,0 +1,29 @@
+/* How often the surfaces of objects wind around a point of the mesh, under the same symbolic perturbation as the
+ * intersection curves. */
+#pragma once
+
+#include "runtime/bvh/bvh_query.h"
+#include "runtime/intersections/curve_piece.h"
+
+/* A point infinitely near to a corner of a triangle: from the corner along one of its edges, then, infinitely less, into the
+ * triangle and, infinitely less, off it to the side of its normal. */
+typedef struct corner_side {
+    uint32_t triangle;
+    uint8_t corner; /* 0 to 2 */
+    bool next;      /* the edge leads to the next corner, else to the one before */
+} corner_side;
+
+/* Numbers of objects. Those that are not 0 belong to touched objects, each of them listed once. */
+typedef struct winding_tally {
+    int32_t *numbers;  /* per object */
+    bool *is_touched;  /* the same */
+    uint32_t *touched; /* room for all objects */
+    uint32_t count;
+} winding_tally;
+
+void winding_tally_clear(winding_tally *tally);
+
+/* Adds the winding numbers of all objects at the point: of an object the sum over its closed manifold components. An
+ * object winds once around what its surfaces, with normals outwards, enclose. The bounds of the trees are those of the
+ * surface's positions. Theory: docs/theory/curves.md, lemma 5. */
+void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);

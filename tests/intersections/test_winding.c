@@ -1,0 +1,84 @@
+/* Winding numbers on grids where everything degenerates: those of a ray in another direction, with every point written out
+ * as a polynomial; and on generic meshes the sum of solid angles. */
+#include "tests/support/bvh/bvh_rig.h"
+#include "tests/support/intersections/winding_oracle.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { GRIDS = 4 };
+#else
+enum { GRIDS = 20 };
+#endif
+
+enum { OBJECTS_MAX = 4 };
+
+typedef struct tally_rig {
+    int32_t numbers[OBJECTS_MAX];
+    bool is_touched[OBJECTS_MAX];
+    uint32_t touched[OBJECTS_MAX];
+} tally_rig;
+
+static winding_tally tally_of(tally_rig *r) {
+    memset(r, 0, sizeof *r);
+    return (winding_tally){r->numbers, r->is_touched, r->touched, 0};
+}
+
+/* One region per component, as method SINGLE has them, refitted to one moment. */
+static void build_bvh(const cscd_mesh *mesh, const double *positions, int axis_count, bvh *out) {
+    double *weights = malloc(mesh->triangle_count * sizeof *weights);
+    assert_non_null(weights);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++)
+        weights[t] = 1.0 / mesh->components[mesh->triangle_components[t]].triangle_count;
+    bvh_regions regions = {mesh->triangle_components, weights, mesh->component_count};
+    assert_int_equal(bvh_build(mesh, regions, positions, axis_count, out), CSCD_OK);
+    bvh_refit(out, positions, positions, uniform_growth(0.0));
+    free(weights);
+}
+
+static int compare_corner(const grid_scene *s, const bvh *f, corner_side at) {
+    tally_rig memory;
+    winding_tally tally = tally_of(&memory);
+    int largest = 0;
+    winding_find(&s->surface, f, at, &tally);
+    for (uint32_t object = 0; object < s->object_count; object++) {
+        int truth = winding_oracle_number(s, at, object);
+        assert_int_equal(tally.numbers[object], truth);
+        if (abs(truth) > largest) largest = abs(truth);
+    }
+    winding_tally_clear(&tally);
+    for (uint32_t object = 0; object < s->object_count; object++) assert_int_equal(memory.numbers[object], 0);
+    return largest;
+}
+
+static void numbers_are_those_of_polynomials(void **state) {
+    (void)state;
+    const grid_family families[] = {GRID_TWO_TETRAHEDRA, GRID_BOX_AND_OCTAHEDRON, GRID_OCTAHEDRON,
+                                    GRID_TORUS};
+    int wound = 0, twice = 0;
+    for (uint64_t seed = 0; seed < 4 * GRIDS; seed++) {
+        grid_scene s;
+        bvh f;
+        grid_scene_make(families[seed % 4], 1000 + seed, &s);
+        build_bvh(s.mesh, s.positions, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
+        for (uint32_t i = 0; i < s.mesh->triangle_count * 6; i++) {
+            int number = compare_corner(&s, &f, (corner_side){i / 6, (uint8_t)(i % 3), i / 3 % 2 == 0});
+            wound += number > 0;
+            twice += number > 1;
+        }
+        bvh_free(&f);
+        grid_scene_free(&s);
+    }
+    print_message("  %d points are wound around, %d of them more than once\n", wound, twice);
+    assert_true(wound > 30 * GRIDS && twice > GRIDS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(numbers_are_those_of_polynomials),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
