@@ -1,7 +1,7 @@
 /* Intersection curves on grids where everything degenerates: the events are those of polynomials that are written out, each
  * has the right number of pieces, and curves close where they must. */
-#include "runtime/intersections/curves.h"
 #include "tests/support/intersections/event_oracle.h"
+#include "tests/support/intersections/traced_scene.h"
 #include "tests/support/test.h"
 
 #include <stdlib.h>
@@ -13,30 +13,7 @@ enum { COMPARED = 30, TRACED = 300 };
 enum { COMPARED = 100, TRACED = 4000 };
 #endif
 
-enum { PAIRS_MAX = 32 * 32 };
-
-typedef struct traced_scene {
-    grid_scene scene;
-    curve_joiner joiner;
-    cscd_intersection pairs[PAIRS_MAX];
-    cscd_curves curves;
-} traced_scene;
-
 static traced_scene traced; /* large; one test at a time */
-
-static void trace_scene(grid_family family, uint64_t seed) {
-    grid_scene_make(family, seed, &traced.scene);
-    traced.joiner = (curve_joiner){.context = traced.scene.context};
-    size_t count = grid_scene_pairs(&traced.scene, traced.pairs);
-    assert_int_equal(
-        curve_joiner_run(&traced.joiner, &traced.scene.surface, traced.pairs, count, &traced.curves),
-        CSCD_OK);
-}
-
-static void free_traced(void) {
-    curve_joiner_free(&traced.joiner);
-    grid_scene_free(&traced.scene);
-}
 
 /* Are these edges one, because they are sewn? */
 static bool edges_are_one(uint32_t a, uint32_t b) {
@@ -93,9 +70,9 @@ static void events_are_those_of_polynomials(void **state) {
     for (int family = 0; family < GRID_FAMILIES; family++) {
         size_t events = 0;
         for (uint64_t seed = 0; seed < COMPARED; seed++) {
-            trace_scene((grid_family)family, seed);
+            traced_scene_make((grid_family)family, seed, &traced);
             events += compare_events(grid_family_is_closed((grid_family)family));
-            free_traced();
+            traced_scene_free(&traced);
         }
         print_message("  family %d: %zu events\n", family, events);
         assert_true(events > 50);
@@ -155,14 +132,14 @@ static curve_tally trace_family(grid_family family) {
     curve_tally sum = {0};
     for (uint64_t seed = 0; seed < TRACED; seed++) {
         size_t pieces = 0;
-        trace_scene(family, seed);
+        traced_scene_make(family, seed, &traced);
         for (size_t i = 0; i < traced.curves.count; i++) {
             check_curve(&traced.curves.items[i], family);
             add_curve(&traced.curves.items[i], &sum);
             pieces += traced.curves.items[i].piece_count;
         }
         assert_int_equal(pieces, traced.curves.piece_count);
-        free_traced();
+        traced_scene_free(&traced);
     }
     print_message(
         "  family %d: %zu curves with %zu points, %zu open, %zu swapped; ends: %zu %zu %zu %zu %zu\n", family,

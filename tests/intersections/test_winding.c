@@ -1,10 +1,9 @@
 /* Winding numbers on grids where everything degenerates: those of a ray in another direction, with every point written out
- * as a polynomial; and on generic meshes the sum of solid angles. */
-#include "tests/support/bvh/bvh_rig.h"
+ * as a polynomial. */
+#include "tests/support/intersections/traced_scene.h"
 #include "tests/support/intersections/winding_oracle.h"
 #include "tests/support/test.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,18 +24,6 @@ typedef struct tally_rig {
 static winding_tally tally_of(tally_rig *r) {
     memset(r, 0, sizeof *r);
     return (winding_tally){r->numbers, r->is_touched, r->touched, 0};
-}
-
-/* One region per component, as method SINGLE has them, refitted to one moment. */
-static void build_bvh(const cscd_mesh *mesh, const double *positions, int axis_count, bvh *out) {
-    double *weights = malloc(mesh->triangle_count * sizeof *weights);
-    assert_non_null(weights);
-    for (uint32_t t = 0; t < mesh->triangle_count; t++)
-        weights[t] = 1.0 / mesh->components[mesh->triangle_components[t]].triangle_count;
-    bvh_regions regions = {mesh->triangle_components, weights, mesh->component_count};
-    assert_int_equal(bvh_build(mesh, regions, positions, axis_count, out), CSCD_OK);
-    bvh_refit(out, positions, positions, uniform_growth(0.0));
-    free(weights);
 }
 
 static int compare_corner(const grid_scene *s, const bvh *f, corner_side at) {
@@ -63,7 +50,7 @@ static void numbers_are_those_of_polynomials(void **state) {
         grid_scene s;
         bvh f;
         grid_scene_make(families[seed % 4], 1000 + seed, &s);
-        build_bvh(s.mesh, s.positions, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
+        grid_scene_trees(&s, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
         for (uint32_t i = 0; i < s.mesh->triangle_count * 6; i++) {
             int number = compare_corner(&s, &f, (corner_side){i / 6, (uint8_t)(i % 3), i / 3 % 2 == 0});
             wound += number > 0;

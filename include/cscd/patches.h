@@ -1,0 +1,57 @@
+/* Patches: the parts into which intersection curves cut the surface of a mesh, and what they are buried in. Part of
+ * cscd/cscd.h, which says what holds for every function. Theory: docs/theory/curves.md. */
+#ifndef CSCD_PATCHES_API_H
+#define CSCD_PATCHES_API_H
+
+#include <cscd/curves.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How often an object winds around a patch: the sum over its closed components, exact, and under the same infinitely small
+ * motion as the curves. A point outside has number 0, one within the object 1, one within two of its bodies, or of two of
+ * their limbs, 2; in a cavity, whose shell has its normals inwards, it is 0 again. Below 0, something is inside out. It
+ * never grows. */
+typedef struct cscd_winding {
+    uint32_t object;
+    int32_t number; /* not 0 */
+} cscd_winding;
+
+/* A part of a component's surface that is connected over edges which no curve cuts. It is on one side of every surface. It
+ * is buried in another object whose number is 1 or more. Its own object has the number that holds just outside of the patch,
+ * on the side of the normals: from 1 on the patch is buried in its own object, and below 0 it is inverted, as of a body or a
+ * limb that is inside out. Open components have no inside, and do not count in the numbers of their object. It never
+ * grows. */
+typedef struct cscd_patch {
+    uint32_t component, object;
+    uint32_t triangle, corner; /* an example: it has this corner of this triangle */
+    uint32_t vertex_count,
+        triangle_count; /* those that are wholly in it: of triangles those that no curve cuts */
+    uint32_t first_winding,
+        winding_count; /* in the list of all numbers, ascending by object; all others are 0. Objects that
+                                            * the patch's object is not looked at with are left out */
+    int32_t own;       /* the number of its own object, which is in the list too if it is not 0 */
+    uint32_t reserved; /* 0 */
+} cscd_patch;
+
+/* Patches in the order of their first triangles. The lists belong to the detector and live until its next call. */
+typedef struct cscd_patches {
+    const cscd_patch *items;
+    size_t count;
+    const cscd_winding *windings;
+    size_t winding_count;
+    const uint32_t
+        *vertex_patches; /* per vertex; UINT32_MAX: it has no triangle, or curves end at it, so that its
+                                       * triangles may be in several patches */
+    const uint32_t *triangle_patches; /* per triangle; UINT32_MAX: a curve cuts it */
+    const uint32_t
+        *corner_patches; /* per corner of each triangle, triangle by triangle: the patch on the side of the
+                                       * edge that begins at the corner */
+} cscd_patches;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,302 @@
+/* The patches into which intersection curves cut a surface, and how often objects wind around them. */
+#include "runtime/intersections/patches.h"
+
+#include "src/core/context.h"
+#include "src/core/disjoint_sets.h"
+#include "src/core/sort.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+enum { CUT_TRIANGLE = 8 };
+
+static size_t node_count(const cscd_mesh *mesh) {
+    return (size_t)mesh->vertex_count + 2 * (size_t)mesh->edge_count;
+}
+
+static array_list list_arrays(patch_finder *p) {
+    size_t vertices = p->mesh->vertex_count, triangles = p->mesh->triangle_count;
+    return (array_list){{ARRAY(p->cut_edges, p->mesh->edge_count), ARRAY(p->split_vertices, vertices),
+                         ARRAY(p->crossed_components, p->mesh->component_count),
+                         ARRAY(p->triangle_cuts, triangles), ARRAY(p->parents, node_count(p->mesh)),
+                         ARRAY(p->node_patches, node_count(p->mesh)),
+                         ARRAY(p->component_patch, p->mesh->component_count),
+                         ARRAY(p->vertex_patches, vertices), ARRAY(p->triangle_patches, triangles),
+                         ARRAY(p->corner_patches, 3 * triangles), ARRAY(p->lanes, p->lane_count)}};
+}
+
+static array_list list_lane(winding_lane *lane, size_t objects) {
+    winding_tally *t = &lane->tally;
+    return (array_list){{ARRAY(t->numbers, objects), ARRAY(t->is_touched, objects),
+                         ARRAY(t->touched, objects), ARRAY(lane->spare, objects)}};
+}
+
+cscd_status patch_finder_create(const cscd_mesh *mesh, uint32_t lane_count, patch_finder *out) {
+    patch_finder p = {.mesh = mesh, .lane_count = lane_count};
+    if (!context_allocate_all(mesh->context, list_arrays(&p))) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < lane_count; i++) {
+        if (context_allocate_all(mesh->context, list_lane(&p.lanes[i], mesh->object_count))) continue;
+        patch_finder_free(&p);
+        return CSCD_OUT_OF_MEMORY;
+    }
+    *out = p;
+    return CSCD_OK;
+}
+
+void patch_finder_free(patch_finder *p) {
+    if (p->mesh == NULL) return;
+    cscd_context *context = p->mesh->context;
+    for (uint32_t i = 0; i < p->lane_count; i++) {
+        context_free_all(context, list_lane(&p->lanes[i], 0));
+        context_free(context, p->lanes[i].items);
+    }
+    context_free_all(context, list_arrays(p));
+    context_free(context, p->patches);
+    context_free(context, p->windings);
+    *p = (patch_finder){0};
+}
+
+/* Grows an array to twice its capacity. NULL: no memory, and the array is as it was. */
+static void *grow_twice(cscd_context *context, void *items, size_t *capacity, size_t count, size_t size) {
+    size_t larger = *capacity == 0 ? 64 : *capacity * 2;
+    void *grown = context_grow(context, items, count, larger, size);
+    if (grown != NULL) *capacity = larger;
+    return grown;
+}
+
+/* ---- what curves cut ----------------------------------------------------------------------------------- */
+
+typedef struct patch_work {
+    patch_finder *finder;
+    const named_surface *surface;
+    const bvh *bvh;
+} patch_work;
+
+static void mark_crossed(patch_finder *p, uint32_t triangle) {
+    p->crossed_components[p->mesh->triangle_components[triangle]] = true;
+}
+
+/* A piece ends at the corner of this name. */
+static void split_corner(const patch_work *work, uint32_t triangle, uint32_t name) {
+    patch_finder *p = work->finder;
+    for (int i = 0; i < 3; i++) {
+        uint32_t vertex = p->mesh->triangles[triangle][i];
+        if (surface_name(work->surface, vertex) != name) continue;
+        p->split_vertices[vertex] = true;
+        p->triangle_cuts[triangle] |= (uint8_t)(1 << i);
+    }
+}
+
+static void mark_piece(const patch_work *work, const curve_piece *piece) {
+    patch_finder *p = work->finder;
+    const uint32_t both[2] = {piece->a, piece->b};
+    for (int i = 0; i < 2; i++) {
+        surface_event event = piece->ends[i];
+        if (event.edge != NO_EDGE)
+            p->cut_edges[event.edge] = true;
+        else
+            for (int j = 0; j < 2; j++)
+                split_corner(work, both[j], surface_name(work->surface, event.triangle));
+        p->triangle_cuts[both[i]] |= CUT_TRIANGLE;
+        mark_crossed(p, both[i]);
+    }
+}
+
+static void mark_pieces(const patch_work *work, const curve_piece *pieces, size_t piece_count) {
+    patch_finder *p = work->finder;
+    const cscd_mesh *mesh = p->mesh;
+    memset(p->cut_edges, false, mesh->edge_count * sizeof *p->cut_edges);
+    memset(p->split_vertices, false, mesh->vertex_count * sizeof *p->split_vertices);
+    memset(p->crossed_components, false, mesh->component_count * sizeof *p->crossed_components);
+    memset(p->triangle_cuts, 0, mesh->triangle_count * sizeof *p->triangle_cuts);
+    for (size_t i = 0; i < piece_count; i++) mark_piece(work, &pieces[i]);
+}
+
+/* ---- connecting ---------------------------------------------------------------------------------------- */
+
+/* The node of an edge at its vertex. */
+static uint32_t node_at(const patch_finder *p, uint32_t edge, uint32_t vertex) {
+    if (!p->split_vertices[vertex]) return vertex;
+    return p->mesh->vertex_count + 2 * edge + (p->mesh->edges[edge][1] == vertex);
+}
+
+static void begin_nodes(patch_finder *p, uint32_t triangle) {
+    for (int i = 0; i < 3; i++) {
+        uint32_t from = p->mesh->triangles[triangle][i], to = p->mesh->triangles[triangle][(i + 1) % 3];
+        uint32_t edge = p->mesh->triangle_edges[triangle][i];
+        const uint32_t nodes[2] = {node_at(p, edge, from), node_at(p, edge, to)};
+        for (int j = 0; j < 2; j++) {
+            p->parents[nodes[j]] = nodes[j];
+            p->node_patches[nodes[j]] = UINT32_MAX;
+        }
+    }
+}
+
+/* Both ends of an edge that is not cut are in one patch, and both edges at a corner unless a curve ends there. */
+static void connect_triangle(patch_finder *p, uint32_t triangle) {
+    const uint32_t *vertices = p->mesh->triangles[triangle], *edges = p->mesh->triangle_edges[triangle];
+    for (int i = 0; i < 3; i++) {
+        uint32_t from = vertices[i], to = vertices[(i + 1) % 3];
+        if (!p->cut_edges[edges[i]])
+            set_unite(p->parents, node_at(p, edges[i], from), node_at(p, edges[i], to));
+        if (p->split_vertices[from] && (p->triangle_cuts[triangle] >> i & 1) == 0)
+            set_unite(p->parents, node_at(p, edges[i], from), node_at(p, edges[(i + 2) % 3], from));
+    }
+}
+
+static void connect_nodes(patch_finder *p) {
+    const cscd_mesh *mesh = p->mesh;
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (p->crossed_components[mesh->triangle_components[t]]) begin_nodes(p, t);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (p->crossed_components[mesh->triangle_components[t]]) connect_triangle(p, t);
+    }
+}
+
+/* ---- patches ------------------------------------------------------------------------------------------- */
+
+static bool add_patch(patch_finder *p, uint32_t triangle, uint32_t corner, uint32_t *place) {
+    const cscd_mesh *mesh = p->mesh;
+    if (p->patch_count == p->patch_capacity) {
+        void *grown =
+            grow_twice(mesh->context, p->patches, &p->patch_capacity, p->patch_count, sizeof *p->patches);
+        if (grown == NULL) return false;
+        p->patches = grown;
+    }
+    *place = (uint32_t)p->patch_count;
+    p->patches[p->patch_count++] =
+        (cscd_patch){.component = mesh->triangle_components[triangle],
+                     .object = cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]),
+                     .triangle = triangle,
+                     .corner = corner};
+    return true;
+}
+
+/* Where the patch of a corner is kept, on the side of the edge that begins there. */
+static uint32_t *patch_of_corner(patch_finder *p, uint32_t triangle, uint32_t corner) {
+    uint32_t component = p->mesh->triangle_components[triangle];
+    if (!p->crossed_components[component]) return &p->component_patch[component];
+    uint32_t node =
+        node_at(p, p->mesh->triangle_edges[triangle][corner], p->mesh->triangles[triangle][corner]);
+    return &p->node_patches[set_root(p->parents, node)];
+}
+
+static bool name_patches_of(patch_finder *p, uint32_t triangle) {
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t vertex = p->mesh->triangles[triangle][i], *place = patch_of_corner(p, triangle, i);
+        if (*place == UINT32_MAX && !add_patch(p, triangle, i, place)) return false;
+        p->corner_patches[(size_t)triangle * 3 + i] = *place;
+        if (p->split_vertices[vertex] || p->vertex_patches[vertex] != UINT32_MAX) continue;
+        p->vertex_patches[vertex] = *place;
+        p->patches[*place].vertex_count++;
+    }
+    bool whole = (p->triangle_cuts[triangle] & CUT_TRIANGLE) == 0;
+    p->triangle_patches[triangle] = whole ? p->corner_patches[(size_t)triangle * 3] : UINT32_MAX;
+    if (whole) p->patches[p->triangle_patches[triangle]].triangle_count++;
+    return true;
+}
+
+static bool name_patches(patch_finder *p) {
+    const cscd_mesh *mesh = p->mesh;
+    p->patch_count = 0;
+    memset(p->component_patch, 0xff, mesh->component_count * sizeof *p->component_patch);
+    memset(p->vertex_patches, 0xff, mesh->vertex_count * sizeof *p->vertex_patches);
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+        if (!name_patches_of(p, t)) return false;
+    }
+    return true;
+}
+
+/* ---- numbers ------------------------------------------------------------------------------------------- */
+
+/* Without rules, obstacles are not looked at with each other, nor with themselves. */
+static bool objects_look(const patch_finder *p, uint32_t a, uint32_t b) {
+    if (p->objects != NULL) return object_sets_may_meet(&p->objects[a], &p->objects[b]);
+    return !(p->mesh->objects[a].obstacle && p->mesh->objects[b].obstacle);
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static bool keep_number(const patch_finder *p, winding_lane *lane, cscd_winding number) {
+    if (lane->count == lane->capacity) {
+        void *grown =
+            grow_twice(p->mesh->context, lane->items, &lane->capacity, lane->count, sizeof *lane->items);
+        if (grown == NULL) return false;
+        lane->items = grown;
+    }
+    lane->items[lane->count++] = number;
+    return true;
+}
+
+/* Adds the numbers of a patch to the lane's; first_winding counts within the lane. */
+static bool number_patch(const patch_work *work, winding_lane *lane, cscd_patch *patch) {
+    patch_finder *p = work->finder;
+    winding_tally *tally = &lane->tally;
+    winding_tally_clear(tally);
+    winding_find(work->surface, work->bvh, (corner_side){patch->triangle, (uint8_t)patch->corner, true},
+                 tally);
+    sort_items(tally->touched, lane->spare, tally->count, sizeof *tally->touched, compare_numbers);
+    patch->first_winding = (uint32_t)lane->count;
+    for (uint32_t i = 0; i < tally->count; i++) {
+        cscd_winding number = {tally->touched[i], tally->numbers[tally->touched[i]]};
+        if (number.number == 0 || !objects_look(p, patch->object, number.object)) continue;
+        if (number.object == patch->object) patch->own = number.number;
+        if (!keep_number(p, lane, number)) return false;
+        patch->winding_count++;
+    }
+    return true;
+}
+
+/* A lane has patches that follow each other. */
+static void number_patches(void *data, uint32_t index) {
+    const patch_work *work = data;
+    patch_finder *p = work->finder;
+    winding_lane *lane = &p->lanes[index];
+    size_t begin = p->patch_count * index / p->lane_count;
+    size_t end = p->patch_count * (index + 1) / p->lane_count;
+    lane->count = 0;
+    lane->out_of_memory = false;
+    for (size_t i = begin; i < end && !lane->out_of_memory; i++)
+        lane->out_of_memory = !number_patch(work, lane, &p->patches[i]);
+}
+
+static bool join_numbers(patch_finder *p) {
+    size_t total = 0;
+    for (uint32_t i = 0; i < p->lane_count; i++) {
+        if (p->lanes[i].out_of_memory) return false;
+        total += p->lanes[i].count;
+    }
+    while (total > p->winding_capacity) {
+        void *grown = grow_twice(p->mesh->context, p->windings, &p->winding_capacity, 0, sizeof *p->windings);
+        if (grown == NULL) return false;
+        p->windings = grown;
+    }
+    p->winding_count = 0;
+    for (uint32_t i = 0; i < p->lane_count; i++) {
+        size_t begin = p->patch_count * i / p->lane_count, end = p->patch_count * (i + 1) / p->lane_count;
+        for (size_t k = begin; k < end; k++) p->patches[k].first_winding += (uint32_t)p->winding_count;
+        if (p->lanes[i].count > 0)
+            memcpy(p->windings + p->winding_count, p->lanes[i].items,
+                   p->lanes[i].count * sizeof *p->windings);
+        p->winding_count += p->lanes[i].count;
+    }
+    return true;
+}
+
+cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
+                             size_t piece_count, cscd_patches *out) {
+    patch_work work = {p, s, f};
+    mark_pieces(&work, pieces, piece_count);
+    connect_nodes(p);
+    if (!name_patches(p)) return CSCD_OUT_OF_MEMORY;
+    parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
+    if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
+    *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,      p->winding_count,
+                          p->vertex_patches, p->triangle_patches, p->corner_patches};
+    return context_progress_status(p->mesh->context);
+}
