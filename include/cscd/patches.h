@@ -50,6 +50,25 @@ typedef struct cscd_patches {
                                        * edge that begins at the corner */
 } cscd_patches;
 
+/* What two objects bury of each other, or one of itself. An object contains a point where its number is 1 or more. A
+ * triangle that curves cut counts with its parts, so areas and volumes are those of the overlap, up to rounding. They are
+ * those of the limit of the infinitely small motion, so where surfaces lie on each other either of two areas may be
+ * counted. It never grows. */
+typedef struct cscd_overlap {
+    uint32_t a, b; /* objects; a <= b */
+    double area_a; /* of the surface of a that b contains; with a = b, that a itself contains */
+    double area_b; /* the reverse; with a = b, of a's surface that is inverted */
+    double
+        volume; /* of what both contain; with a = b, of what a contains twice or more. Only closed components count. NaN:
+                    * a curve does not close because a pair of triangles is left out */
+} cscd_overlap;
+
+/* The overlaps that are not 0, sorted by (a, b). The list belongs to the detector and lives until its next call. */
+typedef struct cscd_overlaps {
+    const cscd_overlap *items;
+    size_t count;
+} cscd_overlaps;
+
 #ifdef __cplusplus
 }
 #endif

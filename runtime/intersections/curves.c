@@ -16,7 +16,8 @@ static array_list list_of_pairs(curve_joiner *j, size_t count) {
 static array_list list_of_pieces(curve_joiner *j, size_t count) {
     return (array_list){{ARRAY(j->keys, 2 * count), ARRAY(j->spare_keys, 2 * count),
                          ARRAY(j->links, 2 * count), ARRAY(j->piece_curves, count), ARRAY(j->curves, count),
-                         ARRAY(j->pieces, count), ARRAY(j->points, 2 * count), ARRAY(j->events, 2 * count)}};
+                         ARRAY(j->pieces, count), ARRAY(j->points, 2 * count), ARRAY(j->events, 2 * count),
+                         ARRAY(j->end_points, 2 * count)}};
 }
 
 void curve_joiner_free(curve_joiner *j) {
@@ -26,15 +27,14 @@ void curve_joiner_free(curve_joiner *j) {
     *j = (curve_joiner){.context = j->context};
 }
 
-/* Makes room for so many items; what was there is lost. */
-static bool reserve(curve_joiner *j, array_list (*list)(curve_joiner *, size_t), size_t *capacity,
-                    size_t count) {
-    if (count <= *capacity) return true;
-    context_free_all(j->context, list(j, 0));
-    *capacity = 0;
-    if (!context_allocate_all(j->context, list(j, count + count / 2))) return false;
-    *capacity = count + count / 2;
-    return true;
+static bool reserve_pairs(curve_joiner *j, size_t count) {
+    size_t larger = count + count / 2;
+    return context_renew_all(j->context, list_of_pairs(j, larger), &j->pair_capacity, count, larger);
+}
+
+static bool reserve_pieces(curve_joiner *j, size_t count) {
+    size_t larger = count + count / 2;
+    return context_renew_all(j->context, list_of_pieces(j, larger), &j->piece_capacity, count, larger);
 }
 
 /* ---- pieces -------------------------------------------------------------------------------------------- */
@@ -123,14 +123,19 @@ static void trace_curve(curve_joiner *j, curve_place at, cscd_curve *curve) {
     curve->closed = false;
     for (bool more = true; more && !curve->closed;) {
         const curve_piece *piece = &j->found[at.piece];
-        j->events[curve->first_point + curve->point_count++] = event;
+        uint32_t end = 2 * at.piece + at.towards;
+        size_t point = curve->first_point + curve->point_count++;
+        j->events[point] = event;
+        j->end_points[end ^ 1] = (uint32_t)point;
+        j->end_points[end] = (uint32_t)point + 1;
         j->pieces[curve->first_piece + curve->piece_count++] =
             (cscd_curve_piece){at.first, piece->a == at.first ? piece->b : piece->a};
         j->piece_curves[at.piece] = (uint32_t)j->curve_count;
         event = piece->ends[at.towards];
-        curve->end = end_of_link(j->links[2 * at.piece + at.towards]);
+        curve->end = end_of_link(j->links[end]);
         more = go_on(j, &at);
         curve->closed = more && at.piece == first_piece;
+        if (curve->closed) j->end_points[end] = (uint32_t)curve->first_point;
     }
     curve->swapped = curve->closed && at.first != first_triangle;
     if (!curve->closed) j->events[curve->first_point + curve->point_count++] = event;
@@ -193,10 +198,9 @@ static void name_curves_of_pairs(const curve_work *work) {
 cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
                              size_t pair_count, cscd_curves *out) {
     curve_work work = {j, s, pairs, pair_count};
-    if (pair_count > LINKS_MAX / 2 || !reserve(j, list_of_pairs, &j->pair_capacity, pair_count))
-        return CSCD_OUT_OF_MEMORY;
+    if (pair_count > LINKS_MAX / 2 || !reserve_pairs(j, pair_count)) return CSCD_OUT_OF_MEMORY;
     find_pieces(&work);
-    if (!reserve(j, list_of_pieces, &j->piece_capacity, j->piece_count)) return CSCD_OUT_OF_MEMORY;
+    if (!reserve_pieces(j, j->piece_count)) return CSCD_OUT_OF_MEMORY;
     curve_links_find(s, j->found, j->piece_count, j->keys, j->spare_keys, j->links);
     trace_curves(&work);
     parallel_run(j->context->threads, (uint32_t)((j->point_count + POINTS_A_TASK - 1) / POINTS_A_TASK),

@@ -19,6 +19,7 @@ typedef struct curve_joiner {
     curve_key *keys, *spare_keys;
     uint32_t *links;
     uint32_t *piece_curves;
+    uint32_t *end_points; /* per end of a piece: its point */
     cscd_curve *curves;
     cscd_curve_piece *pieces;
     cscd_curve_point *points;

@@ -164,6 +164,16 @@ size_t cscd_context_bytes(const cscd_context *context) {
     return atomic_load_explicit(&context->memory.bytes, memory_order_relaxed);
 }
 
+bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count,
+                       size_t larger) {
+    if (count <= *capacity) return true;
+    context_free_all(context, list);
+    *capacity = 0;
+    if (!context_allocate_all(context, list)) return false;
+    *capacity = larger;
+    return true;
+}
+
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

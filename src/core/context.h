@@ -78,6 +78,11 @@ static inline void context_free_all(cscd_context *context, array_list list) {
     memory_free_all(&context->memory, list);
 }
 
+/* Makes sure that the arrays of a list have room for count items; the list is one of `larger` items, no less than count, and
+ * is allocated anew if *capacity is less than count. What the arrays held is lost then. False: no memory, and *capacity
+ * is 0. */
+bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count, size_t larger);
+
 /* Sets the detail and returns status, so that a function can end with it. */
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

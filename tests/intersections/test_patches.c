@@ -1,6 +1,7 @@
 /* Patches: at each of their corners objects wind as often as the patch says, on grids where everything degenerates; and
  * what is buried in scenes that one sees through. */
 #include "runtime/intersections/patches.h"
+#include "tests/support/bvh/mesh_trees.h"
 #include "tests/support/intersections/traced_scene.h"
 #include "tests/support/test.h"
 
@@ -24,7 +25,7 @@ typedef struct patched_scene {
 } patched_scene;
 
 static void find_patches(patched_scene *p) {
-    grid_scene_trees(&traced.scene, BOX_AXES, &p->trees);
+    mesh_trees_build(traced.scene.mesh, traced.scene.positions, BOX_AXES, &p->trees);
     assert_int_equal(patch_finder_create(traced.scene.mesh, LANES_USED, &p->finder), CSCD_OK);
     assert_int_equal(patch_finder_run(&p->finder, &traced.scene.surface, &p->trees, traced.joiner.found,
                                       traced.joiner.piece_count, &p->patches),

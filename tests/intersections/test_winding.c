@@ -1,6 +1,6 @@
 /* Winding numbers on grids where everything degenerates: those of a ray in another direction, with every point written out
  * as a polynomial. */
-#include "tests/support/intersections/traced_scene.h"
+#include "tests/support/bvh/mesh_trees.h"
 #include "tests/support/intersections/winding_oracle.h"
 #include "tests/support/test.h"
 
@@ -50,7 +50,7 @@ static void numbers_are_those_of_polynomials(void **state) {
         grid_scene s;
         bvh f;
         grid_scene_make(families[seed % 4], 1000 + seed, &s);
-        grid_scene_trees(&s, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
+        mesh_trees_build(s.mesh, s.positions, seed % 3 == 0 ? KDOP_AXES : BOX_AXES, &f);
         for (uint32_t i = 0; i < s.mesh->triangle_count * 6; i++) {
             int number = compare_corner(&s, &f, (corner_side){i / 6, (uint8_t)(i % 3), i / 3 % 2 == 0});
             wound += number > 0;

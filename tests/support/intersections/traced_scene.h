@@ -1,7 +1,6 @@
-/* A small scene with its intersection curves, and with trees. */
+/* A small scene with its intersection curves. */
 #pragma once
 
-#include "runtime/bvh/bvh.h"
 #include "runtime/intersections/curves.h"
 #include "tests/support/intersections/grid_scene.h"
 
@@ -16,6 +15,3 @@ typedef struct traced_scene {
 
 void traced_scene_make(grid_family family, uint64_t seed, traced_scene *out);
 void traced_scene_free(traced_scene *t);
-
-/* Builds trees as method SINGLE has them, one per component, refitted to the scene's moment. */
-void grid_scene_trees(const grid_scene *s, int axis_count, bvh *out);

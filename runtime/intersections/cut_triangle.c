@@ -1,0 +1,233 @@
+/* The area of the parts of a triangle that curves cut, by how often objects wind around them.
+ *
+ * Slabs from left to right: between two neighbouring ends or crossings of lines, the cross-section of every part is a
+ * linear function, so its value in the middle times the width is the area. In a cross-section the numbers are known at
+ * the lower end, by the corner before it and what the border passes through since, and change from line to line. */
+#include "runtime/intersections/cut_triangle.h"
+
+#include "src/core/sort.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+static array_list list_of_lines(cut_memory *m, size_t lines) {
+    return (array_list){{ARRAY(m->spare_lines, lines), ARRAY(m->active, lines),
+                         ARRAY(m->breaks, 2 * lines + 3), ARRAY(m->spare_breaks, 2 * lines + 3)}};
+}
+
+static array_list list_of_slots(cut_memory *m, size_t slots) {
+    return (array_list){{ARRAY(m->numbers, slots)}};
+}
+
+bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots) {
+    return context_renew_all(context, list_of_lines(m, 2 * lines), &m->line_capacity, lines, 2 * lines) &&
+           context_renew_all(context, list_of_slots(m, 2 * slots), &m->slot_capacity, slots, 2 * slots);
+}
+
+void cut_memory_free(cscd_context *context, cut_memory *m) {
+    context_free_all(context, list_of_lines(m, 0));
+    context_free_all(context, list_of_slots(m, 0));
+    context_free(context, m->crossings);
+    *m = (cut_memory){.line_capacity = 0};
+}
+
+/* ---- lines --------------------------------------------------------------------------------------------- */
+
+static double height_at(const cut_line *line, double x) {
+    double width = line->to[0] - line->from[0];
+    double share = width != 0.0 ? (x - line->from[0]) / width : 0.5;
+    return line->from[1] + share * (line->to[1] - line->from[1]);
+}
+
+static int compare_lines(const void *a, const void *b) {
+    double x = ((const cut_line *)a)->low, y = ((const cut_line *)b)->low;
+    return (x > y) - (x < y);
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* One triangle on its way from left to right. */
+typedef struct slab_sweep {
+    cscd_context *context;
+    const cut_triangle *triangle;
+    cut_memory *memory;
+    cut_share *shares;
+    size_t next_line, active_count, crossing_count;
+} slab_sweep;
+
+static const cut_line *active_line(const slab_sweep *s, size_t i) {
+    return &s->triangle->lines[s->memory->active[i]];
+}
+
+/* Is line a below line b at x or, if they are at one height there, at then? */
+static bool is_below(const cut_line *a, const cut_line *b, double x, double then) {
+    double of_a = height_at(a, x), of_b = height_at(b, x);
+    return of_a != of_b ? of_a < of_b : height_at(a, then) < height_at(b, then);
+}
+
+/* Puts the active lines in order from below, which they nearly are. */
+static void order_active(slab_sweep *s, double x, double then) {
+    for (size_t i = 1; i < s->active_count; i++) {
+        uint32_t line = s->memory->active[i];
+        size_t j = i;
+        for (; j > 0 && is_below(&s->triangle->lines[line], active_line(s, j - 1), x, then); j--)
+            s->memory->active[j] = s->memory->active[j - 1];
+        s->memory->active[j] = line;
+    }
+}
+
+/* Drops the lines that end at or before begin, and takes those that begin there. */
+static void update_active(slab_sweep *s, double begin) {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->active_count; i++) {
+        if (active_line(s, i)->high > begin) s->memory->active[kept++] = s->memory->active[i];
+    }
+    for (; s->next_line < s->triangle->line_count && s->triangle->lines[s->next_line].low <= begin;
+         s->next_line++) {
+        if (s->triangle->lines[s->next_line].high > begin) s->memory->active[kept++] = (uint32_t)s->next_line;
+    }
+    s->active_count = kept;
+}
+
+static bool add_crossing(slab_sweep *s, double x) {
+    cut_memory *m = s->memory;
+    if (s->crossing_count == m->crossing_capacity) {
+        size_t capacity = m->crossing_capacity == 0 ? 16 : 2 * m->crossing_capacity;
+        double *grown = context_grow(s->context, m->crossings, s->crossing_count, capacity, sizeof *grown);
+        if (grown == NULL) return false;
+        m->crossings = grown;
+        m->crossing_capacity = capacity;
+    }
+    m->crossings[s->crossing_count++] = x;
+    return true;
+}
+
+/* Where the lines a and b, a below b at begin and above it at end, have one height. */
+static double crossing_of(const cut_line *a, const cut_line *b, double begin, double end) {
+    double before = height_at(b, begin) - height_at(a, begin), behind = height_at(a, end) - height_at(b, end);
+    return before + behind > 0.0 ? begin + (end - begin) * (before / (before + behind)) : begin;
+}
+
+/* Lists the crossings of a slab: each is a change of the order from its begin to its end. */
+static bool find_crossings(slab_sweep *s, double begin, double end) {
+    s->crossing_count = 0;
+    order_active(s, begin, end);
+    for (size_t i = 1; i < s->active_count; i++) {
+        uint32_t line = s->memory->active[i];
+        size_t j = i;
+        for (; j > 0 && height_at(&s->triangle->lines[line], end) < height_at(active_line(s, j - 1), end);
+             j--) {
+            if (!add_crossing(s, crossing_of(active_line(s, j - 1), &s->triangle->lines[line], begin, end)))
+                return false;
+            s->memory->active[j] = s->memory->active[j - 1];
+        }
+        s->memory->active[j] = line;
+    }
+    for (size_t i = 1; i < s->crossing_count; i++) { /* few, mostly none */
+        double x = s->memory->crossings[i];
+        size_t j = i;
+        for (; j > 0 && s->memory->crossings[j - 1] > x; j--)
+            s->memory->crossings[j] = s->memory->crossings[j - 1];
+        s->memory->crossings[j] = x;
+    }
+    return true;
+}
+
+/* ---- a cross-section ----------------------------------------------------------------------------------- */
+
+/* The border of a triangle that turns counter-clockwise runs to the right below, and to the left above. */
+static double border_height(const cut_triangle *t, double x, bool below, uint32_t *edge, double *share) {
+    double height = 0.0;
+    for (uint32_t i = 0; i < 3; i++) {
+        const double *from = t->corners[i], *to = t->corners[(i + 1) % 3];
+        bool to_the_right = from[0] < to[0];
+        if (to_the_right != below || from[0] == to[0]) continue;
+        double at = (x - from[0]) / (to[0] - from[0]);
+        if (at < 0.0 || at > 1.0) continue;
+        *edge = i;
+        *share = at;
+        height = from[1] + at * (to[1] - from[1]);
+    }
+    return height;
+}
+
+/* The numbers at a place on the border. */
+static void begin_numbers(const cut_triangle *t, uint32_t edge, double share, int32_t *numbers) {
+    memcpy(numbers, t->corner_numbers + (size_t)edge * t->slot_count, t->slot_count * sizeof *numbers);
+    for (size_t i = 0; i < t->border_count; i++) {
+        const cut_border *b = &t->borders[i];
+        if (b->edge == edge && b->s < share) numbers[b->slot] += b->jump;
+    }
+}
+
+static void add_part(const cut_triangle *t, const int32_t *numbers, double area, cut_share *shares) {
+    for (uint32_t slot = 0; slot < t->slot_count; slot++) {
+        if (numbers[slot] >= 1) shares[slot].buried += area;
+        if (numbers[slot] >= 1 && numbers[0] == 0) shares[slot].buried_outside += area;
+        if (numbers[slot] == 1) shares[slot].once += area;
+        if (numbers[slot] < 0) shares[slot].inverted += area;
+    }
+}
+
+/* Adds the slab of this width whose middle is at x; its lines do not cross. */
+static void measure_slab(slab_sweep *s, double x, double width) {
+    const cut_triangle *t = s->triangle;
+    int32_t *numbers = s->memory->numbers;
+    uint32_t edge = 0, top_edge = 0;
+    double share = 0.0, top_share = 0.0, at = border_height(t, x, true, &edge, &share);
+    double top = border_height(t, x, false, &top_edge, &top_share);
+    begin_numbers(t, edge, share, numbers);
+    order_active(s, x, x);
+    for (size_t i = 0; i < s->active_count; i++) {
+        const cut_line *line = active_line(s, i);
+        double height = height_at(line, x);
+        if (height > top) height = top;
+        if (height > at) {
+            add_part(t, numbers, (height - at) * width, s->shares);
+            at = height;
+        }
+        numbers[line->slot] += line->from[0] < line->to[0] ? line->rise : -line->rise;
+    }
+    if (top > at) add_part(t, numbers, (top - at) * width, s->shares);
+}
+
+/* ---- all of it ----------------------------------------------------------------------------------------- */
+
+static size_t list_breaks(const cut_triangle *t, cut_memory *m) {
+    size_t count = 0;
+    for (int i = 0; i < 3; i++) m->breaks[count++] = t->corners[i][0];
+    for (size_t i = 0; i < t->line_count; i++) {
+        m->breaks[count++] = t->lines[i].low;
+        m->breaks[count++] = t->lines[i].high;
+    }
+    sort_items(m->breaks, m->spare_breaks, count, sizeof *m->breaks, compare_doubles);
+    return count;
+}
+
+bool cut_triangle_measure(cscd_context *context, cut_triangle *t, cut_memory *m, cut_share *shares) {
+    slab_sweep s = {context, t, m, shares, 0, 0, 0};
+    for (size_t i = 0; i < t->line_count; i++) {
+        cut_line *line = &t->lines[i];
+        bool forward = line->from[0] < line->to[0];
+        line->low = forward ? line->from[0] : line->to[0];
+        line->high = forward ? line->to[0] : line->from[0];
+    }
+    sort_items(t->lines, m->spare_lines, t->line_count, sizeof *t->lines, compare_lines);
+    size_t count = list_breaks(t, m);
+    for (size_t i = 0; i + 1 < count; i++) {
+        double begin = m->breaks[i], end = m->breaks[i + 1];
+        if (!(begin < end)) continue;
+        update_active(&s, begin);
+        if (!find_crossings(&s, begin, end)) return false;
+        for (size_t k = 0; k <= s.crossing_count; k++) {
+            double from = k == 0 ? begin : m->crossings[k - 1];
+            double to = k == s.crossing_count ? end : m->crossings[k];
+            if (from < to) measure_slab(&s, from + 0.5 * (to - from), to - from);
+        }
+    }
+    return true;
+}

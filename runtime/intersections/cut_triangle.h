@@ -1,0 +1,57 @@
+/* The area of the parts of a triangle that curves cut, by how often objects wind around them. */
+#pragma once
+
+#include "src/core/context.h"
+
+/* A straight cut, or piece of a curve, in the plane of the triangle. Objects are numbered by slots. */
+typedef struct cut_line {
+    double from[2], to[2];
+    uint32_t slot;
+    int rise;         /* the object's number to the left of the line less that to the right */
+    double low, high; /* set by cut_triangle_measure: the lesser and the greater of from[0] and to[0] */
+} cut_line;
+
+/* A curve passes through the border of the triangle. */
+typedef struct cut_border {
+    uint32_t edge; /* 0 to 2; edge i leads from corner i to the next one */
+    double s;      /* how far along */
+    uint32_t slot;
+    int jump; /* what the object's number increases by, going along the edge */
+} cut_border;
+
+/* What is measured of one object. */
+typedef struct cut_share {
+    double buried;         /* its number is 1 or more */
+    double buried_outside; /* that, and the number of the triangle's own object is 0 */
+    double once;           /* its number is 1 */
+    double inverted;       /* its number is below 0 */
+} cut_share;
+
+/* Corners turn counter-clockwise. Slot 0 is the triangle's own object, whose number holds on the side of the normal. */
+typedef struct cut_triangle {
+    double corners[3][2];
+    cut_line *lines;
+    cut_border *borders;
+    int32_t
+        *corner_numbers; /* per corner and slot: at the corner, on the side of the edge that begins there */
+    size_t line_count, border_count;
+    uint32_t slot_count;
+} cut_triangle;
+
+/* Memory for triangles with so many lines and slots. */
+typedef struct cut_memory {
+    size_t line_capacity, slot_capacity;
+    cut_line *spare_lines;
+    uint32_t *active;              /* lines, in the order of a cross-section */
+    double *breaks, *spare_breaks; /* where lines begin and end */
+    double *crossings;             /* of two lines */
+    size_t crossing_capacity;
+    int32_t *numbers; /* per slot */
+} cut_memory;
+
+/* Makes room; false: no memory. */
+bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots);
+void cut_memory_free(cscd_context *context, cut_memory *m);
+
+/* Adds the areas to shares, one per slot, up to rounding. Lines may be put in another order. False: no memory. */
+bool cut_triangle_measure(cscd_context *context, cut_triangle *t, cut_memory *m, cut_share *shares);

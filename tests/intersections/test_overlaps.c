@@ -1,0 +1,234 @@
+/* Areas and volumes of overlaps: boxes by hand, bodies of all kinds by columns, and what is inside out. */
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/intersections/column_count.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { LINES = 60, ROUNDS = 3 };
+#else
+enum { LINES = 200, ROUNDS = 8 };
+#endif
+
+static body_rig rig; /* large; one test at a time */
+
+static void add_box(const double low[3], const double size[3]) {
+    scene *s = &rig.all;
+    uint32_t first = s->vertex_count;
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (uint32_t v = 0; v < 8; v++, s->vertex_count++) {
+        for (uint32_t k = 0; k < 3; k++) s->x0[(first + v) * 3 + k] = low[k] + (v >> k & 1) * size[k];
+    }
+    for (int i = 0; i < 6; i++) {
+        const uint32_t *q = quads[i], corners[6] = {q[0], q[1], q[2], q[0], q[2], q[3]};
+        for (int k = 0; k < 6; k++) s->triangles[s->triangle_count * 3 + (uint32_t)k] = first + corners[k];
+        s->triangle_count += 2;
+    }
+}
+
+static void add_cube(double x, double y, double z, double size) {
+    const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
+    add_box(low, sizes);
+    body_rig_end_body(&rig);
+}
+
+static void expect_overlap(uint32_t a, uint32_t b, double area_a, double area_b, double volume) {
+    cscd_overlap found = body_rig_overlap(&rig, a, b);
+    assert_true(fabs(found.area_a - area_a) <= 1e-12);
+    assert_true(fabs(found.area_b - area_b) <= 1e-12);
+    assert_true(fabs(found.volume - volume) <= 1e-12);
+}
+
+static void corners_of_two_boxes(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    add_cube(0, 0, 0, 2);
+    add_cube(1.25, 1.5, 1.125, 2);
+    body_rig_find(&rig);
+    double x = 0.75, y = 0.5, z = 0.875, faces = x * y + y * z + z * x;
+    expect_overlap(0, 1, faces, faces, x * y * z);
+    assert_int_equal(rig.overlaps.count, 1);
+    body_rig_free(&rig);
+}
+
+/* No vertex of the one is in the other. */
+static void bars_across_each_other(void **state) {
+    (void)state;
+    const double low[3] = {-3, 0.1, 0.2}, size[3] = {6, 0.5, 0.25}, across[3] = {0.3, -2, 0.1},
+                 other[3] = {0.5, 5, 2};
+    body_rig_begin(&rig);
+    add_box(low, size);
+    body_rig_end_body(&rig);
+    add_box(across, other);
+    body_rig_end_body(&rig);
+    body_rig_find(&rig);
+    expect_overlap(0, 1, 0.5 * 2 * (0.5 + 0.25), 2 * 0.5 * 0.25, 0.5 * 0.5 * 0.25);
+    body_rig_free(&rig);
+}
+
+/* A box within a box within a ball of wax: nothing crosses, and everything is buried. */
+static void boxes_within_each_other(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    add_cube(0, 0, 0, 4);
+    add_cube(1, 1, 1, 2);
+    add_cube(1.5, 1.5, 1.5, 1);
+    body_rig_find(&rig);
+    expect_overlap(0, 1, 0.0, 24.0, 8.0);
+    expect_overlap(0, 2, 0.0, 6.0, 1.0);
+    expect_overlap(1, 2, 0.0, 6.0, 1.0);
+    assert_int_equal(rig.overlaps.count, 3);
+    assert_int_equal(rig.curves.count, 0);
+    body_rig_free(&rig);
+}
+
+static void turn_inside_out(uint32_t first, uint32_t end) {
+    for (uint32_t t = first; t < end; t++) {
+        uint32_t *triangle = rig.all.triangles + (size_t)t * 3, kept = triangle[1];
+        triangle[1] = triangle[2];
+        triangle[2] = kept;
+    }
+}
+
+/* A box with a cavity has normals into the cavity, in which a third box is not buried. */
+static void a_cavity_is_outside(void **state) {
+    (void)state;
+    const double low[3] = {1, 1, 1}, size[3] = {2, 2, 2}, outer[3] = {0, 0, 0}, all[3] = {4, 4, 4};
+    body_rig_begin(&rig);
+    add_box(outer, all);
+    add_box(low, size);
+    turn_inside_out(12, 24);
+    body_rig_end_body(&rig);
+    add_cube(1.5, 1.5, 1.5, 1);
+    add_cube(0.5, 1.5, 1.5, 1); /* half of it in the wall */
+    body_rig_find(&rig);
+    expect_overlap(0, 1, 0.0, 0.0, 0.0);
+    expect_overlap(0, 2, 1.0, 1.0 + 4 * 0.5, 0.5);
+    expect_overlap(0, 0, 0.0, 0.0, 0.0);
+    body_rig_free(&rig);
+}
+
+static void a_body_that_is_inside_out(void **state) {
+    (void)state;
+    const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2};
+    body_rig_begin(&rig);
+    add_box(low, size);
+    turn_inside_out(0, 12);
+    body_rig_end_body(&rig);
+    add_cube(0.5, 0.5, 0.5, 1);
+    body_rig_find(&rig);
+    expect_overlap(0, 0, 0.0, 24.0, 0.0);
+    expect_overlap(0, 1, 0.0, 0.0, 0.0);
+    body_rig_free(&rig);
+}
+
+/* Two bodies of one object: what is in both is contained twice. */
+static void two_bodies_of_one_object(void **state) {
+    (void)state;
+    const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 1, 1};
+    body_rig_begin(&rig);
+    add_box(low, size);
+    add_box(second, size);
+    body_rig_end_body(&rig);
+    add_cube(0.5, 0.5, 0.5, 1);
+    body_rig_find(&rig);
+    expect_overlap(0, 0, 6.0, 0.0, 1.0);
+    expect_overlap(0, 1, 3 * 0.25, 6.0, 1.0);
+    body_rig_free(&rig);
+}
+
+/* ---- against columns ----------------------------------------------------------------------------------- */
+
+static column_body column_of(uint32_t body) {
+    const body_part *b = &rig.bodies[body];
+    return (column_body){rig.all.x0, rig.all.triangles + (size_t)b->first_triangle * 3, b->triangle_count};
+}
+
+static void compare_volume(const char *what, double found, double truth, double whole) {
+    print_message("  %s: %.6f, by columns %.6f\n", what, found, truth);
+    assert_true(truth > 0.0);
+    assert_true(fabs(found - truth) <= 2e-3 * truth + 2e-5 * whole);
+}
+
+static void balls_and_rings(void **state) {
+    (void)state;
+    random_stream random = stream_start(5);
+    for (int round = 0; round < ROUNDS; round++) {
+        double centre[3] = {stream_between(&random, 0.5, 1.1), stream_between(&random, -0.3, 0.3),
+                            stream_between(&random, -0.2, 0.2)};
+        static const double origin[3] = {0, 0, 0};
+        body_rig_begin(&rig);
+        scene_add_torus(&rig.all, origin, 1.0, 0.35, 24, 12, false);
+        body_rig_end_body(&rig);
+        scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
+        body_rig_end_body(&rig);
+        body_rig_find(&rig);
+        column_body a = column_of(1), b = column_of(0);
+        compare_volume("ball in ring", body_rig_overlap(&rig, 0, 1).volume, column_volume(&a, &b, 1, LINES),
+                       0.9);
+        body_rig_free(&rig);
+    }
+}
+
+/* A snake that bends into a ring and swallows its tail. */
+static void a_body_in_itself(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    scene_add_capsule(&rig.all, 7.0, 0.3, 40, 10);
+    body_rig_end_body(&rig);
+    for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
+        double *x = rig.all.x0 + (size_t)v * 3, angle = x[2], radius = 1.0 + x[0];
+        x[1] += 0.02 * angle;
+        x[0] = radius * cos(angle);
+        x[2] = radius * sin(angle);
+    }
+    body_rig_find(&rig);
+    column_body a = column_of(0);
+    double truth = column_volume(&a, NULL, 2, 2 * LINES);
+    compare_volume("snake in itself", body_rig_overlap(&rig, 0, 0).volume, truth, 1.0);
+    body_rig_free(&rig);
+}
+
+/* Edge against edge: no vertex is within the other ball. */
+static void balls_that_overlap_by_less_than_an_edge(void **state) {
+    (void)state;
+    static const double left[3] = {0, 0, 0}, right[3] = {1.84, 0.011, 0.007};
+    body_rig_begin(&rig);
+    scene_add_sphere(&rig.all, left, 1.0, 7, 8);
+    body_rig_end_body(&rig);
+    scene_add_sphere(&rig.all, right, 1.0, 7, 8);
+    body_rig_end_body(&rig);
+    for (uint32_t v = rig.bodies[1].first_vertex; v < rig.all.vertex_count; v++) {
+        double *x = rig.all.x0 + (size_t)v * 3, y = x[1];
+        x[1] = y * cos(0.7) - x[2] * sin(0.7);
+        x[2] = y * sin(0.7) + x[2] * cos(0.7);
+    }
+    body_rig_find(&rig);
+    column_body a = column_of(0), b = column_of(1);
+    double truth = column_volume(&a, &b, 1, LINES);
+    compare_volume("two balls", body_rig_overlap(&rig, 0, 1).volume, truth, 0.0);
+    assert_true(rig.curves.count > 0);
+    for (size_t i = 0; i < rig.curves.count; i++) assert_true(rig.curves.items[i].closed);
+    for (size_t i = 0; i < rig.all.vertex_count; i++)
+        assert_int_equal(rig.patches.items[rig.patches.vertex_patches[i]].winding_count, 0);
+    body_rig_free(&rig);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(corners_of_two_boxes),
+        cmocka_unit_test(bars_across_each_other),
+        cmocka_unit_test(boxes_within_each_other),
+        cmocka_unit_test(a_cavity_is_outside),
+        cmocka_unit_test(a_body_that_is_inside_out),
+        cmocka_unit_test(two_bodies_of_one_object),
+        cmocka_unit_test(balls_and_rings),
+        cmocka_unit_test(a_body_in_itself),
+        cmocka_unit_test(balls_that_overlap_by_less_than_an_edge),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
