@@ -7,6 +7,7 @@
 typedef struct cut_line {
     double from[2], to[2];
     uint32_t slot;
+    uint32_t number;  /* the caller's, who finds the line by it when lines have been sorted */
     int rise;         /* the object's number to the left of the line less that to the right */
     double low, high; /* set by cut_triangle_measure: the lesser and the greater of from[0] and to[0] */
 } cut_line;

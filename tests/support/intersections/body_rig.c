@@ -57,9 +57,9 @@ void body_rig_find(body_rig *r) {
     assert_int_equal(patch_finder_run(&r->finder, &surface, &r->trees, r->joiner.found, r->joiner.piece_count,
                                       &r->patches),
                      CSCD_OK);
-    r->overlap_finder = (overlap_finder){.context = r->context};
-    overlap_input input = {&surface, &r->joiner, &r->finder};
-    assert_int_equal(overlap_finder_run(&r->overlap_finder, &input, &r->overlaps), CSCD_OK);
+    r->overlap_finder = (overlap_finder){.context = r->context, .cuts = {.context = r->context}};
+    surface_cuts found = {&surface, &r->joiner, &r->finder};
+    assert_int_equal(overlap_finder_run(&r->overlap_finder, &found, &r->overlaps), CSCD_OK);
 }
 
 void body_rig_free(body_rig *r) {

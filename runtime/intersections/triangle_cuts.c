@@ -1,0 +1,189 @@
+/* What curves cut out of each triangle: from the pieces of all curves to the lines in one triangle's plane. */
+#include "runtime/intersections/triangle_cuts.h"
+
+#include "src/core/sort.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+static array_list list_of_keys(triangle_cuts *c, size_t count) {
+    return (array_list){{ARRAY(c->keys, count), ARRAY(c->spare_keys, count)}};
+}
+
+static array_list list_of_cuts(triangle_cuts *c, size_t count) {
+    return (array_list){{ARRAY(c->lines, count), ARRAY(c->borders, count),
+                         ARRAY(c->corner_numbers, 3 * count), ARRAY(c->slot_objects, count),
+                         ARRAY(c->line_pieces, count)}};
+}
+
+void triangle_cuts_free(triangle_cuts *c) {
+    if (c->context == NULL) return;
+    context_free_all(c->context, list_of_keys(c, 0));
+    context_free_all(c->context, list_of_cuts(c, 0));
+    cut_memory_free(c->context, &c->memory);
+    *c = (triangle_cuts){.context = c->context};
+}
+
+/* ---- triangles ----------------------------------------------------------------------------------------- */
+
+bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves) {
+    size_t count = 2 * curves->piece_count;
+    if (!context_renew_all(c->context, list_of_keys(c, 2 * count), &c->key_capacity, count, 2 * count))
+        return false;
+    for (size_t i = 0; i < count; i++)
+        c->keys[i] = (curve_key){i % 2 == 0 ? curves->found[i / 2].a : curves->found[i / 2].b, i};
+    sort_by_number(c->keys, c->spare_keys, count, sizeof *c->keys);
+    c->key_count = count;
+    return true;
+}
+
+/* The first key that is not below a number. */
+static size_t find_key(const triangle_cuts *c, uint64_t number) {
+    size_t low = 0, high = c->key_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (c->keys[middle].number < number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+size_t triangle_cuts_of(const triangle_cuts *c, uint32_t triangle, size_t *first) {
+    *first = find_key(c, triangle);
+    return find_key(c, (uint64_t)triangle + 1);
+}
+
+/* ---- loading ------------------------------------------------------------------------------------------- */
+
+typedef struct cut_load {
+    triangle_cuts *cuts;
+    const surface_cuts *found;
+    loaded_cut *out;
+} cut_load;
+
+/* The slot of an object, which gets one if it has none. They are few. */
+static uint32_t slot_of(cut_load *load, uint32_t object) {
+    cut_triangle *cut = &load->out->cut;
+    uint32_t *objects = load->cuts->slot_objects, slot = 0;
+    while (slot < cut->slot_count && objects[slot] != object) slot++;
+    if (slot == cut->slot_count) objects[cut->slot_count++] = object;
+    return slot;
+}
+
+static uint32_t object_of(const cscd_mesh *mesh, uint32_t triangle) {
+    return cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
+}
+
+static void project(const loaded_cut *cut, const double x[3], double out[2]) {
+    out[0] = x[cut->x];
+    out[1] = x[cut->y];
+}
+
+/* Adds an end of a piece that is on the triangle's own border. An edge of a that passes towards the side of b's normal, and
+ * so out of b, begins the piece, one that passes into b ends it; for edges of b it is the other way round. */
+static void add_border(cut_load *load, size_t number, bool is_b, int end, uint32_t slot) {
+    const cscd_mesh *mesh = load->found->surface->mesh;
+    const curve_joiner *j = load->found->curves;
+    uint32_t triangle = load->out->triangle;
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t edge = mesh->triangle_edges[triangle][i];
+        if (j->found[number].ends[end].edge != edge) continue;
+        double s = j->points[j->end_points[2 * number + (size_t)end]].s;
+        bool along = mesh->edges[edge][0] == mesh->triangles[triangle][i];
+        load->out->cut.borders[load->out->cut.border_count++] =
+            (cut_border){i, along ? s : 1.0 - s, slot, (end == 1) != is_b ? 1 : -1};
+    }
+}
+
+/* Seen from outside, the inside of b is to the left of a piece on a, and the inside of a to the right of it on b. Open
+ * components have no inside. */
+static void add_piece(cut_load *load, const curve_key *key) {
+    const cscd_mesh *mesh = load->found->surface->mesh;
+    const curve_joiner *j = load->found->curves;
+    cut_triangle *cut = &load->out->cut;
+    size_t number = key->end / 2;
+    bool is_b = key->end % 2 == 1;
+    uint32_t other = is_b ? j->found[number].a : j->found[number].b;
+    if (!mesh->components[mesh->triangle_components[other]].closed_manifold) return;
+    cut_line line = {.slot = slot_of(load, object_of(mesh, other)),
+                     .rise = is_b ? -1 : 1,
+                     .number = (uint32_t)cut->line_count};
+    project(load->out, j->points[j->end_points[2 * number]].x, line.from);
+    project(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
+    load->cuts->line_pieces[cut->line_count] = (uint32_t)number;
+    cut->lines[cut->line_count++] = line;
+    for (int end = 0; end < 2; end++) add_border(load, number, is_b, end, line.slot);
+}
+
+static const cscd_patch *patch_at(const cut_load *load, uint32_t corner) {
+    const patch_finder *p = load->found->patches;
+    return &p->patches[p->corner_patches[(size_t)load->out->triangle * 3 + corner]];
+}
+
+/* All objects that wind around a corner get slots first, then each corner its numbers. */
+static void number_corners(cut_load *load) {
+    const cscd_winding *windings = load->found->patches->windings;
+    cut_triangle *cut = &load->out->cut;
+    for (uint32_t i = 0; i < 3; i++) {
+        const cscd_patch *patch = patch_at(load, i);
+        for (uint32_t k = 0; k < patch->winding_count; k++)
+            slot_of(load, windings[patch->first_winding + k].object);
+    }
+    memset(cut->corner_numbers, 0, 3 * (size_t)cut->slot_count * sizeof *cut->corner_numbers);
+    for (uint32_t i = 0; i < 3; i++) {
+        const cscd_patch *patch = patch_at(load, i);
+        for (uint32_t k = 0; k < patch->winding_count; k++) {
+            cscd_winding w = windings[patch->first_winding + k];
+            cut->corner_numbers[(size_t)i * cut->slot_count + slot_of(load, w.object)] = w.number;
+        }
+    }
+}
+
+/* Makes room for as many lines, borders and slots as there can be. */
+static bool reserve_cut(cut_load *load, size_t pieces) {
+    triangle_cuts *c = load->cuts;
+    size_t slots = 1 + pieces;
+    for (uint32_t i = 0; i < 3; i++) slots += patch_at(load, i)->winding_count;
+    size_t most = 2 * pieces > slots ? 2 * pieces : slots;
+    if (!context_renew_all(c->context, list_of_cuts(c, 2 * most), &c->cut_capacity, most, 2 * most))
+        return false;
+    return cut_memory_reserve(c->context, &c->memory, pieces, slots);
+}
+
+static void choose_projection(const cut_load *load, const double normal[3]) {
+    const named_surface *s = load->found->surface;
+    loaded_cut *out = load->out;
+    int axis = 0;
+    for (int k = 1; k < 3; k++) axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
+    out->x = normal[axis] > 0.0 ? (axis + 1) % 3 : (axis + 2) % 3;
+    out->y = normal[axis] > 0.0 ? (axis + 2) % 3 : (axis + 1) % 3;
+    for (uint32_t i = 0; i < 3; i++)
+        project(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
+}
+
+bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t first, size_t end,
+                        loaded_cut *out) {
+    const cscd_mesh *mesh = found->surface->mesh;
+    cut_load load = {c, found, out};
+    double normal[3];
+    *out = (loaded_cut){.triangle = (uint32_t)c->keys[first].number};
+    surface_normal(mesh, found->surface->positions, out->triangle, normal);
+    double norm = surface_norm(normal);
+    if (norm == 0.0) return true;
+    if (!reserve_cut(&load, end - first)) return false;
+    out->stretch = norm / vec3_largest(normal);
+    out->cut.lines = c->lines;
+    out->cut.borders = c->borders;
+    out->cut.corner_numbers = c->corner_numbers;
+    out->slot_objects = c->slot_objects;
+    out->line_pieces = c->line_pieces;
+    choose_projection(&load, normal);
+    slot_of(&load, object_of(mesh, out->triangle));
+    for (size_t i = first; i < end; i++) add_piece(&load, &c->keys[i]);
+    number_corners(&load);
+    return true;
+}

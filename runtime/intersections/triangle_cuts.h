@@ -1,0 +1,49 @@
+/* What curves cut out of each triangle: from the pieces of all curves to the lines in one triangle's plane. */
+#pragma once
+
+#include "runtime/intersections/curves.h"
+#include "runtime/intersections/cut_triangle.h"
+#include "runtime/intersections/patches.h"
+
+/* What has been found at one moment. */
+typedef struct surface_cuts {
+    const named_surface *surface;
+    const curve_joiner *curves;
+    const patch_finder *patches;
+} surface_cuts;
+
+/* A triangle that curves cut, in the projection along an axis. */
+typedef struct loaded_cut {
+    uint32_t triangle;
+    int x, y;       /* the coordinates in which the triangle turns counter-clockwise */
+    double stretch; /* an area over that of its projection */
+    cut_triangle cut;
+    const uint32_t *slot_objects; /* slot 0 is the triangle's own */
+    const uint32_t *line_pieces;  /* per line, by its number: the piece found */
+} loaded_cut;
+
+/* The memory of all calls, and the pieces sorted by their triangles. */
+typedef struct triangle_cuts {
+    cscd_context *context;
+    curve_key *keys, *spare_keys; /* number: a triangle; end: 2 piece, plus 1 if the triangle is its b */
+    size_t key_count, key_capacity;
+    cut_line *lines;
+    cut_border *borders;
+    int32_t *corner_numbers;
+    uint32_t *slot_objects, *line_pieces;
+    size_t cut_capacity; /* of these five; of corner_numbers three times as much */
+    cut_memory memory;
+} triangle_cuts;
+
+void triangle_cuts_free(triangle_cuts *c);
+
+/* Sorts the pieces that were found. False: no memory, here and below. */
+bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves);
+
+/* The keys of a triangle: from *first to before the returned one. */
+size_t triangle_cuts_of(const triangle_cuts *c, uint32_t triangle, size_t *first);
+
+/* Loads the triangle of these keys, which lives until the next one is loaded. A triangle without area has stretch 0, and
+ * nothing else of it is set. */
+bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t first, size_t end,
+                        loaded_cut *out);
