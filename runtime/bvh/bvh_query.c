@@ -90,3 +90,67 @@ void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data,
         }
     }
 }
+
+/* ---- nearest ------------------------------------------------------------------------------------------- */
+
+typedef struct near_place {
+    double squared; /* no triangle below is nearer */
+    int level;
+    uint32_t block;
+} near_place;
+
+/* Squared distances of a point, framed with rounding as a box, from the children of a block, in units of the mesh and
+ * rounded down. */
+static void measure_children(const bvh *f, const near_place *at, const framed_query *q, double out[LANES]) {
+    const float *bounds = f->levels[at->level].bounds + (size_t)at->block * (size_t)f->axis_count * 2 * LANES;
+    float sums[LANES] = {0.0f};
+    for (int k = 0; k < BOX_AXES; k++) {
+        const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
+        for (uint32_t lane = 0; lane < LANES; lane++) {
+            float below = lows[lane] - q->high[k], above = q->low[k] - highs[lane];
+            float gap = below > above ? below : above;
+            sums[lane] += gap > 0.0f ? gap * gap : 0.0f;
+        }
+    }
+    for (uint32_t lane = 0; lane < LANES; lane++)
+        out[lane] = (double)sums[lane] * (1.0 - 0x1p-20) / f->scale / f->scale;
+}
+
+/* Puts the children that may be near on the stack, the nearest one last. */
+static int push_children(const bvh *f, const near_place *at, const framed_query *q, double squared,
+                         near_place *stack, int count) {
+    double distances[LANES];
+    uint32_t first = f->levels[at->level].first_children[at->block];
+    uint32_t used = f->levels[at->level].flags[at->block].used;
+    int begin = count;
+    measure_children(f, at, q, distances);
+    for (uint32_t lane = 0; (used >> lane & 1) != 0; lane++) {
+        if (!(distances[lane] < squared)) continue;
+        int i = count++;
+        for (; i > begin && stack[i - 1].squared < distances[lane]; i--) stack[i] = stack[i - 1];
+        stack[i] = (near_place){distances[lane], at->level - 1, first + lane};
+    }
+    return count;
+}
+
+void bvh_visit_near(const bvh *f, const double point[3], double *squared,
+                    void (*visit)(void *data, uint32_t triangle), void *data) {
+    if (f->tree_count == 0) return;
+    const query_box box = {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
+    near_place stack[QUERY_STACK];
+    int count = 0;
+    framed_query above = frame_box(f, &f->trees[0], &box), q = above;
+    stack[count++] = (near_place){0.0, f->tree_count == 1 ? f->tree_level - 1 : f->level_count - 1, 0};
+    while (count > 0) {
+        near_place at = stack[--count];
+        if (!(at.squared < *squared)) continue;
+        if (at.level == f->tree_level - 1) q = frame_box(f, &f->trees[at.block], &box);
+        if (at.level >= 0) {
+            count = push_children(f, &at, at.level >= f->tree_level ? &above : &q, *squared, stack, count);
+            continue;
+        }
+        const bvh_leaf *leaf = &f->leaves[at.block];
+        for (uint32_t used = f->leaf_flags[at.block].used, lane = 0; (used >> lane & 1) != 0; lane++)
+            visit(data, leaf->triangles[lane]);
+    }
+}

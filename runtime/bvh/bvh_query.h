@@ -12,3 +12,8 @@ typedef struct query_box {
 /* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. */
 void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data, uint32_t triangle),
                    void *data);
+
+/* Calls visit for each triangle whose bounding volume may be nearer to the point than the root of *squared, nearer blocks
+ * first; visit may lower *squared. INFINITY: any distance. */
+void bvh_visit_near(const bvh *f, const double point[3], double *squared,
+                    void (*visit)(void *data, uint32_t triangle), void *data);

@@ -1,8 +1,8 @@
-/* The area of the parts of a triangle that curves cut, by how often objects wind around them.
+/* The parts of a triangle that curves cut, with how often objects wind around them.
  *
- * Slabs from left to right: between two neighbouring ends or crossings of lines, the cross-section of every part is a
- * linear function, so its value in the middle times the width is the area. In a cross-section the numbers are known at
- * the lower end, by the corner before it and what the border passes through since, and change from line to line. */
+ * Slabs from left to right: between two neighbouring ends or crossings of lines the order of the lines is that in the
+ * middle. In a cross-section the numbers are known at the lower end, by the corner before it and what the border passes
+ * through since, and change from line to line. */
 #include "runtime/intersections/cut_triangle.h"
 
 #include "src/core/sort.h"
@@ -55,7 +55,8 @@ typedef struct slab_sweep {
     cscd_context *context;
     const cut_triangle *triangle;
     cut_memory *memory;
-    cut_share *shares;
+    void (*take)(void *data, const cut_part *part);
+    void *data;
     size_t next_line, active_count, crossing_count;
 } slab_sweep;
 
@@ -139,20 +140,25 @@ static bool find_crossings(slab_sweep *s, double begin, double end) {
 
 /* ---- a cross-section ----------------------------------------------------------------------------------- */
 
-/* The border of a triangle that turns counter-clockwise runs to the right below, and to the left above. */
-static double border_height(const cut_triangle *t, double x, bool below, uint32_t *edge, double *share) {
-    double height = 0.0;
+/* The edge of the border at x: it runs to the right below, since the triangle turns counter-clockwise, and to the left
+ * above. */
+static uint32_t border_at(const cut_triangle *t, double x, bool below) {
+    uint32_t edge = 0;
     for (uint32_t i = 0; i < 3; i++) {
-        const double *from = t->corners[i], *to = t->corners[(i + 1) % 3];
-        bool to_the_right = from[0] < to[0];
-        if (to_the_right != below || from[0] == to[0]) continue;
-        double at = (x - from[0]) / (to[0] - from[0]);
-        if (at < 0.0 || at > 1.0) continue;
-        *edge = i;
-        *share = at;
-        height = from[1] + at * (to[1] - from[1]);
+        double from = t->corners[i][0], to = t->corners[(i + 1) % 3][0];
+        if ((from < to) == below && from != to && (from <= x) == below && (x <= to) == below) edge = i;
     }
-    return height;
+    return edge;
+}
+
+static double border_share(const cut_triangle *t, uint32_t edge, double x) {
+    double from = t->corners[edge][0], to = t->corners[(edge + 1) % 3][0];
+    return from != to ? (x - from) / (to - from) : 0.5;
+}
+
+static double border_height(const cut_triangle *t, uint32_t edge, double x) {
+    double from = t->corners[edge][1], to = t->corners[(edge + 1) % 3][1];
+    return from + border_share(t, edge, x) * (to - from);
 }
 
 /* The numbers at a place on the border. */
@@ -164,35 +170,34 @@ static void begin_numbers(const cut_triangle *t, uint32_t edge, double share, in
     }
 }
 
-static void add_part(const cut_triangle *t, const int32_t *numbers, double area, cut_share *shares) {
-    for (uint32_t slot = 0; slot < t->slot_count; slot++) {
-        if (numbers[slot] >= 1) shares[slot].buried += area;
-        if (numbers[slot] >= 1 && numbers[0] == 0) shares[slot].buried_outside += area;
-        if (numbers[slot] == 1) shares[slot].once += area;
-        if (numbers[slot] < 0) shares[slot].inverted += area;
-    }
+/* Gives the part between what was below and what is above now; heights are those at the slab's ends. */
+static void give_part(const slab_sweep *s, cut_part *part, const double above[2]) {
+    double gap = (above[0] - part->low[0]) + (above[1] - part->low[1]);
+    if (!(gap > 0.0)) return;
+    for (int i = 0; i < 2; i++) part->high[i] = above[i] > part->low[i] ? above[i] : part->low[i];
+    s->take(s->data, part);
+    for (int i = 0; i < 2; i++) part->low[i] = part->high[i];
 }
 
-/* Adds the slab of this width whose middle is at x; its lines do not cross. */
-static void measure_slab(slab_sweep *s, double x, double width) {
+/* Divides a slab whose lines do not cross. */
+static void divide_slab(slab_sweep *s, double begin, double end) {
     const cut_triangle *t = s->triangle;
-    int32_t *numbers = s->memory->numbers;
-    uint32_t edge = 0, top_edge = 0;
-    double share = 0.0, top_share = 0.0, at = border_height(t, x, true, &edge, &share);
-    double top = border_height(t, x, false, &top_edge, &top_share);
-    begin_numbers(t, edge, share, numbers);
-    order_active(s, x, x);
+    double middle = begin + 0.5 * (end - begin);
+    uint32_t bottom = border_at(t, middle, true), top = border_at(t, middle, false);
+    const double last[2] = {border_height(t, top, begin), border_height(t, top, end)};
+    cut_part part = {.x = {begin, end},
+                     .low = {border_height(t, bottom, begin), border_height(t, bottom, end)},
+                     .numbers = s->memory->numbers};
+    begin_numbers(t, bottom, border_share(t, bottom, middle), s->memory->numbers);
+    order_active(s, middle, middle);
     for (size_t i = 0; i < s->active_count; i++) {
         const cut_line *line = active_line(s, i);
-        double height = height_at(line, x);
-        if (height > top) height = top;
-        if (height > at) {
-            add_part(t, numbers, (height - at) * width, s->shares);
-            at = height;
-        }
-        numbers[line->slot] += line->from[0] < line->to[0] ? line->rise : -line->rise;
+        double above[2] = {height_at(line, begin), height_at(line, end)};
+        for (int k = 0; k < 2; k++) above[k] = above[k] < last[k] ? above[k] : last[k];
+        give_part(s, &part, above);
+        s->memory->numbers[line->slot] += line->from[0] < line->to[0] ? line->rise : -line->rise;
     }
-    if (top > at) add_part(t, numbers, (top - at) * width, s->shares);
+    give_part(s, &part, last);
 }
 
 /* ---- all of it ----------------------------------------------------------------------------------------- */
@@ -208,8 +213,9 @@ static size_t list_breaks(const cut_triangle *t, cut_memory *m) {
     return count;
 }
 
-bool cut_triangle_measure(cscd_context *context, cut_triangle *t, cut_memory *m, cut_share *shares) {
-    slab_sweep s = {context, t, m, shares, 0, 0, 0};
+bool cut_triangle_divide(cscd_context *context, cut_triangle *t, cut_memory *m,
+                         void (*take)(void *data, const cut_part *part), void *data) {
+    slab_sweep s = {.context = context, .triangle = t, .memory = m, .take = take, .data = data};
     for (size_t i = 0; i < t->line_count; i++) {
         cut_line *line = &t->lines[i];
         bool forward = line->from[0] < line->to[0];
@@ -226,7 +232,7 @@ bool cut_triangle_measure(cscd_context *context, cut_triangle *t, cut_memory *m,
         for (size_t k = 0; k <= s.crossing_count; k++) {
             double from = k == 0 ? begin : m->crossings[k - 1];
             double to = k == s.crossing_count ? end : m->crossings[k];
-            if (from < to) measure_slab(&s, from + 0.5 * (to - from), to - from);
+            if (from < to) divide_slab(&s, from, to);
         }
     }
     return true;

@@ -1,4 +1,4 @@
-/* The area of the parts of a triangle that curves cut, by how often objects wind around them. */
+/* The parts of a triangle that curves cut, with how often objects wind around them. */
 #pragma once
 
 #include "src/core/context.h"
@@ -20,13 +20,16 @@ typedef struct cut_border {
     int jump; /* what the object's number increases by, going along the edge */
 } cut_border;
 
-/* What is measured of one object. */
-typedef struct cut_share {
-    double buried;         /* its number is 1 or more */
-    double buried_outside; /* that, and the number of the triangle's own object is 0 */
-    double once;           /* its number is 1 */
-    double inverted;       /* its number is below 0 */
-} cut_share;
+/* A part of the triangle on which all numbers are the same, between two lines along y: at x[i] it reaches from low[i] to
+ * high[i]. */
+typedef struct cut_part {
+    double x[2], low[2], high[2];
+    const int32_t *numbers; /* per slot */
+} cut_part;
+
+static inline double cut_part_area(const cut_part *p) {
+    return 0.5 * (p->x[1] - p->x[0]) * ((p->high[0] - p->low[0]) + (p->high[1] - p->low[1]));
+}
 
 /* Corners turn counter-clockwise. Slot 0 is the triangle's own object, whose number holds on the side of the normal. */
 typedef struct cut_triangle {
@@ -54,5 +57,6 @@ typedef struct cut_memory {
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots);
 void cut_memory_free(cscd_context *context, cut_memory *m);
 
-/* Adds the areas to shares, one per slot, up to rounding. Lines may be put in another order. False: no memory. */
-bool cut_triangle_measure(cscd_context *context, cut_triangle *t, cut_memory *m, cut_share *shares);
+/* Calls take for each part, up to rounding. Lines may be put in another order. False: no memory. */
+bool cut_triangle_divide(cscd_context *context, cut_triangle *t, cut_memory *m,
+                         void (*take)(void *data, const cut_part *part), void *data);

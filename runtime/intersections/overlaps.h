@@ -10,6 +10,14 @@ typedef struct overlap_share {
     double flux; /* three times the volume that is behind the surface as seen from the origin */
 } overlap_share;
 
+/* What is measured of one object in a triangle. */
+typedef struct cut_share {
+    double buried;         /* its number is 1 or more */
+    double buried_outside; /* that, and the number of the triangle's own object is 0 */
+    double once;           /* its number is 1 */
+    double inverted;       /* its number is below 0 */
+} cut_share;
+
 /* The memory of all calls; begins with the context, also of cuts, and nothing else set. */
 typedef struct overlap_finder {
     cscd_context *context;
