@@ -13,7 +13,7 @@ static array_list list_of_keys(triangle_cuts *c, size_t count) {
 }
 
 static array_list list_of_cuts(triangle_cuts *c, size_t count) {
-    return (array_list){{ARRAY(c->lines, count), ARRAY(c->borders, count),
+    return (array_list){{ARRAY(c->lines, count), ARRAY(c->borders, count), ARRAY(c->spare_borders, count),
                          ARRAY(c->corner_numbers, 3 * count), ARRAY(c->slot_objects, count),
                          ARRAY(c->line_pieces, count)}};
 }

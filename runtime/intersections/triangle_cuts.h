@@ -28,10 +28,10 @@ typedef struct triangle_cuts {
     curve_key *keys, *spare_keys; /* number: a triangle; end: 2 piece, plus 1 if the triangle is its b */
     size_t key_count, key_capacity;
     cut_line *lines;
-    cut_border *borders;
+    cut_border *borders, *spare_borders; /* spare ones are for whoever loads */
     int32_t *corner_numbers;
     uint32_t *slot_objects, *line_pieces;
-    size_t cut_capacity; /* of these five; of corner_numbers three times as much */
+    size_t cut_capacity; /* of these six; of corner_numbers three times as much */
     cut_memory memory;
 } triangle_cuts;
 

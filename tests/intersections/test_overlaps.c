@@ -15,24 +15,9 @@ enum { LINES = 200, ROUNDS = 8 };
 
 static body_rig rig; /* large; one test at a time */
 
-static void add_box(const double low[3], const double size[3]) {
-    scene *s = &rig.all;
-    uint32_t first = s->vertex_count;
-    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-    for (uint32_t v = 0; v < 8; v++, s->vertex_count++) {
-        for (uint32_t k = 0; k < 3; k++) s->x0[(first + v) * 3 + k] = low[k] + (v >> k & 1) * size[k];
-    }
-    for (int i = 0; i < 6; i++) {
-        const uint32_t *q = quads[i], corners[6] = {q[0], q[1], q[2], q[0], q[2], q[3]};
-        for (int k = 0; k < 6; k++) s->triangles[s->triangle_count * 3 + (uint32_t)k] = first + corners[k];
-        s->triangle_count += 2;
-    }
-}
-
 static void add_cube(double x, double y, double z, double size) {
     const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
-    add_box(low, sizes);
+    body_rig_add_box(&rig, low, sizes);
     body_rig_end_body(&rig);
 }
 
@@ -61,9 +46,9 @@ static void bars_across_each_other(void **state) {
     const double low[3] = {-3, 0.1, 0.2}, size[3] = {6, 0.5, 0.25}, across[3] = {0.3, -2, 0.1},
                  other[3] = {0.5, 5, 2};
     body_rig_begin(&rig);
-    add_box(low, size);
+    body_rig_add_box(&rig, low, size);
     body_rig_end_body(&rig);
-    add_box(across, other);
+    body_rig_add_box(&rig, across, other);
     body_rig_end_body(&rig);
     body_rig_find(&rig);
     expect_overlap(0, 1, 0.5 * 2 * (0.5 + 0.25), 2 * 0.5 * 0.25, 0.5 * 0.5 * 0.25);
@@ -99,8 +84,8 @@ static void a_cavity_is_outside(void **state) {
     (void)state;
     const double low[3] = {1, 1, 1}, size[3] = {2, 2, 2}, outer[3] = {0, 0, 0}, all[3] = {4, 4, 4};
     body_rig_begin(&rig);
-    add_box(outer, all);
-    add_box(low, size);
+    body_rig_add_box(&rig, outer, all);
+    body_rig_add_box(&rig, low, size);
     turn_inside_out(12, 24);
     body_rig_end_body(&rig);
     add_cube(1.5, 1.5, 1.5, 1);
@@ -116,7 +101,7 @@ static void a_body_that_is_inside_out(void **state) {
     (void)state;
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2};
     body_rig_begin(&rig);
-    add_box(low, size);
+    body_rig_add_box(&rig, low, size);
     turn_inside_out(0, 12);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
@@ -131,8 +116,8 @@ static void two_bodies_of_one_object(void **state) {
     (void)state;
     const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 1, 1};
     body_rig_begin(&rig);
-    add_box(low, size);
-    add_box(second, size);
+    body_rig_add_box(&rig, low, size);
+    body_rig_add_box(&rig, second, size);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
     body_rig_find(&rig);

@@ -27,6 +27,21 @@ void body_rig_end_body(body_rig *r) {
         body->triangles[i] = r->all.triangles[body->first_triangle * 3 + i] - body->first_vertex;
 }
 
+void body_rig_add_box(body_rig *r, const double low[3], const double size[3]) {
+    scene *s = &r->all;
+    uint32_t first = s->vertex_count;
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (uint32_t v = 0; v < 8; v++, s->vertex_count++) {
+        for (uint32_t k = 0; k < 3; k++) s->x0[(first + v) * 3 + k] = low[k] + (v >> k & 1) * size[k];
+    }
+    for (int i = 0; i < 6; i++) {
+        const uint32_t *q = quads[i], corners[6] = {q[0], q[1], q[2], q[0], q[2], q[3]};
+        for (uint32_t k = 0; k < 6; k++) s->triangles[s->triangle_count * 3 + k] = first + corners[k];
+        s->triangle_count += 2;
+    }
+}
+
 static size_t list_pairs(body_rig *r) {
     size_t count = 0, capacity = 1024;
     r->pairs = malloc(capacity * sizeof *r->pairs);
@@ -60,10 +75,14 @@ void body_rig_find(body_rig *r) {
     r->overlap_finder = (overlap_finder){.context = r->context, .cuts = {.context = r->context}};
     surface_cuts found = {&surface, &r->joiner, &r->finder};
     assert_int_equal(overlap_finder_run(&r->overlap_finder, &found, &r->overlaps), CSCD_OK);
+    r->depth_finder = (depth_finder){.context = r->context, .outer = {.context = r->context}};
+    r->depth_finder.outer.cuts.context = r->context;
+    assert_int_equal(depth_finder_run(&r->depth_finder, &found, &r->trees, &r->depths), CSCD_OK);
 }
 
 void body_rig_free(body_rig *r) {
     free(r->pairs);
+    depth_finder_free(&r->depth_finder);
     overlap_finder_free(&r->overlap_finder);
     patch_finder_free(&r->finder);
     curve_joiner_free(&r->joiner);

@@ -1,6 +1,7 @@
 /* Some bodies, one object each, and what is found where they intersect. */
 #pragma once
 
+#include "runtime/intersections/depths.h"
 #include "runtime/intersections/overlaps.h"
 #include "tests/support/scenes.h"
 
@@ -22,14 +23,19 @@ typedef struct body_rig {
     curve_joiner joiner;
     patch_finder finder;
     overlap_finder overlap_finder;
+    depth_finder depth_finder;
     cscd_intersection *pairs;
     cscd_curves curves;
     cscd_patches patches;
     cscd_overlaps overlaps;
+    cscd_depths depths;
 } body_rig;
 
 /* What was added to rig->all since the last call, or the beginning, is a body. */
 void body_rig_end_body(body_rig *r);
+
+/* Adds an axis-aligned box to what will be a body. */
+void body_rig_add_box(body_rig *r, const double low[3], const double size[3]);
 
 /* Begins without a body; then finds everything, and frees it. */
 void body_rig_begin(body_rig *r);

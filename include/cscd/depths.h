@@ -1,0 +1,52 @@
+/* Depths: how deep what is buried lies below the surface of the object that contains it. Part of cscd/cscd.h, which says
+ * what holds for every function. Theory: docs/theory/curves.md. */
+#ifndef CSCD_DEPTHS_API_H
+#define CSCD_DEPTHS_API_H
+
+#include <cscd/patches.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A point of the mesh that an object contains, and the nearest point of that object's outer surface, which is all of its
+ * closed components but what the object contains itself. So the surface under the intruder counts: a ball that is sunk
+ * 0.1 into a slab has depth 0.1. Where a vertex is buried in its own object, the nearest point may lie on the vertex's own
+ * limb. The depth is not how far the bodies have to move until they are apart, which is more. It never grows. */
+typedef struct cscd_depth {
+    uint32_t vertex;   /* UINT32_MAX: the point is on an edge */
+    uint32_t edge;     /* UINT32_MAX: the point is a vertex */
+    uint32_t patch;    /* of the vertex; UINT32_MAX: of an edge, or of a vertex at which curves end */
+    uint32_t object;   /* which contains the point */
+    uint32_t triangle; /* of that object: has the nearest point */
+    uint32_t reserved; /* 0 */
+    double s;          /* on the edge (e0, e1) the point is (1-s) e0 + s e1 */
+    double depth;      /* up to rounding */
+    double x[3];       /* the point */
+    double out
+        [3]; /* a unit vector: x + depth * out is the nearest point. Where the depth is 0, the normal there */
+} cscd_depth;
+
+/* The deepest vertex of a patch in one object. It never grows. */
+typedef struct cscd_patch_depth {
+    uint32_t patch, object;
+    size_t deepest; /* in the list of all depths */
+} cscd_patch_depth;
+
+/* All vertices that an object contains, sorted by (vertex, object), each once for each of these objects; then, sorted by
+ * (edge, object), the deepest points of edges that an object contains between two of its curves, so that none of the
+ * edge's vertices tells of it. These are the deepest to a millionth of the edge. The lists belong to the detector and
+ * live until its next call. */
+typedef struct cscd_depths {
+    const cscd_depth *items;
+    size_t count;
+    size_t vertex_count;             /* so many of them are of vertices */
+    const cscd_patch_depth *patches; /* sorted by (patch, object) */
+    size_t patch_count;
+} cscd_depths;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,300 @@
+/* How deep what is buried lies below the outer surfaces of objects. */
+#include "runtime/intersections/depths.h"
+
+#include "runtime/ccd/closest.h"
+#include "src/core/sort.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+_Static_assert(sizeof(depth_question) <= sizeof(cscd_depth), "questions are sorted in the room of depths");
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+static array_list list_of_depths(depth_finder *d, size_t count) {
+    return (array_list){{ARRAY(d->depths, count), ARRAY(d->keys, count), ARRAY(d->spare_keys, count),
+                         ARRAY(d->patches, count)}};
+}
+
+void depth_finder_free(depth_finder *d) {
+    if (d->context == NULL) return;
+    cscd_context *context = d->context;
+    outer_surface_free(&d->outer);
+    context_free_all(context, list_of_depths(d, 0));
+    context_free(context, d->questions);
+    *d = (depth_finder){.context = context, .outer = d->outer};
+}
+
+/* ---- questions ----------------------------------------------------------------------------------------- */
+
+typedef struct depth_work {
+    depth_finder *finder;
+    const surface_cuts *found;
+    const bvh *bvh;
+} depth_work;
+
+static bool ask(depth_finder *d, depth_question question) {
+    if (d->question_count == d->question_capacity) {
+        size_t larger = d->question_capacity == 0 ? 64 : 2 * d->question_capacity;
+        depth_question *grown =
+            context_grow(d->context, d->questions, d->question_count, larger, sizeof *grown);
+        if (grown == NULL) return false;
+        d->questions = grown;
+        d->question_capacity = larger;
+    }
+    d->questions[d->question_count++] = question;
+    return true;
+}
+
+/* The patch of a corner of one of the vertex's triangles. */
+static uint32_t patch_in_star(const depth_work *work, uint32_t vertex, uint32_t triangle) {
+    const uint32_t *corners = work->found->surface->mesh->triangles[triangle];
+    uint32_t corner = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+    return work->found->patches->corner_patches[(size_t)triangle * 3 + corner];
+}
+
+/* At a vertex at which curves end, the own object's number is the least around it, since it differs from triangle to
+ * triangle; those of other objects do not. */
+static bool own_contains(const depth_work *work, uint32_t vertex) {
+    const cscd_mesh *mesh = work->found->surface->mesh;
+    for (uint32_t i = mesh->vertex_star_offsets[vertex]; i < mesh->vertex_star_offsets[vertex + 1]; i++) {
+        uint32_t patch = patch_in_star(work, vertex, mesh->vertex_stars[i]);
+        if (work->found->patches->patches[patch].own < 1) return false;
+    }
+    return true;
+}
+
+static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
+    const cscd_mesh *mesh = work->found->surface->mesh;
+    const patch_finder *p = work->found->patches;
+    if (vertex_has_no_triangle(mesh, vertex)) return true;
+    uint32_t patch = p->vertex_patches[vertex];
+    const cscd_patch *of =
+        &p->patches[patch != UINT32_MAX
+                        ? patch
+                        : patch_in_star(work, vertex, mesh->vertex_stars[mesh->vertex_star_offsets[vertex]])];
+    for (uint32_t i = 0; i < of->winding_count; i++) {
+        cscd_winding w = p->windings[of->first_winding + i];
+        if (w.number < 1) continue;
+        if (patch == UINT32_MAX && w.object == of->object && !own_contains(work, vertex)) continue;
+        depth_question question = {vertex, UINT32_MAX, patch, w.object, {0.0, 0.0}};
+        if (!ask(work->finder, question)) return false;
+    }
+    return true;
+}
+
+/* Puts the passages of one object through an edge in order, and returns their number. They are few. */
+static size_t order_borders(const loaded_cut *cut, uint32_t edge, uint32_t slot, cut_border *out) {
+    size_t count = 0;
+    for (size_t i = 0; i < cut->cut.border_count; i++) {
+        cut_border b = cut->cut.borders[i];
+        if (b.edge != edge || b.slot != slot) continue;
+        size_t j = count++;
+        for (; j > 0 && out[j - 1].s > b.s; j--) out[j] = out[j - 1];
+        out[j] = b;
+    }
+    return count;
+}
+
+/* Asks of the parts of an edge that an object contains between two of its passages. */
+static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t i, uint32_t slot,
+                        cut_border *borders) {
+    const cscd_mesh *mesh = work->found->surface->mesh;
+    uint32_t edge = mesh->triangle_edges[cut->triangle][i];
+    bool along = mesh->edges[edge][0] == mesh->triangles[cut->triangle][i];
+    size_t count = order_borders(cut, i, slot, borders);
+    int32_t number = cut->cut.corner_numbers[(size_t)i * cut->cut.slot_count + slot];
+    for (size_t k = 0; k + 1 < count; k++) {
+        double s = borders[k].s, next = borders[k + 1].s;
+        number += borders[k].jump;
+        if (number < 1 || !(s < next)) continue;
+        depth_question question = {UINT32_MAX,
+                                   edge,
+                                   UINT32_MAX,
+                                   cut->slot_objects[slot],
+                                   {along ? s : 1.0 - next, along ? next : 1.0 - s}};
+        if (!ask(work->finder, question)) return false;
+    }
+    return true;
+}
+
+/* An edge is asked of in the first of its triangles. */
+static bool ask_of_edges(const depth_work *work) {
+    triangle_cuts *c = &work->finder->outer.cuts;
+    const cscd_mesh *mesh = work->found->surface->mesh;
+    for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
+        loaded_cut cut;
+        while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
+        if (!triangle_cuts_load(c, work->found, begin, end, &cut)) return false;
+        if (cut.stretch == 0.0) continue;
+        for (uint32_t i = 0; i < 3; i++) {
+            uint32_t edge = mesh->triangle_edges[cut.triangle][i];
+            if (mesh->edge_stars[mesh->edge_star_offsets[edge]] != cut.triangle) continue;
+            for (uint32_t slot = 0; slot < cut.cut.slot_count; slot++) {
+                if (!ask_of_edge(work, &cut, i, slot, c->spare_borders)) return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* ---- answers ------------------------------------------------------------------------------------------- */
+
+/* The normal at the nearest point, for a point that is on the surface. */
+static void find_normal(const depth_work *work, uint32_t triangle, double out[3]) {
+    const named_surface *s = work->found->surface;
+    surface_normal(s->mesh, s->positions, triangle, out);
+    double norm = surface_norm(out);
+    for (int k = 0; k < 3; k++) out[k] = norm > 0.0 ? out[k] / norm : 0.0;
+}
+
+static void set_answer(const depth_work *work, const outer_point *nearest, cscd_depth *out) {
+    out->triangle = nearest->triangle;
+    if (nearest->triangle == UINT32_MAX) return; /* no outer surface: the object is all within itself */
+    for (int k = 0; k < 3; k++) out->out[k] = nearest->x[k] - out->x[k];
+    out->depth = surface_norm(out->out);
+    if (out->depth > 0.0)
+        for (int k = 0; k < 3; k++) out->out[k] /= out->depth;
+    else
+        find_normal(work, nearest->triangle, out->out);
+}
+
+/* A place on an edge. */
+typedef struct edge_place {
+    double s, x[3], distance;
+    outer_point nearest;
+} edge_place;
+
+typedef struct edge_search {
+    const depth_work *work;
+    const depth_question *question;
+    const double *ends[2];
+    double length;
+} edge_search;
+
+static edge_place place_at(const edge_search *e, double s) {
+    edge_place at = {.s = s};
+    for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
+    at.nearest = outer_surface_nearest(&e->work->finder->outer, e->work->found, e->work->bvh,
+                                       e->question->object, at.x);
+    at.distance = sqrt(at.nearest.squared);
+    return at;
+}
+
+static double distance_to(const double x[3], const outer_part *part) {
+    double u, v;
+    return sqrt(closest_point_triangle(x, part->corners[0], part->corners[1], part->corners[2], &u, &v));
+}
+
+/* No point in between is deeper. The depth changes by no more than the way; and it is no more than the distance from one
+ * convex part, which is largest at an end. */
+static double bound_between(const edge_search *e, const edge_place *a, const edge_place *b) {
+    double by_way = 0.5 * (a->distance + b->distance + (b->s - a->s) * e->length);
+    double by_first = fmax(a->distance, distance_to(b->x, &a->nearest.part));
+    double by_last = fmax(b->distance, distance_to(a->x, &b->nearest.part));
+    return fmin(by_way, fmin(by_first, by_last));
+}
+
+enum { HALVINGS_MAX = 64 };
+
+/* Halves what may be deeper by more than a millionth of the edge. */
+static edge_place find_deepest(const edge_search *e) {
+    edge_place ends[HALVINGS_MAX + 1], at = place_at(e, e->question->s[0]), deepest = at;
+    int count = 0;
+    ends[count++] = place_at(e, e->question->s[1]);
+    if (ends[0].distance > deepest.distance) deepest = ends[0];
+    while (count > 0) { /* from at to the last one of ends */
+        edge_place *end = &ends[count - 1];
+        bool halve = count < HALVINGS_MAX && bound_between(e, &at, end) > deepest.distance + 1e-6 * e->length;
+        if (!halve) {
+            at = *end;
+            count--;
+            continue;
+        }
+        ends[count] = place_at(e, at.s + 0.5 * (end->s - at.s));
+        if (ends[count].distance > deepest.distance) deepest = ends[count];
+        count++;
+    }
+    return deepest;
+}
+
+static void answer_edge(const depth_work *work, const depth_question *q, cscd_depth *out) {
+    const named_surface *s = work->found->surface;
+    const uint32_t *v = s->mesh->edges[q->edge];
+    edge_search e = {work, q, {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3}, 0.0};
+    e.length = surface_edge_length(s->mesh, s->positions, q->edge);
+    edge_place deepest = find_deepest(&e);
+    out->s = deepest.s;
+    memcpy(out->x, deepest.x, sizeof out->x);
+    set_answer(work, &deepest.nearest, out);
+}
+
+enum { QUESTIONS_A_TASK = 16 };
+
+static void answer_some(void *data, uint32_t task) {
+    const depth_work *work = data;
+    const depth_finder *d = work->finder;
+    size_t begin = (size_t)task * QUESTIONS_A_TASK, end = begin + QUESTIONS_A_TASK;
+    for (size_t i = begin; i < end && i < d->question_count; i++) {
+        const depth_question *q = &d->questions[i];
+        cscd_depth *out = &d->depths[i];
+        *out = (cscd_depth){.vertex = q->vertex, .edge = q->edge, .patch = q->patch, .object = q->object};
+        if (q->edge != UINT32_MAX) {
+            answer_edge(work, q, out);
+            continue;
+        }
+        memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
+        outer_point nearest = outer_surface_nearest(&d->outer, work->found, work->bvh, q->object, out->x);
+        set_answer(work, &nearest, out);
+    }
+}
+
+/* ---- patches ------------------------------------------------------------------------------------------- */
+
+/* Sorts the vertices with a patch by (patch, object), and keeps the deepest of each. */
+static size_t list_patches(depth_finder *d, size_t vertex_count) {
+    size_t keys = 0, count = 0;
+    for (size_t i = 0; i < vertex_count; i++) {
+        const cscd_depth *at = &d->depths[i];
+        if (at->patch != UINT32_MAX) d->keys[keys++] = (depth_key){(uint64_t)at->patch << 32 | at->object, i};
+    }
+    sort_by_number(d->keys, d->spare_keys, keys, sizeof *d->keys);
+    for (size_t i = 0; i < keys; i++) {
+        const cscd_depth *at = &d->depths[d->keys[i].item];
+        if (i == 0 || d->keys[i].number != d->keys[i - 1].number)
+            d->patches[count++] = (cscd_patch_depth){at->patch, at->object, d->keys[i].item};
+        else if (at->depth > d->depths[d->patches[count - 1].deepest].depth)
+            d->patches[count - 1].deepest = d->keys[i].item;
+    }
+    return count;
+}
+
+/* Edges come in the order of the triangles that asked. */
+static int compare_questions(const void *a, const void *b) {
+    const depth_question *p = a, *q = b;
+    if (p->edge != q->edge) return p->edge < q->edge ? -1 : 1;
+    if (p->object != q->object) return p->object < q->object ? -1 : 1;
+    return (p->s[0] > q->s[0]) - (p->s[0] < q->s[0]);
+}
+
+cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const bvh *f, cscd_depths *out) {
+    depth_work work = {d, found, f};
+    d->question_count = 0;
+    if (!outer_surface_find(&d->outer, found)) return CSCD_OUT_OF_MEMORY;
+    for (uint32_t v = 0; v < found->surface->mesh->vertex_count; v++) {
+        if (!ask_of_vertex(&work, v)) return CSCD_OUT_OF_MEMORY;
+    }
+    size_t vertices = d->question_count;
+    if (!ask_of_edges(&work)) return CSCD_OUT_OF_MEMORY;
+    size_t count = d->question_count, larger = 2 * count;
+    if (!context_renew_all(d->context, list_of_depths(d, larger), &d->depth_capacity, count, larger))
+        return CSCD_OUT_OF_MEMORY;
+    if (count > vertices) /* depths are not there yet, so theirs is the room for sorting */
+        sort_items(d->questions + vertices, d->depths, count - vertices, sizeof *d->questions,
+                   compare_questions);
+    parallel_run(d->context->threads, (uint32_t)((count + QUESTIONS_A_TASK - 1) / QUESTIONS_A_TASK),
+                 answer_some, &work);
+    size_t patches = list_patches(d, vertices);
+    *out = (cscd_depths){d->depths, count, vertices, d->patches, patches};
+    return context_progress_status(d->context);
+}

@@ -1,0 +1,167 @@
+/* The outer surfaces of objects: what they do not bury in themselves; and the nearest point of one. */
+#include "runtime/intersections/outer_surface.h"
+
+#include "runtime/ccd/closest.h"
+#include "src/mesh/surface.h"
+
+#include <string.h>
+
+/* ---- memory -------------------------------------------------------------------------------------------- */
+
+static array_list list_of_cuts(outer_surface *o, size_t count) {
+    return (array_list){{ARRAY(o->cut_triangles, count), ARRAY(o->part_begins, count + 1)}};
+}
+
+void outer_surface_free(outer_surface *o) {
+    if (o->context == NULL) return;
+    triangle_cuts_free(&o->cuts);
+    context_free_all(o->context, list_of_cuts(o, 0));
+    context_free(o->context, o->parts);
+    *o = (outer_surface){.context = o->context, .cuts = {.context = o->context}};
+}
+
+/* ---- parts --------------------------------------------------------------------------------------------- */
+
+/* A triangle whose parts are taken. */
+typedef struct part_taker {
+    outer_surface *outer;
+    const loaded_cut *cut;
+    double normal[3], corner[3];
+    bool out_of_memory;
+} part_taker;
+
+static bool add_part(outer_surface *o, const outer_part *part) {
+    if (o->part_count == o->part_capacity) {
+        size_t larger = o->part_capacity == 0 ? 64 : 2 * o->part_capacity;
+        outer_part *grown = context_grow(o->context, o->parts, o->part_count, larger, sizeof *grown);
+        if (grown == NULL) return false;
+        o->parts = grown;
+        o->part_capacity = larger;
+    }
+    o->parts[o->part_count++] = *part;
+    return true;
+}
+
+/* The point of the triangle's plane with this projection. */
+static void lift_point(const part_taker *taker, double x, double y, double out[3]) {
+    int of_x = taker->cut->x, of_y = taker->cut->y, rest = 3 - of_x - of_y;
+    const double *n = taker->normal, *p = taker->corner;
+    out[of_x] = x;
+    out[of_y] = y;
+    out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (y - p[of_y])) / n[rest];
+}
+
+static void take_part(void *data, const cut_part *part) {
+    part_taker *taker = data;
+    outer_part half;
+    if (part->numbers[0] >= 1 || taker->out_of_memory) return;
+    for (int i = 0; i < 2; i++) { /* the two triangles of a trapezoid */
+        lift_point(taker, part->x[0], part->low[0], half.corners[0]);
+        lift_point(taker, part->x[1], part->high[1], half.corners[1]);
+        if (i == 0)
+            lift_point(taker, part->x[1], part->low[1], half.corners[2]);
+        else
+            lift_point(taker, part->x[0], part->high[0], half.corners[2]);
+        taker->out_of_memory |= !add_part(taker->outer, &half);
+    }
+}
+
+static bool own_object_cuts(const loaded_cut *cut) {
+    for (size_t i = 0; i < cut->cut.line_count; i++) {
+        if (cut->cut.lines[i].slot == 0) return true;
+    }
+    return false;
+}
+
+static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_cut *cut) {
+    part_taker taker = {.outer = o, .cut = cut};
+    const named_surface *s = found->surface;
+    if (!own_object_cuts(cut)) return true;
+    surface_normal(s->mesh, s->positions, cut->triangle, taker.normal);
+    memcpy(taker.corner, surface_corner(s->mesh, s->positions, cut->triangle, 0), sizeof taker.corner);
+    o->cut_triangles[o->cut_count] = cut->triangle;
+    o->part_begins[o->cut_count++] = o->part_count;
+    return cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker) &&
+           !taker.out_of_memory;
+}
+
+bool outer_surface_find(outer_surface *o, const surface_cuts *found) {
+    triangle_cuts *c = &o->cuts;
+    if (!triangle_cuts_sort(c, found->curves)) return false;
+    size_t larger = 2 * c->key_count;
+    if (!context_renew_all(o->context, list_of_cuts(o, larger), &o->cut_capacity, c->key_count, larger))
+        return false;
+    o->part_count = o->cut_count = 0;
+    for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
+        loaded_cut cut;
+        while (end < c->key_count && c->keys[end].number == c->keys[begin].number) end++;
+        if (!triangle_cuts_load(c, found, begin, end, &cut)) return false;
+        if (cut.stretch > 0.0 && !divide_triangle(o, found, &cut)) return false;
+    }
+    if (o->cut_capacity > 0) o->part_begins[o->cut_count] = o->part_count;
+    return true;
+}
+
+/* ---- the nearest point --------------------------------------------------------------------------------- */
+
+typedef struct nearest_search {
+    const outer_surface *outer;
+    const surface_cuts *found;
+    uint32_t object;
+    const double *x;
+    outer_point best;
+} nearest_search;
+
+/* The place of a triangle among those with parts, or cut_count. */
+static size_t find_cut(const outer_surface *o, uint32_t triangle) {
+    size_t low = 0, high = o->cut_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (o->cut_triangles[middle] < triangle)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < o->cut_count && o->cut_triangles[low] == triangle ? low : o->cut_count;
+}
+
+static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
+    double u, v;
+    const double(*p)[3] = part->corners;
+    double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
+    if (!(squared < s->best.squared)) return;
+    s->best.squared = squared;
+    s->best.triangle = triangle;
+    s->best.part = *part;
+    for (int k = 0; k < 3; k++) s->best.x[k] = p[0][k] + u * (p[1][k] - p[0][k]) + v * (p[2][k] - p[0][k]);
+}
+
+static void try_triangle(void *data, uint32_t triangle) {
+    nearest_search *s = data;
+    const named_surface *surface = s->found->surface;
+    const cscd_mesh *mesh = surface->mesh;
+    const patch_finder *p = s->found->patches;
+    if (cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]) != s->object ||
+        !mesh->components[mesh->triangle_components[triangle]].closed_manifold)
+        return;
+    size_t cut =
+        p->triangle_patches[triangle] == UINT32_MAX ? find_cut(s->outer, triangle) : s->outer->cut_count;
+    if (cut < s->outer->cut_count) {
+        for (size_t i = s->outer->part_begins[cut]; i < s->outer->part_begins[cut + 1]; i++)
+            try_part(s, triangle, &s->outer->parts[i]);
+        return;
+    }
+    if (p->patches[p->corner_patches[(size_t)triangle * 3]].own >= 1) return;
+    outer_part whole;
+    for (uint32_t i = 0; i < 3; i++)
+        memcpy(whole.corners[i], surface_corner(mesh, surface->positions, triangle, i),
+               sizeof whole.corners[i]);
+    try_part(s, triangle, &whole);
+}
+
+outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
+                                  uint32_t object, const double x[3]) {
+    nearest_search s = {o, found, object, x, {.squared = (double)INFINITY, .triangle = UINT32_MAX}};
+    bvh_visit_near(f, x, &s.best.squared, try_triangle, &s);
+    return s.best;
+}

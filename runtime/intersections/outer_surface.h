@@ -1,0 +1,38 @@
+/* The outer surfaces of objects: what they do not bury in themselves; and the nearest point of one. */
+#pragma once
+
+#include "runtime/bvh/bvh_query.h"
+#include "runtime/intersections/triangle_cuts.h"
+
+/* A convex part of a triangle. */
+typedef struct outer_part {
+    double corners[3][3];
+} outer_part;
+
+/* The memory of all calls; begins with the context, also of cuts, and nothing else set. The triangles that their own object
+ * cuts have parts; all others are outer as a whole, or not at all. */
+typedef struct outer_surface {
+    cscd_context *context;
+    triangle_cuts cuts;
+    outer_part *parts;
+    size_t part_count, part_capacity;
+    uint32_t *cut_triangles; /* ascending: those with parts, or none of them outer */
+    size_t *part_begins;     /* per cut triangle and one more: where its parts begin */
+    size_t cut_count, cut_capacity;
+} outer_surface;
+
+void outer_surface_free(outer_surface *o);
+
+/* Finds the parts. False: no memory. */
+bool outer_surface_find(outer_surface *o, const surface_cuts *found);
+
+/* The nearest point of an object's outer surface. */
+typedef struct outer_point {
+    double squared;    /* the squared distance; INFINITY: the object has no outer surface */
+    uint32_t triangle; /* which has the point */
+    outer_part part;   /* the same, or the part of it */
+    double x[3];
+} outer_point;
+
+outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
+                                  uint32_t object, const double x[3]);

@@ -1,0 +1,221 @@
+/* Depths: by hand where one sees them, else no less and no more than the distance from a body's outer surface. */
+#include "runtime/ccd/closest.h"
+#include "src/core/vec3.h"
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/random_stream.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+#ifdef __SANITIZE_ADDRESS__
+enum { ROUNDS = 3, SAMPLES = 4 };
+#else
+enum { ROUNDS = 20, SAMPLES = 30 };
+#endif
+
+static body_rig rig; /* large; one test at a time */
+
+static void add_box(double x, double y, double z, double width, double depth, double height) {
+    const double low[3] = {x, y, z}, size[3] = {width, depth, height};
+    body_rig_add_box(&rig, low, size);
+    body_rig_end_body(&rig);
+}
+
+static double deepest_of(uint32_t first, uint32_t end, uint32_t object) {
+    double deepest = -1.0;
+    for (size_t i = 0; i < rig.depths.vertex_count; i++) {
+        const cscd_depth *d = &rig.depths.items[i];
+        if (d->vertex >= first && d->vertex < end && d->object == object) deepest = fmax(deepest, d->depth);
+    }
+    return deepest;
+}
+
+static void a_box_sunk_into_a_slab(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    add_box(0, 0, -2, 10, 10, 2);
+    add_box(3, 4, -0.125, 1, 1, 1);
+    body_rig_find(&rig);
+    assert_int_equal(rig.depths.count, 4);
+    for (size_t i = 0; i < 4; i++) {
+        const cscd_depth *d = &rig.depths.items[i];
+        assert_int_equal(d->object, 0);
+        assert_true(d->depth == 0.125 && d->out[0] == 0.0 && d->out[1] == 0.0 && d->out[2] == 1.0);
+    }
+    assert_int_equal(rig.depths.patch_count, 1);
+    assert_true(rig.depths.items[rig.depths.patches[0].deepest].depth == 0.125);
+    body_rig_free(&rig);
+}
+
+/* The long bar goes through the wall; its lower edges are near to the bottom of the wall. */
+static void a_bar_through_a_wall(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    add_box(-3, 0.1, 0.2, 6, 0.5, 0.25);
+    add_box(0.3, -2, 0.1, 0.5, 5, 2);
+    body_rig_find(&rig);
+    double deepest = 0.0;
+    assert_int_equal(rig.depths.vertex_count, 0);
+    for (size_t i = 0; i < rig.depths.count; i++) {
+        const cscd_depth *d = &rig.depths.items[i];
+        bool low = fabs(d->x[2] - 0.2) < 1e-12, high = fabs(d->x[2] - 0.45) < 1e-12;
+        double truth = low ? 0.1 : 0.25;
+        assert_int_equal(d->object, 1);
+        assert_int_equal(d->vertex, UINT32_MAX);
+        if (low || high) assert_true(fabs(d->depth - truth) < 6e-6);
+        deepest = fmax(deepest, d->depth);
+    }
+    assert_true(rig.depths.count >= 4 && fabs(deepest - 0.25) < 6e-6);
+    body_rig_free(&rig);
+}
+
+/* All that is buried under the infinitely small motion has depth 0. */
+static void a_box_on_a_table(void **state) {
+    (void)state;
+    body_rig_begin(&rig);
+    add_box(0, 0, -2, 10, 10, 2);
+    add_box(3, 4, 0, 1, 1, 1);
+    add_box(6, 4, 0, 1, 1, 1);
+    body_rig_find(&rig);
+    assert_true(rig.curves.count > 0);
+    for (size_t i = 0; i < rig.depths.count; i++) assert_true(rig.depths.items[i].depth == 0.0);
+    body_rig_free(&rig);
+}
+
+/* The octahedron's equator lies in the face of a box: no two triangles cross, but half of it is buried. */
+static void an_equator_in_a_face(void **state) {
+    (void)state;
+    static const double corners[6][3] = {{1, 1, 0}, {3, 1, 0}, {3, 3, 0}, {1, 3, 0}, {2, 2, 1}, {2, 2, -1}};
+    body_rig_begin(&rig);
+    add_box(0, 0, -2, 4, 4, 2);
+    uint32_t first = rig.all.vertex_count;
+    for (uint32_t i = 0; i < 4; i++) {
+        const uint32_t up[3] = {first + i, first + (i + 1) % 4, first + 4};
+        const uint32_t down[3] = {first + (i + 1) % 4, first + i, first + 5};
+        memcpy(rig.all.triangles + (size_t)rig.all.triangle_count++ * 3, up, sizeof up);
+        memcpy(rig.all.triangles + (size_t)rig.all.triangle_count++ * 3, down, sizeof down);
+    }
+    memcpy(rig.all.x0 + (size_t)first * 3, corners, sizeof corners);
+    rig.all.vertex_count += 6;
+    body_rig_end_body(&rig);
+    body_rig_find(&rig);
+    assert_int_equal(rig.curves.count, 1);
+    assert_true(rig.curves.items[0].closed);
+    assert_true(fabs(deepest_of(first + 5, first + 6, 0) - 1.0) < 1e-12);
+    assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume - 4.0 / 3.0) < 1e-12);
+    body_rig_free(&rig);
+}
+
+/* ---- against all triangles ----------------------------------------------------------------------------- */
+
+static const double *corner_of(uint32_t triangle, uint32_t i) {
+    return rig.all.x0 + (size_t)rig.all.triangles[triangle * 3 + i] * 3;
+}
+
+static double distance_from_body(uint32_t body, const double x[3]) {
+    double least = INFINITY, u, v;
+    for (uint32_t i = 0; i < rig.bodies[body].triangle_count; i++) {
+        uint32_t t = rig.bodies[body].first_triangle + i;
+        least =
+            fmin(least, closest_point_triangle(x, corner_of(t, 0), corner_of(t, 1), corner_of(t, 2), &u, &v));
+    }
+    return sqrt(least);
+}
+
+static void balls_in_rings(void **state) {
+    (void)state;
+    static const double origin[3] = {0, 0, 0};
+    random_stream random = stream_start(8);
+    size_t compared = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        double centre[3];
+        for (int k = 0; k < 3; k++) centre[k] = stream_between(&random, -1.2, 1.2);
+        body_rig_begin(&rig);
+        scene_add_torus(&rig.all, origin, 1.0, 0.35, 24, 12, false);
+        body_rig_end_body(&rig);
+        scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
+        body_rig_end_body(&rig);
+        body_rig_find(&rig);
+        for (size_t i = 0; i < rig.depths.count; i++) {
+            const cscd_depth *d = &rig.depths.items[i];
+            double there[3];
+            for (int k = 0; k < 3; k++) there[k] = d->x[k] + d->depth * d->out[k];
+            assert_true(fabs(d->depth - distance_from_body(d->object, d->x)) < 1e-12);
+            assert_true(distance_from_body(d->object, there) < 1e-12);
+            compared++;
+        }
+        body_rig_free(&rig);
+    }
+    print_message("  %zu depths\n", compared);
+    assert_true(compared > 20 * ROUNDS);
+}
+
+/* ---- a body in itself ---------------------------------------------------------------------------------- */
+
+/* The winding number of the first body around a generic point. */
+static int number_at(const double x[3]) {
+    double sum = 0.0; /* of solid angles: van Oosterom and Strackee 1983 */
+    for (uint32_t t = 0; t < rig.bodies[0].triangle_count; t++) {
+        double p[3][3], length[3], cross[3];
+        for (uint32_t i = 0; i < 3; i++) {
+            vec3_subtract(corner_of(t, i), x, p[i]);
+            length[i] = sqrt(vec3_dot(p[i], p[i]));
+        }
+        vec3_cross(p[1], p[2], cross);
+        double bottom = length[0] * length[1] * length[2] + vec3_dot(p[0], p[1]) * length[2] +
+                        vec3_dot(p[1], p[2]) * length[0] + vec3_dot(p[2], p[0]) * length[1];
+        sum += 2.0 * atan2(vec3_dot(p[0], cross), bottom);
+    }
+    return (int)lround(sum / (4.0 * acos(-1.0)));
+}
+
+/* No sample of the outer surface is nearer than the depth says. */
+static void sample_outer_surface(random_stream *random, const cscd_depth *depth) {
+    for (uint32_t t = 0; t < rig.bodies[0].triangle_count; t++) {
+        double u = stream_between(random, 0, 1), v = stream_between(random, 0, 1), x[3], normal[3];
+        const double *a = corner_of(t, 0), *b = corner_of(t, 1), *c = corner_of(t, 2);
+        double ab[3], ac[3];
+        if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+        vec3_subtract(b, a, ab);
+        vec3_subtract(c, a, ac);
+        vec3_cross(ab, ac, normal);
+        for (int k = 0; k < 3; k++) x[k] = a[k] + u * ab[k] + v * ac[k];
+        if (vec3_squared_distance(x, depth->x) >= depth->depth * depth->depth - 1e-9) continue;
+        vec3_add_scaled(x, 1e-7 / sqrt(vec3_dot(normal, normal)), normal, x);
+        assert_true(number_at(x) >= 1);
+    }
+}
+
+static void a_snake_in_its_own_tail(void **state) {
+    (void)state;
+    random_stream random = stream_start(9);
+    body_rig_begin(&rig);
+    scene_add_capsule(&rig.all, 7.0, 0.3, 40, 10);
+    body_rig_end_body(&rig);
+    for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
+        double *x = rig.all.x0 + (size_t)v * 3, angle = x[2], radius = 1.0 + x[0];
+        x[1] += 0.02 * angle;
+        x[0] = radius * cos(angle);
+        x[2] = radius * sin(angle);
+    }
+    body_rig_find(&rig);
+    assert_true(rig.depths.vertex_count > 20);
+    for (size_t i = 0; i < rig.depths.count; i++) {
+        const cscd_depth *d = &rig.depths.items[i];
+        double beyond[3];
+        vec3_add_scaled(d->x, d->depth + 1e-6, d->out, beyond);
+        assert_int_equal(number_at(beyond), 0);
+        for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
+    }
+    body_rig_free(&rig);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_sunk_into_a_slab), cmocka_unit_test(a_bar_through_a_wall),
+        cmocka_unit_test(a_box_on_a_table),       cmocka_unit_test(an_equator_in_a_face),
+        cmocka_unit_test(balls_in_rings),         cmocka_unit_test(a_snake_in_its_own_tail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
