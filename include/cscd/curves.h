@@ -9,7 +9,7 @@
 #ifndef CSCD_CURVES_API_H
 #define CSCD_CURVES_API_H
 
-#include <cscd/detector.h>
+#include <cscd/mesh.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,7 +57,9 @@ typedef struct cscd_curve {
     bool
         swapped; /* closed, and after one turn the sheets have changed places, which needs a surface that has no
                           * orientation */
-    uint8_t reserved[6]; /* 0 */
+    bool touching; /* only where depths were asked for: the surfaces touch along it, and no more. No pair of
+                          * triangles crosses, and nothing that it bounds has a depth */
+    uint8_t reserved[5]; /* 0 */
     double length;       /* of its pieces, up to rounding */
 } cscd_curve;
 

@@ -23,6 +23,7 @@
 #ifndef CSCD_INTERSECTIONS_API_H
 #define CSCD_INTERSECTIONS_API_H
 
+#include <cscd/depths.h>
 #include <cscd/detector.h>
 
 #ifdef __cplusplus
@@ -66,6 +67,15 @@ typedef struct cscd_intersection_options {
     size_t stop_after;
 
     uint64_t kinds; /* the set of those that count; all, UINT64_MAX, by default */
+
+    /* What is found beside the pairs; false by default. All of these need the list of all pairs: INVALID_ARGUMENT with
+     * another answer, with fewer kinds and with stop_after. Patches, overlaps and depths need curves, and overlaps and
+     * depths need patches, which are then given, too. */
+    bool curves;   /* where surfaces pass through each other: cscd/curves.h */
+    bool patches;  /* what curves cut them into, and what these are buried in: cscd/patches.h */
+    bool overlaps; /* areas and volumes of what objects bury: cscd/patches.h */
+    bool depths;   /* how deep: cscd/depths.h */
+    uint8_t reserved[4];
 } cscd_intersection_options;
 
 /* The default options. */
@@ -95,6 +105,12 @@ typedef struct cscd_intersection_pairs {
     uint32_t first_zero_area;     /* the first of them; UINT32_MAX if there is none */
     bool stopped;                 /* the search has ended early, so there may be more pairs */
     uint8_t reserved[7];
+
+    /* What was asked for, else NULL. They belong to the detector and live as long as the list. */
+    const cscd_curves *curves;
+    const cscd_patches *patches;
+    const cscd_overlaps *overlaps;
+    const cscd_depths *depths;
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are

@@ -4,6 +4,7 @@
 #include "runtime/detector/detector_rules.h"
 #include "runtime/detector/detector_validate.h"
 #include "runtime/detector/list_cap.h"
+#include "runtime/detector/surface_answers.h"
 #include "runtime/narrow_phase/limits.h"
 #include "src/core/check.h"
 #include "src/core/methods.h"
@@ -120,6 +121,7 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->intersections);
     result_buffer_free(context, &d->pairs);
     result_buffer_free(context, &d->names);
+    surface_answers_free(context, d->answers);
     edge_rest_free(context, &d->rest);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);

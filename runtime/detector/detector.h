@@ -63,9 +63,10 @@ struct cscd_detector {
     cscd_guarantee *guarantees; /* per component, of the last step */
 
     result_buffer contacts, proximities, intersections;
-    result_buffer pairs; /* intersections by kind */
-    result_buffer names; /* of proximities, while repetitions are found */
-    edge_rest rest;      /* see cscd_detector_set_rest */
+    result_buffer pairs;             /* intersections by kind */
+    result_buffer names;             /* of proximities, while repetitions are found */
+    struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
+    edge_rest rest;                  /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
     cscd_scalar *reached_scalars; /* per object: of what max_step or a line search reaches */

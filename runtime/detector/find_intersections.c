@@ -3,6 +3,7 @@
 
 #include "runtime/detector/check.h"
 #include "runtime/detector/list_cap.h"
+#include "runtime/detector/surface_answers.h"
 #include "runtime/intersections/first_pairs.h"
 #include "src/core/sort.h"
 #include "src/core/struct_size.h"
@@ -11,6 +12,8 @@
 /* ---- the API's names and defaults ---------------------------------------------------------------------- */
 
 enum { KIND_COUNT = CSCD_INTERSECTION_TOUCHING + 1 };
+
+static const uint64_t ALL_KINDS = (UINT64_C(1) << KIND_COUNT) - 1;
 
 const char *cscd_intersection_kind_name(cscd_intersection_kind kind) {
     static const char *const names[KIND_COUNT] = {"crossing", "coplanar", "folded", "duplicate", "touching"};
@@ -33,10 +36,17 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
     if (status != CSCD_OK) return status;
     if ((unsigned)out->answer > CSCD_ANSWER_ANY)
         return context_fail(context, CSCD_INVALID_ARGUMENT, "unknown answer %d", (int)out->answer);
-    if ((out->kinds & ((UINT64_C(1) << KIND_COUNT) - 1)) == 0)
+    if ((out->kinds & ALL_KINDS) == 0)
         return context_fail(context, CSCD_INVALID_ARGUMENT,
                             "kinds is %#llx, which has no kind: join sets of cscd_intersection_set",
                             (unsigned long long)out->kinds);
+    bool all =
+        out->answer == CSCD_ANSWER_LIST && (out->kinds & ALL_KINDS) == ALL_KINDS && out->stop_after == 0;
+    if (surface_answers_wanted(out) && !all)
+        return context_fail(
+            context, CSCD_INVALID_ARGUMENT,
+            "curves, patches, overlaps and depths need the list of all pairs: answer LIST, every kind, and "
+            "stop_after 0");
     return CSCD_OK;
 }
 
@@ -228,7 +238,9 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
                      .options = q->options,
                      .keeps = q->options.answer == CSCD_ANSWER_LIST};
     cscd_status status = stops_early(d, &q->options) ? find_first(&s) : find_all(&s);
-    return status == CSCD_OK ? give_result(&s, q->out) : status;
+    if (status == CSCD_OK) status = give_result(&s, q->out);
+    if (status != CSCD_OK || !surface_answers_wanted(&q->options)) return status;
+    return surface_answers_find(d, positions, &q->options, q->out);
 }
 
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,

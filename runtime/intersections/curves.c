@@ -42,7 +42,7 @@ static bool reserve_pieces(curve_joiner *j, size_t count) {
 typedef struct curve_work {
     curve_joiner *joiner;
     const named_surface *surface;
-    const cscd_intersection *pairs;
+    const cscd_intersection_pair *pairs;
     size_t pair_count;
 } curve_work;
 
@@ -195,10 +195,11 @@ static void name_curves_of_pairs(const curve_work *work) {
         j->pair_curves[i] = j->pair_pieces[i] == UINT32_MAX ? UINT32_MAX : j->piece_curves[j->pair_pieces[i]];
 }
 
-cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
+cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
                              size_t pair_count, cscd_curves *out) {
     curve_work work = {j, s, pairs, pair_count};
     if (pair_count > LINKS_MAX / 2 || !reserve_pairs(j, pair_count)) return CSCD_OUT_OF_MEMORY;
+    j->pair_count = pair_count;
     find_pieces(&work);
     if (!reserve_pieces(j, j->piece_count)) return CSCD_OUT_OF_MEMORY;
     curve_links_find(s, j->found, j->piece_count, j->keys, j->spare_keys, j->links);

@@ -3,7 +3,7 @@
 
 #include "runtime/intersections/curve_links.h"
 
-#include <cscd/curves.h>
+#include <cscd/intersections.h>
 
 /* What the last call has found, and the memory of all calls. */
 typedef struct curve_joiner {
@@ -24,12 +24,12 @@ typedef struct curve_joiner {
     cscd_curve_piece *pieces;
     cscd_curve_point *points;
     surface_event *events; /* of the points */
-    size_t curve_count, point_count, piece_count;
+    size_t pair_count, curve_count, point_count, piece_count;
 } curve_joiner;
 
 void curve_joiner_free(curve_joiner *j);
 
 /* Finds the curves of a list of pairs a < b, sorted by (a, b): all pairs of triangles that intersect or touch, but those that
  * are left out. *out lives until the next call. OUT_OF_MEMORY has no sentence, nor CANCELLED. */
-cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection *pairs,
+cscd_status curve_joiner_run(curve_joiner *j, const named_surface *s, const cscd_intersection_pair *pairs,
                              size_t pair_count, cscd_curves *out);

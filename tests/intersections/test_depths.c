@@ -16,6 +16,11 @@ enum { ROUNDS = 20, SAMPLES = 30 };
 
 static body_rig rig; /* large; one test at a time */
 
+static void find_all(void) {
+    body_rig_create(&rig, NULL, 2);
+    body_rig_find(&rig);
+}
+
 static void add_box(double x, double y, double z, double width, double depth, double height) {
     const double low[3] = {x, y, z}, size[3] = {width, depth, height};
     body_rig_add_box(&rig, low, size);
@@ -24,8 +29,8 @@ static void add_box(double x, double y, double z, double width, double depth, do
 
 static double deepest_of(uint32_t first, uint32_t end, uint32_t object) {
     double deepest = -1.0;
-    for (size_t i = 0; i < rig.depths.vertex_count; i++) {
-        const cscd_depth *d = &rig.depths.items[i];
+    for (size_t i = 0; i < rig.found.depths->vertex_count; i++) {
+        const cscd_depth *d = &rig.found.depths->items[i];
         if (d->vertex >= first && d->vertex < end && d->object == object) deepest = fmax(deepest, d->depth);
     }
     return deepest;
@@ -36,15 +41,15 @@ static void a_box_sunk_into_a_slab(void **state) {
     body_rig_begin(&rig);
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, -0.125, 1, 1, 1);
-    body_rig_find(&rig);
-    assert_int_equal(rig.depths.count, 4);
+    find_all();
+    assert_int_equal(rig.found.depths->count, 4);
     for (size_t i = 0; i < 4; i++) {
-        const cscd_depth *d = &rig.depths.items[i];
+        const cscd_depth *d = &rig.found.depths->items[i];
         assert_int_equal(d->object, 0);
         assert_true(d->depth == 0.125 && d->out[0] == 0.0 && d->out[1] == 0.0 && d->out[2] == 1.0);
     }
-    assert_int_equal(rig.depths.patch_count, 1);
-    assert_true(rig.depths.items[rig.depths.patches[0].deepest].depth == 0.125);
+    assert_int_equal(rig.found.depths->patch_count, 1);
+    assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);
     body_rig_free(&rig);
 }
 
@@ -54,11 +59,11 @@ static void a_bar_through_a_wall(void **state) {
     body_rig_begin(&rig);
     add_box(-3, 0.1, 0.2, 6, 0.5, 0.25);
     add_box(0.3, -2, 0.1, 0.5, 5, 2);
-    body_rig_find(&rig);
+    find_all();
     double deepest = 0.0;
-    assert_int_equal(rig.depths.vertex_count, 0);
-    for (size_t i = 0; i < rig.depths.count; i++) {
-        const cscd_depth *d = &rig.depths.items[i];
+    assert_int_equal(rig.found.depths->vertex_count, 0);
+    for (size_t i = 0; i < rig.found.depths->count; i++) {
+        const cscd_depth *d = &rig.found.depths->items[i];
         bool low = fabs(d->x[2] - 0.2) < 1e-12, high = fabs(d->x[2] - 0.45) < 1e-12;
         double truth = low ? 0.1 : 0.25;
         assert_int_equal(d->object, 1);
@@ -66,7 +71,7 @@ static void a_bar_through_a_wall(void **state) {
         if (low || high) assert_true(fabs(d->depth - truth) < 6e-6);
         deepest = fmax(deepest, d->depth);
     }
-    assert_true(rig.depths.count >= 4 && fabs(deepest - 0.25) < 6e-6);
+    assert_true(rig.found.depths->count >= 4 && fabs(deepest - 0.25) < 6e-6);
     body_rig_free(&rig);
 }
 
@@ -77,9 +82,10 @@ static void a_box_on_a_table(void **state) {
     add_box(0, 0, -2, 10, 10, 2);
     add_box(3, 4, 0, 1, 1, 1);
     add_box(6, 4, 0, 1, 1, 1);
-    body_rig_find(&rig);
-    assert_true(rig.curves.count > 0);
-    for (size_t i = 0; i < rig.depths.count; i++) assert_true(rig.depths.items[i].depth == 0.0);
+    find_all();
+    assert_true(rig.found.curves->count > 0);
+    for (size_t i = 0; i < rig.found.curves->count; i++) assert_true(rig.found.curves->items[i].touching);
+    for (size_t i = 0; i < rig.found.depths->count; i++) assert_true(rig.found.depths->items[i].depth == 0.0);
     body_rig_free(&rig);
 }
 
@@ -99,9 +105,10 @@ static void an_equator_in_a_face(void **state) {
     memcpy(rig.all.x0 + (size_t)first * 3, corners, sizeof corners);
     rig.all.vertex_count += 6;
     body_rig_end_body(&rig);
-    body_rig_find(&rig);
-    assert_int_equal(rig.curves.count, 1);
-    assert_true(rig.curves.items[0].closed);
+    find_all();
+    assert_int_equal(rig.found.curves->count, 1);
+    assert_true(rig.found.curves->items[0].closed && !rig.found.curves->items[0].touching);
+    assert_int_equal(rig.found.crossing, 0);
     assert_true(fabs(deepest_of(first + 5, first + 6, 0) - 1.0) < 1e-12);
     assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume - 4.0 / 3.0) < 1e-12);
     body_rig_free(&rig);
@@ -136,9 +143,9 @@ static void balls_in_rings(void **state) {
         body_rig_end_body(&rig);
         scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
         body_rig_end_body(&rig);
-        body_rig_find(&rig);
-        for (size_t i = 0; i < rig.depths.count; i++) {
-            const cscd_depth *d = &rig.depths.items[i];
+        find_all();
+        for (size_t i = 0; i < rig.found.depths->count; i++) {
+            const cscd_depth *d = &rig.found.depths->items[i];
             double there[3];
             for (int k = 0; k < 3; k++) there[k] = d->x[k] + d->depth * d->out[k];
             assert_true(fabs(d->depth - distance_from_body(d->object, d->x)) < 1e-12);
@@ -191,18 +198,12 @@ static void a_snake_in_its_own_tail(void **state) {
     (void)state;
     random_stream random = stream_start(9);
     body_rig_begin(&rig);
-    scene_add_capsule(&rig.all, 7.0, 0.3, 40, 10);
+    body_rig_add_snake(&rig);
     body_rig_end_body(&rig);
-    for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
-        double *x = rig.all.x0 + (size_t)v * 3, angle = x[2], radius = 1.0 + x[0];
-        x[1] += 0.02 * angle;
-        x[0] = radius * cos(angle);
-        x[2] = radius * sin(angle);
-    }
-    body_rig_find(&rig);
-    assert_true(rig.depths.vertex_count > 20);
-    for (size_t i = 0; i < rig.depths.count; i++) {
-        const cscd_depth *d = &rig.depths.items[i];
+    find_all();
+    assert_true(rig.found.depths->vertex_count > 20);
+    for (size_t i = 0; i < rig.found.depths->count; i++) {
+        const cscd_depth *d = &rig.found.depths->items[i];
         double beyond[3];
         vec3_add_scaled(d->x, d->depth + 1e-6, d->out, beyond);
         assert_int_equal(number_at(beyond), 0);

@@ -15,6 +15,11 @@ enum { LINES = 200, ROUNDS = 8 };
 
 static body_rig rig; /* large; one test at a time */
 
+static void find_all(void) {
+    body_rig_create(&rig, NULL, 2);
+    body_rig_find(&rig);
+}
+
 static void add_cube(double x, double y, double z, double size) {
     const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
     body_rig_add_box(&rig, low, sizes);
@@ -33,10 +38,10 @@ static void corners_of_two_boxes(void **state) {
     body_rig_begin(&rig);
     add_cube(0, 0, 0, 2);
     add_cube(1.25, 1.5, 1.125, 2);
-    body_rig_find(&rig);
+    find_all();
     double x = 0.75, y = 0.5, z = 0.875, faces = x * y + y * z + z * x;
     expect_overlap(0, 1, faces, faces, x * y * z);
-    assert_int_equal(rig.overlaps.count, 1);
+    assert_int_equal(rig.found.overlaps->count, 1);
     body_rig_free(&rig);
 }
 
@@ -50,7 +55,7 @@ static void bars_across_each_other(void **state) {
     body_rig_end_body(&rig);
     body_rig_add_box(&rig, across, other);
     body_rig_end_body(&rig);
-    body_rig_find(&rig);
+    find_all();
     expect_overlap(0, 1, 0.5 * 2 * (0.5 + 0.25), 2 * 0.5 * 0.25, 0.5 * 0.5 * 0.25);
     body_rig_free(&rig);
 }
@@ -62,12 +67,12 @@ static void boxes_within_each_other(void **state) {
     add_cube(0, 0, 0, 4);
     add_cube(1, 1, 1, 2);
     add_cube(1.5, 1.5, 1.5, 1);
-    body_rig_find(&rig);
+    find_all();
     expect_overlap(0, 1, 0.0, 24.0, 8.0);
     expect_overlap(0, 2, 0.0, 6.0, 1.0);
     expect_overlap(1, 2, 0.0, 6.0, 1.0);
-    assert_int_equal(rig.overlaps.count, 3);
-    assert_int_equal(rig.curves.count, 0);
+    assert_int_equal(rig.found.overlaps->count, 3);
+    assert_int_equal(rig.found.curves->count, 0);
     body_rig_free(&rig);
 }
 
@@ -90,7 +95,7 @@ static void a_cavity_is_outside(void **state) {
     body_rig_end_body(&rig);
     add_cube(1.5, 1.5, 1.5, 1);
     add_cube(0.5, 1.5, 1.5, 1); /* half of it in the wall */
-    body_rig_find(&rig);
+    find_all();
     expect_overlap(0, 1, 0.0, 0.0, 0.0);
     expect_overlap(0, 2, 1.0, 1.0 + 4 * 0.5, 0.5);
     expect_overlap(0, 0, 0.0, 0.0, 0.0);
@@ -105,7 +110,7 @@ static void a_body_that_is_inside_out(void **state) {
     turn_inside_out(0, 12);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
-    body_rig_find(&rig);
+    find_all();
     expect_overlap(0, 0, 0.0, 24.0, 0.0);
     expect_overlap(0, 1, 0.0, 0.0, 0.0);
     body_rig_free(&rig);
@@ -120,7 +125,7 @@ static void two_bodies_of_one_object(void **state) {
     body_rig_add_box(&rig, second, size);
     body_rig_end_body(&rig);
     add_cube(0.5, 0.5, 0.5, 1);
-    body_rig_find(&rig);
+    find_all();
     expect_overlap(0, 0, 6.0, 0.0, 1.0);
     expect_overlap(0, 1, 3 * 0.25, 6.0, 1.0);
     body_rig_free(&rig);
@@ -151,7 +156,7 @@ static void balls_and_rings(void **state) {
         body_rig_end_body(&rig);
         scene_add_sphere(&rig.all, centre, 0.6, 9, 14);
         body_rig_end_body(&rig);
-        body_rig_find(&rig);
+        find_all();
         column_body a = column_of(1), b = column_of(0);
         compare_volume("ball in ring", body_rig_overlap(&rig, 0, 1).volume, column_volume(&a, &b, 1, LINES),
                        0.9);
@@ -163,15 +168,9 @@ static void balls_and_rings(void **state) {
 static void a_body_in_itself(void **state) {
     (void)state;
     body_rig_begin(&rig);
-    scene_add_capsule(&rig.all, 7.0, 0.3, 40, 10);
+    body_rig_add_snake(&rig);
     body_rig_end_body(&rig);
-    for (uint32_t v = 0; v < rig.all.vertex_count; v++) {
-        double *x = rig.all.x0 + (size_t)v * 3, angle = x[2], radius = 1.0 + x[0];
-        x[1] += 0.02 * angle;
-        x[0] = radius * cos(angle);
-        x[2] = radius * sin(angle);
-    }
-    body_rig_find(&rig);
+    find_all();
     column_body a = column_of(0);
     double truth = column_volume(&a, NULL, 2, 2 * LINES);
     compare_volume("snake in itself", body_rig_overlap(&rig, 0, 0).volume, truth, 1.0);
@@ -192,14 +191,14 @@ static void balls_that_overlap_by_less_than_an_edge(void **state) {
         x[1] = y * cos(0.7) - x[2] * sin(0.7);
         x[2] = y * sin(0.7) + x[2] * cos(0.7);
     }
-    body_rig_find(&rig);
+    find_all();
     column_body a = column_of(0), b = column_of(1);
     double truth = column_volume(&a, &b, 1, LINES);
     compare_volume("two balls", body_rig_overlap(&rig, 0, 1).volume, truth, 0.0);
-    assert_true(rig.curves.count > 0);
-    for (size_t i = 0; i < rig.curves.count; i++) assert_true(rig.curves.items[i].closed);
+    assert_true(rig.found.curves->count > 0);
+    for (size_t i = 0; i < rig.found.curves->count; i++) assert_true(rig.found.curves->items[i].closed);
     for (size_t i = 0; i < rig.all.vertex_count; i++)
-        assert_int_equal(rig.patches.items[rig.patches.vertex_patches[i]].winding_count, 0);
+        assert_int_equal(rig.found.patches->items[rig.found.patches->vertex_patches[i]].winding_count, 0);
     body_rig_free(&rig);
 }
 

@@ -1,13 +1,9 @@
-/* Some bodies, one object each, and what is found where they intersect. */
+/* Some bodies, one object each, and what a detector finds where they intersect. */
 #include "tests/support/intersections/body_rig.h"
 
-#include "cscd/cscd.h"
-#include "src/mesh/triangle_intersection.h"
-#include "tests/support/bvh/mesh_trees.h"
 #include "tests/support/test.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include <math.h>
 
 void body_rig_begin(body_rig *r) {
     scene_clear(&r->all);
@@ -42,58 +38,47 @@ void body_rig_add_box(body_rig *r, const double low[3], const double size[3]) {
     }
 }
 
-static size_t list_pairs(body_rig *r) {
-    size_t count = 0, capacity = 1024;
-    r->pairs = malloc(capacity * sizeof *r->pairs);
-    for (uint32_t a = 0; a < r->all.triangle_count; a++) {
-        for (uint32_t b = a + 1; b < r->all.triangle_count; b++) {
-            if (!triangles_intersect(r->mesh->triangles[a], r->mesh->triangles[b], r->all.x0)) continue;
-            if (count == capacity) r->pairs = realloc(r->pairs, (capacity *= 2) * sizeof *r->pairs);
-            assert_non_null(r->pairs);
-            r->pairs[count++] = (cscd_intersection){a, b};
-        }
+void body_rig_add_snake(body_rig *r) {
+    uint32_t first = r->all.vertex_count;
+    scene_add_capsule(&r->all, 7.0, 0.3, 40, 10);
+    for (uint32_t v = first; v < r->all.vertex_count; v++) {
+        double *x = r->all.x0 + (size_t)v * 3, angle = x[2], radius = 1.0 + x[0];
+        x[1] += 0.02 * angle;
+        x[0] = radius * cos(angle);
+        x[2] = radius * sin(angle);
     }
-    return count;
 }
 
-void body_rig_find(body_rig *r) {
+void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count) {
     cscd_object_desc descs[BODIES_MAX];
+    cscd_context_options of_context = cscd_context_defaults();
+    of_context.thread_count = thread_count;
     for (uint32_t i = 0; i < r->body_count; i++)
         descs[i] = cscd_object_of_triangles(r->bodies[i].vertex_count, r->bodies[i].triangle_count,
                                             r->bodies[i].triangles);
-    assert_int_equal(cscd_context_create(NULL, &r->context), CSCD_OK);
+    assert_int_equal(cscd_context_create(&of_context, &r->context), CSCD_OK);
     assert_int_equal(cscd_mesh_create(r->context, descs, r->body_count, &r->mesh), CSCD_OK);
-    mesh_trees_build(r->mesh, r->all.x0, BOX_AXES, &r->trees);
-    named_surface surface = {r->mesh, r->all.x0, NULL};
-    size_t count = list_pairs(r);
-    r->joiner = (curve_joiner){.context = r->context};
-    assert_int_equal(curve_joiner_run(&r->joiner, &surface, r->pairs, count, &r->curves), CSCD_OK);
-    assert_int_equal(patch_finder_create(r->mesh, 2, &r->finder), CSCD_OK);
-    assert_int_equal(patch_finder_run(&r->finder, &surface, &r->trees, r->joiner.found, r->joiner.piece_count,
-                                      &r->patches),
+    assert_int_equal(cscd_detector_create(r->context, r->mesh, NULL, options, &r->detector), CSCD_OK);
+}
+
+void body_rig_find(body_rig *r) {
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.overlaps = options.depths = true;
+    assert_int_equal(cscd_detector_find_intersections(
+                         r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count), &options, &r->found),
                      CSCD_OK);
-    r->overlap_finder = (overlap_finder){.context = r->context, .cuts = {.context = r->context}};
-    surface_cuts found = {&surface, &r->joiner, &r->finder};
-    assert_int_equal(overlap_finder_run(&r->overlap_finder, &found, &r->overlaps), CSCD_OK);
-    r->depth_finder = (depth_finder){.context = r->context, .outer = {.context = r->context}};
-    r->depth_finder.outer.cuts.context = r->context;
-    assert_int_equal(depth_finder_run(&r->depth_finder, &found, &r->trees, &r->depths), CSCD_OK);
 }
 
 void body_rig_free(body_rig *r) {
-    free(r->pairs);
-    depth_finder_free(&r->depth_finder);
-    overlap_finder_free(&r->overlap_finder);
-    patch_finder_free(&r->finder);
-    curve_joiner_free(&r->joiner);
-    bvh_free(&r->trees);
+    cscd_detector_destroy(r->detector);
     cscd_mesh_destroy(r->mesh);
     cscd_context_destroy(r->context);
 }
 
 cscd_overlap body_rig_overlap(const body_rig *r, uint32_t a, uint32_t b) {
-    for (size_t i = 0; i < r->overlaps.count; i++) {
-        if (r->overlaps.items[i].a == a && r->overlaps.items[i].b == b) return r->overlaps.items[i];
+    for (size_t i = 0; i < r->found.overlaps->count; i++) {
+        if (r->found.overlaps->items[i].a == a && r->found.overlaps->items[i].b == b)
+            return r->found.overlaps->items[i];
     }
     return (cscd_overlap){a, b, 0.0, 0.0, 0.0};
 }

@@ -1,13 +1,12 @@
-/* Some bodies, one object each, and what is found where they intersect. */
+/* Some bodies, one object each, and what a detector finds where they intersect. */
 #pragma once
 
-#include "runtime/intersections/depths.h"
-#include "runtime/intersections/overlaps.h"
+#include "cscd/cscd.h"
 #include "tests/support/scenes.h"
 
 enum { BODIES_MAX = 4 };
 
-/* What a body's positions and triangles are; numbers are the body's own. */
+/* Where a body is in the scene; its triangles' vertices are numbered from 0. */
 typedef struct body_part {
     uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
     uint32_t triangles[SCENE_TRIANGLES_MAX * 3];
@@ -19,17 +18,12 @@ typedef struct body_rig {
     uint32_t body_count;
     cscd_context *context;
     cscd_mesh *mesh;
-    bvh trees;
-    curve_joiner joiner;
-    patch_finder finder;
-    overlap_finder overlap_finder;
-    depth_finder depth_finder;
-    cscd_intersection *pairs;
-    cscd_curves curves;
-    cscd_patches patches;
-    cscd_overlaps overlaps;
-    cscd_depths depths;
+    cscd_detector *detector;
+    cscd_intersection_pairs found;
 } body_rig;
+
+/* Begins without a body. */
+void body_rig_begin(body_rig *r);
 
 /* What was added to rig->all since the last call, or the beginning, is a body. */
 void body_rig_end_body(body_rig *r);
@@ -37,8 +31,13 @@ void body_rig_end_body(body_rig *r);
 /* Adds an axis-aligned box to what will be a body. */
 void body_rig_add_box(body_rig *r, const double low[3], const double size[3]);
 
-/* Begins without a body; then finds everything, and frees it. */
-void body_rig_begin(body_rig *r);
+/* A long body that bends into a ring and swallows its tail; without a change before, it lies about the origin. */
+void body_rig_add_snake(body_rig *r);
+
+/* Creates the detector, with options or the default ones, in a context of so many threads. */
+void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count);
+
+/* Finds everything. */
 void body_rig_find(body_rig *r);
 void body_rig_free(body_rig *r);
 

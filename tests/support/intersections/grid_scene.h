@@ -1,6 +1,7 @@
 /* Small meshes with integer coordinates, so few of them that everything degenerates. */
 #pragma once
 
+#include "cscd/intersections.h"
 #include "runtime/intersections/curve_piece.h"
 #include "tests/support/intersections/epsilon_polynomial.h"
 #include "tests/support/mesh_shapes.h"
@@ -45,4 +46,4 @@ void grid_scene_free(grid_scene *s);
 grid_point grid_scene_point(const grid_scene *s, uint32_t vertex);
 
 /* Writes all pairs of triangles that intersect, by trying each; room for as many as there are. Returns their number. */
-size_t grid_scene_pairs(const grid_scene *s, cscd_intersection *out);
+size_t grid_scene_pairs(const grid_scene *s, cscd_intersection_pair *out);

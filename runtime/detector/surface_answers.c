@@ -1,0 +1,82 @@
+/* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
+#include "runtime/detector/surface_answers.h"
+
+#include "runtime/intersections/touching_curves.h"
+
+const char *cscd_curve_end_name(cscd_curve_end end) {
+    static const char *const names[] = {"none", "vertex", "border", "junction", "left out"};
+    return (unsigned)end < sizeof names / sizeof *names ? names[end] : "unknown";
+}
+
+void surface_answers_free(cscd_context *context, surface_answers *a) {
+    if (a == NULL) return;
+    depth_finder_free(&a->depth_finder);
+    overlap_finder_free(&a->overlap_finder);
+    patch_finder_free(&a->patch_finder);
+    curve_joiner_free(&a->joiner);
+    context_free(context, a);
+}
+
+bool surface_answers_wanted(const cscd_intersection_options *options) {
+    return options->curves || options->patches || options->overlaps || options->depths;
+}
+
+/* Returns the detector's answers, made if need be; NULL: no memory. */
+static surface_answers *make_answers(cscd_detector *d) {
+    if (d->answers != NULL) return d->answers;
+    cscd_context *context = d->context;
+    surface_answers *a = context_allocate(context, 1, sizeof *a);
+    if (a == NULL) return NULL;
+    a->joiner.context = a->overlap_finder.context = a->overlap_finder.cuts.context = context;
+    a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
+    if (patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
+        context_free(context, a);
+        return NULL;
+    }
+    d->answers = a;
+    return a;
+}
+
+static cscd_status find_patches(cscd_detector *d, const named_surface *surface) {
+    surface_answers *a = d->answers;
+    a->patch_finder.objects = d->pair_rules.sets;
+    progress_stage(&d->context->progress, "patches", 0.8, 0.9);
+    return patch_finder_run(&a->patch_finder, surface, &d->space.bvh, a->joiner.found, a->joiner.piece_count,
+                            &a->patches);
+}
+
+static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts,
+                               const cscd_intersection_pairs *found) {
+    surface_answers *a = d->answers;
+    progress_stage(&d->context->progress, "depths", 0.9, 1.0);
+    cscd_status status = depth_finder_run(&a->depth_finder, cuts, &d->space.bvh, &a->depths);
+    if (status == CSCD_OK) touching_curves_mark(&a->joiner, d->mesh, found->items, &a->patches, &a->depths);
+    return status;
+}
+
+cscd_status surface_answers_find(cscd_detector *d, const double *positions,
+                                 const cscd_intersection_options *options, cscd_intersection_pairs *found) {
+    surface_answers *a = make_answers(d);
+    if (a == NULL) return CSCD_OUT_OF_MEMORY;
+    const named_surface surface = {d->mesh, positions, d->exclusions.names};
+    const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};
+    progress_stage(&d->context->progress, "curves", 0.7, 0.8);
+    cscd_status status = curve_joiner_run(&a->joiner, &surface, found->items, found->count, &a->curves);
+    if (status != CSCD_OK) return status;
+    found->curves = &a->curves;
+    if (!options->patches && !options->overlaps && !options->depths) return CSCD_OK;
+    status = find_patches(d, &surface);
+    if (status != CSCD_OK) return status;
+    found->patches = &a->patches;
+    if (options->overlaps) {
+        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->overlaps);
+        if (status != CSCD_OK) return status;
+        found->overlaps = &a->overlaps;
+    }
+    if (options->depths) {
+        status = find_depths(d, &cuts, found);
+        if (status != CSCD_OK) return status;
+        found->depths = &a->depths;
+    }
+    return CSCD_OK;
+}

@@ -1,0 +1,30 @@
+/* What is asked about intersecting surfaces beside their pairs of triangles: curves, patches, overlaps, depths. */
+#pragma once
+
+#include "runtime/detector/detector.h"
+#include "runtime/intersections/depths.h"
+#include "runtime/intersections/overlaps.h"
+
+#include <cscd/intersections.h>
+
+/* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
+typedef struct surface_answers {
+    curve_joiner joiner;
+    patch_finder patch_finder;
+    overlap_finder overlap_finder;
+    depth_finder depth_finder;
+    cscd_curves curves;
+    cscd_patches patches;
+    cscd_overlaps overlaps;
+    cscd_depths depths;
+} surface_answers;
+
+void surface_answers_free(cscd_context *context, surface_answers *a);
+
+/* Does the caller want any of them? */
+bool surface_answers_wanted(const cscd_intersection_options *options);
+
+/* Adds to *found, which has all pairs, what the options ask for. The trees are at the positions. OUT_OF_MEMORY and
+ * CANCELLED have no sentence. */
+cscd_status surface_answers_find(cscd_detector *d, const double *positions,
+                                 const cscd_intersection_options *options, cscd_intersection_pairs *found);
