@@ -7,6 +7,7 @@
 
 void body_rig_begin(body_rig *r) {
     scene_clear(&r->all);
+    r->counter = NULL;
     r->body_count = 0;
 }
 
@@ -53,6 +54,7 @@ void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t
     cscd_object_desc descs[BODIES_MAX];
     cscd_context_options of_context = cscd_context_defaults();
     of_context.thread_count = thread_count;
+    if (r->counter != NULL) of_context.allocator = counting_allocator_interface(r->counter);
     for (uint32_t i = 0; i < r->body_count; i++)
         descs[i] = cscd_object_of_triangles(r->bodies[i].vertex_count, r->bodies[i].triangle_count,
                                             r->bodies[i].triangles);
@@ -61,12 +63,15 @@ void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t
     assert_int_equal(cscd_detector_create(r->context, r->mesh, NULL, options, &r->detector), CSCD_OK);
 }
 
-void body_rig_find(body_rig *r) {
+cscd_status body_rig_try(body_rig *r) {
     cscd_intersection_options options = cscd_intersection_defaults();
     options.overlaps = options.depths = true;
-    assert_int_equal(cscd_detector_find_intersections(
-                         r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count), &options, &r->found),
-                     CSCD_OK);
+    return cscd_detector_find_intersections(r->detector, CSCD_DOUBLES(r->all.x0, r->all.vertex_count),
+                                            &options, &r->found);
+}
+
+void body_rig_find(body_rig *r) {
+    assert_int_equal(body_rig_try(r), CSCD_OK);
 }
 
 void body_rig_free(body_rig *r) {

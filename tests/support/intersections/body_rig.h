@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cscd/cscd.h"
+#include "tests/support/counting_allocator.h"
 #include "tests/support/scenes.h"
 
 enum { BODIES_MAX = 4 };
@@ -16,6 +17,7 @@ typedef struct body_rig {
     scene all;
     body_part bodies[BODIES_MAX];
     uint32_t body_count;
+    counting_allocator *counter; /* of the context; NULL: the system's allocator */
     cscd_context *context;
     cscd_mesh *mesh;
     cscd_detector *detector;
@@ -37,8 +39,9 @@ void body_rig_add_snake(body_rig *r);
 /* Creates the detector, with options or the default ones, in a context of so many threads. */
 void body_rig_create(body_rig *r, const cscd_detector_options *options, uint32_t thread_count);
 
-/* Finds everything. */
+/* Finds everything. try: whatever the status is. */
 void body_rig_find(body_rig *r);
+cscd_status body_rig_try(body_rig *r);
 void body_rig_free(body_rig *r);
 
 /* The overlap of two objects, 0 if they have none. */

@@ -1,0 +1,264 @@
+/* Curves, patches, overlaps and depths through the public API: the same for any method and number of threads, without what
+ * is left out, refused where they make no sense, without memory, and with none in a steady state. */
+#include "cscd/research.h"
+#include "tests/support/counting_allocator.h"
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+#include <string.h>
+
+static body_rig rig, other; /* large; one test at a time */
+
+static void add_scene(body_rig *r) {
+    static const double origin[3] = {0, 0, 0}, centre[3] = {0.9, 0.2, 0.1};
+    body_rig_begin(r);
+    body_rig_add_snake(r);
+    body_rig_end_body(r);
+    scene_add_sphere(&r->all, centre, 0.6, 9, 14);
+    body_rig_end_body(r);
+    scene_add_torus(&r->all, origin, 1.0, 0.35, 24, 12, true);
+    body_rig_end_body(r);
+}
+
+/* A body of two boxes that cross, and a bar through both. */
+static void add_boxes(body_rig *r) {
+    static const double corners[3][3] = {{0, 0, 0}, {1.25, 1.5, 1.125}, {-1, 1.6, 1.2}};
+    static const double sizes[3][3] = {{2, 2, 2}, {2, 2, 2}, {6, 0.25, 0.5}};
+    body_rig_begin(r);
+    for (int i = 0; i < 3; i++) {
+        body_rig_add_box(r, corners[i], sizes[i]);
+        if (i > 0) body_rig_end_body(r);
+    }
+}
+
+static void compare_bytes(const void *a, size_t a_count, const void *b, size_t b_count, size_t size) {
+    assert_int_equal(a_count, b_count);
+    assert_memory_equal(a, b, a_count * size);
+}
+
+static void compare_answers(const cscd_intersection_pairs *a, const cscd_intersection_pairs *b) {
+    const cscd_curves *p = a->curves, *q = b->curves;
+    compare_bytes(p->items, p->count, q->items, q->count, sizeof *p->items);
+    compare_bytes(p->points, p->point_count, q->points, q->point_count, sizeof *p->points);
+    compare_bytes(p->pieces, p->piece_count, q->pieces, q->piece_count, sizeof *p->pieces);
+    compare_bytes(p->pair_curves, p->pair_count, q->pair_curves, q->pair_count, sizeof *p->pair_curves);
+    compare_bytes(a->patches->items, a->patches->count, b->patches->items, b->patches->count,
+                  sizeof *a->patches->items);
+    compare_bytes(a->patches->windings, a->patches->winding_count, b->patches->windings,
+                  b->patches->winding_count, sizeof *a->patches->windings);
+    compare_bytes(a->overlaps->items, a->overlaps->count, b->overlaps->items, b->overlaps->count,
+                  sizeof *a->overlaps->items);
+    compare_bytes(a->depths->items, a->depths->count, b->depths->items, b->depths->count,
+                  sizeof *a->depths->items);
+    compare_bytes(a->depths->patches, a->depths->patch_count, b->depths->patches, b->depths->patch_count,
+                  sizeof *a->depths->patches);
+}
+
+static void methods_and_threads_agree(void **state) {
+    (void)state;
+    const cscd_method methods[] = {CSCD_METHOD_NONE, CSCD_METHOD_SINGLE, CSCD_METHOD_BRUTE};
+    add_scene(&rig);
+    body_rig_create(&rig, NULL, 1);
+    body_rig_find(&rig);
+    assert_true(rig.found.curves->count > 3 && rig.found.patches->count > 6 && rig.found.depths->count > 50);
+    assert_true(rig.found.overlaps->count >= 3);
+    for (uint32_t i = 0; i < 6; i++) {
+        cscd_detector_options options = cscd_detector_defaults();
+        options.method = methods[i % 3];
+        options.volume = i < 3 ? CSCD_VOLUME_BOX : CSCD_VOLUME_KDOP14;
+        add_scene(&other);
+        body_rig_create(&other, &options, 1 + i % 4);
+        body_rig_find(&other);
+        compare_answers(&rig.found, &other.found);
+        body_rig_free(&other);
+    }
+    body_rig_free(&rig);
+}
+
+/* ---- what is left out ------------------------------------------------------------------------------------ */
+
+static bool names_object(uint32_t object) {
+    const cscd_intersection_pairs *f = &rig.found;
+    for (size_t i = 0; i < f->curves->count; i++) {
+        if (f->curves->items[i].objects[0] == object || f->curves->items[i].objects[1] == object) return true;
+    }
+    for (size_t i = 0; i < f->patches->winding_count; i++) {
+        if (f->patches->windings[i].object == object) return true;
+    }
+    for (size_t i = 0; i < f->overlaps->count; i++) {
+        if (f->overlaps->items[i].a == object || f->overlaps->items[i].b == object) return true;
+    }
+    for (size_t i = 0; i < f->depths->count; i++) {
+        if (f->depths->items[i].object == object) return true;
+    }
+    return false;
+}
+
+static void masked_objects_bury_nothing(void **state) {
+    (void)state;
+    cscd_object_rule rules[3] = {cscd_object_rule_default(), cscd_object_rule_default(),
+                                 cscd_object_rule_default()};
+    cscd_detector_options options = cscd_detector_defaults();
+    rules[2].mask = 0;
+    rules[2].self = false;
+    options.rules = rules;
+    options.rule_count = 3;
+    add_scene(&rig);
+    body_rig_create(&rig, &options, 2);
+    body_rig_find(&rig);
+    assert_true(names_object(0) && names_object(1) && !names_object(2));
+    body_rig_free(&rig);
+}
+
+/* Without one of its pairs a curve is open there, and the overlap has no volume. */
+static void an_ignored_pair_opens_a_curve(void **state) {
+    (void)state;
+    static const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1.25, 1.5, 1.125};
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, low, size);
+    body_rig_end_body(&rig);
+    body_rig_add_box(&rig, second, size);
+    body_rig_end_body(&rig);
+    body_rig_create(&rig, NULL, 1);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.curves->count, 1);
+    assert_true(rig.found.curves->items[0].closed && rig.found.overlaps->items[0].volume > 0.0);
+    const uint32_t ignored[2] = {rig.found.curves->pieces[0].a, rig.found.curves->pieces[0].b};
+    assert_int_equal(cscd_detector_set_ignored(rig.detector, ignored, 1), CSCD_OK);
+    body_rig_find(&rig);
+    body_rig_find(&rig); /* the pair may have waited once */
+    assert_int_equal(rig.found.curves->count, 1);
+    assert_int_equal(rig.found.curves->items[0].start, CSCD_CURVE_END_LEFT_OUT);
+    assert_int_equal(rig.found.curves->items[0].end, CSCD_CURVE_END_LEFT_OUT);
+    assert_true(isnan(rig.found.overlaps->items[0].volume));
+    body_rig_free(&rig);
+}
+
+/* ---- calls ------------------------------------------------------------------------------------------------ */
+
+static void the_list_of_all_pairs_is_needed(void **state) {
+    (void)state;
+    add_scene(&rig);
+    body_rig_create(&rig, NULL, 1);
+    for (int i = 0; i < 5; i++) {
+        cscd_intersection_options options = cscd_intersection_defaults();
+        cscd_intersection_pairs found;
+        *(i == 0   ? &options.curves
+          : i == 1 ? &options.patches
+          : i == 2 ? &options.overlaps
+                   : &options.depths) = true;
+        if (i % 2 == 0) options.answer = i == 0 ? CSCD_ANSWER_COUNT : CSCD_ANSWER_ANY;
+        if (i == 1) options.kinds = cscd_intersection_set(CSCD_INTERSECTION_CROSSING);
+        if (i == 3) options.stop_after = 5;
+        assert_int_equal(cscd_detector_find_intersections(
+                             rig.detector, CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count), &options, &found),
+                         CSCD_INVALID_ARGUMENT);
+        assert_non_null(strstr(cscd_context_detail(rig.context), "need the list of all pairs"));
+    }
+    body_rig_free(&rig);
+}
+
+static void only_what_is_asked_for(void **state) {
+    (void)state;
+    add_scene(&rig);
+    body_rig_create(&rig, NULL, 1);
+    for (int i = 0; i < 3; i++) {
+        cscd_intersection_options options = cscd_intersection_defaults();
+        options.curves = i == 1;
+        options.patches = i == 2;
+        assert_int_equal(cscd_detector_find_intersections(rig.detector,
+                                                          CSCD_DOUBLES(rig.all.x0, rig.all.vertex_count),
+                                                          &options, &rig.found),
+                         CSCD_OK);
+        assert_int_equal(rig.found.curves != NULL, i > 0);
+        assert_int_equal(rig.found.patches != NULL, i == 2);
+        assert_true(rig.found.overlaps == NULL && rig.found.depths == NULL);
+    }
+    body_rig_free(&rig);
+}
+
+/* A call that fails changes nothing, and can be repeated. */
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    size_t failed = 0;
+    add_boxes(&other);
+    body_rig_create(&other, NULL, 2);
+    body_rig_find(&other);
+    for (size_t n = 0, done = 0; done == 0; n++) {
+        counting_allocator counter = counting_allocator_start();
+        add_boxes(&rig);
+        rig.counter = &counter;
+        body_rig_create(&rig, NULL, 2);
+        counter.fail_at = counter.calls + n;
+        cscd_status status = body_rig_try(&rig);
+        done = status == CSCD_OK;
+        failed += status == CSCD_OUT_OF_MEMORY;
+        assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
+        counter.fail_at = SIZE_MAX;
+        body_rig_find(&rig);
+        compare_answers(&rig.found, &other.found);
+        body_rig_free(&rig);
+        assert_int_equal(counter.live, 0);
+    }
+    print_message("  %zu allocations\n", failed);
+    assert_true(failed > 40);
+    body_rig_free(&other);
+}
+
+static void a_steady_state_allocates_nothing(void **state) {
+    (void)state;
+    counting_allocator counter = counting_allocator_start();
+    add_scene(&rig);
+    rig.counter = &counter;
+    body_rig_create(&rig, NULL, 2);
+    body_rig_find(&rig);
+    size_t calls = counter.calls;
+    for (int i = 0; i < 5; i++) {
+        for (uint32_t k = 0; k < rig.bodies[1].vertex_count * 3; k++)
+            rig.all.x0[rig.bodies[1].first_vertex * 3 + k] += 0.001;
+        body_rig_find(&rig);
+    }
+    assert_int_equal(counter.calls, calls);
+    body_rig_free(&rig);
+}
+
+/* A new mesh and a second detector have answers of their own. */
+static void clones_answer_alike(void **state) {
+    (void)state;
+    cscd_detector *first, *second;
+    add_scene(&rig);
+    body_rig_create(&rig, NULL, 2);
+    add_scene(&other);
+    body_rig_create(&other, NULL, 1);
+    body_rig_find(&rig);
+    body_rig_find(&other);
+    assert_int_equal(cscd_detector_clone(rig.context, rig.detector, &second), CSCD_OK);
+    first = rig.detector;
+    rig.detector = second;
+    body_rig_find(&rig);
+    compare_answers(&rig.found, &other.found);
+    cscd_detector_destroy(first);
+    body_rig_find(&rig);
+    compare_answers(&rig.found, &other.found);
+    body_rig_free(&rig);
+    body_rig_free(&other);
+}
+
+static void names_of_ends(void **state) {
+    (void)state;
+    assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_NONE), "none");
+    assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_LEFT_OUT), "left out");
+    assert_string_equal(cscd_curve_end_name((cscd_curve_end)77), "unknown");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(methods_and_threads_agree),     cmocka_unit_test(masked_objects_bury_nothing),
+        cmocka_unit_test(an_ignored_pair_opens_a_curve), cmocka_unit_test(the_list_of_all_pairs_is_needed),
+        cmocka_unit_test(only_what_is_asked_for),        cmocka_unit_test(names_of_ends),
+        cmocka_unit_test(every_allocation_may_fail),     cmocka_unit_test(a_steady_state_allocates_nothing),
+        cmocka_unit_test(clones_answer_alike),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
