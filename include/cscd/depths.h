@@ -23,8 +23,9 @@ typedef struct cscd_depth {
     double s;          /* on the edge (e0, e1) the point is (1-s) e0 + s e1 */
     double depth;      /* up to rounding */
     double x[3];       /* the point */
-    double out
-        [3]; /* a unit vector: x + depth * out is the nearest point. Where the depth is 0, the normal there */
+
+    /* A unit vector: x + depth * direction is the nearest point. Where the depth is 0, the normal there. */
+    double direction[3];
 } cscd_depth;
 
 /* The deepest vertex of a patch in one object. It never grows. */

@@ -44,6 +44,36 @@ using intersections = list<cscd_intersections>;
 using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
 
+/* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
+inline span<const cscd_curve> curves(const cscd_intersection_pairs &found) noexcept {
+    if (found.curves == nullptr) return {};
+    return {found.curves->items, found.curves->count};
+}
+inline span<const cscd_curve_point> points(const cscd_intersection_pairs &found,
+                                           const cscd_curve &curve) noexcept {
+    return {found.curves->points + curve.first_point, curve.point_count};
+}
+inline span<const cscd_curve_piece> pieces(const cscd_intersection_pairs &found,
+                                           const cscd_curve &curve) noexcept {
+    return {found.curves->pieces + curve.first_piece, curve.piece_count};
+}
+inline span<const cscd_patch> patches(const cscd_intersection_pairs &found) noexcept {
+    if (found.patches == nullptr) return {};
+    return {found.patches->items, found.patches->count};
+}
+inline span<const cscd_winding> windings(const cscd_intersection_pairs &found,
+                                         const cscd_patch &patch) noexcept {
+    return {found.patches->windings + patch.first_winding, patch.winding_count};
+}
+inline span<const cscd_overlap> overlaps(const cscd_intersection_pairs &found) noexcept {
+    if (found.overlaps == nullptr) return {};
+    return {found.overlaps->items, found.overlaps->count};
+}
+inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexcept {
+    if (found.depths == nullptr) return {};
+    return {found.depths->items, found.depths->count};
+}
+
 /* The lists beside bounds and truncations. */
 inline span<const cscd_proximity> blocked_pairs(const cscd_displacement_bounds &bounds) noexcept {
     return {bounds.blocked, bounds.blocked_count};

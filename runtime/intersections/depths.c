@@ -151,12 +151,12 @@ static void find_normal(const depth_work *work, uint32_t triangle, double out[3]
 static void set_answer(const depth_work *work, const outer_point *nearest, cscd_depth *out) {
     out->triangle = nearest->triangle;
     if (nearest->triangle == UINT32_MAX) return; /* no outer surface: the object is all within itself */
-    for (int k = 0; k < 3; k++) out->out[k] = nearest->x[k] - out->x[k];
-    out->depth = surface_norm(out->out);
+    for (int k = 0; k < 3; k++) out->direction[k] = nearest->x[k] - out->x[k];
+    out->depth = surface_norm(out->direction);
     if (out->depth > 0.0)
-        for (int k = 0; k < 3; k++) out->out[k] /= out->depth;
+        for (int k = 0; k < 3; k++) out->direction[k] /= out->depth;
     else
-        find_normal(work, nearest->triangle, out->out);
+        find_normal(work, nearest->triangle, out->direction);
 }
 
 /* A place on an edge. */

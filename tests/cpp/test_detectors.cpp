@@ -41,6 +41,20 @@ void kinds(void **) {
     }
     const std::size_t all = t.ours.find_intersections(lower).size();
     options = cscd_intersection_defaults();
+    options.overlaps = options.depths = true;
+    const cscd::intersection_pairs answered = t.ours.find_intersections(lower, options);
+    std::size_t pieces = 0, numbers = 0;
+    for (const cscd_curve &curve : cscd::curves(answered)) {
+        pieces += cscd::pieces(answered, curve).size();
+        assert_int_equal(cscd::points(answered, curve).size(), curve.point_count);
+    }
+    for (const cscd_patch &patch : cscd::patches(answered))
+        numbers += cscd::windings(answered, patch).size();
+    assert_true(pieces > 0 && pieces == answered.curves->piece_count);
+    assert_int_equal(numbers, answered.patches->winding_count);
+    assert_int_equal(cscd::overlaps(answered).size(), answered.overlaps->count);
+    assert_int_equal(cscd::depths(answered).size(), answered.depths->count);
+    options = cscd_intersection_defaults();
     options.answer = CSCD_ANSWER_COUNT;
     const cscd::intersection_pairs counted = t.ours.find_intersections(lower, options);
     assert_true(counted.size() == all && counted.begin() == counted.end());

@@ -46,7 +46,7 @@ static void a_box_sunk_into_a_slab(void **state) {
     for (size_t i = 0; i < 4; i++) {
         const cscd_depth *d = &rig.found.depths->items[i];
         assert_int_equal(d->object, 0);
-        assert_true(d->depth == 0.125 && d->out[0] == 0.0 && d->out[1] == 0.0 && d->out[2] == 1.0);
+        assert_true(d->depth == 0.125 && d->direction[0] == 0.0 && d->direction[1] == 0.0 && d->direction[2] == 1.0);
     }
     assert_int_equal(rig.found.depths->patch_count, 1);
     assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);
@@ -147,7 +147,7 @@ static void balls_in_rings(void **state) {
         for (size_t i = 0; i < rig.found.depths->count; i++) {
             const cscd_depth *d = &rig.found.depths->items[i];
             double there[3];
-            for (int k = 0; k < 3; k++) there[k] = d->x[k] + d->depth * d->out[k];
+            for (int k = 0; k < 3; k++) there[k] = d->x[k] + d->depth * d->direction[k];
             assert_true(fabs(d->depth - distance_from_body(d->object, d->x)) < 1e-12);
             assert_true(distance_from_body(d->object, there) < 1e-12);
             compared++;
@@ -205,7 +205,7 @@ static void a_snake_in_its_own_tail(void **state) {
     for (size_t i = 0; i < rig.found.depths->count; i++) {
         const cscd_depth *d = &rig.found.depths->items[i];
         double beyond[3];
-        vec3_add_scaled(d->x, d->depth + 1e-6, d->out, beyond);
+        vec3_add_scaled(d->x, d->depth + 1e-6, d->direction, beyond);
         assert_int_equal(number_at(beyond), 0);
         for (int k = 0; k < SAMPLES; k++) sample_outer_surface(&random, d);
     }
