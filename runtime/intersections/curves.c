@@ -28,13 +28,12 @@ void curve_joiner_free(curve_joiner *j) {
 }
 
 static bool reserve_pairs(curve_joiner *j, size_t count) {
-    size_t larger = count + count / 2;
-    return context_renew_all(j->context, list_of_pairs(j, larger), &j->pair_capacity, count, larger);
+    return context_renew_all(j->context, list_of_pairs(j, room_with_spare(count)), &j->pair_capacity, count);
 }
 
 static bool reserve_pieces(curve_joiner *j, size_t count) {
-    size_t larger = count + count / 2;
-    return context_renew_all(j->context, list_of_pieces(j, larger), &j->piece_capacity, count, larger);
+    return context_renew_all(j->context, list_of_pieces(j, room_with_spare(count)), &j->piece_capacity,
+                             count);
 }
 
 /* ---- pieces -------------------------------------------------------------------------------------------- */

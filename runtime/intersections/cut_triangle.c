@@ -21,8 +21,8 @@ static array_list list_of_slots(cut_memory *m, size_t slots) {
 }
 
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots) {
-    return context_renew_all(context, list_of_lines(m, 2 * lines), &m->line_capacity, lines, 2 * lines) &&
-           context_renew_all(context, list_of_slots(m, 2 * slots), &m->slot_capacity, slots, 2 * slots);
+    return context_renew_all(context, list_of_lines(m, room_with_spare(lines)), &m->line_capacity, lines) &&
+           context_renew_all(context, list_of_slots(m, room_with_spare(slots)), &m->slot_capacity, slots);
 }
 
 void cut_memory_free(cscd_context *context, cut_memory *m) {

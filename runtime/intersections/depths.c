@@ -33,7 +33,7 @@ typedef struct depth_work {
     const bvh *bvh;
 } depth_work;
 
-static bool ask(depth_finder *d, depth_question question) {
+static bool add_question(depth_finder *d, depth_question question) {
     if (d->question_count == d->question_capacity) {
         size_t larger = d->question_capacity == 0 ? 64 : 2 * d->question_capacity;
         depth_question *grown =
@@ -78,7 +78,7 @@ static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
         if (w.number < 1) continue;
         if (patch == UINT32_MAX && w.object == of->object && !own_contains(work, vertex)) continue;
         depth_question question = {vertex, UINT32_MAX, patch, w.object, {0.0, 0.0}};
-        if (!ask(work->finder, question)) return false;
+        if (!add_question(work->finder, question)) return false;
     }
     return true;
 }
@@ -113,7 +113,7 @@ static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t 
                                    UINT32_MAX,
                                    cut->slot_objects[slot],
                                    {along ? s : 1.0 - next, along ? next : 1.0 - s}};
-        if (!ask(work->finder, question)) return false;
+        if (!add_question(work->finder, question)) return false;
     }
     return true;
 }
@@ -286,8 +286,8 @@ cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const b
     }
     size_t vertices = d->question_count;
     if (!ask_of_edges(&work)) return CSCD_OUT_OF_MEMORY;
-    size_t count = d->question_count, larger = 2 * count;
-    if (!context_renew_all(d->context, list_of_depths(d, larger), &d->depth_capacity, count, larger))
+    size_t count = d->question_count;
+    if (!context_renew_all(d->context, list_of_depths(d, room_with_spare(count)), &d->depth_capacity, count))
         return CSCD_OUT_OF_MEMORY;
     if (count > vertices) /* depths are not there yet, so theirs is the room for sorting */
         sort_items(d->questions + vertices, d->depths, count - vertices, sizeof *d->questions,

@@ -88,9 +88,8 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
 bool outer_surface_find(outer_surface *o, const surface_cuts *found) {
     triangle_cuts *c = &o->cuts;
     if (!triangle_cuts_sort(c, found->curves)) return false;
-    size_t larger = 2 * c->key_count;
-    if (!context_renew_all(o->context, list_of_cuts(o, larger), &o->cut_capacity, c->key_count, larger))
-        return false;
+    size_t room = room_with_spare(c->key_count);
+    if (!context_renew_all(o->context, list_of_cuts(o, room), &o->cut_capacity, c->key_count)) return false;
     o->part_count = o->cut_count = 0;
     for (size_t begin = 0, end = 0; begin < c->key_count; begin = end) {
         loaded_cut cut;
@@ -98,7 +97,7 @@ bool outer_surface_find(outer_surface *o, const surface_cuts *found) {
         if (!triangle_cuts_load(c, found, begin, end, &cut)) return false;
         if (cut.stretch > 0.0 && !divide_triangle(o, found, &cut)) return false;
     }
-    if (o->cut_capacity > 0) o->part_begins[o->cut_count] = o->part_count;
+    o->part_begins[o->cut_count] = o->part_count;
     return true;
 }
 

@@ -37,9 +37,9 @@ void overlap_finder_free(overlap_finder *o) {
 }
 
 /* Makes room for so many items; what was there is lost. */
-static bool reserve(overlap_finder *o, array_list (*list)(overlap_finder *, size_t), size_t *capacity,
-                    size_t count) {
-    return context_renew_all(o->context, list(o, 2 * count), capacity, count, 2 * count);
+static bool reserve_list(overlap_finder *o, array_list (*list)(overlap_finder *, size_t), size_t *capacity,
+                         size_t count) {
+    return context_renew_all(o->context, list(o, room_with_spare(count)), capacity, count);
 }
 
 /* ---- shares -------------------------------------------------------------------------------------------- */
@@ -154,7 +154,7 @@ static void add_part(void *data, const cut_part *part) {
 static bool measure_cut(overlap_work *work, loaded_cut *cut) {
     overlap_finder *o = work->finder;
     double normal[3];
-    if (!reserve(o, list_of_slots, &o->slot_capacity, cut->cut.slot_count)) return false;
+    if (!reserve_list(o, list_of_slots, &o->slot_capacity, cut->cut.slot_count)) return false;
     memset(o->slot_shares, 0, cut->cut.slot_count * sizeof *o->slot_shares);
     part_sums sums = {cut->cut.slot_count, o->slot_shares};
     if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, add_part, &sums)) return false;
@@ -221,12 +221,12 @@ cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, csc
     if (mesh->triangle_count == 0) return CSCD_OK;
     work.origin = surface_corner(mesh, found->surface->positions, 0, 0);
     o->share_count = 0;
-    if (!reserve(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
+    if (!reserve_list(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
     add_whole_triangles(&work);
     for (size_t i = 0; i < p->patch_count; i++)
         add_patch(&work, &p->patches[i], o->patch_areas[i], o->patch_fluxes[i]);
     if (!add_cut_triangles(&work) || work.out_of_memory) return CSCD_OUT_OF_MEMORY;
-    if (!reserve(o, list_of_overlaps, &o->overlap_capacity, o->share_count)) return CSCD_OUT_OF_MEMORY;
+    if (!reserve_list(o, list_of_overlaps, &o->overlap_capacity, o->share_count)) return CSCD_OUT_OF_MEMORY;
     sort_items(o->shares, o->spare_shares, o->share_count, sizeof *o->shares, compare_shares);
     size_t count = join_shares(o);
     void_volumes(&work, count);

@@ -30,7 +30,7 @@ void triangle_cuts_free(triangle_cuts *c) {
 
 bool triangle_cuts_sort(triangle_cuts *c, const curve_joiner *curves) {
     size_t count = 2 * curves->piece_count;
-    if (!context_renew_all(c->context, list_of_keys(c, 2 * count), &c->key_capacity, count, 2 * count))
+    if (!context_renew_all(c->context, list_of_keys(c, room_with_spare(count)), &c->key_capacity, count))
         return false;
     for (size_t i = 0; i < count; i++)
         c->keys[i] = (curve_key){i % 2 == 0 ? curves->found[i / 2].a : curves->found[i / 2].b, i};
@@ -78,7 +78,7 @@ static uint32_t object_of(const cscd_mesh *mesh, uint32_t triangle) {
     return cscd_mesh_vertex_object(mesh, mesh->triangles[triangle][0]);
 }
 
-static void project(const loaded_cut *cut, const double x[3], double out[2]) {
+static void project_point(const loaded_cut *cut, const double x[3], double out[2]) {
     out[0] = x[cut->x];
     out[1] = x[cut->y];
 }
@@ -112,8 +112,8 @@ static void add_piece(cut_load *load, const curve_key *key) {
     cut_line line = {.slot = slot_of(load, object_of(mesh, other)),
                      .rise = is_b ? -1 : 1,
                      .number = (uint32_t)cut->line_count};
-    project(load->out, j->points[j->end_points[2 * number]].x, line.from);
-    project(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
+    project_point(load->out, j->points[j->end_points[2 * number]].x, line.from);
+    project_point(load->out, j->points[j->end_points[2 * number + 1]].x, line.to);
     load->cuts->line_pieces[cut->line_count] = (uint32_t)number;
     cut->lines[cut->line_count++] = line;
     for (int end = 0; end < 2; end++) add_border(load, number, is_b, end, line.slot);
@@ -149,7 +149,7 @@ static bool reserve_cut(cut_load *load, size_t pieces) {
     size_t slots = 1 + pieces;
     for (uint32_t i = 0; i < 3; i++) slots += patch_at(load, i)->winding_count;
     size_t most = 2 * pieces > slots ? 2 * pieces : slots;
-    if (!context_renew_all(c->context, list_of_cuts(c, 2 * most), &c->cut_capacity, most, 2 * most))
+    if (!context_renew_all(c->context, list_of_cuts(c, room_with_spare(most)), &c->cut_capacity, most))
         return false;
     return cut_memory_reserve(c->context, &c->memory, pieces, slots);
 }
@@ -162,7 +162,7 @@ static void choose_projection(const cut_load *load, const double normal[3]) {
     out->x = normal[axis] > 0.0 ? (axis + 1) % 3 : (axis + 2) % 3;
     out->y = normal[axis] > 0.0 ? (axis + 2) % 3 : (axis + 1) % 3;
     for (uint32_t i = 0; i < 3; i++)
-        project(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
+        project_point(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
 }
 
 bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t first, size_t end,

@@ -164,13 +164,12 @@ size_t cscd_context_bytes(const cscd_context *context) {
     return atomic_load_explicit(&context->memory.bytes, memory_order_relaxed);
 }
 
-bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count,
-                       size_t larger) {
-    if (count <= *capacity) return true;
+bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count) {
+    if (*capacity > 0 && count <= *capacity) return true;
     context_free_all(context, list);
     *capacity = 0;
     if (!context_allocate_all(context, list)) return false;
-    *capacity = larger;
+    *capacity = room_with_spare(count);
     return true;
 }
 

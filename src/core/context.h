@@ -78,10 +78,15 @@ static inline void context_free_all(cscd_context *context, array_list list) {
     memory_free_all(&context->memory, list);
 }
 
-/* Makes sure that the arrays of a list have room for count items; the list is one of `larger` items, no less than count, and
- * is allocated anew if *capacity is less than count. What the arrays held is lost then. False: no memory, and *capacity
- * is 0. */
-bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count, size_t larger);
+/* The items to allocate where count are needed now and perhaps more in later calls: never 0. */
+static inline size_t room_with_spare(size_t count) {
+    return 2 * count + 16;
+}
+
+/* Makes sure that the arrays of a list have room for count items; the list is one of room_with_spare(count) items, and is
+ * allocated anew if there is no array yet or *capacity is less than count. What the arrays held is lost then. False: no
+ * memory, and *capacity is 0. */
+bool context_renew_all(cscd_context *context, array_list list, size_t *capacity, size_t count);
 
 /* Sets the detail and returns status, so that a function can end with it. */
 cscd_status context_fail(cscd_context *context, cscd_status status, const char *format, ...)

@@ -46,7 +46,8 @@ static void a_box_sunk_into_a_slab(void **state) {
     for (size_t i = 0; i < 4; i++) {
         const cscd_depth *d = &rig.found.depths->items[i];
         assert_int_equal(d->object, 0);
-        assert_true(d->depth == 0.125 && d->direction[0] == 0.0 && d->direction[1] == 0.0 && d->direction[2] == 1.0);
+        assert_true(d->depth == 0.125 && d->direction[0] == 0.0 && d->direction[1] == 0.0 &&
+                    d->direction[2] == 1.0);
     }
     assert_int_equal(rig.found.depths->patch_count, 1);
     assert_true(rig.found.depths->items[rig.found.depths->patches[0].deepest].depth == 0.125);

@@ -13,17 +13,17 @@ typedef struct column_pass {
     int of_a, of_b; /* what the numbers change by, going up */
 } column_pass;
 
-typedef struct column {
+typedef struct counted_column {
     double x, y;
     column_pass passes[PASSES_MAX];
     int count;
-} column;
+} counted_column;
 
 static double turn_of(const double *a, const double *b, double x, double y) {
     return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
 }
 
-static void pass_triangle(column *c, const double *p, const double *q, const double *r, bool is_b) {
+static void pass_triangle(counted_column *c, const double *p, const double *q, const double *r, bool is_b) {
     double u = turn_of(q, r, c->x, c->y), v = turn_of(r, p, c->x, c->y), w = turn_of(p, q, c->x, c->y);
     bool up = u > 0 && v > 0 && w > 0, down = u < 0 && v < 0 && w < 0;
     if ((!up && !down) || c->count == PASSES_MAX) return;
@@ -33,7 +33,7 @@ static void pass_triangle(column *c, const double *p, const double *q, const dou
     c->passes[i] = (column_pass){z, is_b ? 0 : change, is_b ? change : 0};
 }
 
-static void pass_body(column *c, const column_body *body, bool is_b) {
+static void pass_body(counted_column *c, const column_body *body, bool is_b) {
     for (uint32_t t = 0; t < body->triangle_count; t++) {
         const double *p[3];
         for (int i = 0; i < 3; i++) p[i] = body->positions + (size_t)body->triangles[t * 3 + (uint32_t)i] * 3;
@@ -41,7 +41,7 @@ static void pass_body(column *c, const column_body *body, bool is_b) {
     }
 }
 
-static double measure_column(const column *c, bool with_b, int least_a) {
+static double measure_column(const counted_column *c, bool with_b, int least_a) {
     int a = 0, b = 0;
     double length = 0.0;
     for (int i = 0; i + 1 < c->count; i++) {
@@ -72,7 +72,8 @@ double column_volume(const column_body *a, const column_body *b, int least_a, in
     if (b != NULL) narrow_to_body(b, low, high);
     double step[2] = {(high[0] - low[0]) / lines, (high[1] - low[1]) / lines};
     for (int i = 0; i < lines * lines; i++) {
-        column c = {.x = low[0] + (i % lines + 0.5) * step[0], .y = low[1] + (i / lines + 0.5) * step[1]};
+        counted_column c = {.x = low[0] + (i % lines + 0.5) * step[0],
+                            .y = low[1] + (i / lines + 0.5) * step[1]};
         pass_body(&c, a, false);
         if (b != NULL) pass_body(&c, b, true);
         sum += measure_column(&c, b != NULL, least_a);

@@ -26,7 +26,8 @@ void epsilon_add(epsilon_polynomial *sum, const epsilon_polynomial *p, int facto
         add_term(sum, p->terms[i].power + power, factor * p->terms[i].coefficient);
 }
 
-static void multiply(const epsilon_polynomial *a, const epsilon_polynomial *b, epsilon_polynomial *out) {
+static void multiply_polynomials(const epsilon_polynomial *a, const epsilon_polynomial *b,
+                                 epsilon_polynomial *out) {
     out->count = 0;
     for (int i = 0; i < a->count; i++) {
         for (int j = 0; j < b->count; j++)
@@ -57,10 +58,10 @@ void epsilon_orient_along(const epsilon_point *const p[3], int axis, epsilon_pol
     epsilon_polynomial u, v, product;
     subtract_coordinates(p[0], p[1], x, &u);
     subtract_coordinates(p[0], p[2], y, &v);
-    multiply(&u, &v, out);
+    multiply_polynomials(&u, &v, out);
     subtract_coordinates(p[0], p[1], y, &u);
     subtract_coordinates(p[0], p[2], x, &v);
-    multiply(&u, &v, &product);
+    multiply_polynomials(&u, &v, &product);
     epsilon_add(out, &product, -1, 0);
 }
 
@@ -70,7 +71,7 @@ void epsilon_orient3d(const epsilon_point *const p[4], epsilon_polynomial *out) 
     for (int axis = 0; axis < 3; axis++) {
         epsilon_orient_along(p, axis, &turn);
         subtract_coordinates(p[0], p[3], axis, &along);
-        multiply(&turn, &along, &part);
+        multiply_polynomials(&turn, &along, &part);
         epsilon_add(out, &part, 1, 0);
     }
 }
