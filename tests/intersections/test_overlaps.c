@@ -131,6 +131,32 @@ static void two_bodies_of_one_object(void **state) {
     body_rig_free(&rig);
 }
 
+/* Two bars of one object cross each other where they pass through a face of a box: their outlines cross within one
+ * triangle. */
+static void bars_that_cross_in_a_face(void **state) {
+    (void)state;
+    const double low[3] = {-20, -11, -5}, size[3] = {40, 33, 5};
+    const double bars[2][2][3] = {{{-3, -0.2, -1}, {6, 0.4, 2}}, {{-3, -0.3, -1.5}, {6, 0.6, 2}}};
+    const double pi = acos(-1.0), angle = 40.0 * pi / 180.0, turn = 0.3;
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, low, size);
+    body_rig_end_body(&rig);
+    for (int i = 0; i < 2; i++) {
+        uint32_t first = rig.all.vertex_count;
+        body_rig_add_box(&rig, bars[i][0], bars[i][1]);
+        for (uint32_t v = first; v < rig.all.vertex_count; v++) {
+            double *x = rig.all.x0 + (size_t)v * 3, by = turn + i * angle, before = x[0];
+            x[0] = before * cos(by) - x[1] * sin(by);
+            x[1] = before * sin(by) + x[1] * cos(by);
+        }
+    }
+    body_rig_end_body(&rig);
+    find_all();
+    double area = 6 * 0.4 + 6 * 0.6 - 0.4 * 0.6 / sin(angle);
+    assert_true(fabs(body_rig_overlap(&rig, 0, 1).area_a - area) < 1e-9);
+    body_rig_free(&rig);
+}
+
 /* ---- against columns ----------------------------------------------------------------------------------- */
 
 static column_body column_of(uint32_t body) {
@@ -210,6 +236,7 @@ int main(void) {
         cmocka_unit_test(a_cavity_is_outside),
         cmocka_unit_test(a_body_that_is_inside_out),
         cmocka_unit_test(two_bodies_of_one_object),
+        cmocka_unit_test(bars_that_cross_in_a_face),
         cmocka_unit_test(balls_and_rings),
         cmocka_unit_test(a_body_in_itself),
         cmocka_unit_test(balls_that_overlap_by_less_than_an_edge),

@@ -47,6 +47,11 @@ static void make_shapes(grid_family family, random_stream *random, grid_scene *s
         shape_add_cube(first);
         add_octahedron(second);
         break;
+    case GRID_PILLOW:
+        shape_add_triangle(first, 0, 1, 2);
+        shape_add_triangle(first, 0, 2, 1);
+        add_octahedron(second);
+        break;
     case GRID_SEWN:
         shape_add_grid(first, 2, 2, false, false);
         shape_add_grid(second, 2, 2, false, false);
@@ -104,7 +109,7 @@ static void sew_sheets(grid_scene *s) {
 }
 
 void grid_scene_make(grid_family family, uint64_t seed, grid_scene *out) {
-    random_stream random = stream_start(seed * GRID_FAMILIES + (uint64_t)family);
+    random_stream random = stream_start((uint64_t)family * 1000 + seed);
     cscd_object_desc descs[GRID_OBJECTS];
     memset(out, 0, sizeof *out);
     make_shapes(family, &random, out);

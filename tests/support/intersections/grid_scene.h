@@ -14,6 +14,7 @@ typedef enum grid_family {
     GRID_BOX_AND_OCTAHEDRON,
     GRID_OCTAHEDRON, /* with any corners, so that it crosses itself */
     GRID_TORUS,      /* the same */
+    GRID_PILLOW,     /* two triangles with the same vertices, and an octahedron */
     GRID_SHEET,
     GRID_MOEBIUS_STRIP,
     GRID_KLEIN_BOTTLE, /* closed, without an orientation */
