@@ -126,7 +126,7 @@ SLOW_ccd           := algebraic algebraic_oracle cubic cubic_guess elementary_de
 SLOW_core          := cancel float_environment host_loop left_calls exceptions parallel_for progress
 SLOW_culling       := culling local_culling
 SLOW_detector      := list_cap min_separation_detector object_rules oracle threads reentry waiting_random
-SLOW_intersections := static_check_kernel pair_kind find_intersections find_intersections_calls
+SLOW_intersections := static_check_kernel pair_kind find_intersections find_intersections_calls first_pairs
 SLOW_mesh          := predicates triangle_intersection
 SLOW_models        := cloth_drivers cloth_scenes ipc_scenes record_program recording_pawn recordings shape_program shape_regions shapes soft_body
 SLOW_narrow_phase  := exclusions feature_queue
@@ -242,7 +242,7 @@ test-without-baselines: packages
 THREAD_TESTS := $(addprefix $(BUILD)/tests/,detector/test_threads bvh/test_traversal core/test_progress \
                   core/test_parallel_for core/test_contexts core/test_host_loop core/test_exceptions detector/test_reentry \
                   detector/test_lifetimes detector/test_shared_mesh detector/test_clone_threads \
-                  cpp/test_callbacks)
+                  intersections/test_first_pairs cpp/test_callbacks)
 test-threads: packages
 	@$(MAKE) --no-print-directory CONFIG=tsan test-threads-run
 
