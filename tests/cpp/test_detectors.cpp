@@ -48,8 +48,7 @@ void kinds(void **) {
         pieces += cscd::pieces(answered, curve).size();
         assert_int_equal(cscd::points(answered, curve).size(), curve.point_count);
     }
-    for (const cscd_patch &patch : cscd::patches(answered))
-        numbers += cscd::windings(answered, patch).size();
+    for (const cscd_patch &patch : cscd::patches(answered)) numbers += cscd::windings(answered, patch).size();
     assert_true(pieces > 0 && pieces == answered.curves->piece_count);
     assert_int_equal(numbers, answered.patches->winding_count);
     assert_int_equal(cscd::overlaps(answered).size(), answered.overlaps->count);
