@@ -170,13 +170,14 @@ typedef struct edge_search {
     const depth_question *question;
     const double *ends[2];
     double length;
+    const outer_point *near; /* the last answer, or NULL */
 } edge_search;
 
-static edge_place place_at(const edge_search *e, double s) {
+static edge_place place_at(const edge_search *e, double s, const outer_point *near) {
     edge_place at = {.s = s};
     for (int k = 0; k < 3; k++) at.x[k] = e->ends[0][k] + s * (e->ends[1][k] - e->ends[0][k]);
     at.nearest = outer_surface_nearest(&e->work->finder->outer, e->work->found, e->work->bvh,
-                                       e->question->object, at.x);
+                                       e->question->object, at.x, near);
     at.distance = sqrt(at.nearest.squared);
     return at;
 }
@@ -199,9 +200,9 @@ enum { HALVINGS_MAX = 64 };
 
 /* Halves what may be deeper by more than a millionth of the edge. */
 static edge_place find_deepest(const edge_search *e) {
-    edge_place ends[HALVINGS_MAX + 1], at = place_at(e, e->question->s[0]), deepest = at;
+    edge_place ends[HALVINGS_MAX + 1], at = place_at(e, e->question->s[0], e->near), deepest = at;
     int count = 0;
-    ends[count++] = place_at(e, e->question->s[1]);
+    ends[count++] = place_at(e, e->question->s[1], &at.nearest);
     if (ends[0].distance > deepest.distance) deepest = ends[0];
     while (count > 0) { /* from at to the last one of ends */
         edge_place *end = &ends[count - 1];
@@ -211,41 +212,50 @@ static edge_place find_deepest(const edge_search *e) {
             count--;
             continue;
         }
-        ends[count] = place_at(e, at.s + 0.5 * (end->s - at.s));
+        ends[count] = place_at(e, at.s + 0.5 * (end->s - at.s), &at.nearest);
         if (ends[count].distance > deepest.distance) deepest = ends[count];
         count++;
     }
     return deepest;
 }
 
-static void answer_edge(const depth_work *work, const depth_question *q, cscd_depth *out) {
+/* near: an answer for the same object, or NULL. Returns the answer, and so below. */
+static outer_point answer_edge(const depth_work *work, const depth_question *q, const outer_point *near,
+                               cscd_depth *out) {
     const named_surface *s = work->found->surface;
     const uint32_t *v = s->mesh->edges[q->edge];
-    edge_search e = {work, q, {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3}, 0.0};
+    edge_search e = {work, q, {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3}, 0.0, near};
     e.length = surface_edge_length(s->mesh, s->positions, q->edge);
     edge_place deepest = find_deepest(&e);
     out->s = deepest.s;
     memcpy(out->x, deepest.x, sizeof out->x);
     set_answer(work, &deepest.nearest, out);
+    return deepest.nearest;
+}
+
+static outer_point answer_vertex(const depth_work *work, const depth_question *q, const outer_point *near,
+                                 cscd_depth *out) {
+    memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
+    outer_point nearest =
+        outer_surface_nearest(&work->finder->outer, work->found, work->bvh, q->object, out->x, near);
+    set_answer(work, &nearest, out);
+    return nearest;
 }
 
 enum { QUESTIONS_A_TASK = 16 };
 
+/* Questions that follow each other are often asked at places that are near to each other. */
 static void answer_some(void *data, uint32_t task) {
     const depth_work *work = data;
     const depth_finder *d = work->finder;
-    size_t begin = (size_t)task * QUESTIONS_A_TASK, end = begin + QUESTIONS_A_TASK;
-    for (size_t i = begin; i < end && i < d->question_count; i++) {
+    size_t first = (size_t)task * QUESTIONS_A_TASK, end = first + QUESTIONS_A_TASK;
+    outer_point last;
+    for (size_t i = first; i < end && i < d->question_count; i++) {
         const depth_question *q = &d->questions[i];
+        const outer_point *near = i > first && q[-1].object == q->object ? &last : NULL;
         cscd_depth *out = &d->depths[i];
         *out = (cscd_depth){.vertex = q->vertex, .edge = q->edge, .patch = q->patch, .object = q->object};
-        if (q->edge != UINT32_MAX) {
-            answer_edge(work, q, out);
-            continue;
-        }
-        memcpy(out->x, work->found->surface->positions + (size_t)q->vertex * 3, sizeof out->x);
-        outer_point nearest = outer_surface_nearest(&d->outer, work->found, work->bvh, q->object, out->x);
-        set_answer(work, &nearest, out);
+        last = q->edge == UINT32_MAX ? answer_vertex(work, q, near, out) : answer_edge(work, q, near, out);
     }
 }
 

@@ -2,8 +2,10 @@
 #include "runtime/intersections/outer_surface.h"
 
 #include "runtime/ccd/closest.h"
+#include "src/core/vec3.h"
 #include "src/mesh/surface.h"
 
+#include <float.h>
 #include <string.h>
 
 /* ---- memory -------------------------------------------------------------------------------------------- */
@@ -124,9 +126,27 @@ static size_t find_cut(const outer_surface *o, uint32_t triangle) {
     return low < o->cut_count && o->cut_triangles[low] == triangle ? low : o->cut_count;
 }
 
+/* Is the part's box further away than what was found? Computed distances from points of a triangle are off by less than
+ * 2^-47 of the sum of the distance and the triangle's size, which the margins cover, so that nothing is left out that
+ * would be nearer as computed. */
+static bool part_is_far(const nearest_search *s, const outer_part *part) {
+    const double(*p)[3] = part->corners;
+    double squared = 0.0, size = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double low = p[0][k] < p[1][k] ? p[0][k] : p[1][k], high = p[0][k] < p[1][k] ? p[1][k] : p[0][k];
+        low = p[2][k] < low ? p[2][k] : low;
+        high = p[2][k] > high ? p[2][k] : high;
+        double gap = low > s->x[k] ? low - s->x[k] : s->x[k] > high ? s->x[k] - high : 0.0;
+        squared += gap * gap;
+        size += (high - low) * (high - low);
+    }
+    return squared * (1.0 - 0x1p-20) > s->best.squared + 0x1p-70 * size;
+}
+
 static void try_part(nearest_search *s, uint32_t triangle, const outer_part *part) {
     double u, v;
     const double(*p)[3] = part->corners;
+    if (part_is_far(s, part)) return;
     double squared = closest_point_triangle(s->x, p[0], p[1], p[2], &u, &v);
     if (!(squared < s->best.squared)) return;
     s->best.squared = squared;
@@ -158,9 +178,19 @@ static void try_triangle(void *data, uint32_t triangle) {
     try_part(s, triangle, &whole);
 }
 
+/* A squared distance that is a little more than that of a part, so that the part itself is found, and whatever is before it
+ * in the order of the trees at the same distance. */
+static double squared_beyond(const double x[3], const outer_part *part) {
+    const double(*p)[3] = part->corners;
+    double u, v, size = vec3_squared_distance(p[0], p[1]) + vec3_squared_distance(p[0], p[2]);
+    double squared = closest_point_triangle(x, p[0], p[1], p[2], &u, &v);
+    return squared * (1.0 + 0x1p-20) + 0x1p-70 * size + DBL_MIN;
+}
+
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t object, const double x[3]) {
+                                  uint32_t object, const double x[3], const outer_point *near) {
     nearest_search s = {o, found, object, x, {.squared = (double)INFINITY, .triangle = UINT32_MAX}};
+    if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(x, &near->part);
     bvh_visit_near(f, x, &s.best.squared, try_triangle, &s);
     return s.best;
 }

@@ -34,5 +34,7 @@ typedef struct outer_point {
     double x[3];
 } outer_point;
 
+/* near: the answer for another point and the same object, or NULL. The nearer the points, the shorter the search; the
+ * answer does not depend on it. */
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
-                                  uint32_t object, const double x[3]);
+                                  uint32_t object, const double x[3], const outer_point *near);
