@@ -4,6 +4,7 @@
 #include "runtime/intersections/event_point.h"
 
 #include "runtime/ccd/exact/integer.h"
+#include "runtime/intersections/rounded_point.h"
 
 #include <string.h>
 
@@ -72,7 +73,7 @@ static void find_weights(integer_pool *pool, const event_corners *c, const uint8
     }
 }
 
-void event_point_find(const named_surface *s, surface_event event, event_point *out) {
+void event_point_find_exactly(const named_surface *s, surface_event event, event_point *out) {
     static const uint8_t OF_ENDS[2][4] = {{2, 3, 4, 1}, {2, 3, 4, 0}};
     static const uint8_t OF_CORNERS[3][4] = {{0, 1, 3, 4}, {0, 1, 4, 2}, {0, 1, 2, 3}};
     integer_pool pool;
@@ -97,4 +98,15 @@ void event_point_find(const named_surface *s, surface_event event, event_point *
     sum = integer_add(&pool, integer_add(&pool, corners[0], corners[1]), corners[2]);
     out->u = integer_nearest_quotient(&pool, corners[1], sum, 0);
     out->v = integer_nearest_quotient(&pool, corners[2], sum, 0);
+}
+
+void event_point_find(const named_surface *s, surface_event event, event_point *out) {
+    const double *points[ALL_POINTS];
+    if (event.edge != NO_EDGE) {
+        const uint32_t *edge = s->mesh->edges[event.edge], *triangle = s->mesh->triangles[event.triangle];
+        for (int i = 0; i < ALL_POINTS; i++)
+            points[i] = surface_point(s, i < EDGE_POINTS ? edge[i] : triangle[i - EDGE_POINTS]).x;
+        if (rounded_point_find(points, out)) return;
+    }
+    event_point_find_exactly(s, event, out);
 }

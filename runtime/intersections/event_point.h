@@ -11,3 +11,6 @@ typedef struct event_point {
 
 /* Each number is rounded once, to nearest, from its exact value. An end at a vertex has the parameters 0. */
 void event_point_find(const named_surface *s, surface_event event, event_point *out);
+
+/* The same, by integers alone. */
+void event_point_find_exactly(const named_surface *s, surface_event event, event_point *out);
