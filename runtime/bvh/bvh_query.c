@@ -24,26 +24,24 @@ static framed_query frame_box(const bvh *f, const bvh_tree *tree, const query_bo
 
 static uint32_t children_in_box(const bvh *f, int level, uint32_t block, const framed_query *q) {
     const float *bounds = f->levels[level].bounds + (size_t)block * (size_t)f->axis_count * 2 * LANES;
-    uint32_t lanes = 0;
-    for (uint32_t lane = 0; lane < LANES; lane++) {
-        bool apart = false;
-        for (int k = 0; k < BOX_AXES; k++) {
-            const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
-            apart |= lows[lane] > q->high[k] || highs[lane] < q->low[k];
-        }
-        lanes |= (uint32_t)!apart << lane;
+    uint32_t apart[LANES] = {0}, lanes = 0;
+    for (int k = 0; k < BOX_AXES; k++) {
+        const float *lows = bounds + 2 * k * LANES, *highs = lows + LANES;
+        for (uint32_t lane = 0; lane < LANES; lane++)
+            apart[lane] |= (uint32_t)(lows[lane] > q->high[k]) | (uint32_t)(highs[lane] < q->low[k]);
     }
+    for (uint32_t lane = 0; lane < LANES; lane++) lanes |= (apart[lane] ^ 1u) << lane;
     return lanes & f->levels[level].flags[block].used;
 }
 
 /* Is the triangle's box apart from the query? The slack of its tree covers the rounding of its records. */
 static bool triangle_is_apart(const bvh *f, const bvh_tree *tree, const bvh_leaf *leaf, uint32_t lane,
                               const framed_query *q) {
-    for (int k = 0; k < 3; k++) {
-        float a = f->records[leaf->corners[0][lane]][k], b = f->records[leaf->corners[1][lane]][k];
-        float c = f->records[leaf->corners[2][lane]][k];
-        if (fminf(fminf(a, b), c) - tree->slack[0] > q->high[k] ||
-            fmaxf(fmaxf(a, b), c) + tree->slack[0] < q->low[k])
+    const float *a = f->records[leaf->corners[0][lane]], *b = f->records[leaf->corners[1][lane]];
+    const float *c = f->records[leaf->corners[2][lane]];
+    for (int k = 0; k < BOX_AXES; k++) {
+        float low = q->low[k] - tree->slack[0], high = q->high[k] + tree->slack[0];
+        if ((a[k] > high && b[k] > high && c[k] > high) || (a[k] < low && b[k] < low && c[k] < low))
             return true;
     }
     return false;
@@ -65,8 +63,15 @@ typedef struct query_place {
 /* Each block takes one place and leaves eight, and there are no more levels than this. */
 enum { QUERY_STACK = BVH_LEVEL_MAX * LANES };
 
-void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data, uint32_t triangle),
-                   void *data) {
+/* A tree is that of one component, unless a baseline has joined components to fewer trees. */
+static bool tree_is_open(const bvh *f, const bvh_tree *tree) {
+    const cscd_mesh *mesh = f->mesh;
+    uint32_t component = mesh->triangle_components[f->leaves[tree->first_leaf].triangles[0]];
+    return f->tree_count >= mesh->component_count && !mesh->components[component].closed_manifold;
+}
+
+void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
+                   void (*visit)(void *data, uint32_t triangle), void *data) {
     if (f->tree_count == 0) return; /* and of one tree, nothing above it has bounds */
     query_place stack[QUERY_STACK];
     int count = 0;
@@ -77,6 +82,7 @@ void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data,
         query_place at = stack[--count];
         if (at.level == f->tree_level - 1) { /* a tree begins, with a frame of its own */
             tree = &f->trees[at.block];
+            if (closed_only && tree_is_open(f, tree)) continue;
             q = frame_box(f, tree, box);
         }
         uint32_t first = f->levels[at.level].first_children[at.block];

@@ -9,9 +9,10 @@ typedef struct query_box {
     double low[3], high[3];
 } query_box;
 
-/* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. */
-void bvh_visit_box(const bvh *f, const query_box *box, void (*visit)(void *data, uint32_t triangle),
-                   void *data);
+/* Calls visit for each triangle whose bounding volume overlaps the box, and perhaps for some more. closed_only:
+ * those of components that are no closed manifolds may be left out. */
+void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
+                   void (*visit)(void *data, uint32_t triangle), void *data);
 
 /* Calls visit for each triangle whose bounding volume may be nearer to the point than the root of *squared, nearer blocks
  * first; visit may lower *squared. INFINITY: any distance. */

@@ -106,5 +106,5 @@ void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_
                      next.name};
     const double *x = work.origin.x;
     query_box ray = {{x[0], x[1], x[2]}, {x[0], x[1], (double)INFINITY}};
-    bvh_visit_box(f, &ray, pass_triangle, &work);
+    bvh_visit_box(f, &ray, true, pass_triangle, &work);
 }
