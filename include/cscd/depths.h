@@ -24,7 +24,8 @@ typedef struct cscd_depth {
     double depth;      /* up to rounding */
     double x[3];       /* the point */
 
-    /* A unit vector: x + depth * direction is the nearest point. Where the depth is 0, the normal there. */
+    /* A unit vector: x + depth * direction is the nearest point. Where the depth is 0, the normal there, which is 0 of a
+     * triangle without area. */
     double direction[3];
 } cscd_depth;
 

@@ -139,7 +139,11 @@ static int push_children(const bvh *f, const near_place *at, const framed_query 
     return count;
 }
 
-void bvh_visit_near(const bvh *f, const double point[3], double *squared,
+static bool tree_has_object(const bvh_tree *tree, uint32_t object) {
+    return tree->object == object || tree->object == OBJECT_SEVERAL;
+}
+
+void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data) {
     if (f->tree_count == 0) return;
     const query_box box = {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
@@ -150,7 +154,10 @@ void bvh_visit_near(const bvh *f, const double point[3], double *squared,
     while (count > 0) {
         near_place at = stack[--count];
         if (!(at.squared < *squared)) continue;
-        if (at.level == f->tree_level - 1) q = frame_box(f, &f->trees[at.block], &box);
+        if (at.level == f->tree_level - 1) {
+            if (!tree_has_object(&f->trees[at.block], object)) continue;
+            q = frame_box(f, &f->trees[at.block], &box);
+        }
         if (at.level >= 0) {
             count = push_children(f, &at, at.level >= f->tree_level ? &above : &q, *squared, stack, count);
             continue;

@@ -17,7 +17,9 @@ static array_list list_of_lines(cut_memory *m, size_t lines) {
 }
 
 static array_list list_of_slots(cut_memory *m, size_t slots) {
-    return (array_list){{ARRAY(m->numbers, slots)}};
+    return (array_list){{ARRAY(m->below.numbers, slots), ARRAY(m->below.listed, slots),
+                         ARRAY(m->below.places, slots), ARRAY(m->here.numbers, slots),
+                         ARRAY(m->here.listed, slots), ARRAY(m->here.places, slots)}};
 }
 
 bool cut_memory_reserve(cscd_context *context, cut_memory *m, size_t lines, size_t slots) {
@@ -58,6 +60,8 @@ typedef struct slab_sweep {
     void (*take)(void *data, const cut_part *part);
     void *data;
     size_t next_line, active_count, crossing_count;
+    uint32_t border_edge; /* the edge along which the numbers below are kept; 3: none yet */
+    size_t next_border;   /* the first border that is not in them */
 } slab_sweep;
 
 static const cut_line *active_line(const slab_sweep *s, size_t i) {
@@ -161,13 +165,48 @@ static double border_height(const cut_triangle *t, uint32_t edge, double x) {
     return from + border_share(t, edge, x) * (to - from);
 }
 
-/* The numbers at a place on the border. */
-static void begin_numbers(const cut_triangle *t, uint32_t edge, double share, int32_t *numbers) {
-    memcpy(numbers, t->corner_numbers + (size_t)edge * t->slot_count, t->slot_count * sizeof *numbers);
-    for (size_t i = 0; i < t->border_count; i++) {
-        const cut_border *b = &t->borders[i];
-        if (b->edge == edge && b->s < share) numbers[b->slot] += b->jump;
+static void change_number(slot_numbers *n, uint32_t slot, int32_t by) {
+    int32_t before = n->numbers[slot];
+    n->numbers[slot] += by;
+    if (before == 0 && by != 0) {
+        n->places[slot] = n->count;
+        n->listed[n->count++] = slot;
+    } else if (before != 0 && n->numbers[slot] == 0) {
+        uint32_t last = n->listed[--n->count];
+        n->listed[n->places[slot]] = last;
+        n->places[last] = n->places[slot];
     }
+}
+
+static void clear_numbers(slot_numbers *n) {
+    for (uint32_t i = 0; i < n->count; i++) n->numbers[n->listed[i]] = 0;
+    n->count = 0;
+}
+
+static void begin_edge(slab_sweep *s, uint32_t edge) {
+    const cut_triangle *t = s->triangle;
+    const int32_t *numbers = t->corner_numbers + (size_t)edge * t->slot_count;
+    clear_numbers(&s->memory->below);
+    for (uint32_t slot = 0; slot < t->slot_count; slot++)
+        change_number(&s->memory->below, slot, numbers[slot]);
+    s->border_edge = edge;
+    s->next_border = 0;
+    while (s->next_border < t->border_count && t->borders[s->next_border].edge < edge) s->next_border++;
+}
+
+/* The numbers at a place on the border, which is farther along than that of the call before or on another edge. */
+static void begin_numbers(slab_sweep *s, uint32_t edge, double share) {
+    const cut_triangle *t = s->triangle;
+    slot_numbers *below = &s->memory->below, *here = &s->memory->here;
+    if (edge != s->border_edge) begin_edge(s, edge);
+    for (; s->next_border < t->border_count; s->next_border++) {
+        const cut_border *b = &t->borders[s->next_border];
+        if (b->edge != edge || !(b->s < share)) break;
+        change_number(below, b->slot, b->jump);
+    }
+    clear_numbers(here);
+    for (uint32_t i = 0; i < below->count; i++)
+        change_number(here, below->listed[i], below->numbers[below->listed[i]]);
 }
 
 /* Gives the part between what was below and what is above now; heights are those at the slab's ends. */
@@ -175,6 +214,7 @@ static void give_part(const slab_sweep *s, cut_part *part, const double above[2]
     double gap = (above[0] - part->low[0]) + (above[1] - part->low[1]);
     if (!(gap > 0.0)) return;
     for (int i = 0; i < 2; i++) part->high[i] = above[i] > part->low[i] ? above[i] : part->low[i];
+    part->listed_count = s->memory->here.count;
     s->take(s->data, part);
     for (int i = 0; i < 2; i++) part->low[i] = part->high[i];
 }
@@ -187,15 +227,16 @@ static void divide_slab(slab_sweep *s, double begin, double end) {
     const double last[2] = {border_height(t, top, begin), border_height(t, top, end)};
     cut_part part = {.x = {begin, end},
                      .low = {border_height(t, bottom, begin), border_height(t, bottom, end)},
-                     .numbers = s->memory->numbers};
-    begin_numbers(t, bottom, border_share(t, bottom, middle), s->memory->numbers);
+                     .numbers = s->memory->here.numbers,
+                     .listed = s->memory->here.listed};
+    begin_numbers(s, bottom, border_share(t, bottom, middle));
     order_active(s, middle, middle);
     for (size_t i = 0; i < s->active_count; i++) {
         const cut_line *line = active_line(s, i);
         double above[2] = {height_at(line, begin), height_at(line, end)};
         for (int k = 0; k < 2; k++) above[k] = above[k] < last[k] ? above[k] : last[k];
         give_part(s, &part, above);
-        s->memory->numbers[line->slot] += line->from[0] < line->to[0] ? line->rise : -line->rise;
+        change_number(&s->memory->here, line->slot, line->from[0] < line->to[0] ? line->rise : -line->rise);
     }
     give_part(s, &part, last);
 }
@@ -215,7 +256,11 @@ static size_t list_breaks(const cut_triangle *t, cut_memory *m) {
 
 bool cut_triangle_divide(cscd_context *context, cut_triangle *t, cut_memory *m,
                          void (*take)(void *data, const cut_part *part), void *data) {
-    slab_sweep s = {.context = context, .triangle = t, .memory = m, .take = take, .data = data};
+    slab_sweep s = {
+        .context = context, .triangle = t, .memory = m, .take = take, .data = data, .border_edge = 3};
+    m->below.count = m->here.count = 0;
+    memset(m->below.numbers, 0, t->slot_count * sizeof *m->below.numbers);
+    memset(m->here.numbers, 0, t->slot_count * sizeof *m->here.numbers);
     for (size_t i = 0; i < t->line_count; i++) {
         cut_line *line = &t->lines[i];
         bool forward = line->from[0] < line->to[0];

@@ -25,6 +25,8 @@ typedef struct cut_border {
 typedef struct cut_part {
     double x[2], low[2], high[2];
     const int32_t *numbers; /* per slot */
+    const uint32_t *listed; /* the slots whose numbers are not 0, in any order */
+    uint32_t listed_count;
 } cut_part;
 
 static inline double cut_part_area(const cut_part *p) {
@@ -35,12 +37,20 @@ static inline double cut_part_area(const cut_part *p) {
 typedef struct cut_triangle {
     double corners[3][2];
     cut_line *lines;
-    cut_border *borders;
+    cut_border *borders; /* sorted by edge and s */
     int32_t
         *corner_numbers; /* per corner and slot: at the corner, on the side of the edge that begins there */
     size_t line_count, border_count;
     uint32_t slot_count;
 } cut_triangle;
+
+/* Numbers of slots, most of which are 0. */
+typedef struct slot_numbers {
+    int32_t *numbers;
+    uint32_t *listed; /* the slots whose numbers are not 0 */
+    uint32_t *places; /* per slot that is listed: where */
+    uint32_t count;
+} slot_numbers;
 
 /* Memory for triangles with so many lines and slots. */
 typedef struct cut_memory {
@@ -50,7 +60,8 @@ typedef struct cut_memory {
     double *breaks, *spare_breaks; /* where lines begin and end */
     double *crossings;             /* of two lines */
     size_t crossing_capacity;
-    int32_t *numbers; /* per slot */
+    slot_numbers below; /* at the border below a slab */
+    slot_numbers here;  /* in a part */
 } cut_memory;
 
 /* Makes room; false: no memory. */

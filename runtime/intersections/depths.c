@@ -83,37 +83,28 @@ static bool ask_of_vertex(const depth_work *work, uint32_t vertex) {
     return true;
 }
 
-/* Puts the passages of one object through an edge in order, and returns their number. They are few. */
-static size_t order_borders(const loaded_cut *cut, uint32_t edge, uint32_t slot, cut_border *out) {
-    size_t count = 0;
-    for (size_t i = 0; i < cut->cut.border_count; i++) {
-        cut_border b = cut->cut.borders[i];
-        if (b.edge != edge || b.slot != slot) continue;
-        size_t j = count++;
-        for (; j > 0 && out[j - 1].s > b.s; j--) out[j] = out[j - 1];
-        out[j] = b;
-    }
-    return count;
-}
-
-/* Asks of the parts of an edge that an object contains between two of its passages. */
-static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t i, uint32_t slot,
-                        cut_border *borders) {
+/* Asks of the parts of an edge that an object contains between two of its passages. Of each object the last passage is
+ * kept in `last`, and its number in the corner's numbers. */
+static bool ask_of_edge(const depth_work *work, const loaded_cut *cut, uint32_t i, cut_border *last) {
     const cscd_mesh *mesh = work->found->surface->mesh;
     uint32_t edge = mesh->triangle_edges[cut->triangle][i];
     bool along = mesh->edges[edge][0] == mesh->triangles[cut->triangle][i];
-    size_t count = order_borders(cut, i, slot, borders);
-    int32_t number = cut->cut.corner_numbers[(size_t)i * cut->cut.slot_count + slot];
-    for (size_t k = 0; k + 1 < count; k++) {
-        double s = borders[k].s, next = borders[k + 1].s;
-        number += borders[k].jump;
-        if (number < 1 || !(s < next)) continue;
-        depth_question question = {UINT32_MAX,
-                                   edge,
-                                   UINT32_MAX,
-                                   cut->slot_objects[slot],
-                                   {along ? s : 1.0 - next, along ? next : 1.0 - s}};
-        if (!add_question(work->finder, question)) return false;
+    int32_t *numbers = cut->cut.corner_numbers + (size_t)i * cut->cut.slot_count;
+    for (uint32_t slot = 0; slot < cut->cut.slot_count; slot++) last[slot].s = (double)INFINITY;
+    for (size_t k = 0; k < cut->cut.border_count; k++) {
+        const cut_border *b = &cut->cut.borders[k];
+        if (b->edge != i) continue;
+        double s = last[b->slot].s;
+        if (numbers[b->slot] >= 1 && s < b->s) {
+            depth_question question = {UINT32_MAX,
+                                       edge,
+                                       UINT32_MAX,
+                                       cut->slot_objects[b->slot],
+                                       {along ? s : 1.0 - b->s, along ? b->s : 1.0 - s}};
+            if (!add_question(work->finder, question)) return false;
+        }
+        last[b->slot] = *b;
+        numbers[b->slot] += b->jump;
     }
     return true;
 }
@@ -130,9 +121,7 @@ static bool ask_of_edges(const depth_work *work) {
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t edge = mesh->triangle_edges[cut.triangle][i];
             if (mesh->edge_stars[mesh->edge_star_offsets[edge]] != cut.triangle) continue;
-            for (uint32_t slot = 0; slot < cut.cut.slot_count; slot++) {
-                if (!ask_of_edge(work, &cut, i, slot, c->spare_borders)) return false;
-            }
+            if (!ask_of_edge(work, &cut, i, c->spare_borders)) return false;
         }
     }
     return true;

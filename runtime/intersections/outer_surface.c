@@ -29,7 +29,8 @@ typedef struct part_taker {
     outer_surface *outer;
     const loaded_cut *cut;
     double normal[3], corner[3];
-    bool out_of_memory;
+    cut_part waiting; /* a part that may go on upwards */
+    bool waits, out_of_memory;
 } part_taker;
 
 static bool add_part(outer_surface *o, const outer_part *part) {
@@ -49,15 +50,17 @@ static void lift_point(const part_taker *taker, double x, double y, double out[3
     int of_x = taker->cut->x, of_y = taker->cut->y, rest = 3 - of_x - of_y;
     const double *n = taker->normal, *p = taker->corner;
     out[of_x] = x;
-    out[of_y] = y;
-    out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (y - p[of_y])) / n[rest];
+    out[of_y] = taker->cut->turn * y;
+    out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (out[of_y] - p[of_y])) / n[rest];
 }
 
-static void take_part(void *data, const cut_part *part) {
-    part_taker *taker = data;
+/* Adds the two triangles of the trapezoid that waits. */
+static void add_waiting(part_taker *taker) {
+    const cut_part *part = &taker->waiting;
     outer_part half;
-    if (part->numbers[0] >= 1 || taker->out_of_memory) return;
-    for (int i = 0; i < 2; i++) { /* the two triangles of a trapezoid */
+    if (!taker->waits) return;
+    taker->waits = false;
+    for (int i = 0; i < 2; i++) {
         lift_point(taker, part->x[0], part->low[0], half.corners[0]);
         lift_point(taker, part->x[1], part->high[1], half.corners[1]);
         if (i == 0)
@@ -68,23 +71,49 @@ static void take_part(void *data, const cut_part *part) {
     }
 }
 
-static bool own_object_cuts(const loaded_cut *cut) {
-    for (size_t i = 0; i < cut->cut.line_count; i++) {
-        if (cut->cut.lines[i].slot == 0) return true;
+static bool goes_on(const cut_part *below, const cut_part *part) {
+    return below->x[0] == part->x[0] && below->x[1] == part->x[1] && below->high[0] == part->low[0] &&
+           below->high[1] == part->low[1];
+}
+
+/* Parts of one slab come from below; those that are outer are put together. */
+static void take_part(void *data, const cut_part *part) {
+    part_taker *taker = data;
+    if (part->numbers[0] >= 1 || taker->out_of_memory) return;
+    if (taker->waits && goes_on(&taker->waiting, part)) {
+        memcpy(taker->waiting.high, part->high, sizeof part->high);
+        return;
     }
-    return false;
+    add_waiting(taker);
+    taker->waiting = *part;
+    taker->waits = true;
+}
+
+/* Keeps what changes the own number. Says whether a line is left. */
+static bool keep_own_cuts(cut_triangle *cut) {
+    size_t lines = 0, borders = 0;
+    for (size_t i = 0; i < cut->line_count; i++) {
+        if (cut->lines[i].slot == 0) cut->lines[lines++] = cut->lines[i];
+    }
+    for (size_t i = 0; i < cut->border_count; i++) {
+        if (cut->borders[i].slot == 0) cut->borders[borders++] = cut->borders[i];
+    }
+    cut->line_count = lines;
+    cut->border_count = borders;
+    return lines > 0;
 }
 
 static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_cut *cut) {
     part_taker taker = {.outer = o, .cut = cut};
     const named_surface *s = found->surface;
-    if (!own_object_cuts(cut)) return true;
+    if (!keep_own_cuts(&cut->cut)) return true;
     surface_normal(s->mesh, s->positions, cut->triangle, taker.normal);
     memcpy(taker.corner, surface_corner(s->mesh, s->positions, cut->triangle, 0), sizeof taker.corner);
     o->cut_triangles[o->cut_count] = cut->triangle;
     o->part_begins[o->cut_count++] = o->part_count;
-    return cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker) &&
-           !taker.out_of_memory;
+    if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, take_part, &taker)) return false;
+    add_waiting(&taker);
+    return !taker.out_of_memory;
 }
 
 bool outer_surface_find(outer_surface *o, const surface_cuts *found) {
@@ -191,6 +220,6 @@ outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *fo
                                   uint32_t object, const double x[3], const outer_point *near) {
     nearest_search s = {o, found, object, x, {.squared = (double)INFINITY, .triangle = UINT32_MAX}};
     if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(x, &near->part);
-    bvh_visit_near(f, x, &s.best.squared, try_triangle, &s);
+    bvh_visit_near(f, object, x, &s.best.squared, try_triangle, &s);
     return s.best;
 }

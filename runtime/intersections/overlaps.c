@@ -133,17 +133,12 @@ static void add_slots(overlap_work *work, const loaded_cut *cut, double height) 
     }
 }
 
-/* What the parts of a triangle are added to. */
-typedef struct part_sums {
-    uint32_t slot_count;
-    cut_share *shares;
-} part_sums;
-
 static void add_part(void *data, const cut_part *part) {
-    const part_sums *sums = data;
+    cut_share *shares = data;
     double area = cut_part_area(part);
-    for (uint32_t slot = 0; slot < sums->slot_count; slot++) {
-        cut_share *share = &sums->shares[slot];
+    for (uint32_t i = 0; i < part->listed_count; i++) {
+        uint32_t slot = part->listed[i];
+        cut_share *share = &shares[slot];
         if (part->numbers[slot] >= 1) share->buried += area;
         if (part->numbers[slot] >= 1 && part->numbers[0] == 0) share->buried_outside += area;
         if (part->numbers[slot] == 1) share->once += area;
@@ -156,8 +151,7 @@ static bool measure_cut(overlap_work *work, loaded_cut *cut) {
     double normal[3];
     if (!reserve_list(o, list_of_slots, &o->slot_capacity, cut->cut.slot_count)) return false;
     memset(o->slot_shares, 0, cut->cut.slot_count * sizeof *o->slot_shares);
-    part_sums sums = {cut->cut.slot_count, o->slot_shares};
-    if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, add_part, &sums)) return false;
+    if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, add_part, o->slot_shares)) return false;
     surface_normal(work->mesh, work->found->surface->positions, cut->triangle, normal);
     add_slots(work, cut, height_of(work, cut->triangle, normal, surface_norm(normal)));
     return true;

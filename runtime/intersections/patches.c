@@ -183,10 +183,22 @@ static uint32_t *patch_of_corner(patch_finder *p, uint32_t triangle, uint32_t co
     return &p->node_patches[set_root(p->parents, node)];
 }
 
-static bool name_patches_of(patch_finder *p, uint32_t triangle) {
+/* An example must have sides. It is the first corner that has. */
+static void improve_example(const patch_work *work, cscd_patch *patch, uint32_t triangle, uint32_t corner) {
+    if (work->surface->names == NULL || patch->triangle == triangle) return;
+    if (!winding_is_collapsed(work->surface, patch->triangle) ||
+        winding_is_collapsed(work->surface, triangle))
+        return;
+    patch->triangle = triangle;
+    patch->corner = corner;
+}
+
+static bool name_patches_of(const patch_work *work, uint32_t triangle) {
+    patch_finder *p = work->finder;
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t vertex = p->mesh->triangles[triangle][i], *place = patch_of_corner(p, triangle, i);
         if (*place == UINT32_MAX && !add_patch(p, triangle, i, place)) return false;
+        improve_example(work, &p->patches[*place], triangle, i);
         p->corner_patches[(size_t)triangle * 3 + i] = *place;
         if (p->split_vertices[vertex] || p->vertex_patches[vertex] != UINT32_MAX) continue;
         p->vertex_patches[vertex] = *place;
@@ -198,13 +210,14 @@ static bool name_patches_of(patch_finder *p, uint32_t triangle) {
     return true;
 }
 
-static bool name_patches(patch_finder *p) {
+static bool name_patches(const patch_work *work) {
+    patch_finder *p = work->finder;
     const cscd_mesh *mesh = p->mesh;
     p->patch_count = 0;
     memset(p->component_patch, 0xff, mesh->component_count * sizeof *p->component_patch);
     memset(p->vertex_patches, 0xff, mesh->vertex_count * sizeof *p->vertex_patches);
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-        if (!name_patches_of(p, t)) return false;
+        if (!name_patches_of(work, t)) return false;
     }
     return true;
 }
@@ -293,7 +306,7 @@ cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh 
     patch_work work = {p, s, f};
     mark_pieces(&work, pieces, piece_count);
     connect_nodes(p);
-    if (!name_patches(p)) return CSCD_OUT_OF_MEMORY;
+    if (!name_patches(&work)) return CSCD_OUT_OF_MEMORY;
     parallel_run(p->mesh->context->threads, p->lane_count, number_patches, &work);
     if (!join_numbers(p)) return CSCD_OUT_OF_MEMORY;
     *out = (cscd_patches){p->patches,        p->patch_count,      p->windings,      p->winding_count,

@@ -80,7 +80,7 @@ static uint32_t object_of(const cscd_mesh *mesh, uint32_t triangle) {
 
 static void project_point(const loaded_cut *cut, const double x[3], double out[2]) {
     out[0] = x[cut->x];
-    out[1] = x[cut->y];
+    out[1] = cut->turn * x[cut->y];
 }
 
 /* Adds an end of a piece that is on the triangle's own border. An edge of a that passes towards the side of b's normal, and
@@ -97,6 +97,12 @@ static void add_border(cut_load *load, size_t number, bool is_b, int end, uint32
         load->out->cut.borders[load->out->cut.border_count++] =
             (cut_border){i, along ? s : 1.0 - s, slot, (end == 1) != is_b ? 1 : -1};
     }
+}
+
+static int compare_borders(const void *a, const void *b) {
+    const cut_border *p = a, *q = b;
+    if (p->edge != q->edge) return p->edge < q->edge ? -1 : 1;
+    return (p->s > q->s) - (p->s < q->s);
 }
 
 /* Seen from outside, the inside of b is to the left of a piece on a, and the inside of a to the right of it on b. Open
@@ -154,13 +160,36 @@ static bool reserve_cut(cut_load *load, size_t pieces) {
     return cut_memory_reserve(c->context, &c->memory, pieces, slots);
 }
 
-static void choose_projection(const cut_load *load, const double normal[3]) {
+/* How far the pieces of some keys reach along a coordinate, all together, in units of the triangle. */
+static double sum_reaches(const cut_load *load, size_t first, size_t end, int k) {
+    const named_surface *s = load->found->surface;
+    const curve_joiner *j = load->found->curves;
+    double low = (double)INFINITY, high = -(double)INFINITY, sum = 0.0;
+    for (uint32_t i = 0; i < 3; i++) {
+        double x = surface_corner(s->mesh, s->positions, load->out->triangle, i)[k];
+        low = fmin(low, x);
+        high = fmax(high, x);
+    }
+    for (size_t i = first; i < end; i++) {
+        size_t piece = load->cuts->keys[i].end / 2;
+        sum += fabs(j->points[j->end_points[2 * piece]].x[k] - j->points[j->end_points[2 * piece + 1]].x[k]);
+    }
+    return sum / (high - low);
+}
+
+static void choose_projection(const cut_load *load, const double normal[3], size_t first, size_t end) {
     const named_surface *s = load->found->surface;
     loaded_cut *out = load->out;
     int axis = 0;
     for (int k = 1; k < 3; k++) axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
-    out->x = normal[axis] > 0.0 ? (axis + 1) % 3 : (axis + 2) % 3;
-    out->y = normal[axis] > 0.0 ? (axis + 2) % 3 : (axis + 1) % 3;
+    out->x = (axis + 1) % 3;
+    out->y = (axis + 2) % 3;
+    out->turn = normal[axis] > 0.0 ? 1.0 : -1.0;
+    if (sum_reaches(load, first, end, out->y) < sum_reaches(load, first, end, out->x)) {
+        out->x = (axis + 2) % 3;
+        out->y = (axis + 1) % 3;
+        out->turn = -out->turn;
+    }
     for (uint32_t i = 0; i < 3; i++)
         project_point(out, surface_corner(s->mesh, s->positions, out->triangle, i), out->cut.corners[i]);
 }
@@ -181,9 +210,10 @@ bool triangle_cuts_load(triangle_cuts *c, const surface_cuts *found, size_t firs
     out->cut.corner_numbers = c->corner_numbers;
     out->slot_objects = c->slot_objects;
     out->line_pieces = c->line_pieces;
-    choose_projection(&load, normal);
+    choose_projection(&load, normal, first, end);
     slot_of(&load, object_of(mesh, out->triangle));
     for (size_t i = first; i < end; i++) add_piece(&load, &c->keys[i]);
+    sort_items(c->borders, c->spare_borders, out->cut.border_count, sizeof *c->borders, compare_borders);
     number_corners(&load);
     return true;
 }

@@ -15,7 +15,8 @@ typedef struct surface_cuts {
 /* A triangle that curves cut, in the projection along an axis. */
 typedef struct loaded_cut {
     uint32_t triangle;
-    int x, y;       /* the coordinates in which the triangle turns counter-clockwise */
+    int x, y;       /* its coordinates; slabs follow each other along x, which is where few lines overlap */
+    double turn;    /* 1 or -1: y counts with this sign, so that the triangle turns counter-clockwise */
     double stretch; /* an area over that of its projection */
     cut_triangle cut;
     const uint32_t *slot_objects; /* slot 0 is the triangle's own */

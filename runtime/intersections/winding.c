@@ -38,6 +38,21 @@ static symbolic_point point_at_place(const named_surface *s, uint32_t vertex) {
     return p;
 }
 
+static bool have_one_name(const symbolic_point p[3]) {
+    return p[0].name == p[1].name || p[1].name == p[2].name || p[2].name == p[0].name;
+}
+
+static void load_points(const named_surface *s, uint32_t triangle, symbolic_point p[3]) {
+    for (int i = 0; i < 3; i++) p[i] = point_at_place(s, s->mesh->triangles[triangle][i]);
+}
+
+bool winding_is_collapsed(const named_surface *s, uint32_t triangle) {
+    symbolic_point p[3];
+    if (s->names == NULL) return false;
+    load_points(s, triangle, p);
+    return have_one_name(p);
+}
+
 static int turn_of(symbolic_point a, symbolic_point b, symbolic_point c) {
     return symbolic_orient_along(a, b, c, RAY_AXIS);
 }
@@ -82,8 +97,8 @@ static void pass_triangle(void *data, uint32_t triangle) {
     const cscd_mesh *mesh = work->surface->mesh;
     if (!mesh->components[mesh->triangle_components[triangle]].closed_manifold) return;
     symbolic_point p[3];
-    for (int i = 0; i < 3; i++) p[i] = point_at_place(work->surface, mesh->triangles[triangle][i]);
-    if (p[0].name == p[1].name || p[1].name == p[2].name || p[2].name == p[0].name) return;
+    load_points(work->surface, triangle, p);
+    if (have_one_name(p)) return;
     int number = 0, corner = 0;
     while (corner < 3 && p[corner].name != work->origin.name) corner++;
     if (corner == 3)
@@ -95,15 +110,11 @@ static void pass_triangle(void *data, uint32_t triangle) {
 }
 
 void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally) {
-    const uint32_t *triangle = s->mesh->triangles[at.triangle];
-    symbolic_point next = point_at_place(s, triangle[(at.corner + 1) % 3]);
-    symbolic_point before = point_at_place(s, triangle[(at.corner + 2) % 3]);
-    ray_work work = {s,
-                     tally,
-                     point_at_place(s, triangle[at.corner]),
-                     at.next ? next : before,
-                     at.next ? before : next,
-                     next.name};
+    symbolic_point p[3];
+    load_points(s, at.triangle, p);
+    if (have_one_name(p)) return;
+    symbolic_point next = p[(at.corner + 1) % 3], before = p[(at.corner + 2) % 3];
+    ray_work work = {s, tally, p[at.corner], at.next ? next : before, at.next ? before : next, next.name};
     const double *x = work.origin.x;
     query_box ray = {{x[0], x[1], x[2]}, {x[0], x[1], (double)INFINITY}};
     bvh_visit_box(f, &ray, true, pass_triangle, &work);

@@ -23,7 +23,10 @@ typedef struct winding_tally {
 
 void winding_tally_clear(winding_tally *tally);
 
-/* Adds the winding numbers of all objects at the point: of an object the sum over its closed manifold components. An
+/* Has the triangle two corners that a seam unites, and that are at one place? Then nothing is to its sides. */
+bool winding_is_collapsed(const named_surface *s, uint32_t triangle);
+
+/* Adds the winding numbers of all objects at the point, none at a collapsed triangle: of an object the sum over its closed manifold components. An
  * object winds once around what its surfaces, with normals outwards, enclose. The bounds of the trees are those of the
  * surface's positions. Theory: docs/theory/curves.md, lemma 5. */
 void winding_find(const named_surface *s, const bvh *f, corner_side at, winding_tally *tally);

@@ -250,6 +250,43 @@ static void clones_answer_alike(void **state) {
     body_rig_free(&other);
 }
 
+/* A box in a ball has a triangle, the first one, with two corners that a seam unites at one place: nothing is to the sides of
+ * that triangle, and the box is buried all the same. Then all corners of the box are one point. */
+static void a_seam_within_a_triangle(void **state) {
+    (void)state;
+    static const double origin[3] = {0, 0, 0}, low[3] = {-0.25, -0.25, -0.25}, size[3] = {0.5, 0.5, 0.5};
+    uint32_t seams[7][2];
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, low, size);
+    body_rig_end_body(&rig);
+    scene_add_sphere(&rig.all, origin, 1.0, 9, 14);
+    body_rig_end_body(&rig);
+    const uint32_t *corners = rig.all.triangles;
+    seams[0][0] = corners[0];
+    seams[0][1] = corners[1];
+    memcpy(&rig.all.x0[corners[1] * 3], &rig.all.x0[corners[0] * 3], sizeof(double[3]));
+    cscd_detector_options options = cscd_detector_defaults();
+    options.seams = &seams[0][0];
+    options.seam_count = 1;
+    options.seam_reach = (double)INFINITY;
+    body_rig_create(&rig, &options, 1);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.patches->count, 2);
+    const cscd_patch *box = &rig.found.patches->items[0];
+    assert_true(box->triangle > 0 && box->winding_count == 1);
+    assert_int_equal(rig.found.patches->windings[box->first_winding].number, 1);
+    assert_int_equal(rig.found.depths->count, 8);
+    for (uint32_t v = 1; v < 8; v++) {
+        seams[v - 1][0] = 0;
+        seams[v - 1][1] = v;
+        memcpy(&rig.all.x0[v * 3], &rig.all.x0[0], sizeof(double[3]));
+    }
+    assert_int_equal(cscd_detector_set_seams(rig.detector, &seams[0][0], 7), CSCD_OK);
+    body_rig_find(&rig);
+    assert_int_equal(rig.found.patches->items[0].winding_count, 0);
+    body_rig_free(&rig);
+}
+
 static void names_of_ends(void **state) {
     (void)state;
     assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_NONE), "none");
@@ -263,7 +300,7 @@ int main(void) {
         cmocka_unit_test(an_ignored_pair_opens_a_curve), cmocka_unit_test(the_list_of_all_pairs_is_needed),
         cmocka_unit_test(only_what_is_asked_for),        cmocka_unit_test(names_of_ends),
         cmocka_unit_test(every_allocation_may_fail),     cmocka_unit_test(a_steady_state_allocates_nothing),
-        cmocka_unit_test(clones_answer_alike),
+        cmocka_unit_test(clones_answer_alike),           cmocka_unit_test(a_seam_within_a_triangle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
