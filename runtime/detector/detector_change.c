@@ -182,6 +182,7 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(incomplete);
     EXCHANGE(contacts_seen);
     EXCHANGE(guarantees);
+    EXCHANGE(answers);
     EXCHANGE(rest);
     EXCHANGE(unpacked[0]);
     EXCHANGE(unpacked[1]);

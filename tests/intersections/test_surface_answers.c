@@ -287,6 +287,32 @@ static void a_seam_within_a_triangle(void **state) {
     body_rig_free(&rig);
 }
 
+/* A body comes to the mesh: nothing of the old answers fits. */
+static void a_larger_mesh_has_its_own_answers(void **state) {
+    (void)state;
+    cscd_mesh_change *change;
+    cscd_object_desc desc;
+    add_scene(&other);
+    body_rig_create(&other, NULL, 1);
+    body_rig_find(&other);
+    add_scene(&rig);
+    rig.body_count = 2;
+    body_rig_create(&rig, NULL, 1);
+    rig.all.vertex_count -= rig.bodies[2].vertex_count;
+    body_rig_find(&rig);
+    desc = cscd_object_of_triangles(rig.bodies[2].vertex_count, rig.bodies[2].triangle_count,
+                                    rig.bodies[2].triangles);
+    const cscd_object_change added = {.object = UINT32_MAX, .desc = &desc};
+    assert_int_equal(cscd_mesh_change_create(rig.context, rig.mesh, &added, 1, &change), CSCD_OK);
+    assert_int_equal(cscd_detector_change_mesh(rig.detector, change), CSCD_OK);
+    cscd_mesh_change_destroy(change);
+    rig.all.vertex_count += rig.bodies[2].vertex_count;
+    body_rig_find(&rig);
+    compare_answers(&rig.found, &other.found);
+    body_rig_free(&rig);
+    body_rig_free(&other);
+}
+
 static void names_of_ends(void **state) {
     (void)state;
     assert_string_equal(cscd_curve_end_name(CSCD_CURVE_END_NONE), "none");
@@ -300,7 +326,8 @@ int main(void) {
         cmocka_unit_test(an_ignored_pair_opens_a_curve), cmocka_unit_test(the_list_of_all_pairs_is_needed),
         cmocka_unit_test(only_what_is_asked_for),        cmocka_unit_test(names_of_ends),
         cmocka_unit_test(every_allocation_may_fail),     cmocka_unit_test(a_steady_state_allocates_nothing),
-        cmocka_unit_test(clones_answer_alike),           cmocka_unit_test(a_seam_within_a_triangle),
+        cmocka_unit_test(clones_answer_alike),           cmocka_unit_test(a_larger_mesh_has_its_own_answers),
+        cmocka_unit_test(a_seam_within_a_triangle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
