@@ -50,13 +50,21 @@ static void run_at_once(uint32_t task_count, task_function *task, void *data) {
 }
 
 static late_task left_behind;
+static bool is_left_behind;
 
-/* The last task runs on, but has begun. */
+static void join_left_behind(void) {
+    if (is_left_behind) pthread_join(left_behind.thread, NULL);
+    is_left_behind = false;
+}
+
+/* The thread of the last task runs on. Most often it has begun the task by then, but the system may also stop it just
+ * before; nothing that the host can see tells the two apart. */
 static void run_and_return_early(uint32_t task_count, task_function *task, void *data) {
+    join_left_behind();
     for (uint32_t i = 0; i + 1 < task_count; i++) task(data, i);
     start_thread(&left_behind, task, data, task_count - 1);
     while (!atomic_load(&left_behind.begun)) usleep(1);
-    pthread_detach(left_behind.thread);
+    is_left_behind = true;
 }
 
 static void run_dishonestly(void *user, uint32_t task_count, task_function *task, void *data) {
@@ -108,16 +116,21 @@ static cscd_contact *honest_contacts(size_t *count, uint32_t *runs) {
     return copy;
 }
 
-/* In one run the tricks with one task count 1. */
+/* In one run the tricks with one task count 1. A thread that begins its task after the loop's return has left it out, and
+ * may repeat one of a later loop. */
 static void check_sentence(const char *sentence, int trick, bool one_run) {
     unsigned tasks, left_out, repeated, unfinished;
     assert_int_equal(sscanf(sentence,
                             "of %u tasks, parallel_for left out %u, ran %u again, and returned before %u had",
                             &tasks, &left_out, &repeated, &unfinished),
                      4);
+    if (trick == RETURN_EARLY) {
+        assert_true(left_out + unfinished > 0);
+        return;
+    }
     bool one = one_run && trick != DROP_ALL && trick != REPEAT_ALL && trick != REPEAT_AT_ONCE;
     unsigned faults[] = {left_out, repeated, unfinished};
-    int of = trick <= DROP_ALL ? 0 : trick == RETURN_EARLY ? 2 : 1;
+    int of = trick <= DROP_ALL ? 0 : 1;
     for (int i = 0; i < 3; i++) {
         assert_int_equal(faults[i] > 0, i == of);
         if (one && i == of) assert_int_equal(faults[i], 1);
@@ -132,6 +145,7 @@ static void step_fails_and_recovers(int trick, uint32_t run, const cscd_contact 
     cscd_contacts found = {.count = 77};
     host = (dishonest_host){trick, 0, run};
     cscd_status status = panels_step(&p, &found);
+    join_left_behind();
     if (trick != RETURN_EARLY || status != CSCD_OK) { /* a task may end just before the loop returns */
         assert_int_equal(status, CSCD_INVALID_ARGUMENT);
         assert_int_equal(found.count, 77);
