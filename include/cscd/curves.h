@@ -4,8 +4,9 @@
  * A pair of triangles says what these two have in common; whether surfaces pass through each other is said by curves.
  * They are the curves of surfaces whose vertices are moved by infinitely small amounts, by one rule for the whole mesh
  * (Simulation of Simplicity, Edelsbrunner and Muecke 1990), so that nothing only touches: each two surfaces cross or are
- * apart. All is decided exactly, and points are those to which the curves go as the amounts go to 0. Theory:
- * docs/theory/curves.md. */
+ * apart. All is decided exactly, and points are those to which the curves go as the amounts go to 0. Vertices that seams
+ * unite are one as long as they are at one place; where they are apart, they are two, for curves, patches, overlaps and
+ * depths alike, and the surfaces go where their triangles go. Theory: docs/theory/curves.md. */
 #ifndef CSCD_CURVES_API_H
 #define CSCD_CURVES_API_H
 

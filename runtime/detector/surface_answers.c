@@ -13,6 +13,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     depth_finder_free(&a->depth_finder);
     overlap_finder_free(&a->overlap_finder);
     patch_finder_free(&a->patch_finder);
+    placed_names_free(&a->names);
     curve_joiner_free(&a->joiner);
     context_free(context, a);
 }
@@ -27,6 +28,7 @@ static surface_answers *make_answers(cscd_detector *d) {
     cscd_context *context = d->context;
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
+    a->names.context = context;
     a->joiner.context = a->overlap_finder.context = a->overlap_finder.cuts.context = context;
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
     if (patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
@@ -58,7 +60,9 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, cscd_intersection_pairs *found) {
     surface_answers *a = make_answers(d);
     if (a == NULL) return CSCD_OUT_OF_MEMORY;
-    const named_surface surface = {d->mesh, positions, d->exclusions.names};
+    named_surface surface = {d->mesh, positions, NULL};
+    if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
+        return CSCD_OUT_OF_MEMORY;
     const surface_cuts cuts = {&surface, &a->joiner, &a->patch_finder};
     progress_stage(&d->context->progress, "curves", 0.7, 0.8);
     cscd_status status = curve_joiner_run(&a->joiner, &surface, found->items, found->count, &a->curves);

@@ -4,11 +4,13 @@
 #include "runtime/detector/detector.h"
 #include "runtime/intersections/depths.h"
 #include "runtime/intersections/overlaps.h"
+#include "runtime/intersections/placed_names.h"
 
 #include <cscd/intersections.h>
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {
+    placed_names names;
     curve_joiner joiner;
     patch_finder patch_finder;
     overlap_finder overlap_finder;

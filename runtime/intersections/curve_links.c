@@ -1,5 +1,5 @@
 /* Which pieces of intersection curves go on in each other: ends at one event. An event is an edge and a triangle, so that
- * joining compares numbers. Edges whose vertices seams unite are one edge as long as they lie at one place. */
+ * joining compares numbers. Edges whose vertices have the same names are one edge. */
 #include "runtime/intersections/curve_links.h"
 
 #include "src/core/sort.h"
@@ -24,52 +24,36 @@ static uint64_t name_edge(const named_surface *s, uint32_t edge) {
     return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
 }
 
-/* The position of an edge's vertex with the smaller name, or with the larger one. */
-static const double *place_of(const named_surface *s, uint32_t edge, int larger) {
-    const uint32_t *v = s->mesh->edges[edge];
-    int swapped = surface_name(s, v[0]) > surface_name(s, v[1]);
-    return s->positions + (size_t)v[larger != swapped] * 3;
+static bool triangle_is_collapsed(const named_surface *s, uint32_t triangle) {
+    const uint32_t *v = s->mesh->triangles[triangle];
+    uint32_t a = surface_name(s, v[0]), b = surface_name(s, v[1]), c = surface_name(s, v[2]);
+    return a == b || b == c || c == a;
 }
 
-static bool edges_are_one(const named_surface *s, uint32_t a, uint32_t b) {
-    if (a == b) return true;
-    for (int i = 0; i < 2; i++) {
-        const double *p = place_of(s, a, i), *q = place_of(s, b, i);
-        if (p[0] != q[0] || p[1] != q[1] || p[2] != q[2]) return false;
-    }
-    return true;
-}
-
-/* The triangles of all edges that are one with that of an end, as far as ends of the group have them. The edges of a group
- * are few, mostly one. */
-static uint32_t count_triangles(const link_work *work, const curve_key *keys, size_t count, uint32_t edge) {
-    uint32_t triangles = 0;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t other = event_of(work, keys[i].end).edge;
-        bool again = !edges_are_one(work->surface, edge, other);
-        for (size_t j = 0; j < i && !again; j++) again = event_of(work, keys[j].end).edge == other;
-        if (!again) triangles += edge_star_size(work->surface->mesh, other);
-    }
-    return triangles;
+/* The triangles of an edge, but those of which a seam has made an edge. */
+static uint32_t count_triangles(const named_surface *s, uint32_t edge) {
+    const cscd_mesh *mesh = s->mesh;
+    if (s->names == NULL) return edge_star_size(mesh, edge);
+    uint32_t count = 0;
+    for (uint32_t i = mesh->edge_star_offsets[edge]; i < mesh->edge_star_offsets[edge + 1]; i++)
+        count += !triangle_is_collapsed(s, mesh->edge_stars[i]);
+    return count;
 }
 
 static uint32_t link_of_lonely(uint32_t triangles) {
     return triangles <= 1 ? LINK_TO_BORDER : triangles == 2 ? LINK_TO_LEFT_OUT : LINK_TO_JUNCTION;
 }
 
-/* Joins the ends of one triangle and one pair of names. */
+/* Joins the ends of one triangle and one edge, or of edges that seams have made one. Each end has a triangle of the edge of
+ * its own, so three are at a junction. */
 static void link_group(link_work *work, const curve_key *keys, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        uint32_t edge = event_of(work, keys[i].end).edge, partner = 0, partners = 0;
-        for (size_t j = 0; j < count; j++) {
-            if (j == i || !edges_are_one(work->surface, edge, event_of(work, keys[j].end).edge)) continue;
-            partner = (uint32_t)keys[j].end;
-            partners++;
-        }
-        uint32_t triangles = count_triangles(work, keys, count, edge);
-        bool joined = partners == 1 && triangles == 2;
-        work->links[keys[i].end] = joined ? partner : link_of_lonely(triangles);
-    }
+    uint32_t first = event_of(work, keys[0].end).edge, last = event_of(work, keys[count - 1].end).edge;
+    uint32_t triangles = count_triangles(work->surface, first);
+    if (last != first) triangles += count_triangles(work->surface, last);
+    if (count > 2) triangles = 3;
+    bool joined = count == 2 && triangles == 2;
+    for (size_t i = 0; i < count; i++)
+        work->links[keys[i].end] = joined ? (uint32_t)keys[1 - i].end : link_of_lonely(triangles);
 }
 
 /* Sorts the ends by triangle, and within a triangle by the names of the edge. */

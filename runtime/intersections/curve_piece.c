@@ -76,18 +76,14 @@ static int pass_of_opposite(const pair_corners *t, int corner, const pair_corner
     return edge_passes(t, i, from, to, face);
 }
 
-/* Lemma 3: corner i of a is corner j of b. Both edges have ends only where a seam's vertices are apart. */
+/* Lemma 3: corner i of a is corner j of b. */
 static bool piece_at_vertex(const named_surface *s, const pair_corners *a, int i, const pair_corners *b,
                             int j, curve_piece *piece) {
-    int of_a = pass_of_opposite(a, i, b), of_b = pass_of_opposite(b, j, a);
-    if (of_a == 0 && of_b == 0) return false;
-    int end_a = of_a > 0 ? 0 : 1, end_b = of_b > 0 ? 1 : 0;
-    surface_event at_vertex = {NO_EDGE, a->vertices[i]};
-    if (of_a != 0 && of_b != 0) end_b = 1 - end_a;
-    piece->ends[0] = piece->ends[1] = at_vertex;
-    if (of_a != 0) set_end(s, a, (i + 1) % 3, b, end_a, piece);
-    if (of_b != 0) set_end(s, b, (j + 1) % 3, a, end_b, piece);
-    return true;
+    piece->ends[0] = piece->ends[1] = (surface_event){NO_EDGE, a->vertices[i]};
+    int of_a = pass_of_opposite(a, i, b), of_b = of_a != 0 ? 0 : pass_of_opposite(b, j, a);
+    if (of_a != 0) set_end(s, a, (i + 1) % 3, b, of_a > 0 ? 0 : 1, piece);
+    if (of_b != 0) set_end(s, b, (j + 1) % 3, a, of_b > 0 ? 1 : 0, piece);
+    return of_a != 0 || of_b != 0;
 }
 
 bool curve_piece_of_pair(const named_surface *s, uint32_t a, uint32_t b, curve_piece *out) {

@@ -8,7 +8,8 @@
 typedef struct named_surface {
     const cscd_mesh *mesh;
     const double *positions; /* packed */
-    const uint32_t *names;   /* per vertex: the smallest one that it is one with; NULL: its own number */
+    const uint32_t
+        *names; /* per vertex: the smallest one that it is one with, at the same place; NULL: itself */
 } named_surface;
 
 static inline uint32_t surface_name(const named_surface *s, uint32_t vertex) {

@@ -30,20 +30,12 @@ static void add_number(winding_tally *tally, uint32_t object, int number) {
     tally->numbers[object] += number;
 }
 
-/* Vertices of one name are one point only where they are at one place. */
-static symbolic_point point_at_place(const named_surface *s, uint32_t vertex) {
-    symbolic_point p = surface_point(s, vertex);
-    const double *x = s->positions + (size_t)p.name * 3;
-    if (x[0] != p.x[0] || x[1] != p.x[1] || x[2] != p.x[2]) p.name = s->mesh->vertex_count + vertex;
-    return p;
-}
-
 static bool have_one_name(const symbolic_point p[3]) {
     return p[0].name == p[1].name || p[1].name == p[2].name || p[2].name == p[0].name;
 }
 
 static void load_points(const named_surface *s, uint32_t triangle, symbolic_point p[3]) {
-    for (int i = 0; i < 3; i++) p[i] = point_at_place(s, s->mesh->triangles[triangle][i]);
+    for (int i = 0; i < 3; i++) p[i] = surface_point(s, s->mesh->triangles[triangle][i]);
 }
 
 bool winding_is_collapsed(const named_surface *s, uint32_t triangle) {

@@ -23,7 +23,7 @@ typedef struct winding_tally {
 
 void winding_tally_clear(winding_tally *tally);
 
-/* Has the triangle two corners that a seam unites, and that are at one place? Then nothing is to its sides. */
+/* Has the triangle two corners of one name? Then nothing is to its sides. */
 bool winding_is_collapsed(const named_surface *s, uint32_t triangle);
 
 /* Adds the winding numbers of all objects at the point, none at a collapsed triangle: of an object the sum over its closed manifold components. An
