@@ -21,8 +21,9 @@ typedef struct cscd_winding {
 /* A part of a component's surface that is connected over edges which no curve cuts. It is on one side of every surface. It
  * is buried in another object whose number is 1 or more. Its own object has the number that holds just outside of the patch,
  * on the side of the normals: from 1 on the patch is buried in its own object, and below 0 it is inverted, as of a body or a
- * limb that is inside out. Open components have no inside, and do not count in the numbers of their object. It never
- * grows. */
+ * limb that is inside out. Open components have no inside, and do not count in the numbers of their object. Where a pair
+ * of triangles is left out although a curve runs through both, no patch ends there, and its numbers are those at its
+ * example. It never grows. */
 typedef struct cscd_patch {
     uint32_t component, object;
     uint32_t triangle, corner; /* an example: it has this corner of this triangle */
@@ -58,12 +59,18 @@ typedef struct cscd_overlap {
     uint32_t a, b; /* objects; a <= b */
     double area_a; /* of the surface of a that b contains; with a = b, that a itself contains */
     double area_b; /* the reverse; with a = b, of a's surface that is inverted */
-    double
-        volume; /* of what both contain; with a = b, of what a contains twice or more. Only closed components count. NaN:
-                    * a curve does not close because a pair of triangles is left out */
+
+    /* Of what both contain; with a = b, of what a contains twice or more. Only closed components count, and what an object
+     * contains twice counts once. If the object is not looked at with itself (rules, obstacles), nobody knows where
+     * that is, and it counts twice, as its number says. NaN: a curve between closed components is left out, wholly or in
+     * part, because its pairs of triangles are (ignored, ignore, waiting, seams whose vertices are apart). Triangles
+     * that are not active (cscd_detector_set_active) are not looked at with each other: where they cross, the volume
+     * is wrong, and nothing tells of it. */
+    double volume;
 } cscd_overlap;
 
-/* The overlaps that are not 0, sorted by (a, b). The list belongs to the detector and lives until its next call. */
+/* The overlaps that are not 0, or whose volume is not known, sorted by (a, b). n objects, each in the next, have n (n - 1) / 2
+ * of them, and as many windings. The list belongs to the detector and lives until its next call. */
 typedef struct cscd_overlaps {
     const cscd_overlap *items;
     size_t count;

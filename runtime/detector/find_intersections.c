@@ -59,6 +59,7 @@ typedef struct kind_search {
     exclusions without_host;    /* what is left out but by the caller's function, for any thread */
     size_t of_kind[KIND_COUNT]; /* pairs that count */
     bool keeps;                 /* these pairs stay in the lanes */
+    left_out_pairs *left_out;   /* gets those that are left out; NULL: nobody asks */
 } kind_search;
 
 static bool is_wanted(const kind_search *s, pair_note note) {
@@ -84,7 +85,12 @@ static void settle_lane(kind_search *s, intersection_lane *lane) {
     size_t kept = lane->settled;
     for (size_t i = lane->settled; i < lane->count; i++) {
         pair_note note = lane->notes[i];
-        if (!is_wanted(s, note) || is_left_out(s, &s->detector->exclusions, lane->items[i], note)) continue;
+        found_pair pair = lane->items[i];
+        if (!is_wanted(s, note)) continue;
+        if (is_left_out(s, &s->detector->exclusions, pair, note)) {
+            if (s->left_out != NULL) left_out_pairs_add(s->left_out, pair.a, pair.b);
+            continue;
+        }
         s->of_kind[note.kind]++;
         if (s->keeps) intersection_lane_move(lane, i, kept++);
     }
@@ -237,9 +243,13 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
                      .positions = positions,
                      .options = q->options,
                      .keeps = q->options.answer == CSCD_ANSWER_LIST};
+    bool more = surface_answers_wanted(&q->options);
+    left_out_pairs *left_out = more ? surface_answers_begin(d) : NULL;
+    if (more && left_out == NULL) return CSCD_OUT_OF_MEMORY;
+    if (q->options.overlaps) s.left_out = left_out;
     cscd_status status = stops_early(d, &q->options) ? find_first(&s) : find_all(&s);
     if (status == CSCD_OK) status = give_result(&s, q->out);
-    if (status != CSCD_OK || !surface_answers_wanted(&q->options)) return status;
+    if (status != CSCD_OK || !more) return status;
     return surface_answers_find(d, positions, &q->options, q->out);
 }
 

@@ -14,6 +14,7 @@ void surface_answers_free(cscd_context *context, surface_answers *a) {
     overlap_finder_free(&a->overlap_finder);
     patch_finder_free(&a->patch_finder);
     placed_names_free(&a->names);
+    left_out_pairs_free(&a->left_out);
     curve_joiner_free(&a->joiner);
     context_free(context, a);
 }
@@ -28,8 +29,9 @@ static surface_answers *make_answers(cscd_detector *d) {
     cscd_context *context = d->context;
     surface_answers *a = context_allocate(context, 1, sizeof *a);
     if (a == NULL) return NULL;
-    a->names.context = context;
-    a->joiner.context = a->overlap_finder.context = a->overlap_finder.cuts.context = context;
+    a->names.context = a->left_out.context = a->joiner.context = context;
+    a->overlap_finder =
+        (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
     a->depth_finder.context = a->depth_finder.outer.context = a->depth_finder.outer.cuts.context = context;
     if (patch_finder_create(d->mesh, d->space.traversal.lane_count, &a->patch_finder) != CSCD_OK) {
         context_free(context, a);
@@ -37,6 +39,14 @@ static surface_answers *make_answers(cscd_detector *d) {
     }
     d->answers = a;
     return a;
+}
+
+left_out_pairs *surface_answers_begin(cscd_detector *d) {
+    surface_answers *a = make_answers(d);
+    if (a == NULL) return NULL;
+    a->left_out.count = 0;
+    a->left_out.out_of_memory = false;
+    return &a->left_out;
 }
 
 static cscd_status find_patches(cscd_detector *d, const named_surface *surface) {
@@ -58,8 +68,8 @@ static cscd_status find_depths(cscd_detector *d, const surface_cuts *cuts,
 
 cscd_status surface_answers_find(cscd_detector *d, const double *positions,
                                  const cscd_intersection_options *options, cscd_intersection_pairs *found) {
-    surface_answers *a = make_answers(d);
-    if (a == NULL) return CSCD_OUT_OF_MEMORY;
+    surface_answers *a = d->answers;
+    if (a->left_out.out_of_memory) return CSCD_OUT_OF_MEMORY;
     named_surface surface = {d->mesh, positions, NULL};
     if (!placed_names_find(&a->names, d->mesh, positions, d->exclusions.names, &surface.names))
         return CSCD_OUT_OF_MEMORY;
@@ -73,7 +83,7 @@ cscd_status surface_answers_find(cscd_detector *d, const double *positions,
     if (status != CSCD_OK) return status;
     found->patches = &a->patches;
     if (options->overlaps) {
-        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->overlaps);
+        status = overlap_finder_run(&a->overlap_finder, &cuts, &a->left_out, &a->overlaps);
         if (status != CSCD_OK) return status;
         found->overlaps = &a->overlaps;
     }

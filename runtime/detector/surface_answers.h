@@ -10,6 +10,7 @@
 
 /* The memory of a detector for these answers, and those of its last call. Made at the first call that asks. */
 typedef struct surface_answers {
+    left_out_pairs left_out;
     placed_names names;
     curve_joiner joiner;
     patch_finder patch_finder;
@@ -25,6 +26,10 @@ void surface_answers_free(cscd_context *context, surface_answers *a);
 
 /* Does the caller want any of them? */
 bool surface_answers_wanted(const cscd_intersection_options *options);
+
+/* The list, now empty, of the pairs that the call leaves out, which is to be filled where overlaps are wanted. To be called
+ * before the other function. NULL: no memory. */
+left_out_pairs *surface_answers_begin(cscd_detector *d);
 
 /* Adds to *found, which has all pairs, what the options ask for. The trees are at the positions. OUT_OF_MEMORY and
  * CANCELLED have no sentence. */

@@ -14,7 +14,7 @@ static array_list list_of_shares(overlap_finder *o, size_t count) {
 }
 
 static array_list list_of_patches(overlap_finder *o, size_t count) {
-    return (array_list){{ARRAY(o->patch_areas, count), ARRAY(o->patch_fluxes, count)}};
+    return (array_list){{ARRAY(o->patch_sums, count)}};
 }
 
 static array_list list_of_slots(overlap_finder *o, size_t count) {
@@ -33,7 +33,8 @@ void overlap_finder_free(overlap_finder *o) {
     context_free_all(context, list_of_slots(o, 0));
     context_free_all(context, list_of_overlaps(o, 0));
     triangle_cuts_free(&o->cuts);
-    *o = (overlap_finder){.context = context, .cuts = {.context = context}};
+    overlap_gaps_free(&o->gaps);
+    *o = (overlap_finder){.context = context, .cuts = {.context = context}, .gaps = {.context = context}};
 }
 
 /* Makes room for so many items; what was there is lost. */
@@ -48,7 +49,6 @@ typedef struct overlap_work {
     overlap_finder *finder;
     const surface_cuts *found;
     const cscd_mesh *mesh;
-    const double *origin; /* volumes are measured from here */
     bool out_of_memory;
 } overlap_work;
 
@@ -68,92 +68,139 @@ static void add_share(overlap_work *work, overlap_share share) {
     o->shares[o->share_count++] = share;
 }
 
-/* An area of the surface of `object` that `in` contains; flux: of the part of it that bounds what both contain. */
-static void add_buried(overlap_work *work, uint32_t object, uint32_t in, double area, double flux) {
+/* Where a share is: a triangle and a point of its plane, or a patch. */
+typedef struct share_place {
+    uint32_t triangle, patch;
+    const double *at;
+} share_place;
+
+/* An area of the surface of `object` that `in` contains, and what of it bounds what both contain. */
+static void add_buried(overlap_work *work, uint32_t object, uint32_t in, double area, double bounding,
+                       share_place place) {
     bool first = object < in;
     uint64_t key = first ? (uint64_t)object << 32 | in : (uint64_t)in << 32 | object;
-    if (area == 0.0 && flux == 0.0) return;
-    add_share(work, (overlap_share){key, first ? area : 0.0, first ? 0.0 : area, flux});
+    if (area == 0.0 && bounding == 0.0) return;
+    add_share(work, (overlap_share){key, first ? area : 0.0, first ? 0.0 : area, bounding, place.at,
+                                    place.triangle, place.patch});
 }
 
-static void add_own(overlap_work *work, uint32_t object, double area, double inverted, double flux) {
+static void add_own(overlap_work *work, uint32_t object, double area, double inverted, double bounding,
+                    share_place place) {
     if (area == 0.0 && inverted == 0.0) return;
-    add_share(work, (overlap_share){(uint64_t)object << 32 | object, area, inverted, flux});
+    add_share(work, (overlap_share){(uint64_t)object << 32 | object, area, inverted, bounding, place.at,
+                                    place.triangle, place.patch});
 }
 
-/* The height of a triangle's plane above the origin, or 0 in open components, which have no volume. */
-static double height_of(const overlap_work *work, uint32_t triangle, const double normal[3], double norm) {
-    const cscd_mesh *mesh = work->mesh;
-    double from[3];
-    if (norm == 0.0 || !mesh->components[mesh->triangle_components[triangle]].closed_manifold) return 0.0;
-    vec3_subtract(surface_corner(mesh, work->found->surface->positions, triangle, 0), work->origin, from);
-    return vec3_dot(from, normal) / norm;
+/* How often an object contains what it has the number of. What is looked at with itself contains all just once. Of another
+ * object no one knows where it buries itself, so its numbers count as they are. */
+static double times_within(const overlap_work *work, uint32_t object, int32_t number) {
+    if (!patch_objects_look(work->found->patches, object, object)) return number;
+    return number >= 1 ? 1.0 : 0.0;
+}
+
+/* Open components have no volume. */
+static bool triangle_bounds(const overlap_work *work, uint32_t triangle) {
+    return work->mesh->components[work->mesh->triangle_components[triangle]].closed_manifold;
 }
 
 /* ---- whole triangles ----------------------------------------------------------------------------------- */
 
+static const double *place_of_patch(const overlap_work *work, uint32_t patch) {
+    const cscd_patch *of = &work->found->patches->patches[patch];
+    return surface_corner(work->mesh, work->found->surface->positions, of->triangle, of->corner);
+}
+
 static void add_whole_triangles(overlap_work *work) {
     const patch_finder *p = work->found->patches;
-    overlap_finder *o = work->finder;
-    memset(o->patch_areas, 0, p->patch_count * sizeof *o->patch_areas);
-    memset(o->patch_fluxes, 0, p->patch_count * sizeof *o->patch_fluxes);
+    patch_sum *sums = work->finder->patch_sums;
+    memset(sums, 0, p->patch_count * sizeof *sums);
     for (uint32_t t = 0; t < work->mesh->triangle_count; t++) {
         uint32_t patch = p->triangle_patches[t];
         if (patch == UINT32_MAX || p->patches[patch].winding_count == 0) continue;
-        double normal[3];
+        double normal[3], from[3];
         surface_normal(work->mesh, work->found->surface->positions, t, normal);
-        double norm = surface_norm(normal), area = 0.5 * norm;
-        o->patch_areas[patch] += area;
-        o->patch_fluxes[patch] += area * height_of(work, t, normal, norm);
+        sums[patch].area += 0.5 * surface_norm(normal);
+        if (!triangle_bounds(work, t)) continue;
+        vec3_subtract(surface_corner(work->mesh, work->found->surface->positions, t, 0),
+                      place_of_patch(work, patch), from);
+        for (int k = 0; k < 3; k++) sums[patch].normal[k] += 0.5 * normal[k];
+        sums[patch].flux += 0.5 * vec3_dot(from, normal);
     }
 }
 
-static void add_patch(overlap_work *work, const cscd_patch *patch, double area, double flux) {
+static void add_patch(overlap_work *work, uint32_t index) {
+    const cscd_patch *patch = &work->found->patches->patches[index];
+    double area = work->finder->patch_sums[index].area;
+    share_place place = {patch->triangle, index, place_of_patch(work, index)};
     for (uint32_t i = 0; i < patch->winding_count; i++) {
         cscd_winding w = work->found->patches->windings[patch->first_winding + i];
         if (w.object == patch->object)
             add_own(work, patch->object, w.number >= 1 ? area : 0.0, w.number < 0 ? area : 0.0,
-                    w.number == 1 ? flux : 0.0);
-        else if (w.number >= 1)
-            add_buried(work, patch->object, w.object, area, patch->own == 0 ? flux : 0.0);
+                    w.number == 1 ? 1.0 : 0.0, place);
+        else
+            add_buried(work, patch->object, w.object, w.number >= 1 ? area : 0.0,
+                       patch->own == 0 ? times_within(work, w.object, w.number) : 0.0, place);
     }
 }
 
 /* ---- cut triangles ------------------------------------------------------------------------------------- */
 
-static void add_slots(overlap_work *work, const loaded_cut *cut, double height) {
+static void add_slots(overlap_work *work, const loaded_cut *cut) {
+    double bounds = triangle_bounds(work, cut->triangle) ? cut->stretch : 0.0;
     for (uint32_t slot = 0; slot < cut->cut.slot_count; slot++) {
         cut_share share = work->finder->slot_shares[slot];
+        share_place place = {cut->triangle, UINT32_MAX, share.at};
         if (slot == 0)
             add_own(work, cut->slot_objects[0], cut->stretch * share.buried, cut->stretch * share.inverted,
-                    cut->stretch * share.once * height);
+                    bounds * share.bounding, place);
         else
             add_buried(work, cut->slot_objects[0], cut->slot_objects[slot], cut->stretch * share.buried,
-                       cut->stretch * share.buried_outside * height);
+                       bounds * share.bounding, place);
     }
 }
 
+/* A triangle that is measured. */
+typedef struct cut_measure {
+    const overlap_work *work;
+    const loaded_cut *cut;
+    cut_share *shares; /* per slot */
+} cut_measure;
+
 static void add_part(void *data, const cut_part *part) {
-    cut_share *shares = data;
+    const cut_measure *m = data;
     double area = cut_part_area(part);
     for (uint32_t i = 0; i < part->listed_count; i++) {
         uint32_t slot = part->listed[i];
-        cut_share *share = &shares[slot];
-        if (part->numbers[slot] >= 1) share->buried += area;
-        if (part->numbers[slot] >= 1 && part->numbers[0] == 0) share->buried_outside += area;
-        if (part->numbers[slot] == 1) share->once += area;
-        if (part->numbers[slot] < 0) share->inverted += area;
+        int32_t number = part->numbers[slot];
+        cut_share *share = &m->shares[slot];
+        if (number >= 1) share->buried += area;
+        if (number < 0) share->inverted += area;
+        if (slot == 0)
+            share->bounding += number == 1 ? area : 0.0;
+        else if (part->numbers[0] == 0)
+            share->bounding += area * times_within(m->work, m->cut->slot_objects[slot], number);
+    }
+}
+
+/* A share is near a line of its slot. If it has none, the object contains all of the triangle, or nothing. */
+static void place_shares(const overlap_work *work, const loaded_cut *cut, cut_share *shares) {
+    const curve_joiner *j = work->found->curves;
+    memset(shares, 0, cut->cut.slot_count * sizeof *shares);
+    for (uint32_t slot = 0; slot < cut->cut.slot_count; slot++)
+        shares[slot].at = surface_corner(work->mesh, work->found->surface->positions, cut->triangle, 0);
+    for (size_t i = 0; i < cut->cut.line_count; i++) {
+        size_t piece = cut->line_pieces[cut->cut.lines[i].number];
+        shares[cut->cut.lines[i].slot].at = j->points[j->end_points[2 * piece]].x;
     }
 }
 
 static bool measure_cut(overlap_work *work, loaded_cut *cut) {
     overlap_finder *o = work->finder;
-    double normal[3];
     if (!reserve_list(o, list_of_slots, &o->slot_capacity, cut->cut.slot_count)) return false;
-    memset(o->slot_shares, 0, cut->cut.slot_count * sizeof *o->slot_shares);
-    if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, add_part, o->slot_shares)) return false;
-    surface_normal(work->mesh, work->found->surface->positions, cut->triangle, normal);
-    add_slots(work, cut, height_of(work, cut->triangle, normal, surface_norm(normal)));
+    cut_measure measure = {work, cut, o->slot_shares};
+    place_shares(work, cut, o->slot_shares);
+    if (!cut_triangle_divide(o->context, &cut->cut, &o->cuts.memory, add_part, &measure)) return false;
+    add_slots(work, cut);
     return true;
 }
 
@@ -169,6 +216,16 @@ static bool add_cut_triangles(overlap_work *work) {
     return true;
 }
 
+/* An overlap of which nobody knows how large it is has no share but this one. */
+static void add_gaps(overlap_work *work) {
+    const overlap_gaps *g = &work->finder->gaps;
+    const double *at = work->found->surface->positions;
+    for (size_t i = 0; i < g->count; i++) {
+        if (i == 0 || g->objects[i] != g->objects[i - 1])
+            add_share(work, (overlap_share){g->objects[i], 0.0, 0.0, 0.0, at, 0, UINT32_MAX});
+    }
+}
+
 /* ---- sums ---------------------------------------------------------------------------------------------- */
 
 static int compare_shares(const void *a, const void *b) {
@@ -176,54 +233,68 @@ static int compare_shares(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static size_t join_shares(overlap_finder *o) {
+/* Three times the volume that is behind a share as seen from the origin. */
+static double flux_from(const overlap_work *work, const overlap_share *share, const double *origin) {
+    double from[3], normal[3];
+    if (share->bounding == 0.0) return 0.0;
+    vec3_subtract(share->at, origin, from);
+    if (share->patch != UINT32_MAX) {
+        const patch_sum *sum = &work->finder->patch_sums[share->patch];
+        return share->bounding * (sum->flux + vec3_dot(from, sum->normal));
+    }
+    surface_normal(work->mesh, work->found->surface->positions, share->triangle, normal);
+    return share->bounding * (vec3_dot(from, normal) / surface_norm(normal));
+}
+
+/* Volumes are measured from a point of the overlap itself, since digits are lost with the distance: where a curve cuts a
+ * triangle, else on a patch. */
+static const double *choose_origin(const overlap_share *shares, size_t count) {
+    const double *origin = shares[0].at;
+    for (size_t i = count; i-- > 0;) {
+        if (shares[i].bounding != 0.0) origin = shares[i].at;
+        if (shares[i].bounding != 0.0 && shares[i].patch == UINT32_MAX) break;
+    }
+    return origin;
+}
+
+static cscd_overlap sum_shares(const overlap_work *work, const overlap_share *shares, size_t count) {
+    cscd_overlap sum = {.a = (uint32_t)(shares[0].key >> 32), .b = (uint32_t)shares[0].key};
+    const double *origin = choose_origin(shares, count);
+    for (size_t i = 0; i < count; i++) {
+        sum.area_a += shares[i].area_a;
+        sum.area_b += shares[i].area_b;
+        sum.volume += flux_from(work, &shares[i], origin) / 3.0;
+    }
+    if (overlap_gaps_have(&work->finder->gaps, sum.a, sum.b)) sum.volume = (double)NAN;
+    return sum;
+}
+
+static size_t join_shares(const overlap_work *work) {
+    overlap_finder *o = work->finder;
     size_t count = 0;
-    for (size_t i = 0; i < o->share_count; i++) {
-        const overlap_share *share = &o->shares[i];
-        if (i == 0 || o->shares[i - 1].key != share->key)
-            o->overlaps[count++] =
-                (cscd_overlap){(uint32_t)(share->key >> 32), (uint32_t)share->key, 0.0, 0.0, 0.0};
-        cscd_overlap *sum = &o->overlaps[count - 1];
-        sum->area_a += share->area_a;
-        sum->area_b += share->area_b;
-        sum->volume += share->flux / 3.0;
+    for (size_t begin = 0, end = 0; begin < o->share_count; begin = end) {
+        while (end < o->share_count && o->shares[end].key == o->shares[begin].key) end++;
+        o->overlaps[count++] = sum_shares(work, o->shares + begin, end - begin);
     }
     return count;
 }
 
-/* No volume where a curve of closed components goes on in a pair that is left out. */
-static void void_volumes(const overlap_work *work, size_t count) {
-    const curve_joiner *j = work->found->curves;
-    for (size_t i = 0; i < j->curve_count; i++) {
-        const cscd_curve *c = &j->curves[i];
-        if (c->start != CSCD_CURVE_END_LEFT_OUT && c->end != CSCD_CURVE_END_LEFT_OUT) continue;
-        for (size_t k = 0; k < count; k++) {
-            cscd_overlap *o = &work->finder->overlaps[k];
-            bool of_both = (o->a == c->objects[0] && o->b == c->objects[1]) ||
-                           (o->a == c->objects[1] && o->b == c->objects[0]);
-            bool of_one = c->objects[0] == c->objects[1] && (o->a == c->objects[0] || o->b == c->objects[0]);
-            if (of_both || of_one) o->volume = (double)NAN;
-        }
-    }
-}
-
-cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, cscd_overlaps *out) {
+cscd_status overlap_finder_run(overlap_finder *o, const surface_cuts *found, const left_out_pairs *left_out,
+                               cscd_overlaps *out) {
     const patch_finder *p = found->patches;
     const cscd_mesh *mesh = found->surface->mesh;
     overlap_work work = {.finder = o, .found = found, .mesh = mesh};
     *out = (cscd_overlaps){NULL, 0};
     if (mesh->triangle_count == 0) return CSCD_OK;
-    work.origin = surface_corner(mesh, found->surface->positions, 0, 0);
     o->share_count = 0;
     if (!reserve_list(o, list_of_patches, &o->patch_capacity, p->patch_count)) return CSCD_OUT_OF_MEMORY;
+    if (!overlap_gaps_find(&o->gaps, found, left_out)) return CSCD_OUT_OF_MEMORY;
     add_whole_triangles(&work);
-    for (size_t i = 0; i < p->patch_count; i++)
-        add_patch(&work, &p->patches[i], o->patch_areas[i], o->patch_fluxes[i]);
+    for (size_t i = 0; i < p->patch_count; i++) add_patch(&work, (uint32_t)i);
+    add_gaps(&work);
     if (!add_cut_triangles(&work) || work.out_of_memory) return CSCD_OUT_OF_MEMORY;
     if (!reserve_list(o, list_of_overlaps, &o->overlap_capacity, o->share_count)) return CSCD_OUT_OF_MEMORY;
     sort_items(o->shares, o->spare_shares, o->share_count, sizeof *o->shares, compare_shares);
-    size_t count = join_shares(o);
-    void_volumes(&work, count);
-    *out = (cscd_overlaps){o->overlaps, count};
+    *out = (cscd_overlaps){o->overlaps, join_shares(&work)};
     return CSCD_OK;
 }

@@ -225,7 +225,7 @@ static bool name_patches(const patch_work *work) {
 /* ---- numbers ------------------------------------------------------------------------------------------- */
 
 /* Without rules, obstacles are not looked at with each other, nor with themselves. */
-static bool objects_look(const patch_finder *p, uint32_t a, uint32_t b) {
+bool patch_objects_look(const patch_finder *p, uint32_t a, uint32_t b) {
     if (p->objects != NULL) return object_sets_may_meet(&p->objects[a], &p->objects[b]);
     return !(p->mesh->objects[a].obstacle && p->mesh->objects[b].obstacle);
 }
@@ -257,7 +257,7 @@ static bool number_patch(const patch_work *work, winding_lane *lane, cscd_patch 
     patch->first_winding = (uint32_t)lane->count;
     for (uint32_t i = 0; i < tally->count; i++) {
         cscd_winding number = {tally->touched[i], tally->numbers[tally->touched[i]]};
-        if (number.number == 0 || !objects_look(p, patch->object, number.object)) continue;
+        if (number.number == 0 || !patch_objects_look(p, patch->object, number.object)) continue;
         if (number.object == patch->object) patch->own = number.number;
         if (!keep_number(p, lane, number)) return false;
         patch->winding_count++;

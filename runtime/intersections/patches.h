@@ -46,3 +46,6 @@ void patch_finder_free(patch_finder *p);
 /* Finds the patches between the pieces of all curves. The bounds of the trees are those of the surface's positions. */
 cscd_status patch_finder_run(patch_finder *p, const named_surface *s, const bvh *f, const curve_piece *pieces,
                              size_t piece_count, cscd_patches *out);
+
+/* Are two objects, or an object and itself, looked at with each other? */
+bool patch_objects_look(const patch_finder *p, uint32_t a, uint32_t b);

@@ -157,6 +157,51 @@ static void bars_that_cross_in_a_face(void **state) {
     body_rig_free(&rig);
 }
 
+/* Digits are lost where volumes are measured from far away: the first triangle of the first object is 10^6 away, and the faces
+ * of the slab reach as far, but nothing of the overlap does. */
+static void far_from_everything_else(void **state) {
+    (void)state;
+    const double origin[3] = {-1e6, -1e6, -1e6}, one[3] = {1, 1, 1}, low[3] = {-1e6, -1e6, -1},
+                 slab[3] = {2e6, 2e6, 1};
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, origin, one);
+    body_rig_add_box(&rig, low, slab);
+    body_rig_end_body(&rig);
+    add_cube(0.3, 0.7, -0.0011, 0.0037);
+    add_cube(0.3, 0.7, -0.7, 0.0037);
+    find_all();
+    double within = body_rig_overlap(&rig, 0, 2).volume, edge = 0.0037;
+    assert_true(fabs(body_rig_overlap(&rig, 0, 1).volume / (edge * edge * 0.0011) - 1.0) < 1e-12);
+    assert_true(fabs(within / (edge * edge * edge) - 1.0) < 1e-12);
+    body_rig_free(&rig);
+}
+
+/* Two boxes of one object that is not looked at with itself. Nobody knows where the one is in the other, so what they share
+ * of a third box counts twice. */
+static void an_object_that_is_not_looked_at_with_itself(void **state) {
+    (void)state;
+    const double low[3] = {0, 0, 0}, size[3] = {2, 2, 2}, second[3] = {1, 0.5, 0.5};
+    cscd_object_rule rules[2] = {cscd_object_rule_default(), cscd_object_rule_default()};
+    cscd_detector_options options = cscd_detector_defaults();
+    options.rules = rules;
+    options.rule_count = 2;
+    for (int both = 0; both < 2; both++) {
+        for (int i = 0; i <= both; i++) rules[i].self = false;
+        body_rig_begin(&rig);
+        body_rig_add_box(&rig, low, size);
+        body_rig_add_box(&rig, second, size);
+        body_rig_end_body(&rig);
+        add_cube(0.5, 0.75, 0.25, 1);
+        body_rig_create(&rig, &options, 1);
+        body_rig_find(&rig);
+        cscd_overlap found = body_rig_overlap(&rig, 0, 1);
+        assert_int_equal(rig.found.overlaps->count, 1);
+        assert_true(fabs(found.volume - (1.0 + 0.5 * 1.0 * 0.75)) <= 1e-12);
+        assert_true(fabs(found.area_b - 6.0) <= 1e-12);
+        body_rig_free(&rig);
+    }
+}
+
 /* ---- against columns ----------------------------------------------------------------------------------- */
 
 static column_body column_of(uint32_t body) {
@@ -237,6 +282,8 @@ int main(void) {
         cmocka_unit_test(a_body_that_is_inside_out),
         cmocka_unit_test(two_bodies_of_one_object),
         cmocka_unit_test(bars_that_cross_in_a_face),
+        cmocka_unit_test(far_from_everything_else),
+        cmocka_unit_test(an_object_that_is_not_looked_at_with_itself),
         cmocka_unit_test(balls_and_rings),
         cmocka_unit_test(a_body_in_itself),
         cmocka_unit_test(balls_that_overlap_by_less_than_an_edge),

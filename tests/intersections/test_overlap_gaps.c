@@ -1,0 +1,192 @@
+/* Overlaps whose curves are left out, wholly or in part, have no volume; all others have theirs. */
+#include "tests/support/intersections/body_rig.h"
+#include "tests/support/test.h"
+
+#include <math.h>
+
+static body_rig rig; /* large; one test at a time */
+
+/* Which pairs of triangles the caller's function ignores: those of the first two bodies, but some. */
+typedef struct ignored_range {
+    uint32_t first_b, kept_a;
+} ignored_range;
+
+static bool ignore_pair(void *user, cscd_contact_kind kind, uint32_t a, uint32_t b) {
+    const ignored_range *range = user;
+    return kind == CSCD_CONTACT_TT && a < range->first_b && b >= range->first_b && b < range->first_b + 12 &&
+           a != range->kept_a;
+}
+
+static void add_cube(double x, double y, double z, double size) {
+    const double low[3] = {x, y, z}, sizes[3] = {size, size, size};
+    body_rig_add_box(&rig, low, sizes);
+    body_rig_end_body(&rig);
+}
+
+/* Three cubes: the first one overlaps the other two, which are apart. With a hole the first one is open. */
+static void add_cubes(bool with_hole) {
+    body_rig_begin(&rig);
+    const double low[3] = {0, 0, 0}, sizes[3] = {2, 2, 2};
+    body_rig_add_box(&rig, low, sizes);
+    if (with_hole) rig.all.triangle_count--;
+    body_rig_end_body(&rig);
+    add_cube(1.25, 1.5, 1.125, 2);
+    add_cube(-1.5, -1.25, -1.125, 2);
+}
+
+static void find_ignoring(ignored_range *range) {
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignore = ignore_pair;
+    options.ignore_user = range;
+    body_rig_create(&rig, &options, 2);
+    body_rig_find(&rig);
+}
+
+static void expect_volumes(bool known) {
+    cscd_overlap left_out = body_rig_overlap(&rig, 0, 1), other = body_rig_overlap(&rig, 0, 2);
+    assert_int_equal(isnan(left_out.volume), !known);
+    if (known) assert_true(fabs(left_out.volume - 0.75 * 0.5 * 0.875) <= 1e-12);
+    assert_true(fabs(other.volume - 0.5 * 0.75 * 0.875) <= 1e-12);
+    assert_int_equal(rig.found.overlaps->count, 2);
+}
+
+/* Not even a piece of the curve tells that something is missing. */
+static void a_whole_curve(void **state) {
+    (void)state;
+    ignored_range range = {12, UINT32_MAX};
+    add_cubes(false);
+    find_ignoring(&range);
+    assert_int_equal(rig.found.curves->count, 1);
+    expect_volumes(false);
+    body_rig_free(&rig);
+}
+
+/* Two bars across each other have no vertices in each other, so nothing but the curves tells that they overlap. */
+static void nothing_else_is_buried(void **state) {
+    (void)state;
+    static const double low[3] = {-3, 0.1, 0.2}, size[3] = {6, 0.5, 0.25}, across[3] = {0.3, -2, 0.1},
+                        other[3] = {0.5, 5, 2};
+    ignored_range range = {12, UINT32_MAX};
+    body_rig_begin(&rig);
+    body_rig_add_box(&rig, low, size);
+    body_rig_end_body(&rig);
+    body_rig_add_box(&rig, across, other);
+    body_rig_end_body(&rig);
+    find_ignoring(&range);
+    assert_int_equal(rig.found.overlaps->count, 1);
+    assert_true(isnan(body_rig_overlap(&rig, 0, 1).volume));
+    body_rig_free(&rig);
+}
+
+static void all_but_some_pieces(void **state) {
+    (void)state;
+    size_t open = 0;
+    for (uint32_t kept = 0; kept < 12; kept++) {
+        ignored_range range = {12, kept};
+        add_cubes(false);
+        find_ignoring(&range);
+        for (size_t i = 0; i < rig.found.curves->count; i++) open += !rig.found.curves->items[i].closed;
+        expect_volumes(false);
+        body_rig_free(&rig);
+    }
+    assert_true(open > 0);
+}
+
+/* Pairs without a piece of a curve may be left out: here two that only touch. */
+static void pairs_that_carry_nothing(void **state) {
+    (void)state;
+    size_t ignored = 0;
+    add_cubes(false);
+    body_rig_create(&rig, NULL, 1);
+    body_rig_find(&rig);
+    uint32_t pairs[64][2];
+    for (size_t i = 0; i < rig.found.count; i++) {
+        if (rig.found.curves->pair_curves[i] != UINT32_MAX || ignored == 64) continue;
+        pairs[ignored][0] = rig.found.items[i].a;
+        pairs[ignored++][1] = rig.found.items[i].b;
+    }
+    assert_true(ignored == 0 || cscd_detector_set_ignored(rig.detector, pairs[0], ignored) == CSCD_OK);
+    body_rig_find(&rig);
+    expect_volumes(true);
+    body_rig_free(&rig);
+}
+
+/* A curve with an open component bounds nothing. */
+static void open_components_have_none(void **state) {
+    (void)state;
+    ignored_range range = {11, UINT32_MAX};
+    add_cubes(true);
+    find_ignoring(&range);
+    assert_true(body_rig_overlap(&rig, 0, 1).volume == 0.0);
+    assert_true(body_rig_overlap(&rig, 0, 2).volume == 0.0);
+    body_rig_free(&rig);
+}
+
+static bool has_closed_curve(void) {
+    for (size_t i = 0; i < rig.found.curves->count; i++) {
+        const cscd_curve *curve = &rig.found.curves->items[i];
+        if (curve->objects[1] == 1) return curve->closed;
+    }
+    return false;
+}
+
+/* A seam whose vertices are apart leaves out pairs whose features that meet have vertices of it, as many as all of a curve:
+ * each pair of triangles at the two corners that are in the other cube. */
+static void seams_whose_vertices_are_apart(void **state) {
+    (void)state;
+    size_t unknown = 0;
+    for (uint32_t v = 0; v < 64; v++) {
+        const uint32_t seam[2] = {v / 8, 8 + v % 8};
+        cscd_detector_options options = cscd_detector_defaults();
+        options.seams = seam;
+        options.seam_count = 1;
+        options.seam_reach = (double)INFINITY;
+        add_cubes(false);
+        body_rig_create(&rig, &options, 1);
+        body_rig_find(&rig);
+        bool known = !isnan(body_rig_overlap(&rig, 0, 1).volume);
+        assert_int_equal(known, has_closed_curve());
+        expect_volumes(known);
+        unknown += !known;
+        body_rig_free(&rig);
+    }
+    assert_true(unknown > 0 && unknown < 64);
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    ignored_range range = {12, UINT32_MAX};
+    cscd_detector_options options = cscd_detector_defaults();
+    options.ignore = ignore_pair;
+    options.ignore_user = &range;
+    size_t failed = 0;
+    for (bool done = false; !done; failed++) {
+        counting_allocator counter = counting_allocator_start();
+        add_cubes(false);
+        rig.counter = &counter;
+        body_rig_create(&rig, &options, 1);
+        counter.fail_at = counter.calls + failed;
+        cscd_status status = body_rig_try(&rig);
+        done = status == CSCD_OK;
+        assert_int_equal(status, done ? CSCD_OK : CSCD_OUT_OF_MEMORY);
+        counter.fail_at = SIZE_MAX;
+        body_rig_find(&rig);
+        expect_volumes(false);
+        body_rig_free(&rig);
+        assert_int_equal(counter.live, 0);
+    }
+    assert_true(failed > 40);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_whole_curve),
+        cmocka_unit_test(nothing_else_is_buried),
+        cmocka_unit_test(all_but_some_pieces),
+        cmocka_unit_test(pairs_that_carry_nothing),
+        cmocka_unit_test(open_components_have_none),
+        cmocka_unit_test(seams_whose_vertices_are_apart),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
