@@ -73,6 +73,7 @@
 #include <cscd/mesh.h>
 #include <cscd/mesh_change.h>
 #include <cscd/pairs.h>
+#include <cscd/parts.h>
 #include <cscd/plan.h>
 #include <cscd/solver.h>
 #include <cscd/view.h>

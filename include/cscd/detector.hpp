@@ -149,6 +149,18 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
     void forget_rest() {
         call([&] { return cscd_detector_set_rest(get(), nullptr); });
     }
+    /* A label for each triangle; without an argument, the objects are the parts. */
+    void set_parts(span<const std::uint32_t> labels, std::uint32_t part_count) {
+        std::uint32_t count = mesh().triangle_count();
+        if (labels.size() != count)
+            throw error(CSCD_INVALID_ARGUMENT, "labels has " + std::to_string(labels.size()) +
+                                                   " items, expected " + std::to_string(count));
+        const std::uint32_t none = 0, *first = labels.empty() ? &none : labels.data();
+        call([&] { return cscd_detector_set_parts(get(), first, part_count); });
+    }
+    void set_parts() {
+        call([&] { return cscd_detector_set_parts(get(), nullptr, 0); });
+    }
 
     /* ---- contacts, intersections, proximity */
 
@@ -167,6 +179,12 @@ class detector : public detail::owner<cscd_detector, cscd_detector_destroy> {
         const cscd_view *at = covering(x);
         return find<intersection_pairs>([&](intersection_pairs *out) {
             return cscd_detector_find_intersections(get(), at, &options, out);
+        });
+    }
+    /* Contacts of a list, summed up by pair of parts. */
+    contact_part_pairs contact_parts(span<const cscd_contact> items) {
+        return find<contact_part_pairs>([&](contact_part_pairs *out) {
+            return cscd_detector_contact_parts(get(), items.data(), items.size(), out);
         });
     }
     proximities find_near(const positions &x, double distance, cscd_near_form form = CSCD_NEAR_UNIQUE) {

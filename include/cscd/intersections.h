@@ -24,7 +24,7 @@
 #define CSCD_INTERSECTIONS_API_H
 
 #include <cscd/depths.h>
-#include <cscd/detector.h>
+#include <cscd/parts.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -75,7 +75,11 @@ typedef struct cscd_intersection_options {
     bool patches;  /* what curves cut them into, and what these are buried in: cscd/patches.h */
     bool overlaps; /* areas and volumes of what objects bury: cscd/patches.h */
     bool depths;   /* how deep: cscd/depths.h */
-    uint8_t reserved[4];
+
+    /* What is found summed up by pair of parts: cscd/parts.h. Needs the answer LIST, of any pairs; INVALID_ARGUMENT with
+     * another one. false by default. */
+    bool parts;
+    uint8_t reserved[3];
 } cscd_intersection_options;
 
 /* The default options. */
@@ -111,6 +115,7 @@ typedef struct cscd_intersection_pairs {
     const cscd_patches *patches;
     const cscd_overlaps *overlaps;
     const cscd_depths *depths;
+    const cscd_part_pairs *parts;
 } cscd_intersection_pairs;
 
 /* Lists the triangle pairs that intersect or touch at the given positions, and how. options may be NULL. The pairs are

@@ -43,6 +43,7 @@ using contacts = list<cscd_contacts>;
 using intersections = list<cscd_intersections>;
 using intersection_pairs = list<cscd_intersection_pairs>;
 using proximities = list<cscd_proximities>;
+using contact_part_pairs = list<cscd_contact_part_pairs>;
 
 /* What cscd_detector_find_intersections finds beside pairs, where the options ask for it; else empty. */
 inline span<const cscd_curve> curves(const cscd_intersection_pairs &found) noexcept {
@@ -72,6 +73,10 @@ inline span<const cscd_overlap> overlaps(const cscd_intersection_pairs &found) n
 inline span<const cscd_depth> depths(const cscd_intersection_pairs &found) noexcept {
     if (found.depths == nullptr) return {};
     return {found.depths->items, found.depths->count};
+}
+inline span<const cscd_part_pair> parts(const cscd_intersection_pairs &found) noexcept {
+    if (found.parts == nullptr) return {};
+    return {found.parts->items, found.parts->count};
 }
 
 /* The lists beside bounds and truncations. */

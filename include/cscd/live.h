@@ -118,6 +118,7 @@ CSCD_API cscd_status cscd_detector_set_active(cscd_detector *detector, const uin
  *                 seam, unless they are apart at the first positions that the detector is given then. Pairs of
  *                 obstacles of which one becomes free count as uncovered, as by a change of rules
  *   rules         each object keeps its rule; a new one gets cscd_object_rule_default
+ *   parts         each triangle keeps the label of its origin; without an origin it is in no part
  *   rest          edges keep the lengths of their origins; for all others the mollifier's threshold is 0 until
  *                 cscd_detector_set_rest
  * Lists, timings, counters, guarantees and orientations of earlier calls are gone. Line searches must begin again;
@@ -125,7 +126,7 @@ CSCD_API cscd_status cscd_detector_set_active(cscd_detector *detector, const uin
 CSCD_API cscd_status cscd_detector_change_mesh(cscd_detector *detector, const cscd_mesh_change *change);
 
 /* Creates a second detector on the same mesh in a context that may be another one. It begins with a copy of all that
- * the first one has: trees, regions, options, rules, pairs to leave out and pairs that wait, rest lengths, and what is known of the start.
+ * the first one has: trees, regions, options, rules, pairs to leave out and pairs that wait, rest lengths, parts, and what is known of the start.
  * From then on they have nothing to do with each other. It has no lists, and no line searches. BUSY also where the
  * first one's context is inside another call. */
 CSCD_API cscd_status cscd_detector_clone(cscd_context *context, const cscd_detector *detector,

@@ -4,10 +4,12 @@
 
 #include <cscd/context.hpp>
 #include <cscd/mesh.h>
+#include <cscd/parts.h>
 #include <cscd/solver.h>
 #include <cscd/view.hpp>
 
 #include <initializer_list>
+#include <vector>
 
 namespace cscd {
 
@@ -118,6 +120,12 @@ template <class Mesh> class mesh_functions {
     }
     std::uint32_t triangle_component(std::uint32_t triangle) const noexcept {
         return cscd_mesh_triangle_component(c(), triangle);
+    }
+    /* As labels of parts; there are component_count() parts. */
+    std::vector<std::uint32_t> component_labels() const {
+        std::vector<std::uint32_t> labels(triangle_count());
+        cscd_mesh_component_labels(c(), labels.data());
+        return labels;
     }
     std::uint64_t hash() const noexcept {
         return cscd_mesh_hash(c());

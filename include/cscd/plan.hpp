@@ -3,6 +3,7 @@
 #define CSCD_PLAN_HPP
 
 #include <cscd/mesh.hpp>
+#include <cscd/parts.h>
 #include <cscd/plan.h>
 
 namespace cscd {
@@ -65,6 +66,12 @@ class plan : public detail::owner<cscd_plan, cscd_plan_destroy> {
     }
     std::uint32_t triangle_region(std::uint32_t triangle) const noexcept {
         return cscd_plan_triangle_region(get(), triangle);
+    }
+    /* As labels of parts of the plan's mesh, which has so many triangles; there are region_count() parts. */
+    std::vector<std::uint32_t> region_labels(std::uint32_t triangle_count) const {
+        std::vector<std::uint32_t> labels(triangle_count);
+        cscd_plan_region_labels(get(), labels.data());
+        return labels;
     }
     double triangle_charge(std::uint32_t triangle) const noexcept {
         return cscd_plan_triangle_charge(get(), triangle);

@@ -122,6 +122,9 @@ void detector_free(cscd_detector *d) {
     result_buffer_free(context, &d->pairs);
     result_buffer_free(context, &d->names);
     surface_answers_free(context, d->answers);
+    part_labels_free(context, &d->parts);
+    part_sums_free(context, &d->part_sums);
+    result_buffer_free(context, &d->contact_parts);
     edge_rest_free(context, &d->rest);
     context_free_all(context, detector_arrays(d));
     context_free(context, d->unpacked[0]);

@@ -10,6 +10,7 @@
 #include "runtime/detector/result_buffer.h"
 #include "runtime/detector/rollback.h"
 #include "runtime/detector/search_space.h"
+#include "runtime/intersections/part_sums.h"
 #include "runtime/intersections/static_check.h"
 #include "runtime/narrow_phase/exclusions.h"
 #include "runtime/narrow_phase/narrow_phase.h"
@@ -66,7 +67,11 @@ struct cscd_detector {
     result_buffer pairs;             /* intersections by kind */
     result_buffer names;             /* of proximities, while repetitions are found */
     struct surface_answers *answers; /* NULL before the first call that asks for curves, patches and so on */
-    edge_rest rest;                  /* see cscd_detector_set_rest */
+    part_labels parts;               /* see cscd_detector_set_parts */
+    part_summer part_sums;
+    cscd_part_pairs part_pairs; /* what these have found last */
+    result_buffer contact_parts;
+    edge_rest rest;      /* see cscd_detector_set_rest */
     double *unpacked[2]; /* x0 and x1 of views that are not packed doubles; NULL before the first */
     double *reached;     /* the positions that cscd_detector_max_step tries; NULL before its first call */
     cscd_scalar *reached_scalars; /* per object: of what max_step or a line search reaches */

@@ -134,6 +134,7 @@ static cscd_status move_parts(const detector_move *m) {
     if (status == CSCD_OK) status = detector_create_hider(d);
     if (status == CSCD_OK) status = rollback_create(d->mesh, &d->before);
     if (status == CSCD_OK) status = edge_rest_move(d->context, &from->rest, m->change, &d->rest);
+    if (status == CSCD_OK) status = part_labels_move(&from->parts, d->mesh, m->change, &d->parts);
     if (status == CSCD_OK && !context_allocate_all(d->context, detector_arrays(d)))
         status = CSCD_OUT_OF_MEMORY;
     if (status == CSCD_OK) status = list_cap_set(d, from->options.longest_list);
@@ -183,6 +184,8 @@ static void exchange_parts(cscd_detector *a, cscd_detector *b) {
     EXCHANGE(contacts_seen);
     EXCHANGE(guarantees);
     EXCHANGE(answers);
+    EXCHANGE(parts);
+    EXCHANGE(part_sums);
     EXCHANGE(rest);
     EXCHANGE(unpacked[0]);
     EXCHANGE(unpacked[1]);

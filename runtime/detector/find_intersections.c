@@ -47,6 +47,8 @@ static cscd_status take_options(cscd_context *context, const cscd_intersection_o
             context, CSCD_INVALID_ARGUMENT,
             "curves, patches, overlaps and depths need the list of all pairs: answer LIST, every kind, and "
             "stop_after 0");
+    if (out->parts && out->answer != CSCD_ANSWER_LIST)
+        return context_fail(context, CSCD_INVALID_ARGUMENT, "parts need a list of pairs: answer LIST");
     return CSCD_OK;
 }
 
@@ -237,6 +239,12 @@ typedef struct kind_question {
     cscd_intersection_pairs *out;
 } kind_question;
 
+static cscd_status sum_up_parts(cscd_detector *d, cscd_intersection_pairs *found) {
+    cscd_status status = part_sums_run(&d->part_sums, d->mesh, &d->parts, found, &d->part_pairs);
+    if (status == CSCD_OK) found->parts = &d->part_pairs;
+    return status;
+}
+
 static cscd_status find_kinds(cscd_detector *d, const double *positions, void *data) {
     const kind_question *q = data;
     kind_search s = {.detector = d,
@@ -249,8 +257,9 @@ static cscd_status find_kinds(cscd_detector *d, const double *positions, void *d
     if (q->options.overlaps) s.left_out = left_out;
     cscd_status status = stops_early(d, &q->options) ? find_first(&s) : find_all(&s);
     if (status == CSCD_OK) status = give_result(&s, q->out);
-    if (status != CSCD_OK || !more) return status;
-    return surface_answers_find(d, positions, &q->options, q->out);
+    if (status == CSCD_OK && more) status = surface_answers_find(d, positions, &q->options, q->out);
+    if (status == CSCD_OK && q->options.parts) status = sum_up_parts(d, q->out);
+    return status;
 }
 
 static cscd_status find_in_views(cscd_detector *d, const cscd_view *positions,

@@ -62,6 +62,47 @@ void kinds(void **) {
                      CSCD_INVALID_ARGUMENT);
 }
 
+/* The same labels, by component and by region, for both. */
+void parts(void **) {
+    twins t;
+    cscd_intersection_options options = cscd_intersection_defaults();
+    options.curves = options.parts = true;
+    cscd::plan_options clusters;
+    clusters.method = CSCD_METHOD_KMEANS;
+    const cscd::plan plan(t.context, t.mesh, t.x0, clusters);
+    const std::vector<std::uint32_t> regions = plan.region_labels(t.mesh.triangle_count());
+    const std::vector<std::uint32_t> components = t.mesh.component_labels();
+    for (std::uint32_t i = 0; i < t.mesh.triangle_count(); i++)
+        assert_true(regions[i] == plan.triangle_region(i) && components[i] == t.mesh.triangle_component(i));
+    for (int which = 0; which < 3; which++) {
+        const std::vector<std::uint32_t> &labels = which == 1 ? components : regions;
+        const std::uint32_t count = which == 1 ? t.mesh.component_count() : plan.region_count();
+        which == 0 ? t.ours.set_parts() : t.ours.set_parts(labels, count);
+        assert_int_equal(
+            cscd_detector_set_parts(t.c, which == 0 ? nullptr : labels.data(), which == 0 ? 0 : count),
+            CSCD_OK);
+        cscd_contacts touching;
+        cscd_contact_part_pairs sums;
+        assert_int_equal(cscd_detector_step(t.c, &t.v0, &t.v1, &touching), CSCD_OK);
+        assert_int_equal(cscd_detector_contact_parts(t.c, touching.items, touching.count, &sums), CSCD_OK);
+        const cscd::contacts contacts = t.ours.step(t.x0, t.x1);
+        const cscd::contact_part_pairs ours = t.ours.contact_parts({contacts.data(), contacts.size()});
+        assert_true(ours.size() == sums.count && !ours.empty());
+        assert_memory_equal(ours.data(), sums.items, sums.count * sizeof *sums.items);
+        cscd_intersection_pairs expected;
+        assert_int_equal(cscd_detector_find_intersections(t.c, &t.v1, &options, &expected), CSCD_OK);
+        const cscd::intersection_pairs found = t.ours.find_intersections(t.x1, options);
+        assert_int_equal(cscd::parts(found).size(), expected.parts->count);
+        assert_memory_equal(cscd::parts(found).data(), expected.parts->items,
+                            expected.parts->count * sizeof *expected.parts->items);
+    }
+    assert_true(cscd::parts(t.ours.find_intersections(t.x1)).empty());
+    assert_int_equal(error_of([&] {
+                         t.ours.set_parts({components.data(), 1}, 1);
+                     }).status(),
+                     CSCD_INVALID_ARGUMENT);
+}
+
 void culling(void **) {
     const cscd::context context;
     const cscd::mesh mesh(context, {cscd::object_of_triangles(8, body_triangles)});
@@ -326,20 +367,12 @@ void line_searches(void **) {
 } // namespace
 
 int main() {
-    const CMUnitTest tests[] = {cmocka_unit_test(steps),
-                                cmocka_unit_test(kinds),
-                                cmocka_unit_test(culling),
-                                cmocka_unit_test(proximity),
-                                cmocka_unit_test(contact_stencils),
-                                cmocka_unit_test(options),
-                                cmocka_unit_test(live_changes),
-                                cmocka_unit_test(rules),
-                                cmocka_unit_test(long_lists),
-                                cmocka_unit_test(active_vertices),
-                                cmocka_unit_test(separation),
-                                cmocka_unit_test(motions),
-                                cmocka_unit_test(bounds),
-                                cmocka_unit_test(touching_starts),
-                                cmocka_unit_test(line_searches)};
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(steps),        cmocka_unit_test(kinds),           cmocka_unit_test(parts),
+        cmocka_unit_test(culling),      cmocka_unit_test(proximity),       cmocka_unit_test(contact_stencils),
+        cmocka_unit_test(options),      cmocka_unit_test(live_changes),    cmocka_unit_test(rules),
+        cmocka_unit_test(long_lists),   cmocka_unit_test(active_vertices), cmocka_unit_test(separation),
+        cmocka_unit_test(motions),      cmocka_unit_test(bounds),          cmocka_unit_test(touching_starts),
+        cmocka_unit_test(line_searches)};
     return cmocka_run_group_tests_name("detectors", tests, nullptr, nullptr);
 }

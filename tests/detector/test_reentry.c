@@ -78,7 +78,7 @@ static panel_scene make_panels(returning_host *h, uint32_t thread_count) {
 
 /* ---- calls from callbacks ------------------------------------------------------------------------------ */
 
-enum { CALLS = 15 };
+enum { CALLS = 17 };
 
 static cscd_status call_again(const panel_scene *p, int what) {
     static union {
@@ -86,6 +86,7 @@ static cscd_status call_again(const panel_scene *p, int what) {
         cscd_proximities proximities;
         cscd_intersections intersections;
         cscd_intersection_pairs pairs;
+        cscd_contact_part_pairs sums;
         cscd_free_step step;
         cscd_displacement_bounds bounds;
         cscd_truncation truncation;
@@ -120,6 +121,10 @@ static cscd_status call_again(const panel_scene *p, int what) {
         return cscd_detector_set_active(p->detector, NULL, 0);
     case 13:
         return find_intersections_packed(p->detector, p->x0, NULL, &found.pairs);
+    case 14:
+        return cscd_detector_set_parts(p->detector, NULL, 0);
+    case 15:
+        return cscd_detector_contact_parts(p->detector, NULL, 0, &found.sums);
     default:
         return cscd_partition_create(p->context, p->mesh, NULL, CSCD_DOUBLES(p->x0, p->vertex_count), NULL,
                                      (cscd_partition **)&made);

@@ -64,7 +64,7 @@ class Api:
         inputs = ' '.join(parameters for _, name, parameters in self.functions if name.endswith('_sized'))
         # A struct grows if the library is told its size: by a parameter or by its first member.
         self.taken = [name for name, members in self.structs.items()
-                      if members[0][1] == 'struct_size' or re.search(rf'const {name} \*\w+, size_t', inputs)]
+                      if members[0][1] == 'struct_size' or re.search(rf'const {name} \*\w+, size_t \w*size\b', inputs)]
         self.growing = [name for name in self.structs
                         if name in self.taken or re.search(rf'(?<!const ){name} \*', inputs)]
 

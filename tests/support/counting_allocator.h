@@ -1,4 +1,4 @@
-/* An allocator that counts its calls and can be told to fail. */
+/* An allocator that counts its calls, can be told to fail, and ends the program where a caller has written behind a block. */
 #pragma once
 
 #include "cscd/cscd.h"

@@ -182,6 +182,13 @@ static void ask_detector(caller_state *s) {
     expect_ok(s, cscd_detector_step(s->detector, x0, x1, &contacts.value), "cscd_detector_step");
     EXPECT_FILLED(cscd_contacts, contacts);
     expect_that(contacts.value.count > 0, "cscd_detector_step", "no contact");
+    GUARDED(cscd_contact_part_pairs, sums);
+    expect_ok(
+        s, cscd_detector_contact_parts(s->detector, contacts.value.items, contacts.value.count, &sums.value),
+        "cscd_detector_contact_parts");
+    EXPECT_FILLED(cscd_contact_part_pairs, sums);
+    expect_that(sums.value.count == 1 && sums.value.items[0].count == contacts.value.count,
+                "cscd_contact_part_pairs", "its values");
     GUARDED(cscd_timings, timings);
     cscd_detector_timings_sized(s->detector, &timings.value, sizeof timings.value);
     EXPECT_FILLED(cscd_timings, timings);

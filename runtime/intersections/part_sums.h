@@ -1,0 +1,32 @@
+/* What intersections, curves and depths say of each pair of parts. */
+#pragma once
+
+#include "src/mesh/part_labels.h"
+
+#include <cscd/intersections.h>
+
+/* A pair of parts, and what belongs to it: a pair of triangles, a piece of a curve, or a depth. */
+typedef struct part_key {
+    uint64_t parts; /* the smaller one in the upper half */
+    uint64_t item;  /* its place in the list; of a piece behind that of its curve in the upper half */
+} part_key;
+
+/* The memory of all calls; begins with zeros. */
+typedef struct part_summer {
+    part_key *keys, *spare_keys;
+    size_t key_capacity;
+    cscd_part_pair *items;
+    size_t item_capacity;
+    bool *marks; /* per triangle; all are false between calls. NULL before the first */
+} part_summer;
+
+void part_sums_free(cscd_context *context, part_summer *s);
+
+/* Sums up what was found. *out lives until the next call. OUT_OF_MEMORY has no sentence. */
+cscd_status part_sums_run(part_summer *s, const cscd_mesh *mesh, const part_labels *labels,
+                          const cscd_intersection_pairs *found, cscd_part_pairs *out);
+
+/* The key of two parts. */
+static inline uint64_t key_of_parts(uint32_t p, uint32_t q) {
+    return p < q ? (uint64_t)p << 32 | q : (uint64_t)q << 32 | p;
+}
