@@ -105,8 +105,7 @@ typedef struct near_place {
     uint32_t block;
 } near_place;
 
-/* Squared distances of a point, framed with rounding as a box, from the children of a block, in units of the mesh and
- * rounded down. */
+/* Squared distances of a point, framed with rounding as a box, from the children of a block, scaled and rounded down. */
 static void measure_children(const bvh *f, const near_place *at, const framed_query *q, double out[LANES]) {
     const float *bounds = f->levels[at->level].bounds + (size_t)at->block * (size_t)f->axis_count * 2 * LANES;
     float sums[LANES] = {0.0f};
@@ -118,8 +117,7 @@ static void measure_children(const bvh *f, const near_place *at, const framed_qu
             sums[lane] += gap > 0.0f ? gap * gap : 0.0f;
         }
     }
-    for (uint32_t lane = 0; lane < LANES; lane++)
-        out[lane] = (double)sums[lane] * (1.0 - 0x1p-20) / f->scale / f->scale;
+    for (uint32_t lane = 0; lane < LANES; lane++) out[lane] = (double)sums[lane] * (1.0 - 0x1p-20);
 }
 
 /* Puts the children that may be near on the stack, the nearest one last. */

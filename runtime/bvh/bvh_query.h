@@ -15,6 +15,7 @@ void bvh_visit_box(const bvh *f, const query_box *box, bool closed_only,
                    void (*visit)(void *data, uint32_t triangle), void *data);
 
 /* Calls visit for each triangle of an object, and perhaps for some of other objects, whose bounding volume may be nearer to
- * the point than the root of *squared, nearer blocks first; visit may lower *squared. INFINITY: any distance. */
+ * the point than the root of *squared, nearer blocks first; visit may lower *squared, which is a squared distance times
+ * the square of the trees' scale, so that it neither overflows nor vanishes. INFINITY: any distance. */
 void bvh_visit_near(const bvh *f, uint32_t object, const double point[3], double *squared,
                     void (*visit)(void *data, uint32_t triangle), void *data);

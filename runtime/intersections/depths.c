@@ -1,7 +1,6 @@
 /* How deep what is buried lies below the outer surfaces of objects. */
 #include "runtime/intersections/depths.h"
 
-#include "runtime/ccd/closest.h"
 #include "src/core/sort.h"
 #include "src/mesh/surface.h"
 
@@ -148,7 +147,7 @@ static void set_answer(const depth_work *work, const outer_point *nearest, cscd_
         find_normal(work, nearest->triangle, out->direction);
 }
 
-/* A place on an edge. */
+/* A place on an edge; distance: scaled. */
 typedef struct edge_place {
     double s, x[3], distance;
     outer_point nearest;
@@ -158,7 +157,7 @@ typedef struct edge_search {
     const depth_work *work;
     const depth_question *question;
     const double *ends[2];
-    double length;
+    double length;           /* scaled */
     const outer_point *near; /* the last answer, or NULL */
 } edge_search;
 
@@ -171,17 +170,13 @@ static edge_place place_at(const edge_search *e, double s, const outer_point *ne
     return at;
 }
 
-static double distance_to(const double x[3], const outer_part *part) {
-    double u, v;
-    return sqrt(closest_point_triangle(x, part->corners[0], part->corners[1], part->corners[2], &u, &v));
-}
-
 /* No point in between is deeper. The depth changes by no more than the way; and it is no more than the distance from one
  * convex part, which is largest at an end. */
 static double bound_between(const edge_search *e, const edge_place *a, const edge_place *b) {
     double by_way = 0.5 * (a->distance + b->distance + (b->s - a->s) * e->length);
-    double by_first = fmax(a->distance, distance_to(b->x, &a->nearest.part));
-    double by_last = fmax(b->distance, distance_to(a->x, &b->nearest.part));
+    const outer_surface *outer = &e->work->finder->outer;
+    double by_first = fmax(a->distance, outer_part_distance(outer, b->x, &a->nearest.part));
+    double by_last = fmax(b->distance, outer_part_distance(outer, a->x, &b->nearest.part));
     return fmin(by_way, fmin(by_first, by_last));
 }
 
@@ -214,7 +209,7 @@ static outer_point answer_edge(const depth_work *work, const depth_question *q, 
     const named_surface *s = work->found->surface;
     const uint32_t *v = s->mesh->edges[q->edge];
     edge_search e = {work, q, {s->positions + (size_t)v[0] * 3, s->positions + (size_t)v[1] * 3}, 0.0, near};
-    e.length = surface_edge_length(s->mesh, s->positions, q->edge);
+    e.length = surface_edge_length(s->mesh, s->positions, q->edge) * work->finder->outer.scale;
     edge_place deepest = find_deepest(&e);
     out->s = deepest.s;
     memcpy(out->x, deepest.x, sizeof out->x);
@@ -279,7 +274,7 @@ static int compare_questions(const void *a, const void *b) {
 cscd_status depth_finder_run(depth_finder *d, const surface_cuts *found, const bvh *f, cscd_depths *out) {
     depth_work work = {d, found, f};
     d->question_count = 0;
-    if (!outer_surface_find(&d->outer, found)) return CSCD_OUT_OF_MEMORY;
+    if (!outer_surface_find(&d->outer, found, f)) return CSCD_OUT_OF_MEMORY;
     for (uint32_t v = 0; v < found->surface->mesh->vertex_count; v++) {
         if (!ask_of_vertex(&work, v)) return CSCD_OUT_OF_MEMORY;
     }

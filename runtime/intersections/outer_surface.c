@@ -45,13 +45,18 @@ static bool add_part(outer_surface *o, const outer_part *part) {
     return true;
 }
 
-/* The point of the triangle's plane with this projection. */
+static void scale_point(const outer_surface *o, const double x[3], double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = x[k] * o->scale;
+}
+
+/* The point of the triangle's plane with this projection, scaled. */
 static void lift_point(const part_taker *taker, double x, double y, double out[3]) {
     int of_x = taker->cut->x, of_y = taker->cut->y, rest = 3 - of_x - of_y;
     const double *n = taker->normal, *p = taker->corner;
     out[of_x] = x;
     out[of_y] = taker->cut->turn * y;
     out[rest] = p[rest] - (n[of_x] * (x - p[of_x]) + n[of_y] * (out[of_y] - p[of_y])) / n[rest];
+    scale_point(taker->outer, out, out);
 }
 
 /* Adds the two triangles of the trapezoid that waits. */
@@ -116,8 +121,9 @@ static bool divide_triangle(outer_surface *o, const surface_cuts *found, loaded_
     return !taker.out_of_memory;
 }
 
-bool outer_surface_find(outer_surface *o, const surface_cuts *found) {
+bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f) {
     triangle_cuts *c = &o->cuts;
+    o->scale = f->scale;
     if (!triangle_cuts_sort(c, found->curves)) return false;
     size_t room = room_with_spare(c->key_count);
     if (!context_renew_all(o->context, list_of_cuts(o, room), &o->cut_capacity, c->key_count)) return false;
@@ -138,7 +144,7 @@ typedef struct nearest_search {
     const outer_surface *outer;
     const surface_cuts *found;
     uint32_t object;
-    const double *x;
+    double x[3]; /* scaled, as all that is found */
     outer_point best;
 } nearest_search;
 
@@ -202,8 +208,7 @@ static void try_triangle(void *data, uint32_t triangle) {
     if (p->patches[p->corner_patches[(size_t)triangle * 3]].own >= 1) return;
     outer_part whole;
     for (uint32_t i = 0; i < 3; i++)
-        memcpy(whole.corners[i], surface_corner(mesh, surface->positions, triangle, i),
-               sizeof whole.corners[i]);
+        scale_point(s->outer, surface_corner(mesh, surface->positions, triangle, i), whole.corners[i]);
     try_part(s, triangle, &whole);
 }
 
@@ -218,8 +223,17 @@ static double squared_beyond(const double x[3], const outer_part *part) {
 
 outer_point outer_surface_nearest(const outer_surface *o, const surface_cuts *found, const bvh *f,
                                   uint32_t object, const double x[3], const outer_point *near) {
-    nearest_search s = {o, found, object, x, {.squared = (double)INFINITY, .triangle = UINT32_MAX}};
-    if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(x, &near->part);
+    nearest_search s = {
+        .outer = o, .found = found, .object = object, .best = {.squared = (double)INFINITY, UINT32_MAX}};
+    scale_point(o, x, s.x);
+    if (near != NULL && near->triangle != UINT32_MAX) s.best.squared = squared_beyond(s.x, &near->part);
     bvh_visit_near(f, object, x, &s.best.squared, try_triangle, &s);
+    for (int k = 0; k < 3; k++) s.best.x[k] /= o->scale;
     return s.best;
+}
+
+double outer_part_distance(const outer_surface *o, const double x[3], const outer_part *part) {
+    double scaled[3], u, v;
+    scale_point(o, x, scaled);
+    return sqrt(closest_point_triangle(scaled, part->corners[0], part->corners[1], part->corners[2], &u, &v));
 }

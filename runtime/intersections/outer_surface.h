@@ -4,7 +4,7 @@
 #include "runtime/bvh/bvh_query.h"
 #include "runtime/intersections/triangle_cuts.h"
 
-/* A convex part of a triangle. */
+/* A convex part of a triangle, scaled. */
 typedef struct outer_part {
     double corners[3][3];
 } outer_part;
@@ -13,6 +13,7 @@ typedef struct outer_part {
  * cuts have parts; all others are outer as a whole, or not at all. */
 typedef struct outer_surface {
     cscd_context *context;
+    double scale; /* that of the trees: parts and distances are so many times as large */
     triangle_cuts cuts;
     outer_part *parts;
     size_t part_count, part_capacity;
@@ -24,15 +25,18 @@ typedef struct outer_surface {
 void outer_surface_free(outer_surface *o);
 
 /* Finds the parts. False: no memory. */
-bool outer_surface_find(outer_surface *o, const surface_cuts *found);
+bool outer_surface_find(outer_surface *o, const surface_cuts *found, const bvh *f);
 
 /* The nearest point of an object's outer surface. */
 typedef struct outer_point {
-    double squared;    /* the squared distance; INFINITY: the object has no outer surface */
+    double squared;    /* the squared distance, scaled; INFINITY: the object has no outer surface */
     uint32_t triangle; /* which has the point */
     outer_part part;   /* the same, or the part of it */
     double x[3];
 } outer_point;
+
+/* The scaled distance of a point from a part. */
+double outer_part_distance(const outer_surface *o, const double x[3], const outer_part *part);
 
 /* near: the answer for another point and the same object, or NULL. The nearer the points, the shorter the search; the
  * answer does not depend on it. */
